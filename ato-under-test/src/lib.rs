@@ -1,0 +1,1 @@
+//! ato-under-test

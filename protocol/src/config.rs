@@ -1,0 +1,314 @@
+//! Unit configuration: the code table, margins and times of one type of unit, as checked data.
+//!
+//! No number of a real unit is public, so every value in a configuration file is a bench default
+//! unless the file says where it comes from. Files are TOML; see `scripts/units/`.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Why a configuration or line file is refused.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ConfigError {
+    /// The text does not parse; the message has line and column.
+    #[error("{0}")]
+    Syntax(String),
+    /// A value is out of its range.
+    #[error("{key} = {value} is outside {low} .. {high}")]
+    Range {
+        /// Key path.
+        key: String,
+        /// Value found.
+        value: String,
+        /// Least value allowed.
+        low: String,
+        /// Greatest value allowed.
+        high: String,
+    },
+    /// Values do not fit together.
+    #[error("{0}")]
+    Conflict(String),
+}
+
+/// One speed code of the code table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpeedCode {
+    /// Name in scripts, for instance `55`.
+    pub name: String,
+    /// Limit it stands for, km/h; 0 = stop.
+    pub limit_kmh: f64,
+    /// Carrier, Hz.
+    pub carrier_hz: f64,
+    /// Modulation, Hz.
+    pub rate_hz: f64,
+}
+
+/// ATP receiver and decoder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReceiverConfig {
+    /// Accepted distance from the carrier, Hz.
+    pub carrier_tolerance_hz: f64,
+    /// Accepted distance from the code rate, Hz.
+    pub rate_tolerance_hz: f64,
+    /// Weakest level decoded, mV.
+    pub level_min_mv: f64,
+    /// Strongest level decoded, mV.
+    pub level_max_mv: f64,
+    /// Nominal level, mV.
+    pub level_nominal_mv: f64,
+    /// Time a code must be steady before it counts, ms.
+    pub detect_ms: u32,
+    /// Time the last code stays in force when none is decoded, ms.
+    pub hold_ms: u32,
+}
+
+/// Tachometers, standstill and rollback.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TachoConfig {
+    /// Pulses per wheel turn.
+    pub pulses_per_turn: u32,
+    /// Wheel diameter, mm.
+    pub wheel_diameter_mm: f64,
+    /// Averaging time of the speed measurement, ms.
+    pub window_ms: u32,
+    /// Difference between the channels that is a fault, km/h.
+    pub difference_kmh: f64,
+    /// How long the difference must last, ms.
+    pub difference_ms: u32,
+    /// Greatest believable acceleration of a wheel, m/s².
+    pub plausible_accel_mps2: f64,
+    /// Speed that counts as standing, km/h [ASCE: 0.3 m/s].
+    pub standstill_kmh: f64,
+    /// How long it must last, ms.
+    pub standstill_ms: u32,
+    /// Way against the reverser that trips, m.
+    pub rollback_m: f64,
+}
+
+/// Overspeed supervision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OverspeedConfig {
+    /// Alarm above limit plus this, km/h.
+    pub alarm_margin_kmh: f64,
+    /// Full service brake above limit plus this, km/h.
+    pub fsb_margin_kmh: f64,
+    /// Emergency brake above limit plus this, km/h.
+    pub eb_margin_kmh: f64,
+    /// How long the speed must stay above the alarm margin, ms.
+    pub alarm_delay_ms: u32,
+    /// How long the speed must stay above the service margin, ms.
+    pub fsb_delay_ms: u32,
+    /// How long the speed must stay above the emergency margin, ms.
+    pub eb_delay_ms: u32,
+    /// Time the service brake has to show its effect, ms.
+    pub brake_proof_ms: u32,
+    /// Deceleration that proves it, m/s².
+    pub brake_proof_mps2: f64,
+    /// After a step down of the limit: no emergency brake for this time, ms, while the service
+    /// brake is being proved (S2 runs 55 → 45 at 50 km/h, the grace is not printed).
+    pub step_down_grace_ms: u32,
+    /// Limit in yard mode, km/h.
+    pub yard_kmh: f64,
+    /// Limit in emergency mode, km/h.
+    pub emergency_kmh: f64,
+}
+
+/// Doors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DoorConfig {
+    /// Distance from the stop point that counts as aligned, m [S0: ±0.30].
+    pub aligned_m: f64,
+    /// How long doors must be seen open while moving, ms.
+    pub open_moving_ms: u32,
+}
+
+/// Communication.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinkConfig {
+    /// I/O silence that applies the emergency brake, ms.
+    pub io_timeout_ms: u32,
+    /// TCMS silence or a standing alive counter, ms.
+    pub tcms_timeout_ms: u32,
+    /// TWC silence, ms.
+    pub twc_timeout_ms: u32,
+    /// Tester silence that ends arming, ms (design: 1 s).
+    pub tester_timeout_ms: u32,
+}
+
+/// Markers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerConfig {
+    /// Distance from its place at which a marker is believed, m.
+    pub window_m: f64,
+    /// Time between TRA tests, ms.
+    pub tra_test_ms: u32,
+}
+
+/// ATO.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AtoConfig {
+    /// Target below the limit, km/h [S2 §3.3: 5].
+    pub below_limit_kmh: f64,
+    /// Further lowering in normal running mode, km/h [S0 §3.1.1].
+    pub normal_lowering_kmh: f64,
+    /// Speed error that asks for full effort, km/h.
+    pub full_effort_error_kmh: f64,
+    /// Effort at which the speed is held without error, share of full effort per second of error.
+    pub integral_per_s: f64,
+    /// Brake rate of the station stop, m/s² [S2 §3.2: B_r].
+    pub stop_rate_mps2: f64,
+}
+
+/// Start-up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StartConfig {
+    /// How long the self-test takes, ms.
+    pub self_test_ms: u32,
+}
+
+/// Everything one type of unit is configured with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UnitConfig {
+    /// Name, at most 16 ASCII characters.
+    pub name: String,
+    /// The code table; each code's place is its index on the wire.
+    pub codes: Vec<SpeedCode>,
+    /// ATP receiver and decoder.
+    pub receiver: ReceiverConfig,
+    /// Tachometers.
+    pub tacho: TachoConfig,
+    /// Overspeed supervision.
+    pub overspeed: OverspeedConfig,
+    /// Doors.
+    pub doors: DoorConfig,
+    /// Communication.
+    pub link: LinkConfig,
+    /// Markers.
+    pub marker: MarkerConfig,
+    /// ATO.
+    pub ato: AtoConfig,
+    /// Start-up.
+    pub start: StartConfig,
+}
+
+impl UnitConfig {
+    /// Reads and checks a configuration file.
+    ///
+    /// # Errors
+    /// The first thing wrong: syntax with line and column, a value out of range, or values that do
+    /// not fit together.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let config: Self =
+            toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Distance one pulse stands for, m.
+    pub fn metres_per_pulse(&self) -> f64 {
+        core::f64::consts::PI * self.tacho.wheel_diameter_mm
+            / 1000.0
+            / f64::from(self.tacho.pulses_per_turn)
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        for (key, value, low, high) in self.ranges() {
+            within(key, value, low, high)?;
+        }
+        if self.name.is_empty() || self.name.len() > 16 || !self.name.is_ascii() {
+            return Err(conflict("name must be 1 to 16 ASCII characters"));
+        }
+        let margins = &self.overspeed;
+        if !(margins.alarm_margin_kmh < margins.fsb_margin_kmh
+            && margins.fsb_margin_kmh < margins.eb_margin_kmh)
+        {
+            return Err(conflict("overspeed margins must rise: alarm < fsb < eb"));
+        }
+        if self.receiver.level_min_mv >= self.receiver.level_max_mv {
+            return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
+        }
+        self.check_codes()
+    }
+
+    /// Key, value and allowed range of every bounded number.
+    fn ranges(&self) -> [(&'static str, f64, f64, f64); 22] {
+        let (r, t, o, l) = (&self.receiver, &self.tacho, &self.overspeed, &self.link);
+        [
+            ("receiver.carrier_tolerance_hz", r.carrier_tolerance_hz, 1.0, 1000.0),
+            ("receiver.rate_tolerance_hz", r.rate_tolerance_hz, 0.05, 5.0),
+            ("receiver.level_min_mv", r.level_min_mv, 1.0, 5000.0),
+            ("receiver.level_max_mv", r.level_max_mv, 1.0, 10000.0),
+            ("receiver.detect_ms", f64::from(r.detect_ms), 50.0, 5000.0),
+            ("receiver.hold_ms", f64::from(r.hold_ms), 0.0, 5000.0),
+            ("tacho.pulses_per_turn", f64::from(t.pulses_per_turn), 10.0, 1000.0),
+            ("tacho.wheel_diameter_mm", t.wheel_diameter_mm, 500.0, 1200.0),
+            ("tacho.window_ms", f64::from(t.window_ms), 20.0, 1000.0),
+            ("tacho.difference_kmh", t.difference_kmh, 1.0, 20.0),
+            ("tacho.standstill_kmh", t.standstill_kmh, 0.1, 3.0),
+            ("tacho.rollback_m", t.rollback_m, 0.05, 5.0),
+            ("overspeed.alarm_margin_kmh", o.alarm_margin_kmh, 0.0, 20.0),
+            ("overspeed.fsb_margin_kmh", o.fsb_margin_kmh, 0.0, 20.0),
+            ("overspeed.eb_margin_kmh", o.eb_margin_kmh, 0.0, 30.0),
+            ("overspeed.yard_kmh", o.yard_kmh, 5.0, 45.0),
+            ("overspeed.emergency_kmh", o.emergency_kmh, 5.0, 45.0),
+            ("doors.aligned_m", self.doors.aligned_m, 0.05, 2.0),
+            ("link.io_timeout_ms", f64::from(l.io_timeout_ms), 50.0, 900.0),
+            ("link.tester_timeout_ms", f64::from(l.tester_timeout_ms), 200.0, 1000.0),
+            ("ato.below_limit_kmh", self.ato.below_limit_kmh, 0.0, 20.0),
+            ("ato.stop_rate_mps2", self.ato.stop_rate_mps2, 0.1, 1.2),
+        ]
+    }
+
+    fn check_codes(&self) -> Result<(), ConfigError> {
+        if self.codes.is_empty() || self.codes.len() > 32 {
+            return Err(conflict("the code table needs 1 to 32 codes"));
+        }
+        for (i, code) in self.codes.iter().enumerate() {
+            within("codes.limit_kmh", code.limit_kmh, 0.0, 130.0)?;
+            within("codes.carrier_hz", code.carrier_hz, 100.0, 20000.0)?;
+            within("codes.rate_hz", code.rate_hz, 1.0, 100.0)?;
+            for other in &self.codes[..i] {
+                let same_carrier = libm::fabs(code.carrier_hz - other.carrier_hz)
+                    <= 2.0 * self.receiver.carrier_tolerance_hz;
+                let same_rate = libm::fabs(code.rate_hz - other.rate_hz)
+                    <= 2.0 * self.receiver.rate_tolerance_hz;
+                if code.name == other.name || (same_carrier && same_rate) {
+                    return Err(ConfigError::Conflict(alloc::format!(
+                        "codes {} and {} cannot be told apart with these tolerances",
+                        other.name, code.name
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn conflict(text: &str) -> ConfigError {
+    ConfigError::Conflict(text.to_string())
+}
+
+pub(crate) fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
+    // A negated comparison so that not-a-number is refused, too.
+    if value >= low && value <= high {
+        return Ok(());
+    }
+    Err(ConfigError::Range {
+        key: key.to_string(),
+        value: value.to_string(),
+        low: low.to_string(),
+        high: high.to_string(),
+    })
+}

@@ -1,0 +1,133 @@
+//! The event dictionary: stable numbers, never reused, with severity and the part under suspicion.
+
+/// How bad an event is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Part of normal operation; not a fault by itself.
+    Info,
+    /// Something is not as it should be; operation goes on.
+    Minor,
+    /// A function is lost or a brake was needed.
+    Major,
+    /// Safety relevant.
+    Critical,
+}
+
+impl Severity {
+    /// The word stored and shown.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Info => "info",
+            Self::Minor => "minor",
+            Self::Major => "major",
+            Self::Critical => "critical",
+        }
+    }
+}
+
+/// Definition of one event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Definition {
+    /// Number in the log.
+    pub code: u16,
+    /// Name in scripts, databases and reports.
+    pub name: &'static str,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Part under suspicion when only this event is known; `-` = none.
+    pub lru: &'static str,
+    /// What happened, in English.
+    pub text: &'static str,
+    /// What happened, in Korean.
+    pub text_ko: &'static str,
+    /// What the parameter is; empty = not used.
+    pub parameter: &'static str,
+}
+
+macro_rules! events {
+    ($( $variant:ident = $code:literal $name:literal $severity:ident $lru:literal $text:literal $ko:literal $parameter:literal; )*) => {
+        /// Events the unit logs.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Event { $( #[doc = $text] $variant ),* }
+
+        impl Event {
+            /// All events by number.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Its definition.
+            pub const fn definition(self) -> &'static Definition {
+                match self { $( Self::$variant => &Definition {
+                    code: $code, name: $name, severity: Severity::$severity, lru: $lru,
+                    text: $text, text_ko: $ko, parameter: $parameter,
+                }, )* }
+            }
+            /// The event of a number; `None` for one this version does not know.
+            pub const fn from_code(code: u16) -> Option<Self> {
+                match code { $( $code => Some(Self::$variant), )* _ => None }
+            }
+            /// The event called `name`.
+            pub fn from_name(name: &str) -> Option<Self> {
+                match name { $( $name => Some(Self::$variant), )* _ => None }
+            }
+        }
+    };
+}
+
+events! {
+    PowerUp = 100 "power_up" Info "-" "Unit powered up" "장치 기동" "";
+    SelfTestFailed = 101 "self_test_failed" Critical "atp_cpu" "Start-up self-test failed" "기동 자체시험 실패" "failed items as bits";
+    Armed = 102 "armed" Info "-" "Armed for maintenance" "정비 시험 허가" "";
+    ArmingLapsed = 103 "arming_lapsed" Info "-" "Arming lapsed, test signals taken away" "정비 시험 허가 해제" "refusal code";
+    LogCleared = 104 "log_cleared" Info "-" "Event log cleared" "이벤트 기록 삭제" "";
+    InternalError = 105 "internal_error" Critical "atp_cpu" "Broken invariant on board" "내부 논리 오류" "place";
+    InputsLost = 110 "inputs_lost" Critical "io_board" "I/O inputs fell silent" "입력 신호 두절" "";
+    InputsRestored = 111 "inputs_restored" Info "-" "I/O inputs are back" "입력 신호 복귀" "";
+    FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 프레임 다수 폐기" "channel number";
+    CodeLost = 200 "code_lost" Minor "atp_receiver" "Speed code lost while the train line asks for one" "속도코드 상실" "";
+    CodeUnknown = 201 "code_unknown" Minor "atp_receiver" "Signal present but not in the code table" "미등록 속도코드 수신" "code rate, 0.01 Hz";
+    Overspeed = 210 "overspeed" Info "-" "Speed above limit and alarm margin" "과속 경보" "excess, cm/s";
+    OverspeedFsb = 211 "overspeed_fsb" Info "-" "Overspeed: full service brake" "과속 상용전제동" "excess, cm/s";
+    OverspeedEb = 212 "overspeed_eb" Major "-" "Overspeed: emergency brake" "과속 비상제동" "excess, cm/s";
+    ServiceBrakeIneffective = 213 "service_brake_ineffective" Major "fsb_output" "Full service brake did not slow the train" "상용제동 효과 없음" "deceleration, mm/s²";
+    EbReleased = 214 "eb_released" Info "-" "Emergency brake released" "비상제동 완해" "";
+    TachoDisagree = 220 "tacho_disagree" Critical "-" "The two tachometers disagree" "속도센서 불일치" "difference, cm/s";
+    TachoDead1 = 221 "tacho1_dead" Critical "speed_sensor_1" "No pulses on tachometer 1 while 2 turns" "속도센서 1 무신호" "speed 2, cm/s";
+    TachoDead2 = 222 "tacho2_dead" Critical "speed_sensor_2" "No pulses on tachometer 2 while 1 turns" "속도센서 2 무신호" "speed 1, cm/s";
+    TachoDirection = 223 "tacho_direction" Critical "-" "Tachometers differ in direction" "속도센서 방향 불일치" "";
+    TachoNoise1 = 224 "tacho1_noise" Major "speed_sensor_1" "Speed from tachometer 1 jumps impossibly" "속도센서 1 잡음" "jump, cm/s";
+    TachoNoise2 = 225 "tacho2_noise" Major "speed_sensor_2" "Speed from tachometer 2 jumps impossibly" "속도센서 2 잡음" "jump, cm/s";
+    Rollback = 226 "rollback" Major "-" "Moving against the reverser" "후진 검지" "distance, cm";
+    EbRelayWelded = 230 "eb_relay_welded" Critical "eb_relay" "EB relay dropped but the brake line stays energised" "EB 계전기 융착" "";
+    EbRelayOpen = 231 "eb_relay_open" Critical "eb_relay" "EB relay energised but the brake line stays dead" "EB 계전기 개방" "";
+    DoorOpenMoving = 240 "door_open_moving" Critical "-" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
+    DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
+    MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";
+    MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "표지 누락" "marker";
+    MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "표지 위치 오차" "difference, cm";
+    TraFailed = 303 "tra_failed" Major "tra" "TRA did not answer its test" "TRA 시험 실패" "";
+    TraRestored = 304 "tra_restored" Info "-" "TRA answers again" "TRA 복귀" "";
+    TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
+    TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
+    TwcStationInvalid = 402 "twc_station_invalid" Minor "-" "Station data do not match the track database" "역 정보 불일치" "station number";
+    TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "";
+    TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
+    AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason";
+    ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
+    AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_lead_back_to_events_and_rise() {
+        for pair in Event::ALL.windows(2) {
+            assert!(pair[0].definition().code < pair[1].definition().code);
+        }
+        for &event in Event::ALL {
+            assert_eq!(Event::from_code(event.definition().code), Some(event));
+            assert_eq!(Event::from_name(event.definition().name), Some(event));
+        }
+    }
+}

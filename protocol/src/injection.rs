@@ -1,0 +1,171 @@
+//! Fault modes as data: where in the signal path, and what happens there.
+//!
+//! The unit applies those of its own places, the rig those of the train and its wiring. Nothing
+//! that judges a result ever sees them.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::{ConfigError, conflict};
+
+/// A place in the signal path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// Level from the ATP antenna, before the receiver.
+    AtpAntenna,
+    /// Code rate as the receiver hears it.
+    AtpReceiver,
+    /// Pulses of speed sensor 1.
+    SpeedSensor1,
+    /// Pulses of speed sensor 2.
+    SpeedSensor2,
+    /// Contact of the EB relay.
+    EbRelay,
+    /// Full service brake output.
+    FsbOutput,
+    /// Door closed input.
+    DoorInput,
+    /// Door enable outputs.
+    DoorOutput,
+    /// Marker antenna.
+    MarkerAntenna,
+    /// Trigger receiver assembly.
+    Tra,
+    /// TWC modem, receiving side.
+    FskReceiver,
+    /// TWC modem, sending side.
+    FskTransmitter,
+    /// TWC CPU: content of what it hands on.
+    TwcCpu,
+    /// RS-485 link to TCMS, receiving side.
+    TcmsReceiver,
+    /// RS-485 link to TCMS, sending side.
+    TcmsTransmitter,
+    /// TEST board.
+    TestBoard,
+    /// ATO processor's effort.
+    AtoCpu,
+}
+
+/// What happens at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind", deny_unknown_fields)]
+pub enum Effect {
+    /// Nothing comes through.
+    Dead,
+    /// Stays on, energised or high.
+    StuckOn,
+    /// Stays off, de-energised or low.
+    StuckOff,
+    /// Multiplied.
+    Gain {
+        /// By this.
+        factor: f64,
+    },
+    /// Moved.
+    Offset {
+        /// By this, in the place's own unit (Hz, km/h, effort …).
+        by: f64,
+    },
+    /// Late.
+    Delay {
+        /// By this, ms.
+        ms: u32,
+    },
+    /// Spurious or missing pulses.
+    Noise {
+        /// Mean events per second.
+        per_s: f64,
+    },
+    /// Bit errors.
+    BitErrors {
+        /// Share of frames hit, 0..1.
+        rate: f64,
+    },
+}
+
+/// One fault mode of one part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FaultMode {
+    /// Name, `part.mode`.
+    pub id: String,
+    /// Part to replace.
+    pub lru: String,
+    /// What is wrong, for people.
+    pub mode: String,
+    /// `minor`, `major` or `critical`.
+    pub severity: String,
+    /// Relative prior weight, a bench default.
+    pub weight: f64,
+    /// It can leave the train less protected.
+    #[serde(rename = "unsafe")]
+    pub unsafe_: bool,
+    /// Where it sits.
+    pub place: Place,
+    /// What it does.
+    pub effect: Effect,
+    /// When it begins, s after power-up.
+    #[serde(default)]
+    pub onset_s: f64,
+}
+
+/// A part that can be replaced.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lru {
+    /// Name used in faults.
+    pub id: String,
+    /// Name people use, English.
+    pub name: String,
+    /// Name people use, Korean.
+    pub name_ko: String,
+}
+
+/// The catalogue of parts and fault modes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FaultCatalogue {
+    /// Parts.
+    pub lrus: Vec<Lru>,
+    /// Fault modes.
+    pub faults: Vec<FaultMode>,
+}
+
+impl FaultCatalogue {
+    /// Reads and checks a catalogue file.
+    ///
+    /// # Errors
+    /// Syntax with line and column, a name used twice, or a part that is not listed.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let catalogue: Self =
+            toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
+        for (i, fault) in catalogue.faults.iter().enumerate() {
+            if catalogue.faults[..i].iter().any(|f| f.id == fault.id) {
+                return Err(conflict(&alloc::format!("fault {} is listed twice", fault.id)));
+            }
+            if !catalogue.lrus.iter().any(|l| l.id == fault.lru) {
+                return Err(conflict(&alloc::format!(
+                    "fault {} names the part {}, which is not listed under lrus",
+                    fault.id,
+                    fault.lru.to_string()
+                )));
+            }
+            if !(fault.weight > 0.0 && fault.onset_s >= 0.0) {
+                return Err(conflict(&alloc::format!(
+                    "fault {}: weight must be above 0 and onset_s not negative",
+                    fault.id
+                )));
+            }
+        }
+        Ok(catalogue)
+    }
+
+    /// The fault mode called `id`.
+    pub fn fault(&self, id: &str) -> Option<&FaultMode> {
+        self.faults.iter().find(|f| f.id == id)
+    }
+}

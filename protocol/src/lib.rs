@@ -1,0 +1,27 @@
+//! The words on the wire between a tester and an on-board ATC unit.
+//!
+//! Layers, bottom up:
+//! * [`frame`]: async-HDLC framing with FCS-32 and a streaming decoder that counts what it rejects;
+//! * [`link`]: sequence, time stamp, time-out and address checks for each peer;
+//! * [`message`]: the typed messages of the four channels, with declared field layouts;
+//! * [`signal`], [`event`]: the catalogue of recorded signals and of unit events;
+//! * [`config`], [`line`], [`injection`]: unit configuration, track database and fault modes as
+//!   checked data.
+//!
+//! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
+//! units straight. `no_std` with `alloc`: no clock, no thread, no file.
+#![no_std]
+
+extern crate alloc;
+
+pub mod config;
+pub mod event;
+pub mod injection;
+pub mod line;
+pub mod message;
+pub mod signal;
+mod speed;
+mod time;
+
+pub use speed::Speed;
+pub use time::{CYCLE, Duration, Instant, SCAN};

@@ -1,0 +1,120 @@
+//! Track database: the record of S0 §3.3 for each section of a line, as checked data.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::{ConfigError, conflict, within};
+
+/// A gradient from a position on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gradient {
+    /// Where it begins, m from the section's start.
+    pub at_m: f64,
+    /// Its value, ‰, uphill positive.
+    pub permille: f64,
+}
+
+/// A curve from a position on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    /// Where it begins, m from the section's start.
+    pub at_m: f64,
+    /// Its radius, m; 0 = straight from here on.
+    pub radius_m: f64,
+}
+
+/// One section, from a departure to an arrival station.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// Section number.
+    pub section: u16,
+    /// Route number.
+    pub route: u16,
+    /// Length, m.
+    pub length_m: f64,
+    /// Departure station number.
+    pub from_station: u16,
+    /// Its TWC loop number.
+    pub from_loop: u16,
+    /// Arrival station number.
+    pub to_station: u16,
+    /// Its TWC loop number.
+    pub to_loop: u16,
+    /// Start position, m.
+    pub start_m: f64,
+    /// Stop position, m.
+    pub stop_m: f64,
+    /// Positions of PSM1 to PSM4, m.
+    pub markers_m: [f64; 4],
+    /// Platform side at the arrival station: `left`, `right` or `both`.
+    pub door_side: String,
+    /// Gradients in order.
+    #[serde(default)]
+    pub gradients: Vec<Gradient>,
+    /// Curves in order.
+    #[serde(default)]
+    pub curves: Vec<Curve>,
+}
+
+/// The track database of a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// Name, for instance `line8`.
+    pub name: String,
+    /// Sections in running order.
+    pub sections: Vec<Section>,
+}
+
+impl Line {
+    /// Reads and checks a line file.
+    ///
+    /// # Errors
+    /// The first thing wrong: syntax with line and column, or a section that cannot be.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let line: Self = toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
+        if line.sections.is_empty() {
+            return Err(conflict("a line needs at least one section"));
+        }
+        for section in &line.sections {
+            section.check()?;
+        }
+        Ok(line)
+    }
+
+    /// The section numbered `number`.
+    pub fn section(&self, number: u16) -> Option<&Section> {
+        self.sections.iter().find(|s| s.section == number)
+    }
+}
+
+impl Section {
+    fn check(&self) -> Result<(), ConfigError> {
+        within("length_m", self.length_m, 50.0, 20000.0)?;
+        within("stop_m", self.stop_m, self.start_m + 1.0, self.start_m + self.length_m)?;
+        let mut last = self.start_m;
+        for (i, &marker) in self.markers_m.iter().enumerate() {
+            if !(marker > last && marker < self.stop_m) {
+                return Err(ConfigError::Conflict(alloc::format!(
+                    "section {}: PSM{} at {marker} m must lie after {last} m and before the stop point",
+                    self.section,
+                    i + 1
+                )));
+            }
+            last = marker;
+        }
+        if !["left", "right", "both"].contains(&self.door_side.as_str()) {
+            return Err(ConfigError::Conflict(alloc::format!(
+                "section {}: door_side \"{}\" must be left, right or both",
+                self.section,
+                self.door_side.to_string()
+            )));
+        }
+        Ok(())
+    }
+}

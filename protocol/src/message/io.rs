@@ -1,0 +1,102 @@
+//! I/O channel: what the bench harness carries, once per 10 ms scan each way.
+
+use super::layout::{layout, wire_bits};
+use super::words::ModeSwitch;
+
+wire_bits! {
+    /// Train lines and cab contacts; a set bit is an energised line.
+    TrainLines {
+        /// All doors proved closed.
+        DOORS_CLOSED = 0,
+        /// Head control relay: this cab is active.
+        HCR = 1,
+        /// Maintenance key on.
+        MAINTENANCE_KEY = 2,
+        /// Acknowledge button pressed.
+        ACKNOWLEDGE = 3,
+        /// ATO start button pressed.
+        START = 4,
+        /// Emergency brake train line energised (brake released), read back from the train.
+        EB_LOOP = 5,
+        /// Reverser forward.
+        FORWARD = 6,
+        /// Reverser backward.
+        BACKWARD = 7,
+    }
+}
+
+wire_bits! {
+    /// Output contacts of the unit.
+    Outputs {
+        /// EB relay energised: emergency brake released. De-energised = braking.
+        EB_RELAY = 0,
+        /// Full service brake requested.
+        FSB = 1,
+        /// Powering cut.
+        POWER_CUT = 2,
+        /// Overspeed alarm sounding.
+        ALARM = 3,
+        /// Holding brake requested.
+        HOLDING_BRAKE = 4,
+        /// Doors enabled on the left.
+        DOOR_ENABLE_LEFT = 5,
+        /// Doors enabled on the right.
+        DOOR_ENABLE_RIGHT = 6,
+        /// A valid speed code is being received.
+        CODE_VALID = 7,
+        /// Standstill detected.
+        STANDSTILL = 8,
+        /// Unit healthy.
+        HEALTHY = 9,
+    }
+}
+
+layout! {
+    /// Inputs of the unit at the frame's time stamp, I/O rack → unit.
+    IoInput, Io, 0x01 {
+        /// Carrier in the ATP antenna, Hz; 0 = none.
+        carrier_hz: u16,
+        /// Code rate modulating the carrier, 0.01 Hz; 0 = unmodulated.
+        code_rate_chz: u16,
+        /// Antenna signal level, mV.
+        level_mv: u16,
+        /// Pulses counted on tachometer 1, wrapping.
+        tacho1_count: u16,
+        /// Age of tachometer 1's last pulse at the time stamp, µs, at most 65535.
+        tacho1_edge_us: u16,
+        /// Pulses counted on tachometer 2, wrapping.
+        tacho2_count: u16,
+        /// Age of tachometer 2's last pulse at the time stamp, µs, at most 65535.
+        tacho2_edge_us: u16,
+        /// Phase of the tachometers: bit 0 set = channel 1 runs backward, bit 1 = channel 2.
+        tacho_backward: u8,
+        /// Marker whose coil was entered last, 1 to 4 = PSM1 to PSM4; 0 = none yet.
+        marker: u8,
+        /// Markers entered so far, wrapping.
+        marker_edges: u8,
+        /// Age of the last marker edge at the time stamp, µs, at most 65535.
+        marker_edge_us: u16,
+        /// Train lines.
+        lines: TrainLines,
+        /// Mode switch.
+        mode_switch: ModeSwitch,
+        /// Master controller: -8 emergency, -7 to -1 brake notches, 0 neutral, 1 to 4 power.
+        controller: i8,
+    }
+}
+
+layout! {
+    /// Outputs of the unit after a scan, unit → I/O rack.
+    IoOutput, Io, 0x81 {
+        /// Output contacts.
+        outputs: Outputs,
+        /// Speed limit on the cab display, cm/s.
+        limit_cms: u16,
+        /// Measured speed on the cab display, cm/s.
+        speed_cms: u16,
+        /// Last marker the unit detected, 1 to 4; 0 = none.
+        marker: u8,
+        /// Markers the unit detected so far, wrapping.
+        marker_count: u8,
+    }
+}

@@ -1,0 +1,173 @@
+//! Typed messages of the four channels. `WIRE.md` describes them for people; a test holds the two
+//! together.
+
+mod io;
+mod layout;
+mod ptu;
+mod tcms;
+mod twc;
+mod words;
+
+use alloc::vec::Vec;
+
+pub use io::{IoInput, IoOutput, Outputs, TrainLines};
+pub use layout::{Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout};
+pub use ptu::{
+    ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
+    KeepAlive, LogEnd, LogEntry, ReadLog, SelfTest, Status, StatusBits, StimulusAnswer, TestCode,
+    TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
+};
+pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
+pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
+pub use words::{
+    Answer, ArmRefusal, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Refusals, RunningMode,
+};
+
+/// The four channels of the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Channel {
+    /// Maintenance: arm, stimuli, status, event log, identity.
+    Ptu,
+    /// The bench harness: antenna, tachometers, marker coil, train lines; the unit's outputs.
+    Io,
+    /// RS-485 between ATC and TCMS.
+    Tcms,
+    /// Train to wayside communication through the loop.
+    Twc,
+}
+
+impl Channel {
+    /// All channels in the order of their numbers.
+    pub const ALL: [Self; 4] = [Self::Ptu, Self::Io, Self::Tcms, Self::Twc];
+
+    /// Number on the wire, 1 to 4.
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Ptu => 1,
+            Self::Io => 2,
+            Self::Tcms => 3,
+            Self::Twc => 4,
+        }
+    }
+
+    /// The channel of a wire number.
+    pub const fn from_code(code: u8) -> Option<Self> {
+        match code {
+            1 => Some(Self::Ptu),
+            2 => Some(Self::Io),
+            3 => Some(Self::Tcms),
+            4 => Some(Self::Twc),
+            _ => None,
+        }
+    }
+}
+
+/// Who speaks or is spoken to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Address {
+    /// The maintenance program, PTU or BTU.
+    Tester,
+    /// The unit under test.
+    Unit,
+    /// The bench's input and output rack.
+    IoRack,
+    /// The train control and monitoring system.
+    Tcms,
+    /// The wayside TWC equipment.
+    Wayside,
+}
+
+impl Address {
+    /// Number on the wire.
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Tester => 0x10,
+            Self::Unit => 0x20,
+            Self::IoRack => 0x30,
+            Self::Tcms => 0x40,
+            Self::Wayside => 0x50,
+        }
+    }
+
+    /// The address of a wire number.
+    pub const fn from_code(code: u8) -> Option<Self> {
+        match code {
+            0x10 => Some(Self::Tester),
+            0x20 => Some(Self::Unit),
+            0x30 => Some(Self::IoRack),
+            0x40 => Some(Self::Tcms),
+            0x50 => Some(Self::Wayside),
+            _ => None,
+        }
+    }
+
+    /// The unit's partner on a channel.
+    pub const fn partner(channel: Channel) -> Self {
+        match channel {
+            Channel::Ptu => Self::Tester,
+            Channel::Io => Self::IoRack,
+            Channel::Tcms => Self::Tcms,
+            Channel::Twc => Self::Wayside,
+        }
+    }
+}
+
+macro_rules! messages {
+    ($($name:ident),* $(,)?) => {
+        /// Any message of any channel.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs)]
+        pub enum Message { $($name($name)),* }
+
+        impl Message {
+            /// Reads a payload that came on `channel`.
+            ///
+            /// # Errors
+            /// Names the message, field and offset that do not fit the declared layout.
+            pub fn decode(channel: Channel, payload: &[u8]) -> Result<Self, DecodeError> {
+                let Some(&code) = payload.first() else {
+                    return Err(DecodeError {
+                        message: "payload", field: "code", offset: 0,
+                        kind: DecodeErrorKind::Truncated,
+                    });
+                };
+                $( if $name::CHANNEL as u8 == channel as u8 && $name::CODE == code {
+                    return $name::read(payload).map(Self::$name);
+                } )*
+                Err(DecodeError {
+                    message: "payload", field: "code", offset: 0,
+                    kind: DecodeErrorKind::UnknownMessage(code),
+                })
+            }
+
+            /// Appends code and fields to `out`.
+            pub fn encode(&self, out: &mut Vec<u8>) {
+                match self { $( Self::$name(message) => message.write(out) ),* }
+            }
+
+            /// The channel this message belongs to.
+            pub fn channel(&self) -> Channel {
+                match self { $( Self::$name(_) => $name::CHANNEL ),* }
+            }
+
+            /// The message's name in `WIRE.md`.
+            pub fn name(&self) -> &'static str {
+                match self { $( Self::$name(_) => $name::NAME ),* }
+            }
+        }
+
+        $( impl From<$name> for Message {
+            fn from(message: $name) -> Self { Self::$name(message) }
+        } )*
+
+        /// Name, channel, code and fields of every message.
+        pub const CATALOGUE: &[(&str, Channel, u8, &[FieldSpec])] =
+            &[$( ($name::NAME, $name::CHANNEL, $name::CODE, $name::FIELDS) ),*];
+    };
+}
+
+messages!(
+    Identify, ArmRequest, ArmConfirm, Disarm, KeepAlive, TestCode, TestSpeed, TestMarker, TestTwc,
+    TestRelease, ReadLog, ClearLog, Identity, ArmChallenge, ArmState, StimulusAnswer, Status,
+    LogEntry, LogEnd, IoInput, IoOutput, TcmsToAtc, AtcToTcms, TwcWayside, TwcTrain,
+);

@@ -1,0 +1,316 @@
+//! PTU channel: maintenance over the TWC CPU's RS-232 port [S2 §2.2].
+//!
+//! A session number chosen by the tester ties requests together. Stimuli act through the TEST
+//! board only while the unit is armed for that session.
+
+use super::layout::{layout, wire_bits};
+use super::words::{Answer, ArmRefusal, DoorSide, EbCause, FsbCause, Mode, Refusals, RunningMode};
+
+wire_bits! {
+    /// States in `Status`.
+    StatusBits {
+        /// Armed: stimuli are accepted.
+        ARMED = 0,
+        /// TWC communication is up.
+        TWC_OK = 1,
+        /// TCMS communication is up.
+        TCMS_OK = 2,
+        /// TWC station data match the track database.
+        STATION_VALID = 3,
+        /// Stopped at the stop point.
+        ALIGNED = 4,
+        /// TRA passed its last test.
+        TRA_OK = 5,
+        /// ATO ready.
+        ATO_READY = 6,
+        /// Start-up self-test finished.
+        STARTED = 7,
+        /// I/O inputs are alive.
+        INPUTS_OK = 8,
+    }
+}
+
+wire_bits! {
+    /// Self-test items that failed.
+    SelfTest {
+        /// Memory pattern test.
+        MEMORY = 0,
+        /// Unit configuration check.
+        CONFIGURATION = 1,
+        /// Track database check.
+        TRACK_DATABASE = 2,
+        /// EB relay did not drop out or pick up.
+        EB_RELAY = 3,
+        /// ATP receiver did not decode its test code.
+        ATP_RECEIVER = 4,
+        /// TRA did not answer its test pulse.
+        TRA = 5,
+        /// TWC modem loop-back.
+        TWC_MODEM = 6,
+        /// I/O board.
+        IO_BOARD = 7,
+        /// TEST board.
+        TEST_BOARD = 8,
+    }
+}
+
+wire_bits! {
+    /// Signals the TEST board makes.
+    TestSignals {
+        /// Speed code into the ATP test coil.
+        CODE = 0,
+        /// Speed on tachometer input 1.
+        SPEED_1 = 1,
+        /// Speed on tachometer input 2.
+        SPEED_2 = 2,
+        /// Station data through the TWC TEST module.
+        TWC = 3,
+    }
+}
+
+layout! {
+    /// Asks who the unit is. Tester → unit.
+    Identify, Ptu, 0x01 {}
+}
+layout! {
+    /// First half of the arm exchange. Tester → unit.
+    ArmRequest, Ptu, 0x02 {
+        /// Session number, not 0.
+        session: u32,
+    }
+}
+layout! {
+    /// Second half: the challenge's answer, within 1 s. Tester → unit.
+    ArmConfirm, Ptu, 0x03 {
+        /// Session number.
+        session: u32,
+        /// Bitwise complement of the challenge, exclusive-or the session number.
+        answer: u32,
+    }
+}
+layout! {
+    /// Ends the session: all stimuli off, outputs safe. Tester → unit.
+    Disarm, Ptu, 0x04 {
+        /// Session number.
+        session: u32,
+    }
+}
+layout! {
+    /// Keeps the status flowing, and an armed unit armed. Tester → unit, at least every 500 ms.
+    KeepAlive, Ptu, 0x05 {
+        /// Session number; 0 = listening only.
+        session: u32,
+    }
+}
+layout! {
+    /// Speed code into the ATP test coil. Tester → unit, answered.
+    TestCode, Ptu, 0x10 {
+        /// Session number.
+        session: u32,
+        /// Carrier, Hz.
+        carrier_hz: u16,
+        /// Code rate, 0.01 Hz; 0 = unmodulated.
+        code_rate_chz: u16,
+        /// Level, mV, at most 3000.
+        level_mv: u16,
+    }
+}
+layout! {
+    /// Speed signal in place of the tachometers. Tester → unit, answered.
+    TestSpeed, Ptu, 0x11 {
+        /// Session number.
+        session: u32,
+        /// Inputs driven: bit 0 = tachometer 1, bit 1 = tachometer 2; not 0.
+        channels: u8,
+        /// 1 = backward.
+        backward: u8,
+        /// Speed to reach, cm/s, at most 3000.
+        speed_cms: u16,
+        /// How fast to get there, mm/s²; 0 = at once.
+        accel_mms2: u16,
+    }
+}
+layout! {
+    /// One pulse of the test marker. Tester → unit, answered.
+    TestMarker, Ptu, 0x12 {
+        /// Session number.
+        session: u32,
+        /// Marker 1 to 4.
+        marker: u8,
+    }
+}
+layout! {
+    /// Station data through the TWC TEST module, repeated by it every 250 ms. Tester → unit, answered.
+    TestTwc, Ptu, 0x13 {
+        /// Session number.
+        session: u32,
+        /// Route number.
+        route: u16,
+        /// Section number.
+        section: u16,
+        /// This station's number.
+        station: u16,
+        /// The next station's number.
+        next_station: u16,
+        /// Loop number.
+        loop_id: u16,
+        /// Fixed speed, km/h; 255 = none.
+        fixed_speed_kmh: u8,
+        /// Running mode.
+        running_mode: RunningMode,
+        /// Door side.
+        door_side: DoorSide,
+        /// 1 = departure given.
+        departure: u8,
+        /// Train number.
+        train_number: u16,
+    }
+}
+layout! {
+    /// Takes test signals away. Tester → unit, answered.
+    TestRelease, Ptu, 0x14 {
+        /// Session number.
+        session: u32,
+        /// Signals to take away.
+        signals: TestSignals,
+    }
+}
+layout! {
+    /// Asks for the event log from an index on; answered by entries, then `LogEnd`. Tester → unit.
+    ReadLog, Ptu, 0x20 {
+        /// First entry wanted.
+        from_index: u32,
+    }
+}
+layout! {
+    /// Clears the event log. Tester → unit, answered.
+    ClearLog, Ptu, 0x21 {
+        /// Session number.
+        session: u32,
+    }
+}
+layout! {
+    /// Who the unit is. Unit → tester.
+    Identity, Ptu, 0x81 {
+        /// Serial number, ASCII, filled up with 0.
+        serial: [u8; 16],
+        /// Unit configuration's name, ASCII, filled up with 0.
+        config: [u8; 16],
+        /// CRC-32 of the unit configuration.
+        config_crc: u32,
+        /// CRC-32 of the track database.
+        tdb_crc: u32,
+        /// Software version: major, minor, patch.
+        software: [u8; 3],
+        /// Time since power-up, ms.
+        uptime_ms: u32,
+        /// Self-test items that failed.
+        self_test: SelfTest,
+    }
+}
+layout! {
+    /// Challenge of the arm exchange. Unit → tester.
+    ArmChallenge, Ptu, 0x82 {
+        /// Session number.
+        session: u32,
+        /// Number to answer.
+        challenge: u32,
+    }
+}
+layout! {
+    /// Outcome of arming, and notice when arming lapses. Unit → tester.
+    ArmState, Ptu, 0x83 {
+        /// Session number.
+        session: u32,
+        /// 1 = armed.
+        armed: u8,
+        /// Why not.
+        refusal: ArmRefusal,
+    }
+}
+layout! {
+    /// Answer to a stimulus, release or clear request. Unit → tester.
+    StimulusAnswer, Ptu, 0x84 {
+        /// Sequence number of the request.
+        request_seq: u16,
+        /// Outcome.
+        answer: Answer,
+    }
+}
+layout! {
+    /// State of the unit, every 50 ms while a tester is heard. Unit → tester.
+    Status, Ptu, 0x90 {
+        /// States.
+        bits: StatusBits,
+        /// Operating mode.
+        mode: Mode,
+        /// Preconditions of automatic mode that do not hold.
+        refusals: Refusals,
+        /// Index of the received code in the unit's code table; 255 = none.
+        code_index: u8,
+        /// Emergency brake's cause.
+        eb_cause: EbCause,
+        /// Full service brake's cause.
+        fsb_cause: FsbCause,
+        /// Speed from tachometer 1, cm/s.
+        speed1_cms: u16,
+        /// Speed from tachometer 2, cm/s.
+        speed2_cms: u16,
+        /// ATO target speed, cm/s.
+        target_cms: u16,
+        /// Effort, -1024..1023.
+        effort: i16,
+        /// Position from the section's start, cm.
+        position_cm: i32,
+        /// Events logged since power-up.
+        events: u32,
+        /// Frames rejected since power-up, all reasons, wrapping.
+        rejected_frames: u16,
+        /// TWC frames accepted since power-up, wrapping.
+        twc_received: u16,
+        /// Self-test items that failed.
+        self_test: SelfTest,
+        /// Signals the TEST board is making, read back from it.
+        test_signals: TestSignals,
+        /// Carrier read back from the TEST board, Hz.
+        test_carrier_hz: u16,
+        /// Code rate read back from the TEST board, 0.01 Hz.
+        test_code_rate_chz: u16,
+        /// Level read back from the TEST board, mV.
+        test_level_mv: u16,
+        /// Speed read back from the TEST board, cm/s.
+        test_speed_cms: u16,
+    }
+}
+layout! {
+    /// One entry of the event log. Unit → tester.
+    LogEntry, Ptu, 0xA0 {
+        /// Index since power-up, from 0; never reused.
+        index: u32,
+        /// Event code of the event dictionary.
+        code: u16,
+        /// Time since power-up, ms.
+        at_ms: u32,
+        /// Event's parameter, its meaning given by the dictionary.
+        parameter: i32,
+        /// Freeze frame: measured speed, cm/s.
+        speed_cms: u16,
+        /// Freeze frame: speed limit, cm/s.
+        limit_cms: u16,
+        /// Freeze frame: position, cm.
+        position_cm: i32,
+        /// Freeze frame: operating mode.
+        mode: Mode,
+        /// Freeze frame: emergency brake's cause.
+        eb_cause: EbCause,
+    }
+}
+layout! {
+    /// End of the log as it stands. Unit → tester.
+    LogEnd, Ptu, 0xA1 {
+        /// Index the next event will get.
+        next_index: u32,
+        /// Oldest index still kept.
+        oldest_index: u32,
+    }
+}

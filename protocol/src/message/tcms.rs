@@ -1,0 +1,61 @@
+//! TCMS channel: RS-485 between the unit and the train control and monitoring system, once per
+//! 50 ms cycle each way [S0, S4].
+
+use super::layout::{layout, wire_bits};
+use super::words::Mode;
+
+wire_bits! {
+    /// States TCMS reports to the unit.
+    TcmsToAtcBits {
+        /// ATO operation is permitted by TCMS.
+        ATO_ENABLE = 0,
+        /// A brake is not released: the train cannot run.
+        BRAKE_NOT_RELEASED = 1,
+        /// The service brake is applied.
+        SERVICE_BRAKE_APPLIED = 2,
+    }
+}
+
+wire_bits! {
+    /// Commands and states the unit sends to TCMS.
+    AtcToTcmsBits {
+        /// Powering (P) command.
+        POWER = 0,
+        /// Braking (B) command.
+        BRAKE = 1,
+        /// Holding brake request.
+        HOLDING_BRAKE = 2,
+        /// ATO is ready.
+        ATO_READY = 3,
+        /// ATO has failed.
+        ATO_FAILED = 4,
+    }
+}
+
+layout! {
+    /// TCMS → unit.
+    TcmsToAtc, Tcms, 0x01 {
+        /// States.
+        bits: TcmsToAtcBits,
+        /// Passenger load, units of 100 kg.
+        load_100kg: u16,
+        /// Alive counter, one up each cycle, wrapping; a counter that stands still is stale.
+        alive: u8,
+    }
+}
+
+layout! {
+    /// Unit → TCMS.
+    AtcToTcms, Tcms, 0x81 {
+        /// Commands and states.
+        bits: AtcToTcmsBits,
+        /// Operating mode.
+        mode: Mode,
+        /// Effort: -1024 full brake .. 1023 full power, of what is available at this speed [S4].
+        effort: i16,
+        /// ATO target speed, cm/s.
+        target_cms: u16,
+        /// Measured speed, cm/s.
+        speed_cms: u16,
+    }
+}

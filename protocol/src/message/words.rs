@@ -1,0 +1,177 @@
+//! Enumerations and bit sets that several messages share.
+
+use super::layout::{wire_bits, wire_enum};
+
+wire_enum! {
+    /// Operating mode of the unit [S2 §3.1, S4].
+    Mode {
+        /// No cab active or start-up not finished.
+        Off = 0 "off",
+        /// Yard: a fixed low limit, no speed code needed.
+        Yard = 1 "yard",
+        /// Manual under cab signal.
+        Manual = 2 "manual",
+        /// Automatic mode set by ATP, not yet running.
+        Automatic = 3 "automatic",
+        /// Automatic Run mode: ATO drives.
+        AutomaticRun = 4 "automatic_run",
+        /// Emergency: cab signal cut out, a fixed low limit.
+        Emergency = 5 "emergency",
+    }
+}
+
+wire_enum! {
+    /// Position of the cab's mode switch.
+    ModeSwitch {
+        /// Off.
+        Off = 0 "off",
+        /// Yard.
+        Yard = 1 "yard",
+        /// Manual.
+        Manual = 2 "manual",
+        /// Automatic.
+        Automatic = 3 "automatic",
+        /// Driverless.
+        Driverless = 4 "driverless",
+        /// Emergency (ATC cut out).
+        Emergency = 5 "emergency",
+    }
+}
+
+wire_enum! {
+    /// Running mode ordered by the wayside [S0 §3.1.1].
+    RunningMode {
+        /// Normal running.
+        Normal = 0 "normal",
+        /// Recovery running, making up time.
+        Recovery = 1 "recovery",
+    }
+}
+
+wire_enum! {
+    /// Side of the platform.
+    DoorSide {
+        /// No doors may open.
+        None = 0 "none",
+        /// Left.
+        Left = 1 "left",
+        /// Right.
+        Right = 2 "right",
+        /// Both sides.
+        Both = 3 "both",
+    }
+}
+
+wire_enum! {
+    /// Why the unit holds the emergency brake.
+    EbCause {
+        /// It does not.
+        None = 0 "none",
+        /// Start-up or no cab active: the brake has not been released yet.
+        NotReleased = 1 "not_released",
+        /// Overspeed beyond the emergency margin.
+        Overspeed = 2 "overspeed",
+        /// The full service brake did not slow the train.
+        ServiceBrakeIneffective = 3 "service_brake_ineffective",
+        /// The two tachometers disagree.
+        Tachometer = 4 "tachometer",
+        /// Moving against the reverser.
+        Rollback = 5 "rollback",
+        /// A door opened while moving.
+        DoorOpen = 6 "door_open",
+        /// The bench or I/O rack fell silent.
+        InputsLost = 7 "inputs_lost",
+        /// A self-test failed.
+        SelfTest = 8 "self_test",
+        /// A broken invariant on board.
+        Internal = 9 "internal",
+    }
+}
+
+wire_enum! {
+    /// Why the unit asks for the full service brake.
+    FsbCause {
+        /// It does not.
+        None = 0 "none",
+        /// Speed above the limit and its margin.
+        Overspeed = 1 "overspeed",
+        /// No valid speed code where one is needed.
+        NoCode = 2 "no_code",
+        /// TWC lost in automatic run.
+        TwcLost = 3 "twc_lost",
+        /// TCMS lost.
+        TcmsLost = 4 "tcms_lost",
+        /// ATO failed in automatic run.
+        AtoFailed = 5 "ato_failed",
+    }
+}
+
+wire_enum! {
+    /// Outcome of a maintenance request.
+    Answer {
+        /// Done.
+        Accepted = 0 "accepted",
+        /// The unit is not armed for this session.
+        NotArmed = 1 "not_armed",
+        /// A value is outside what the TEST board can make.
+        OutOfRange = 2 "out_of_range",
+        /// The TEST board did not take it.
+        BoardFailed = 3 "board_failed",
+    }
+}
+
+wire_enum! {
+    /// Why arming was refused or lapsed.
+    ArmRefusal {
+        /// Not refused.
+        None = 0 "none",
+        /// The maintenance key is off.
+        KeyOff = 1 "key_off",
+        /// The train is moving.
+        Moving = 2 "moving",
+        /// The answer to the challenge was wrong or late.
+        BadAnswer = 3 "bad_answer",
+        /// Another session holds the unit.
+        Busy = 4 "busy",
+        /// The tester fell silent.
+        TesterSilent = 5 "tester_silent",
+        /// The tester asked for it.
+        Disarmed = 6 "disarmed",
+        /// Start-up self-test is still running.
+        StartingUp = 7 "starting_up",
+    }
+}
+
+wire_bits! {
+    /// Preconditions of automatic mode and run that do not hold [S2 §3.1].
+    Refusals {
+        /// The train is not at standstill.
+        NOT_STANDSTILL = 0,
+        /// Doors are not proved closed.
+        DOORS_OPEN = 1,
+        /// No TWC communication.
+        NO_TWC = 2,
+        /// TWC station data do not match the track database.
+        STATION_INVALID = 3,
+        /// No valid speed code.
+        NO_CODE = 4,
+        /// The cab is not active (no HCR).
+        CAB_INACTIVE = 5,
+        /// The mode switch is not at automatic or driverless.
+        MODE_SWITCH = 6,
+        /// The master controller is not at neutral.
+        CONTROLLER_NOT_NEUTRAL = 7,
+        /// The emergency brake is applied.
+        EB_APPLIED = 8,
+        /// TCMS is silent or does not enable ATO.
+        TCMS_NOT_READY = 9,
+        /// ATO is not ready.
+        ATO_NOT_READY = 10,
+        /// TRA failed its test.
+        TRA_FAILED = 11,
+        /// Self-test failed or still running.
+        SELF_TEST = 12,
+        /// The wayside has not given departure, or the start button was not pressed.
+        NO_DEPARTURE = 13,
+    }
+}

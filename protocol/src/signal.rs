@@ -1,0 +1,226 @@
+//! The catalogue of recorded signals: each has one definition of name, unit, kind and range.
+
+use crate::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode};
+
+/// What a signal's number means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A quantity, exact in steps of `lsb`.
+    Number {
+        /// Smallest step.
+        lsb: f64,
+    },
+    /// An index into labels.
+    Enum(&'static [&'static str]),
+    /// 0 or 1.
+    Bit,
+}
+
+/// Where a signal is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Made by the rig: what the unit is given.
+    Rig,
+    /// Reported by the unit.
+    Unit,
+}
+
+/// Definition of one signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Definition {
+    /// Name in scripts, databases and reports.
+    pub name: &'static str,
+    /// Unit of measure; empty for bits, enums and counts.
+    pub unit: &'static str,
+    /// Kind and resolution.
+    pub kind: Kind,
+    /// Least value.
+    pub low: f64,
+    /// Greatest value.
+    pub high: f64,
+    /// Who makes it.
+    pub origin: Origin,
+    /// What it is.
+    pub doc: &'static str,
+}
+
+macro_rules! signals {
+    ($( $variant:ident $name:literal $unit:literal $kind:expr, $low:literal ..= $high:literal, $origin:ident, $doc:literal; )*) => {
+        /// Every recorded signal.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u8)]
+        pub enum Signal { $( #[doc = $doc] $variant ),* }
+
+        impl Signal {
+            /// All signals in recording order.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+            /// How many there are.
+            pub const COUNT: usize = Self::ALL.len();
+            const DEFINITIONS: [Definition; Self::COUNT] = [$( Definition {
+                name: $name, unit: $unit, kind: $kind, low: $low as f64, high: $high as f64,
+                origin: Origin::$origin, doc: $doc,
+            } ),*];
+
+            /// The signal called `name`.
+            pub fn from_name(name: &str) -> Option<Self> {
+                match name { $( $name => Some(Self::$variant), )* _ => None }
+            }
+        }
+    };
+}
+
+/// 0.01 steps.
+const CENTI: Kind = Kind::Number { lsb: 0.01 };
+const UNITY: Kind = Kind::Number { lsb: 1.0 };
+/// Speeds in km/h come from whole cm/s.
+const CMS_KMH: Kind = Kind::Number { lsb: 0.036 };
+const SWITCHED: Kind = Kind::Enum(&["released", "applied"]);
+const MARKERS: Kind = Kind::Enum(&["none", "psm1", "psm2", "psm3", "psm4"]);
+const DOORS: Kind = Kind::Enum(&["open", "closed"]);
+const WAYSIDE: Kind = Kind::Enum(&["silent", "good", "corrupt"]);
+const TACHO: Kind = Kind::Enum(&["good", "dead", "noisy", "scaled"]);
+
+signals! {
+    CarrierHz "carrier_hz" "Hz" UNITY, 0 ..= 65535, Rig, "Carrier in the ATP antenna";
+    CodeRateHz "code_rate_hz" "Hz" CENTI, 0 ..= 655, Rig, "Code rate in the ATP antenna";
+    LevelMv "level_mv" "mV" UNITY, 0 ..= 65535, Rig, "Signal level in the ATP antenna";
+    TrainSpeed "train_speed" "km/h" CMS_KMH, 0 ..= 200, Rig, "True speed the tachometer generators follow";
+    TrainPosition "train_position" "m" CENTI, -100000 ..= 100000, Rig, "True distance run";
+    Tacho1 "tacho1" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 1";
+    Tacho2 "tacho2" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 2";
+    MarkerCoil "marker_coil" "" MARKERS, 0 ..= 4, Rig, "Marker whose coil was entered last";
+    Wayside "wayside" "" WAYSIDE, 0 ..= 2, Rig, "Condition of the TWC wayside";
+    WaysideStation "wayside_station" "" UNITY, 0 ..= 65535, Rig, "Station number the wayside sends";
+    WaysideLoop "wayside_loop" "" UNITY, 0 ..= 65535, Rig, "Loop number the wayside sends";
+    WaysideDoorSide "wayside_door_side" "" Kind::Enum(DoorSide::LABELS), 0 ..= 3, Rig, "Door side the wayside sends";
+    WaysideMode "wayside_running_mode" "" Kind::Enum(RunningMode::LABELS), 0 ..= 1, Rig, "Running mode the wayside sends";
+    Departure "departure" "" Kind::Bit, 0 ..= 1, Rig, "Departure given by the wayside";
+    Doors "doors" "" DOORS, 0 ..= 1, Rig, "Door train line: proved closed or not";
+    Hcr "hcr" "" Kind::Bit, 0 ..= 1, Rig, "Head control relay of this cab";
+    MaintenanceKey "maintenance_key" "" Kind::Bit, 0 ..= 1, Rig, "Maintenance key";
+    ModeSwitch "mode_switch" "" Kind::Enum(ModeSwitch::LABELS), 0 ..= 5, Rig, "Mode switch";
+    Controller "controller" "" UNITY, -8 ..= 4, Rig, "Master controller notch";
+    EbLoop "eb_loop" "" SWITCHED, 0 ..= 1, Rig, "Emergency brake train line of the train";
+    Eb "eb" "" SWITCHED, 0 ..= 1, Unit, "Emergency brake: applied when the EB relay is de-energised";
+    Fsb "fsb" "" SWITCHED, 0 ..= 1, Unit, "Full service brake request";
+    PowerCut "power_cut" "" Kind::Bit, 0 ..= 1, Unit, "Powering cut";
+    Alarm "alarm" "" Kind::Bit, 0 ..= 1, Unit, "Overspeed alarm";
+    HoldingBrake "holding_brake" "" SWITCHED, 0 ..= 1, Unit, "Holding brake request";
+    DoorEnableLeft "door_enable_left" "" Kind::Bit, 0 ..= 1, Unit, "Doors enabled on the left";
+    DoorEnableRight "door_enable_right" "" Kind::Bit, 0 ..= 1, Unit, "Doors enabled on the right";
+    CodeValid "code_valid" "" Kind::Bit, 0 ..= 1, Unit, "A valid speed code is received";
+    Standstill "standstill" "" Kind::Bit, 0 ..= 1, Unit, "Standstill detected";
+    Healthy "healthy" "" Kind::Bit, 0 ..= 1, Unit, "Unit healthy contact";
+    Limit "limit" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed limit in force";
+    Speed "speed" "km/h" CMS_KMH, 0 ..= 200, Unit, "Measured speed";
+    Marker "marker" "" MARKERS, 0 ..= 4, Unit, "Last marker the unit detected";
+    MarkerCount "marker_count" "" UNITY, 0 ..= 255, Unit, "Markers the unit detected";
+    Mode "mode" "" Kind::Enum(Mode::LABELS), 0 ..= 5, Unit, "Operating mode";
+    Refusals "refusals" "" UNITY, 0 ..= 65535, Unit, "Preconditions of automatic mode that do not hold, as bits";
+    CodeIndex "code_index" "" UNITY, 0 ..= 255, Unit, "Received code's place in the code table; 255 = none";
+    EbCause "eb_cause" "" Kind::Enum(EbCause::LABELS), 0 ..= 9, Unit, "Why the emergency brake is applied";
+    FsbCause "fsb_cause" "" Kind::Enum(FsbCause::LABELS), 0 ..= 5, Unit, "Why the full service brake is requested";
+    Speed1 "speed1" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed from tachometer 1";
+    Speed2 "speed2" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed from tachometer 2";
+    Target "target" "km/h" CMS_KMH, 0 ..= 200, Unit, "ATO target speed";
+    Effort "effort" "" UNITY, -1024 ..= 1023, Unit, "Effort sent to TCMS";
+    Power "power" "" Kind::Bit, 0 ..= 1, Unit, "Powering command to TCMS";
+    Brake "brake" "" Kind::Bit, 0 ..= 1, Unit, "Braking command to TCMS";
+    Position "position" "m" CENTI, -100000 ..= 100000, Unit, "Position in the section as the unit sees it";
+    Armed "armed" "" Kind::Bit, 0 ..= 1, Unit, "Armed for stimuli";
+    TwcOk "twc_ok" "" Kind::Bit, 0 ..= 1, Unit, "TWC communication up";
+    TcmsOk "tcms_ok" "" Kind::Bit, 0 ..= 1, Unit, "TCMS communication up";
+    StationValid "station_valid" "" Kind::Bit, 0 ..= 1, Unit, "Station data match the track database";
+    Aligned "aligned" "" Kind::Bit, 0 ..= 1, Unit, "Stopped at the stop point";
+    TraOk "tra_ok" "" Kind::Bit, 0 ..= 1, Unit, "TRA passed its test";
+    AtoReady "ato_ready" "" Kind::Bit, 0 ..= 1, Unit, "ATO ready";
+    Started "started" "" Kind::Bit, 0 ..= 1, Unit, "Start-up self-test finished";
+    Events "events" "" UNITY, 0 ..= 2147483647, Unit, "Events logged since power-up";
+    RejectedFrames "rejected_frames" "" UNITY, 0 ..= 65535, Unit, "Frames the unit rejected";
+    TwcReceived "twc_received" "" UNITY, 0 ..= 65535, Unit, "TWC frames the unit accepted";
+    TwcAnswerStation "twc_answer_station" "" UNITY, 0 ..= 65535, Unit, "Station number in the train's TWC answer";
+    TwcAnswerTrain "twc_answer_train" "" UNITY, 0 ..= 65535, Unit, "Train number in the train's TWC answer";
+    TwcAnswers "twc_answers" "" UNITY, 0 ..= 65535, Unit, "TWC answers the wayside received";
+    SelfTest "self_test" "" UNITY, 0 ..= 65535, Unit, "Self-test items that failed, as bits";
+    TestCodeRate "test_code_rate" "Hz" CENTI, 0 ..= 655, Unit, "Code rate read back from the TEST board";
+    TestSpeed "test_speed" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed read back from the TEST board";
+}
+
+impl Signal {
+    /// Its definition.
+    pub fn definition(self) -> &'static Definition {
+        &Self::DEFINITIONS[self as usize]
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        self.definition().name
+    }
+
+    /// Its place in a sample row.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// One value of every signal at one time; `NaN` = not known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    values: [f64; Signal::COUNT],
+}
+
+impl Default for Sample {
+    fn default() -> Self {
+        Self { values: [f64::NAN; Signal::COUNT] }
+    }
+}
+
+impl Sample {
+    /// The value of `signal`, if it is known.
+    pub fn get(&self, signal: Signal) -> Option<f64> {
+        let value = self.values[signal.index()];
+        (!value.is_nan()).then_some(value)
+    }
+
+    /// Sets a value.
+    pub fn set(&mut self, signal: Signal, value: f64) {
+        self.values[signal.index()] = value;
+    }
+
+    /// Sets a bit.
+    pub fn set_bit(&mut self, signal: Signal, on: bool) {
+        self.set(signal, f64::from(u8::from(on)));
+    }
+
+    /// Makes a signal unknown.
+    pub fn forget(&mut self, signal: Signal) {
+        self.set(signal, f64::NAN);
+    }
+
+    /// All values in recording order.
+    pub fn values(&self) -> &[f64; Signal::COUNT] {
+        &self.values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_lead_back() {
+        for &signal in Signal::ALL {
+            assert_eq!(Signal::from_name(signal.name()), Some(signal));
+        }
+    }
+
+    #[test]
+    fn ranges_fit_kinds() {
+        for definition in Signal::ALL.iter().map(|s| s.definition()) {
+            assert!(definition.low <= definition.high, "{}", definition.name);
+            if let Kind::Enum(labels) = definition.kind {
+                assert_eq!(definition.high as usize + 1, labels.len(), "{}", definition.name);
+            }
+        }
+    }
+}
