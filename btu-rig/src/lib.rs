@@ -1,1 +1,13 @@
-//! btu-rig
+//! Everything around the unit under test.
+//!
+//! * [`stimulus`]: what a procedure may do to the unit, as typed values;
+//! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
+//!   the unit only through frames;
+//! * [`procedure`]: check procedures built by Starlark at load, checked, and run by a polled state
+//!   machine.
+//!
+//! No clock, no thread, no port: the edge steps everything.
+
+pub mod procedure;
+pub mod rig;
+pub mod stimulus;

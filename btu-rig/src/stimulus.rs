@@ -1,0 +1,223 @@
+//! What can be done to the unit: typed values that scripts build and the rig carries out.
+
+use protocol::Speed;
+use protocol::message::{DoorSide, ModeSwitch, RunningMode};
+
+/// Condition of one tachometer channel's generator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TachoCondition {
+    /// As it should be.
+    Good,
+    /// No pulses.
+    Dead,
+    /// Spurious pulses on top, mean per second.
+    Noisy {
+        /// Mean spurious pulses per second.
+        per_s: f64,
+    },
+    /// Pulses of a speed multiplied by a factor (missing teeth, wrong wheel diameter).
+    Scaled {
+        /// The factor.
+        factor: f64,
+    },
+}
+
+/// Condition of the TWC wayside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WaysideCondition {
+    /// Sends nothing.
+    Silent,
+    /// Sends sound frames every 250 ms.
+    Good,
+    /// Sends frames with bit errors.
+    Corrupt,
+}
+
+/// Condition of the TCMS link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TcmsCondition {
+    /// Answers every cycle.
+    Good,
+    /// Sends nothing.
+    Silent,
+    /// Sends with a standing alive counter.
+    Stale,
+}
+
+/// Station data for the wayside or the TWC TEST module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StationData {
+    /// Route number.
+    pub route: u16,
+    /// Section number.
+    pub section: u16,
+    /// This station.
+    pub station: u16,
+    /// Next station.
+    pub next_station: u16,
+    /// Loop number.
+    pub loop_id: u16,
+    /// Fixed speed, km/h; `None` = no order.
+    pub fixed_speed_kmh: Option<u8>,
+    /// Running mode.
+    pub running_mode: RunningMode,
+    /// Door side.
+    pub door_side: DoorSide,
+    /// Departure given.
+    pub departure: bool,
+    /// Train number.
+    pub train_number: u16,
+}
+
+/// One thing done to the unit, through the bench harness or, for `Ptu…`, through the TEST board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stimulus {
+    /// Signal in the ATP antenna; rate 0 = unmodulated.
+    Code {
+        /// Carrier, Hz.
+        carrier_hz: f64,
+        /// Code rate, Hz.
+        rate_hz: f64,
+        /// Level, mV.
+        level_mv: f64,
+    },
+    /// Lets code rate and level drift from where they are.
+    CodeDrift {
+        /// Hz per second.
+        rate_hz_per_s: f64,
+        /// mV per second.
+        level_mv_per_s: f64,
+    },
+    /// No signal in the antenna.
+    CodeOff,
+    /// Tachometer generators go to a speed at this acceleration.
+    Speed {
+        /// Speed to reach.
+        to: Speed,
+        /// Size of the acceleration, m/s².
+        accel_mps2: f64,
+    },
+    /// Tachometer generators run exactly this way and stand still again.
+    Travel {
+        /// Distance, m.
+        distance_m: f64,
+        /// Speed on the way.
+        speed: Speed,
+        /// Size of the acceleration, m/s².
+        accel_mps2: f64,
+    },
+    /// Direction in which the wheels turn.
+    Direction {
+        /// Against the forward direction.
+        backward: bool,
+    },
+    /// Condition of one tachometer channel.
+    Tacho {
+        /// 1 or 2.
+        channel: u8,
+        /// Its condition.
+        condition: TachoCondition,
+    },
+    /// Tachometers and markers follow the train model, which obeys the unit through TCMS.
+    TrainDriven {
+        /// On or back to the generators.
+        on: bool,
+    },
+    /// One pulse of a marker coil.
+    Marker {
+        /// 1 to 4 = PSM1 to PSM4.
+        psm: u8,
+    },
+    /// Markers of a section lie along the way from here on and pulse by position.
+    MarkersAlong {
+        /// Section of the line; `None` = no markers along the way.
+        section: Option<u16>,
+    },
+    /// Station data the wayside sends.
+    Station(StationData),
+    /// Condition of the wayside.
+    Wayside(WaysideCondition),
+    /// Door train line.
+    Doors {
+        /// Proved closed.
+        closed: bool,
+    },
+    /// Head control relay.
+    Hcr {
+        /// Energised.
+        on: bool,
+    },
+    /// Maintenance key.
+    MaintenanceKey {
+        /// On.
+        on: bool,
+    },
+    /// Mode switch.
+    ModeSwitch(ModeSwitch),
+    /// Master controller notch, -8..=4.
+    Controller {
+        /// The notch.
+        notch: i8,
+    },
+    /// Reverser: 1 forward, 0 neutral, -1 backward.
+    Reverser {
+        /// The position.
+        position: i8,
+    },
+    /// Acknowledge button, pressed for 500 ms.
+    Acknowledge,
+    /// ATO start button, pressed for 500 ms.
+    Start,
+    /// Condition of the TCMS link.
+    Tcms(TcmsCondition),
+    /// TCMS permits ATO.
+    AtoEnable {
+        /// Permitted.
+        on: bool,
+    },
+    /// Passenger load.
+    Load {
+        /// Mass, kg.
+        passengers_kg: f64,
+    },
+    /// Arm the unit (whole exchange).
+    PtuArm,
+    /// Disarm it.
+    PtuDisarm,
+    /// The tester falls silent, or speaks again.
+    PtuSilent {
+        /// Silent.
+        on: bool,
+    },
+    /// Test code into the ATP test coil.
+    PtuCode {
+        /// Carrier, Hz.
+        carrier_hz: f64,
+        /// Code rate, Hz.
+        rate_hz: f64,
+        /// Level, mV.
+        level_mv: f64,
+    },
+    /// Speed signal of the TEST board.
+    PtuSpeed {
+        /// Bit 0 = input 1, bit 1 = input 2.
+        channels: u8,
+        /// Turning backward.
+        backward: bool,
+        /// Speed.
+        to: Speed,
+        /// Size of the acceleration, m/s²; 0 = at once.
+        accel_mps2: f64,
+    },
+    /// One pulse of the test marker.
+    PtuMarker {
+        /// 1 to 4.
+        psm: u8,
+    },
+    /// Station data through the TWC TEST module.
+    PtuTwc(StationData),
+    /// Takes all test signals away.
+    PtuRelease,
+    /// Clears the unit's event log.
+    PtuClearLog,
+}
