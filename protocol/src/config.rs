@@ -210,8 +210,7 @@ impl UnitConfig {
     /// The first thing wrong: syntax with line and column, a value out of range, or values that do
     /// not fit together.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        let config: Self =
-            toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
+        let config: Self = toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
         config.check()?;
         Ok(config)
     }
@@ -246,14 +245,29 @@ impl UnitConfig {
     fn ranges(&self) -> [(&'static str, f64, f64, f64); 22] {
         let (r, t, o, l) = (&self.receiver, &self.tacho, &self.overspeed, &self.link);
         [
-            ("receiver.carrier_tolerance_hz", r.carrier_tolerance_hz, 1.0, 1000.0),
+            (
+                "receiver.carrier_tolerance_hz",
+                r.carrier_tolerance_hz,
+                1.0,
+                1000.0,
+            ),
             ("receiver.rate_tolerance_hz", r.rate_tolerance_hz, 0.05, 5.0),
             ("receiver.level_min_mv", r.level_min_mv, 1.0, 5000.0),
             ("receiver.level_max_mv", r.level_max_mv, 1.0, 10000.0),
             ("receiver.detect_ms", f64::from(r.detect_ms), 50.0, 5000.0),
             ("receiver.hold_ms", f64::from(r.hold_ms), 0.0, 5000.0),
-            ("tacho.pulses_per_turn", f64::from(t.pulses_per_turn), 10.0, 1000.0),
-            ("tacho.wheel_diameter_mm", t.wheel_diameter_mm, 500.0, 1200.0),
+            (
+                "tacho.pulses_per_turn",
+                f64::from(t.pulses_per_turn),
+                10.0,
+                1000.0,
+            ),
+            (
+                "tacho.wheel_diameter_mm",
+                t.wheel_diameter_mm,
+                500.0,
+                1200.0,
+            ),
             ("tacho.window_ms", f64::from(t.window_ms), 20.0, 1000.0),
             ("tacho.difference_kmh", t.difference_kmh, 1.0, 20.0),
             ("tacho.standstill_kmh", t.standstill_kmh, 0.1, 3.0),
@@ -264,8 +278,18 @@ impl UnitConfig {
             ("overspeed.yard_kmh", o.yard_kmh, 5.0, 45.0),
             ("overspeed.emergency_kmh", o.emergency_kmh, 5.0, 45.0),
             ("doors.aligned_m", self.doors.aligned_m, 0.05, 2.0),
-            ("link.io_timeout_ms", f64::from(l.io_timeout_ms), 50.0, 900.0),
-            ("link.tester_timeout_ms", f64::from(l.tester_timeout_ms), 200.0, 1000.0),
+            (
+                "link.io_timeout_ms",
+                f64::from(l.io_timeout_ms),
+                50.0,
+                900.0,
+            ),
+            (
+                "link.tester_timeout_ms",
+                f64::from(l.tester_timeout_ms),
+                200.0,
+                1000.0,
+            ),
             ("ato.below_limit_kmh", self.ato.below_limit_kmh, 0.0, 20.0),
             ("ato.stop_rate_mps2", self.ato.stop_rate_mps2, 0.1, 1.2),
         ]
@@ -287,7 +311,8 @@ impl UnitConfig {
                 if code.name == other.name || (same_carrier && same_rate) {
                     return Err(ConfigError::Conflict(alloc::format!(
                         "codes {} and {} cannot be told apart with these tolerances",
-                        other.name, code.name
+                        other.name,
+                        code.name
                     )));
                 }
             }

@@ -145,13 +145,16 @@ impl FaultCatalogue {
             toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
         for (i, fault) in catalogue.faults.iter().enumerate() {
             if catalogue.faults[..i].iter().any(|f| f.id == fault.id) {
-                return Err(conflict(&alloc::format!("fault {} is listed twice", fault.id)));
+                return Err(conflict(&alloc::format!(
+                    "fault {} is listed twice",
+                    fault.id
+                )));
             }
             if !catalogue.lrus.iter().any(|l| l.id == fault.lru) {
                 return Err(conflict(&alloc::format!(
                     "fault {} names the part {}, which is not listed under lrus",
                     fault.id,
-                    fault.lru.to_string()
+                    fault.lru
                 )));
             }
             if !(fault.weight > 0.0 && fault.onset_s >= 0.0) {

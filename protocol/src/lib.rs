@@ -16,8 +16,10 @@ extern crate alloc;
 
 pub mod config;
 pub mod event;
+pub mod frame;
 pub mod injection;
 pub mod line;
+pub mod link;
 pub mod message;
 pub mod signal;
 mod speed;

@@ -96,7 +96,12 @@ impl Line {
 impl Section {
     fn check(&self) -> Result<(), ConfigError> {
         within("length_m", self.length_m, 50.0, 20000.0)?;
-        within("stop_m", self.stop_m, self.start_m + 1.0, self.start_m + self.length_m)?;
+        within(
+            "stop_m",
+            self.stop_m,
+            self.start_m + 1.0,
+            self.start_m + self.length_m,
+        )?;
         let mut last = self.start_m;
         for (i, &marker) in self.markers_m.iter().enumerate() {
             if !(marker > last && marker < self.stop_m) {
@@ -112,7 +117,7 @@ impl Section {
             return Err(ConfigError::Conflict(alloc::format!(
                 "section {}: door_side \"{}\" must be left, right or both",
                 self.section,
-                self.door_side.to_string()
+                self.door_side
             )));
         }
         Ok(())

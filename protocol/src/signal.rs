@@ -171,7 +171,9 @@ pub struct Sample {
 
 impl Default for Sample {
     fn default() -> Self {
-        Self { values: [f64::NAN; Signal::COUNT] }
+        Self {
+            values: [f64::NAN; Signal::COUNT],
+        }
     }
 }
 
@@ -219,7 +221,12 @@ mod tests {
         for definition in Signal::ALL.iter().map(|s| s.definition()) {
             assert!(definition.low <= definition.high, "{}", definition.name);
             if let Kind::Enum(labels) = definition.kind {
-                assert_eq!(definition.high as usize + 1, labels.len(), "{}", definition.name);
+                assert_eq!(
+                    definition.high as usize + 1,
+                    labels.len(),
+                    "{}",
+                    definition.name
+                );
             }
         }
     }

@@ -92,7 +92,12 @@ impl Cursor<'_> {
     }
 
     fn error(&self, field: &'static str, kind: DecodeErrorKind) -> DecodeError {
-        DecodeError { message: self.message, field, offset: self.offset, kind }
+        DecodeError {
+            message: self.message,
+            field,
+            offset: self.offset,
+            kind,
+        }
     }
 }
 

@@ -1,0 +1,342 @@
+//! Frames: async-HDLC as in RFC 1662 with FCS-32, and a streaming decoder.
+//!
+//! A frame is `7E`, the stuffed body, `7E`. The body is version, channel, source, destination,
+//! sequence number, time stamp, payload and FCS. Inside the body `7E` is sent as `7D 5E` and `7D`
+//! as `7D 5D`; nothing else is escaped, so a frame has exactly one spelling.
+
+use alloc::vec::Vec;
+
+use crc::{CRC_32_ISO_HDLC, Crc, Table};
+
+use crate::message::{Address, Channel};
+
+/// Version of the wire, first byte of every frame.
+pub const VERSION: u8 = 1;
+/// Bytes before the payload.
+pub const HEADER_LEN: usize = 10;
+/// Bytes of the frame check sequence.
+pub const FCS_LEN: usize = 4;
+/// Longest payload.
+pub const MAX_PAYLOAD: usize = 240;
+/// Longest body, before stuffing.
+pub const MAX_BODY: usize = HEADER_LEN + MAX_PAYLOAD + FCS_LEN;
+/// Received bytes a [`Decoder`] keeps at most until they are asked for: about eight seconds of
+/// the wire, so that only a reader that has stopped reading ever meets it.
+pub const MAX_PENDING: usize = 64 * 1024;
+
+/// Ends one frame and begins the next.
+pub const FLAG: u8 = 0x7E;
+/// Says that the next byte is sent with [`ESCAPE_XOR`].
+pub const ESCAPE: u8 = 0x7D;
+/// What an escaped byte is exclusive-ored with.
+pub const ESCAPE_XOR: u8 = 0x20;
+
+/// Sixteen bytes a step: at one byte a step the check sequence would be the dearest part of a frame.
+static FCS: Crc<u32, Table<16>> = Crc::<u32, Table<16>>::new(&CRC_32_ISO_HDLC);
+
+/// What precedes the payload.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// Channel.
+    pub channel: Channel,
+    /// Who sent it.
+    pub source: Address,
+    /// Whom it is for.
+    pub destination: Address,
+    /// Sequence number, one up for each frame the sender sends on the channel, wrapping.
+    pub seq: u16,
+    /// Sender's clock when the frame was made, ms, wrapping.
+    pub stamp_ms: u32,
+}
+
+/// Why a frame is refused. Each frame is counted under the first reason that applies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reject {
+    /// Fewer bytes between two flags than header and FCS take.
+    TooShort,
+    /// More bytes between two flags than the longest frame has.
+    TooLong,
+    /// The FCS does not fit.
+    Checksum,
+    /// Another version of the wire.
+    Version,
+    /// No channel has this number.
+    Channel,
+    /// Nobody has this address, or the frame is not from and for those whom this end expects.
+    Address,
+    /// Aborted by its sender, or an escape that no sender may use.
+    Escape,
+    /// Old, repeated, out of order, or too far ahead.
+    Sequence,
+    /// The time stamp goes backward, or the frame is late.
+    Stamp,
+    /// The payload is no message of its channel.
+    Layout,
+}
+
+impl Reject {
+    /// All reasons in the order they are counted in.
+    pub const ALL: [Self; 10] = [
+        Self::TooShort,
+        Self::TooLong,
+        Self::Checksum,
+        Self::Version,
+        Self::Channel,
+        Self::Address,
+        Self::Escape,
+        Self::Sequence,
+        Self::Stamp,
+        Self::Layout,
+    ];
+
+    /// The word shown and stored.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::TooShort => "too_short",
+            Self::TooLong => "too_long",
+            Self::Checksum => "checksum",
+            Self::Version => "version",
+            Self::Channel => "channel",
+            Self::Address => "address",
+            Self::Escape => "escape",
+            Self::Sequence => "sequence",
+            Self::Stamp => "stamp",
+            Self::Layout => "layout",
+        }
+    }
+}
+
+/// A refused frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rejected {
+    /// Why.
+    pub reason: Reject,
+    /// The channel it claims to be of, if it got that far. With a wrong FCS this is a hint for
+    /// whoever counts, not a fact.
+    pub channel: Option<Channel>,
+}
+
+/// Appends one frame, with its opening and its closing flag.
+///
+/// # Panics
+/// If the payload is longer than [`MAX_PAYLOAD`], which no [`crate::message::Message`] is.
+pub fn encode(header: &Header, payload: &[u8], out: &mut Vec<u8>) {
+    assert!(
+        payload.len() <= MAX_PAYLOAD,
+        "payload of {} bytes",
+        payload.len()
+    );
+    let mut body = [0; MAX_BODY];
+    let end = HEADER_LEN + payload.len();
+    body[0] = VERSION;
+    body[1] = header.channel.code();
+    body[2] = header.source.code();
+    body[3] = header.destination.code();
+    body[4..6].copy_from_slice(&header.seq.to_be_bytes());
+    body[6..10].copy_from_slice(&header.stamp_ms.to_be_bytes());
+    body[HEADER_LEN..end].copy_from_slice(payload);
+    let fcs = FCS.checksum(&body[..end]);
+    // RFC 1662 sends the coefficient of the highest power first, which in this reflected form is
+    // the least significant octet.
+    body[end..end + FCS_LEN].copy_from_slice(&fcs.to_le_bytes());
+
+    out.reserve(end + FCS_LEN + 8);
+    out.push(FLAG);
+    stuff(&body[..end + FCS_LEN], out);
+    out.push(FLAG);
+}
+
+/// Appends `body` with its flags and escapes escaped.
+fn stuff(mut body: &[u8], out: &mut Vec<u8>) {
+    while let Some(at) = body.iter().position(|&byte| is_special(byte)) {
+        out.extend_from_slice(&body[..at]);
+        out.extend_from_slice(&[ESCAPE, body[at] ^ ESCAPE_XOR]);
+        body = &body[at + 1..];
+    }
+    out.extend_from_slice(body);
+}
+
+/// Whether a byte is [`ESCAPE`] or [`FLAG`], which are neighbours: one comparison for both.
+const fn is_special(byte: u8) -> bool {
+    byte.wrapping_sub(ESCAPE) < 2
+}
+
+/// Finds frames in a stream of bytes, whatever else is in it.
+#[derive(Debug)]
+pub struct Decoder {
+    pending: Vec<u8>,
+    read: usize,
+    body: [u8; MAX_BODY],
+    len: usize,
+    state: State,
+    garbage: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Outside any frame until the next flag.
+    Hunt,
+    /// After a flag: collecting a body.
+    Body,
+    /// The last byte was an escape.
+    Escaped,
+    /// The frame is lost; it is reported when it ends.
+    Spoiled(Reject),
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Decoder {
+    /// A decoder that waits for its first flag.
+    pub const fn new() -> Self {
+        Self {
+            pending: Vec::new(),
+            read: 0,
+            body: [0; MAX_BODY],
+            len: 0,
+            state: State::Hunt,
+            garbage: 0,
+        }
+    }
+
+    /// Takes bytes as they arrived. Beyond [`MAX_PENDING`] the oldest go, as garbage: whoever
+    /// reads too late is better served with what is new.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.pending.drain(..self.read);
+        self.read = 0;
+        let newest = &bytes[bytes.len().saturating_sub(MAX_PENDING)..];
+        let excess = (self.pending.len() + newest.len()).saturating_sub(MAX_PENDING);
+        let dropped = excess + bytes.len() - newest.len();
+        if dropped > 0 {
+            self.garbage += (dropped + self.len) as u64;
+            self.len = 0;
+            self.state = State::Hunt;
+            self.pending.drain(..excess);
+        }
+        self.pending.extend_from_slice(newest);
+    }
+
+    /// The next whole frame, good or refused, or `None` until more bytes arrive.
+    ///
+    /// A frame that is returned has a right FCS and known version, channel and addresses.
+    pub fn next_frame(&mut self) -> Option<Result<(Header, &[u8]), Rejected>> {
+        let ended = self.run_to_frame_end()?;
+        let len = core::mem::take(&mut self.len);
+        Some(ended.map_or_else(
+            |reason| {
+                Err(Rejected {
+                    reason,
+                    channel: claimed_channel(&self.body[..len]),
+                })
+            },
+            |()| open(&self.body[..len]),
+        ))
+    }
+
+    /// Bytes seen outside frames.
+    pub const fn garbage(&self) -> u64 {
+        self.garbage
+    }
+
+    /// Consumes pending bytes up to the flag that ends a frame.
+    fn run_to_frame_end(&mut self) -> Option<Result<(), Reject>> {
+        while let Some(rest) = self
+            .pending
+            .get(self.read..)
+            .filter(|rest| !rest.is_empty())
+        {
+            let run = rest
+                .iter()
+                .position(|&byte| is_special(byte))
+                .unwrap_or(rest.len());
+            if run > 0 {
+                self.take_run(run);
+                continue;
+            }
+            let special = rest[0];
+            self.read += 1;
+            if special == FLAG {
+                match core::mem::replace(&mut self.state, State::Body) {
+                    // Flags may repeat and may be shared between frames.
+                    State::Body if self.len == 0 => {}
+                    State::Hunt => {}
+                    State::Body => return Some(Ok(())),
+                    State::Escaped => return Some(Err(Reject::Escape)),
+                    State::Spoiled(reason) => return Some(Err(reason)),
+                }
+            } else {
+                match self.state {
+                    State::Body => self.state = State::Escaped,
+                    State::Escaped => self.state = State::Spoiled(Reject::Escape),
+                    State::Hunt | State::Spoiled(_) => self.garbage += 1,
+                }
+            }
+        }
+        None
+    }
+
+    /// Consumes `run` bytes, none of them a flag or an escape.
+    fn take_run(&mut self, mut run: usize) {
+        let mut bytes = &self.pending[self.read..self.read + run];
+        self.read += run;
+        if self.state == State::Escaped {
+            let byte = bytes[0] ^ ESCAPE_XOR;
+            bytes = &bytes[1..];
+            run -= 1;
+            // Any other escape would be a second spelling of the same frame.
+            if !is_special(byte) {
+                self.state = State::Spoiled(Reject::Escape);
+            } else if self.len == MAX_BODY {
+                self.state = State::Spoiled(Reject::TooLong);
+            } else {
+                self.body[self.len] = byte;
+                self.len += 1;
+                self.state = State::Body;
+            }
+        }
+        if self.state == State::Body {
+            let fits = run.min(MAX_BODY - self.len);
+            self.body[self.len..self.len + fits].copy_from_slice(&bytes[..fits]);
+            self.len += fits;
+            run -= fits;
+            if run > 0 {
+                self.state = State::Spoiled(Reject::TooLong);
+            }
+        }
+        self.garbage += run as u64;
+    }
+}
+
+/// Checks and takes apart a body.
+fn open(body: &[u8]) -> Result<(Header, &[u8]), Rejected> {
+    let channel = claimed_channel(body);
+    let rejected = |reason| Rejected { reason, channel };
+    let (covered, fcs) = body.split_last_chunk().ok_or(rejected(Reject::TooShort))?;
+    let (head, payload) = covered
+        .split_first_chunk::<HEADER_LEN>()
+        .ok_or(rejected(Reject::TooShort))?;
+    if FCS.checksum(covered) != u32::from_le_bytes(*fcs) {
+        return Err(rejected(Reject::Checksum));
+    }
+    let [version, _, source, destination, s1, s0, t3, t2, t1, t0] = *head;
+    if version != VERSION {
+        return Err(rejected(Reject::Version));
+    }
+    let address = |code| Address::from_code(code).ok_or(rejected(Reject::Address));
+    let header = Header {
+        channel: channel.ok_or(rejected(Reject::Channel))?,
+        source: address(source)?,
+        destination: address(destination)?,
+        seq: u16::from_be_bytes([s1, s0]),
+        stamp_ms: u32::from_be_bytes([t3, t2, t1, t0]),
+    };
+    Ok((header, payload))
+}
+
+fn claimed_channel(body: &[u8]) -> Option<Channel> {
+    body.get(1).and_then(|&code| Channel::from_code(code))
+}

@@ -1,0 +1,326 @@
+//! One end of the wire: addresses, sequence numbers, time stamps and time-outs of each channel.
+//!
+//! The defences are those EN 50159 names for a closed transmission system. A frame that fails one
+//! is counted by reason and changes nothing else.
+
+use alloc::vec::Vec;
+
+use crate::frame::{self, Decoder, Header, Reject, Rejected};
+use crate::message::{Address, Channel, DecodeError, Message};
+use crate::{Duration, Instant};
+
+/// How far ahead of the last accepted sequence number the next may be.
+pub const MAX_AHEAD: u16 = 1000;
+/// How much longer than the quickest frame a frame may take.
+pub const MAX_DELAY: Duration = Duration::from_ms(500);
+/// Silence after which a channel begins anew, as it must when its sender was started again.
+pub const RESYNC: Duration = Duration::from_ms(1000);
+/// The quickest way is thought one millisecond longer each time this has passed: 200 ppm, so that
+/// two clocks that drift apart by 100 ppm never make a frame look late.
+pub const RELAX: Duration = Duration::from_ms(5000);
+
+/// Which end of the wire this is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The unit under test: hears its partner on each channel.
+    Unit,
+    /// Tester, I/O rack, TCMS and wayside together: hear the unit.
+    Bench,
+}
+
+/// An accepted frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// Its header.
+    pub header: Header,
+    /// Its message.
+    pub message: Message,
+}
+
+/// What one end has taken and refused since it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    accepted: [u64; CHANNELS],
+    gaps: [u64; CHANNELS],
+    /// By reason, then by channel; the last place is for frames of no known channel.
+    rejected: [[u64; CHANNELS + 1]; Reject::ALL.len()],
+    garbage: u64,
+}
+
+const CHANNELS: usize = Channel::ALL.len();
+
+impl Counters {
+    /// Frames accepted on a channel.
+    pub const fn accepted(&self, channel: Channel) -> u64 {
+        self.accepted[channel as usize]
+    }
+
+    /// Sequence numbers on a channel that were passed over: frames lost or refused.
+    pub const fn gaps(&self, channel: Channel) -> u64 {
+        self.gaps[channel as usize]
+    }
+
+    /// Frames refused for a reason.
+    pub fn rejected(&self, reason: Reject) -> u64 {
+        self.rejected[reason as usize].iter().sum()
+    }
+
+    /// Frames refused on a channel, for any reason; those with a wrong FCS count for the channel
+    /// they claim to be of.
+    pub fn rejected_on(&self, channel: Channel) -> u64 {
+        self.rejected
+            .iter()
+            .map(|by_channel| by_channel[channel as usize])
+            .sum()
+    }
+
+    /// Frames refused on a channel (`None` = no known one) for a reason.
+    pub fn rejected_for(&self, reason: Reject, channel: Option<Channel>) -> u64 {
+        self.rejected[reason as usize][channel.map_or(CHANNELS, |c| c as usize)]
+    }
+
+    /// Frames refused.
+    pub fn rejected_total(&self) -> u64 {
+        self.rejected.iter().flatten().sum()
+    }
+
+    /// Bytes outside frames.
+    pub const fn garbage(&self) -> u64 {
+        self.garbage
+    }
+
+    fn reject(&mut self, Rejected { reason, channel }: Rejected) {
+        self.rejected[reason as usize][channel.map_or(CHANNELS, |c| c as usize)] += 1;
+    }
+}
+
+/// One end of the wire.
+#[derive(Debug)]
+pub struct Link {
+    end: End,
+    decoder: Decoder,
+    receivers: [Option<Receiver>; CHANNELS],
+    next_seq: [u16; CHANNELS],
+    payload: Vec<u8>,
+    counters: Counters,
+    last_error: Option<DecodeError>,
+}
+
+impl Link {
+    /// An end that has heard nothing yet.
+    pub const fn new(end: End) -> Self {
+        Self {
+            end,
+            decoder: Decoder::new(),
+            receivers: [None; CHANNELS],
+            next_seq: [0; CHANNELS],
+            payload: Vec::new(),
+            counters: Counters {
+                accepted: [0; CHANNELS],
+                gaps: [0; CHANNELS],
+                rejected: [[0; CHANNELS + 1]; Reject::ALL.len()],
+                garbage: 0,
+            },
+            last_error: None,
+        }
+    }
+
+    /// Appends the frame that carries `message` to `out`; gives its sequence number.
+    pub fn send(&mut self, now: Instant, message: &Message, out: &mut Vec<u8>) -> u16 {
+        let channel = message.channel();
+        let (own, partner) = addresses(self.end, channel);
+        let seq = self.next_seq[channel as usize];
+        self.next_seq[channel as usize] = seq.wrapping_add(1);
+        let header = Header {
+            channel,
+            source: own,
+            destination: partner,
+            seq,
+            stamp_ms: now.stamp_ms(),
+        };
+        self.payload.clear();
+        message.encode(&mut self.payload);
+        frame::encode(&header, &self.payload, out);
+        seq
+    }
+
+    /// Takes bytes as they arrived. They are judged by [`Self::poll`], so call that in the same
+    /// step: bytes that lie here grow late.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.decoder.push(bytes);
+        self.counters.garbage = self.decoder.garbage();
+    }
+
+    /// The next accepted frame. Refused ones on the way to it are counted and nothing else.
+    pub fn poll(&mut self, now: Instant) -> Option<Received> {
+        let accepted = loop {
+            let Some(next) = self.decoder.next_frame() else {
+                break None;
+            };
+            let checked = next.and_then(|(header, payload)| {
+                let rejected = |reason| Rejected {
+                    reason,
+                    channel: Some(header.channel),
+                };
+                let (own, partner) = addresses(self.end, header.channel);
+                if (header.source, header.destination) != (partner, own) {
+                    return Err(rejected(Reject::Address));
+                }
+                let receiver = &mut self.receivers[header.channel as usize];
+                let passage = Receiver::judge(receiver, now, &header).map_err(rejected)?;
+                let message = Message::decode(header.channel, payload).map_err(|error| {
+                    self.last_error = Some(error);
+                    rejected(Reject::Layout)
+                })?;
+                *receiver = Some(passage.receiver);
+                self.counters.gaps[header.channel as usize] += u64::from(passage.gap);
+                Ok(Received { header, message })
+            });
+            match checked {
+                Ok(received) => break Some(received),
+                Err(rejected) => self.counters.reject(rejected),
+            }
+        };
+        self.counters.garbage = self.decoder.garbage();
+        if let Some(received) = &accepted {
+            self.counters.accepted[received.header.channel as usize] += 1;
+        }
+        accepted
+    }
+
+    /// When the last frame was accepted on a channel.
+    pub fn last_heard(&self, channel: Channel) -> Option<Instant> {
+        self.receivers[channel as usize].map(|receiver| receiver.heard_at)
+    }
+
+    /// What was taken and refused so far.
+    pub const fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// What was wrong with the payload of the last frame refused for [`Reject::Layout`].
+    pub const fn last_layout_error(&self) -> Option<DecodeError> {
+        self.last_error
+    }
+}
+
+/// Own address and partner's on a channel.
+const fn addresses(end: End, channel: Channel) -> (Address, Address) {
+    match end {
+        End::Unit => (Address::Unit, Address::partner(channel)),
+        End::Bench => (Address::partner(channel), Address::Unit),
+    }
+}
+
+/// What is known of the sender on one channel.
+#[derive(Clone, Copy, Debug)]
+struct Receiver {
+    heard_at: Instant,
+    seq: u16,
+    stamp_ms: u32,
+    /// Smallest difference between this clock and the sender's, ms, wrapping: the quickest way.
+    quickest_ms: u32,
+    /// Up to when `quickest_ms` is relaxed.
+    relaxed_at: Instant,
+    /// When the first frame since the last accepted one came too late.
+    late_since: Option<Instant>,
+}
+
+/// The state after a frame, should it be accepted, and the sequence numbers it passed over.
+struct Passage {
+    receiver: Receiver,
+    gap: u16,
+}
+
+impl Receiver {
+    /// Judges sequence number and time stamp of a frame.
+    fn judge(slot: &mut Option<Self>, now: Instant, header: &Header) -> Result<Passage, Reject> {
+        let fresh = Passage {
+            receiver: Self::first(now, header),
+            gap: 0,
+        };
+        let Some(last) = slot else { return Ok(fresh) };
+        let silent = now.since(last.heard_at) >= RESYNC;
+        let ahead = header.seq.wrapping_sub(last.seq);
+        if !(1..=MAX_AHEAD).contains(&ahead) {
+            return if silent {
+                Ok(fresh)
+            } else {
+                Err(Reject::Sequence)
+            };
+        }
+        if (header.stamp_ms.wrapping_sub(last.stamp_ms) as i32) < 0 {
+            return if silent {
+                Ok(fresh)
+            } else {
+                Err(Reject::Stamp)
+            };
+        }
+        let way_ms = now.stamp_ms().wrapping_sub(header.stamp_ms);
+        let steps = now.since(last.relaxed_at).as_us() / RELAX.as_us();
+        let quickest_ms = last.quickest_ms.wrapping_add(steps as u32);
+        let delay_ms = way_ms.wrapping_sub(quickest_ms) as i32;
+        if delay_ms > MAX_DELAY.as_ms() as i32 {
+            // A line that was blocked delivers its old frames in one burst and then new ones; a
+            // sender whose clock stood still stays late. Only the second begins anew.
+            let since = *last.late_since.get_or_insert(now);
+            let begins_anew = silent && now.since(since) >= RESYNC;
+            return if begins_anew {
+                Ok(fresh)
+            } else {
+                Err(Reject::Stamp)
+            };
+        }
+        let receiver = Self {
+            heard_at: now,
+            seq: header.seq,
+            stamp_ms: header.stamp_ms,
+            quickest_ms: if delay_ms < 0 { way_ms } else { quickest_ms },
+            relaxed_at: last.relaxed_at + Duration::from_us(steps * RELAX.as_us()),
+            late_since: None,
+        };
+        Ok(Passage {
+            receiver,
+            gap: ahead - 1,
+        })
+    }
+
+    fn first(now: Instant, header: &Header) -> Self {
+        Self {
+            heard_at: now,
+            seq: header.seq,
+            stamp_ms: header.stamp_ms,
+            quickest_ms: now.stamp_ms().wrapping_sub(header.stamp_ms),
+            relaxed_at: now,
+            late_since: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::message::{Identify, Status};
+
+    #[test]
+    fn both_ends_hear_each_other() {
+        let (mut unit, mut bench) = (Link::new(End::Unit), Link::new(End::Bench));
+        let now = Instant::from_ms(70_000);
+        let (mut there, mut back) = (Vec::new(), Vec::new());
+        assert_eq!(bench.send(now, &Identify {}.into(), &mut there), 0);
+        assert_eq!(bench.send(now, &Identify {}.into(), &mut there), 1);
+        unit.push(&there);
+        assert_eq!(unit.poll(now).map(|r| r.message), Some(Identify {}.into()));
+        assert_eq!(unit.poll(now).map(|r| r.header.seq), Some(1));
+        assert_eq!(unit.poll(now), None);
+        unit.send(now, &Status::default().into(), &mut back);
+        bench.push(&back);
+        assert_eq!(
+            bench.poll(now).map(|r| r.message),
+            Some(Status::default().into())
+        );
+        assert_eq!(bench.last_heard(Channel::Ptu), Some(now));
+        assert_eq!(unit.counters().accepted(Channel::Ptu), 2);
+        assert_eq!(unit.counters().rejected_total(), 0);
+    }
+}
