@@ -1,0 +1,9 @@
+//! Keeping files well: [`check`](crate::Store::check), backup, prune, merge.
+
+mod check;
+mod merge;
+mod prune;
+
+pub use check::{CheckReport, Problem};
+pub use merge::MergeCounts;
+pub use prune::{PruneCounts, PruneRule};

@@ -1,0 +1,243 @@
+//! What can go wrong, each with the file it concerns and the next move.
+
+use std::path::{Path, PathBuf};
+
+use rusqlite::ErrorCode;
+
+use crate::fault_state::TransitionError;
+use crate::id::Id;
+use crate::trace::TraceError;
+
+/// An error of the store. Nothing committed before it is lost.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// Another connection holds the file for longer than the busy timeout.
+    #[error("{} is locked by another program; close it or choose another file with --db", .path.display())]
+    Locked {
+        /// The database file.
+        path: PathBuf,
+    },
+    /// No room for the write; what was committed before stays.
+    #[error("no room left to write {}; free some space or choose another disk with --db (all that was recorded before is kept)", .path.display())]
+    Full {
+        /// The database file.
+        path: PathBuf,
+    },
+    /// The file or its directory does not let us write.
+    #[error("{} is read-only; make it and its directory writable or choose another file with --db", .path.display())]
+    ReadOnly {
+        /// The database file.
+        path: PathBuf,
+    },
+    /// The file is something else than a SQLite database.
+    #[error("{} is not a database; choose another file with --db", .path.display())]
+    NotADatabase {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A SQLite database of another program.
+    #[error("{} is a database of another program (application id {application_id:#010x}); choose another file with --db", .path.display())]
+    ForeignDatabase {
+        /// The file.
+        path: PathBuf,
+        /// The application id it carries.
+        application_id: i32,
+    },
+    /// Written by a later version of this program.
+    #[error("{} was written by a newer version (schema {found}, this one knows {known}); update the program or choose another file with --db", .path.display())]
+    NewerSchema {
+        /// The database file.
+        path: PathBuf,
+        /// Its schema version.
+        found: i32,
+        /// The newest this crate knows.
+        known: i32,
+    },
+    /// An earlier schema that a read-only opening may not migrate.
+    #[error("{} has the older schema {found} (this version reads {known}); open it once for writing to bring it up to date", .path.display())]
+    OlderSchema {
+        /// The database file.
+        path: PathBuf,
+        /// Its schema version.
+        found: i32,
+        /// The one this crate reads.
+        known: i32,
+    },
+    /// There is no such file, and reading does not create one.
+    #[error("there is no database {}; a first run creates it, or choose another file with --db", .path.display())]
+    Missing {
+        /// The file asked for.
+        path: PathBuf,
+    },
+    /// The file cannot be opened at all.
+    #[error("cannot open {}: {reason}; check the path and its directory or choose another file with --db", .path.display())]
+    CannotOpen {
+        /// The file asked for.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// The disk or the system failed a read or a write.
+    #[error("reading or writing {} failed ({reason}); check the disk, then the file with `db check`", .path.display())]
+    Io {
+        /// The database file.
+        path: PathBuf,
+        /// What SQLite said.
+        reason: String,
+    },
+    /// The file's content contradicts itself.
+    #[error("{} is damaged ({detail}); run `db check`, then go on with a backup", .path.display())]
+    Corrupt {
+        /// The database file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        detail: String,
+    },
+    /// Nothing has the id or name asked for.
+    #[error("no {what} {asked:?}; list them to see what there is")]
+    NotFound {
+        /// run, fault, trace or measurement.
+        what: &'static str,
+        /// What was asked.
+        asked: String,
+    },
+    /// The part of an id given fits more than one.
+    #[error("{asked:?} fits more than one {what}: {}; give more digits", list(.matches))]
+    Ambiguous {
+        /// run, fault or trace.
+        what: &'static str,
+        /// What was asked.
+        asked: String,
+        /// A few of those that fit.
+        matches: Vec<Id>,
+    },
+    /// Neither an id, nor a part of one, nor `latest`.
+    #[error(
+        "{asked:?} is no {what} id: give `latest`, a full id, or at least four hex digits of its beginning or end"
+    )]
+    BadId {
+        /// run, fault or trace.
+        what: &'static str,
+        /// What was asked.
+        asked: String,
+    },
+    /// The fault is not in a state that allows it.
+    #[error("fault {fault}: {source}")]
+    Transition {
+        /// The fault.
+        fault: Id,
+        /// From where to where.
+        source: TransitionError,
+    },
+    /// Steps of a run must come with rising indexes.
+    #[error("step {index} recorded after step {last}: step indexes must rise")]
+    StepOrder {
+        /// The index given.
+        index: u32,
+        /// The last one recorded.
+        last: u32,
+    },
+    /// The run already has its verdict.
+    #[error("run {run} is finished; begin a new run to record more")]
+    RunFinished {
+        /// The run.
+        run: Id,
+    },
+    /// Writing failed for so long that no more steps fit in memory.
+    #[error("{waiting} steps wait in memory because {} cannot be written; stop the run", .path.display())]
+    StepsWaiting {
+        /// The database file.
+        path: PathBuf,
+        /// How many steps wait.
+        waiting: usize,
+    },
+    /// The trace cannot be encoded or decoded.
+    #[error("trace {trace}: {source}")]
+    Trace {
+        /// The trace.
+        trace: Id,
+        /// What is wrong with it.
+        source: TraceError,
+    },
+    /// A backup or export never overwrites.
+    #[error("{} exists already; name a file that does not", .path.display())]
+    TargetExists {
+        /// The target asked for.
+        path: PathBuf,
+    },
+    /// The same file was given as source and target.
+    #[error("{} cannot be merged into itself; name another file", .path.display())]
+    SameFile {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The statement does something else than read.
+    #[error("only one reading statement is allowed here ({reason}); write a single SELECT")]
+    QueryRefused {
+        /// What was refused.
+        reason: String,
+    },
+    /// SQLite could not make sense of the statement.
+    #[error("the query failed: {reason}")]
+    QueryFailed {
+        /// What SQLite said.
+        reason: String,
+    },
+    /// Anything else SQLite refuses: a bug of ours.
+    #[error("{doing} in {}: {source}", .path.display())]
+    Sqlite {
+        /// The database file.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// What SQLite said.
+        source: rusqlite::Error,
+    },
+}
+
+impl StoreError {
+    /// Sorts an error of SQLite into the kinds a caller can act on.
+    pub(crate) fn from_sqlite(path: &Path, doing: &'static str, source: rusqlite::Error) -> Self {
+        let path = path.to_path_buf();
+        let reason = source.to_string();
+        match source.sqlite_error_code() {
+            Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => Self::Locked { path },
+            Some(ErrorCode::DiskFull) => Self::Full { path },
+            Some(ErrorCode::ReadOnly) => Self::ReadOnly { path },
+            Some(ErrorCode::NotADatabase) => Self::NotADatabase { path },
+            Some(ErrorCode::DatabaseCorrupt) => Self::Corrupt {
+                path,
+                detail: reason,
+            },
+            Some(ErrorCode::SystemIoFailure | ErrorCode::FileLockingProtocolFailed) => {
+                Self::Io { path, reason }
+            }
+            Some(ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
+                Self::CannotOpen { path, reason }
+            }
+            None if is_bad_value(&source) => Self::Corrupt {
+                path,
+                detail: reason,
+            },
+            _ => Self::Sqlite {
+                path,
+                doing,
+                source,
+            },
+        }
+    }
+}
+
+/// A stored value that does not fit its column's meaning: nobody but us writes them.
+fn is_bad_value(error: &rusqlite::Error) -> bool {
+    use rusqlite::Error::{FromSqlConversionFailure, IntegralValueOutOfRange, InvalidColumnType};
+    matches!(
+        error,
+        FromSqlConversionFailure(..) | IntegralValueOutOfRange(..) | InvalidColumnType(..)
+    )
+}
+
+fn list(ids: &[Id]) -> String {
+    ids.iter().map(Id::to_string).collect::<Vec<_>>().join(", ")
+}

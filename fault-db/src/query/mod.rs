@@ -1,0 +1,14 @@
+//! The reading side: lists, single rows with all that belongs to them, counts, free questions.
+
+mod faults;
+mod filter;
+mod runs;
+mod sql;
+mod stats;
+mod traces;
+
+pub use faults::{FaultDetail, FaultEvent, FaultFilter, FaultSummary, Occurrence};
+pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary, StepDetail};
+pub use sql::{QueryResult, SqlValue};
+pub use stats::{FaultStat, StatKey, TrendPoint};
+pub use traces::TraceSummary;

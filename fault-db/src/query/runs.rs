@@ -1,0 +1,332 @@
+//! Runs: the list, and one with its steps, measurements and faults.
+
+use std::collections::BTreeMap;
+
+use rusqlite::{Row, params};
+use serde::Serialize;
+
+use super::filter::Conditions;
+use crate::error::StoreError;
+use crate::fault_state::FaultState;
+use crate::id::Id;
+use crate::record::{MeasurementRecord, ScriptRecord, Verdict};
+use crate::store::Store;
+use crate::text_enum::text_enum;
+
+text_enum! {
+    /// Whether a run came to its end.
+    RunState {
+        /// Its writer is alive.
+        Running = "running",
+        /// Its writer died before the verdict.
+        Interrupted = "interrupted",
+        /// It has a verdict.
+        Finished = "finished",
+    }
+}
+
+/// Which runs to list, newest first; `None` does not restrict.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RunFilter {
+    /// Serial number of the unit.
+    pub unit: Option<String>,
+    /// Name of the line.
+    pub line: Option<String>,
+    /// Verdict.
+    pub verdict: Option<Verdict>,
+    /// Who tested.
+    pub operator: Option<String>,
+    /// Began at this time or later.
+    pub since_us: Option<i64>,
+    /// Began before this time.
+    pub until_us: Option<i64>,
+    /// At most so many.
+    pub limit: Option<u32>,
+}
+
+/// A run in a list.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// The run.
+    pub id: Id,
+    /// Serial number of its unit.
+    pub unit_serial: String,
+    /// Kind of the unit.
+    pub unit_kind: String,
+    /// Name of the unit's configuration, as last seen.
+    pub unit_config_name: String,
+    /// Line data used.
+    pub line: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Who tested.
+    pub operator: String,
+    /// Where the unit was.
+    pub source: String,
+    /// When it began.
+    pub started_at_us: i64,
+    /// When it ended.
+    pub finished_at_us: Option<i64>,
+    /// How it came out; none before its end.
+    pub verdict: Option<Verdict>,
+    /// Whether it ended.
+    pub state: RunState,
+    /// Time that passed on the bench.
+    pub bench_time_us: Option<i64>,
+    /// Time that passed for the operator.
+    pub wall_time_us: Option<i64>,
+    /// Version of the program that ran it.
+    pub app_version: String,
+    /// SHA-256 over its scripts.
+    pub scripts_sha256: String,
+    /// SHA-256 of the unit configuration.
+    pub unit_config_sha256: String,
+    /// Faults injected on purpose.
+    pub injected: Option<String>,
+    /// Steps recorded.
+    pub steps: u32,
+    /// Steps that failed or could not be tested.
+    pub steps_not_passed: u32,
+    /// Different faults seen.
+    pub faults: u32,
+}
+
+/// A run with all that belongs to it but its traces' samples.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunDetail {
+    /// The run.
+    pub run: RunSummary,
+    /// The procedure files it used.
+    pub scripts: Vec<ScriptRecord>,
+    /// Its steps in order.
+    pub steps: Vec<StepDetail>,
+    /// The faults seen in it, in order of their first occurrence.
+    pub faults: Vec<RunFault>,
+}
+
+/// A step as recorded.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepDetail {
+    /// Place in the run.
+    pub index: u32,
+    /// Its procedure.
+    pub procedure: String,
+    /// Its name.
+    pub name: String,
+    /// How it came out.
+    pub verdict: Verdict,
+    /// Bench time at its start.
+    pub started_bench_us: i64,
+    /// Bench time it took.
+    pub bench_time_us: i64,
+    /// Why, in words.
+    pub message: String,
+    /// Line of the script.
+    pub script_line: Option<u32>,
+    /// What it measured.
+    pub measurements: Vec<MeasurementRecord>,
+}
+
+/// A fault as one run saw it: counts and times are those of the run alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunFault {
+    /// The fault.
+    pub id: Id,
+    /// Its number.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// The part it points at.
+    pub lru: String,
+    /// How bad it is.
+    pub severity: String,
+    /// Where it stands now.
+    pub state: FaultState,
+    /// First seen in this run.
+    pub first_at_us: i64,
+    /// Last seen in this run.
+    pub last_at_us: i64,
+    /// First seen in this run, on the bench's clock.
+    pub first_bench_us: i64,
+    /// Times seen in this run.
+    pub occurrences: u32,
+    /// First trace of it in this run.
+    pub trace_id: Option<Id>,
+}
+
+const SELECT_RUN: &str = "
+    SELECT r.id, u.serial, u.kind, u.config_name, r.line, r.seed, r.operator, r.source,
+        r.started_at_us, r.finished_at_us, r.verdict, r.owner, r.bench_time_us, r.wall_time_us,
+        r.app_version, r.scripts_sha256, r.unit_config_sha256, r.injected,
+        (SELECT count(*) FROM step s WHERE s.run = r.seq),
+        (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error')),
+        (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
+        r.seq
+    FROM run r JOIN unit u ON u.seq = r.unit";
+
+impl Store {
+    /// Lists runs, newest first. `is_alive` says whether the owner of an unfinished run still
+    /// lives; without it the run counts as interrupted.
+    pub fn runs(
+        &self,
+        filter: &RunFilter,
+        is_alive: &dyn Fn(&str) -> bool,
+    ) -> Result<Vec<RunSummary>, StoreError> {
+        let mut conditions = Conditions::default();
+        conditions.add("u.serial = ?", filter.unit.clone());
+        conditions.add("r.line = ?", filter.line.clone());
+        conditions.add(
+            "r.verdict = ?",
+            filter.verdict.map(|verdict| verdict.to_string()),
+        );
+        conditions.add("r.operator = ?", filter.operator.clone());
+        conditions.add("r.started_at_us >= ?", filter.since_us);
+        conditions.add("r.started_at_us < ?", filter.until_us);
+        let order = "ORDER BY r.started_at_us DESC, r.seq DESC";
+        let limit = filter.limit.map_or(-1, i64::from);
+        let sql = format!("{SELECT_RUN} {} {order} LIMIT {limit}", conditions.sql());
+        let list = || -> rusqlite::Result<Vec<_>> {
+            self.conn
+                .prepare_cached(&sql)?
+                .query_map(conditions.params(), |row| summary(row, is_alive))?
+                .collect()
+        };
+        list().map_err(|error| self.failed("listing runs", error))
+    }
+
+    /// One run with its steps, measurements and faults.
+    pub fn run(&self, id: Id, is_alive: &dyn Fn(&str) -> bool) -> Result<RunDetail, StoreError> {
+        let select = format!("{SELECT_RUN} WHERE r.id = ?1");
+        let found = self.conn.prepare_cached(&select).and_then(|mut select| {
+            let row = |row: &Row<'_>| Ok((summary(row, is_alive)?, row.get::<_, i64>(21)?));
+            select.query_row(params![id], row)
+        });
+        let (run, seq) = found.map_err(|error| self.not_found("run", id, error))?;
+        let rest = || Ok((self.scripts(seq)?, self.steps(seq)?, self.run_faults(seq)?));
+        let rest: rusqlite::Result<_> = rest();
+        let (scripts, steps, faults) = rest.map_err(|error| self.failed("reading a run", error))?;
+        Ok(RunDetail {
+            run,
+            scripts,
+            steps,
+            faults,
+        })
+    }
+
+    fn scripts(&self, run: i64) -> rusqlite::Result<Vec<ScriptRecord>> {
+        self.conn
+            .prepare_cached("SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path")?
+            .query_map([run], |row| {
+                Ok(ScriptRecord {
+                    path: row.get(0)?,
+                    sha256: row.get(1)?,
+                })
+            })?
+            .collect()
+    }
+
+    fn steps(&self, run: i64) -> rusqlite::Result<Vec<StepDetail>> {
+        let mut measurements = self.measurements(run)?;
+        let mut select = self.conn.prepare_cached(
+            "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
+                message, script_line FROM step WHERE run = ?1 ORDER BY step_index",
+        )?;
+        let steps = select.query_map([run], |row| {
+            let index = row.get(0)?;
+            Ok(StepDetail {
+                index,
+                procedure: row.get(1)?,
+                name: row.get(2)?,
+                verdict: row.get(3)?,
+                started_bench_us: row.get(4)?,
+                bench_time_us: row.get(5)?,
+                message: row.get(6)?,
+                script_line: row.get(7)?,
+                measurements: measurements.remove(&index).unwrap_or_default(),
+            })
+        })?;
+        steps.collect()
+    }
+
+    fn measurements(&self, run: i64) -> rusqlite::Result<BTreeMap<u32, Vec<MeasurementRecord>>> {
+        let mut by_step = BTreeMap::<u32, Vec<MeasurementRecord>>::new();
+        let mut select = self.conn.prepare_cached(
+            "SELECT step_index, name, value, unit, low, high, verdict FROM measurement
+             WHERE run = ?1 ORDER BY step_index, ordinal",
+        )?;
+        let mut rows = select.query([run])?;
+        while let Some(row) = rows.next()? {
+            by_step
+                .entry(row.get(0)?)
+                .or_default()
+                .push(MeasurementRecord {
+                    name: row.get(1)?,
+                    value: row.get(2)?,
+                    unit: row.get(3)?,
+                    low: row.get(4)?,
+                    high: row.get(5)?,
+                    verdict: row.get(6)?,
+                });
+        }
+        Ok(by_step)
+    }
+
+    fn run_faults(&self, run: i64) -> rusqlite::Result<Vec<RunFault>> {
+        let mut select = self.conn.prepare_cached(
+            "SELECT f.id, f.code, f.code_name, f.lru, f.severity, f.state, min(o.at_us),
+                max(o.at_us), min(o.bench_us), count(*),
+                (SELECT t.id FROM fault_occurrence p JOIN trace t ON t.seq = p.trace
+                 WHERE p.run = ?1 AND p.fault = f.seq ORDER BY p.seq LIMIT 1)
+             FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
+             WHERE o.run = ?1 GROUP BY f.seq ORDER BY min(o.bench_us), min(o.seq)",
+        )?;
+        let faults = select.query_map([run], |row| {
+            Ok(RunFault {
+                id: row.get(0)?,
+                code: row.get(1)?,
+                code_name: row.get(2)?,
+                lru: row.get(3)?,
+                severity: row.get(4)?,
+                state: row.get(5)?,
+                first_at_us: row.get(6)?,
+                last_at_us: row.get(7)?,
+                first_bench_us: row.get(8)?,
+                occurrences: row.get(9)?,
+                trace_id: row.get(10)?,
+            })
+        })?;
+        faults.collect()
+    }
+}
+
+fn summary(row: &Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> rusqlite::Result<RunSummary> {
+    let verdict: Option<Verdict> = row.get(10)?;
+    let state = match verdict {
+        Some(_) => RunState::Finished,
+        None if is_alive(row.get_ref(11)?.as_str()?) => RunState::Running,
+        None => RunState::Interrupted,
+    };
+    Ok(RunSummary {
+        id: row.get(0)?,
+        unit_serial: row.get(1)?,
+        unit_kind: row.get(2)?,
+        unit_config_name: row.get(3)?,
+        line: row.get(4)?,
+        seed: row.get::<_, i64>(5)?.cast_unsigned(),
+        operator: row.get(6)?,
+        source: row.get(7)?,
+        started_at_us: row.get(8)?,
+        finished_at_us: row.get(9)?,
+        verdict,
+        state,
+        bench_time_us: row.get(12)?,
+        wall_time_us: row.get(13)?,
+        app_version: row.get(14)?,
+        scripts_sha256: row.get(15)?,
+        unit_config_sha256: row.get(16)?,
+        injected: row.get(17)?,
+        steps: row.get(18)?,
+        steps_not_passed: row.get(19)?,
+        faults: row.get(20)?,
+    })
+}

@@ -1,0 +1,240 @@
+//! Traces: equally spaced rows of named channels, as they are handed in and out.
+//!
+//! [`codec`] packs one into a blob, column by column, so that one channel is read without
+//! unpacking the others; [`column`] holds what a column can look like.
+
+mod codec;
+mod column;
+mod varint;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use codec::{ENCODING, MAX_ROWS, MAX_SAMPLES, TraceCodec};
+
+/// One channel of a trace.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    /// Its name, unique in the trace.
+    pub name: String,
+    /// Unit of its samples; empty for an enum or a bit.
+    pub unit: String,
+    /// What its samples are.
+    pub kind: ChannelKind,
+}
+
+/// What the samples of a channel are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelKind {
+    /// A quantity; its samples are expected to be whole multiples of `lsb`. One that is not is
+    /// stored as floating point: exact all the same, but larger.
+    Number {
+        /// The smallest step of the quantity.
+        lsb: f64,
+    },
+    /// A choice; each sample is one of the numbers in `labels`.
+    Enum {
+        /// Number to word.
+        labels: BTreeMap<i64, String>,
+    },
+    /// 0 or 1.
+    Bit,
+}
+
+impl ChannelKind {
+    pub(crate) fn lsb(&self) -> f64 {
+        match self {
+            Self::Number { lsb } => *lsb,
+            Self::Enum { .. } | Self::Bit => 1.0,
+        }
+    }
+}
+
+/// A trace, whole or some of its channels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TraceData {
+    /// Bench time of row 0.
+    pub t0_bench_us: i64,
+    /// UTC of row 0.
+    pub t0_us: i64,
+    /// Time from row to row.
+    pub period_us: i64,
+    /// The row at which it was triggered.
+    pub trigger_row: Option<u32>,
+    /// It ends before its window did: the link dropped or the program was closed.
+    pub partial: bool,
+    /// Some samples are missing.
+    pub gaps: bool,
+    /// The channels, one per column.
+    pub channels: Vec<Channel>,
+    /// Samples by channel, then by row; a missing one is NaN here and null in JSON.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl TraceData {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// The samples of the channel of that name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let place = self
+            .channels
+            .iter()
+            .position(|channel| channel.name == name)?;
+        self.columns.get(place).map(Vec::as_slice)
+    }
+
+    /// Refuses what could not be read back.
+    pub(crate) fn check(&self) -> Result<(), TraceError> {
+        if self.columns.len() != self.channels.len() {
+            let (channels, columns) = (self.channels.len(), self.columns.len());
+            return Err(TraceError::ChannelCount { channels, columns });
+        }
+        let rows = self.rows();
+        codec::check_size(rows, self.columns.len())?;
+        if self.period_us <= 0 {
+            return Err(TraceError::Period {
+                period_us: self.period_us,
+            });
+        }
+        if let Some(row) = self.trigger_row.filter(|row| *row as usize >= rows) {
+            return Err(TraceError::TriggerRow { row, rows });
+        }
+        let mut names: Vec<_> = self.channels.iter().map(|c| c.name.as_str()).collect();
+        names.sort_unstable();
+        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(TraceError::DuplicateChannel {
+                channel: pair[0].to_owned(),
+            });
+        }
+        for (channel, column) in self.channels.iter().zip(&self.columns) {
+            let lsb = channel.kind.lsb();
+            if !(lsb.is_finite() && lsb > 0.0) {
+                return Err(TraceError::Lsb {
+                    channel: channel.name.clone(),
+                    lsb,
+                });
+            }
+            if column.len() != rows {
+                let found = column.len();
+                return Err(TraceError::RowCount {
+                    channel: channel.name.clone(),
+                    rows,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A trace that cannot be stored, or a stored one that cannot be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TraceError {
+    /// Channels and columns must pair up.
+    #[error("{channels} channels but {columns} columns")]
+    ChannelCount {
+        /// Channels named.
+        channels: usize,
+        /// Columns there.
+        columns: usize,
+    },
+    /// Every column has a sample for every row.
+    #[error("channel {channel:?} has {found} samples, the others {rows}")]
+    RowCount {
+        /// The channel.
+        channel: String,
+        /// Rows of the trace.
+        rows: usize,
+        /// Samples of this channel.
+        found: usize,
+    },
+    /// Two channels of one name.
+    #[error("channel {channel:?} comes twice")]
+    DuplicateChannel {
+        /// The name.
+        channel: String,
+    },
+    /// The smallest step must be a positive number.
+    #[error("channel {channel:?} has the lsb {lsb}; it must be a positive number")]
+    Lsb {
+        /// The channel.
+        channel: String,
+        /// Its step.
+        lsb: f64,
+    },
+    /// The time from row to row must be positive.
+    #[error("the period is {period_us} µs; it must be positive")]
+    Period {
+        /// The period given.
+        period_us: i64,
+    },
+    /// The trigger lies outside.
+    #[error("trigger row {row} of a trace with {rows} rows")]
+    TriggerRow {
+        /// The row named.
+        row: u32,
+        /// Rows there are.
+        rows: usize,
+    },
+    /// More than [`MAX_ROWS`] or [`MAX_SAMPLES`].
+    #[error(
+        "{rows} rows of {columns} channels are too many (at most {MAX_ROWS} rows and {MAX_SAMPLES} samples)"
+    )]
+    TooLarge {
+        /// Rows.
+        rows: usize,
+        /// Columns.
+        columns: usize,
+    },
+    /// No channel of that name.
+    #[error("no channel {channel:?} in the trace; it has {}", .known.join(", "))]
+    UnknownChannel {
+        /// The name asked for.
+        channel: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// Packed by a later version.
+    #[error("encoding {found} is not known; a newer version of the program wrote it")]
+    Encoding {
+        /// The encoding's number.
+        found: i64,
+    },
+    /// The stored checksum is another.
+    #[error("the stored data does not match its checksum: it was damaged")]
+    Checksum,
+    /// The channel list is not what its hash says, or cannot be read.
+    #[error("the channel list cannot be read: {detail}")]
+    ChannelSet {
+        /// Why.
+        detail: String,
+    },
+    /// The blob ends too early, goes on too long or names sizes that do not fit.
+    #[error("damaged at byte {offset}: {what}")]
+    Blob {
+        /// Where in the blob.
+        offset: usize,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// A column's packed bytes make no sense.
+    #[error("channel {channel:?} is damaged: {what}")]
+    Column {
+        /// The channel.
+        channel: String,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// The compressor refused, which it has no reason to.
+    #[error("compression failed: {detail}")]
+    Compression {
+        /// What it said.
+        detail: String,
+    },
+}

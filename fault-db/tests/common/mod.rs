@@ -1,0 +1,237 @@
+//! Records and realistic signals for tests and benches.
+#![allow(dead_code)] // each test file uses its part
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use fault_db::{
+    Channel, ChannelKind, FaultRecord, FreezeSample, IdSource, MeasurementRecord, OpenOptions,
+    RunEnd, RunRecord, ScriptRecord, StepRecord, Store, TraceData, UnitRecord, Verdict,
+};
+
+/// 2026-03-01 00:00:00 UTC.
+pub const T0_US: i64 = 1_772_323_200_000_000;
+
+/// A small generator with a seed, so that a failure repeats (xorshift64*).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    pub fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+    }
+
+    /// In -1 … 1, most often near 0.
+    pub fn noise(&mut self) -> f64 {
+        let uniform = |bits: u64| (bits >> 11) as f64 / (1u64 << 53) as f64;
+        uniform(self.next()) + uniform(self.next()) - 1.0
+    }
+
+    pub fn one_in(&mut self, n: u64) -> bool {
+        self.next().is_multiple_of(n)
+    }
+}
+
+/// Ids that differ between sources of different seeds.
+pub fn ids(seed: u64) -> IdSource {
+    let mut random = Random::new(seed);
+    let mut unix_ms = T0_US as u64 / 1000;
+    IdSource::new(move || {
+        unix_ms += 1;
+        let mut bytes = [0; 10];
+        bytes[..8].copy_from_slice(&random.next().to_be_bytes());
+        bytes[8..].copy_from_slice(&random.next().to_be_bytes()[..2]);
+        (unix_ms, bytes)
+    })
+}
+
+pub fn open(path: &Path) -> Store {
+    Store::open(path, OpenOptions::new(ids(1))).expect("a new or known file opens")
+}
+
+pub fn run_record(serial: &str) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial: serial.to_owned(),
+            kind: "ATC".to_owned(),
+            config_name: "default".to_owned(),
+            sw_versions: BTreeMap::from([("atp".to_owned(), "1.2.0".to_owned())]),
+        },
+        line: "line-1".to_owned(),
+        seed: u64::MAX - 3,
+        operator: "kim".to_owned(),
+        source: "sim".to_owned(),
+        started_at_us: T0_US,
+        app_version: "0.1.0".to_owned(),
+        scripts_sha256: "ab".repeat(32),
+        unit_config_sha256: "cd".repeat(32),
+        injected: None,
+        owner: "pid 1 started 2".to_owned(),
+        scripts: vec![ScriptRecord {
+            path: "scripts/atp/speed.star".to_owned(),
+            sha256: "ef".repeat(32),
+        }],
+    }
+}
+
+pub fn step(index: u32) -> StepRecord {
+    StepRecord {
+        index,
+        procedure: "atp.overspeed".to_owned(),
+        name: format!("step {index}"),
+        verdict: Verdict::Passed,
+        started_bench_us: i64::from(index) * 50_000,
+        bench_time_us: 50_000,
+        message: String::new(),
+        script_line: Some(12),
+        measurements: Vec::new(),
+    }
+}
+
+pub fn measurement(name: &str, value: f64) -> MeasurementRecord {
+    MeasurementRecord {
+        name: name.to_owned(),
+        value: Some(value),
+        unit: "s".to_owned(),
+        low: None,
+        high: Some(0.5),
+        verdict: Verdict::Passed,
+    }
+}
+
+pub fn fault(code: i64, at_us: i64) -> FaultRecord {
+    FaultRecord {
+        code,
+        code_name: format!("FAULT_{code}"),
+        lru: "ATP-RX".to_owned(),
+        severity: "major".to_owned(),
+        at_us,
+        bench_us: at_us - T0_US,
+        step_index: Some(3),
+        message: "speed code lost".to_owned(),
+        freeze: vec![
+            FreezeSample {
+                name: "speed".to_owned(),
+                value: Some(68.1),
+                unit: "km/h".to_owned(),
+                label: None,
+            },
+            FreezeSample {
+                name: "eb".to_owned(),
+                value: Some(1.0),
+                unit: String::new(),
+                label: Some("applied".to_owned()),
+            },
+            FreezeSample {
+                name: "distance".to_owned(),
+                value: None,
+                unit: "m".to_owned(),
+                label: None,
+            },
+        ],
+    }
+}
+
+pub fn end(verdict: Verdict) -> RunEnd {
+    RunEnd {
+        verdict,
+        finished_at_us: T0_US + 5_000_000,
+        bench_time_us: 60_000_000,
+        wall_time_us: 5_000_000,
+    }
+}
+
+fn number(name: &str, unit: &str, lsb: f64) -> Channel {
+    Channel {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        kind: ChannelKind::Number { lsb },
+    }
+}
+
+/// 40 channels of a train that brakes from 68 km/h, 50 ms a row: 12 numbers (noisy measurements
+/// quantised by their lsb, and values that change seldom), 8 enums, 20 bits.
+pub fn realistic_trace(rows: usize, seed: u64) -> TraceData {
+    let mut random = Random::new(seed);
+    let mut channels = Vec::new();
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    let quantised = |value: f64, lsb: f64| (value / lsb).round() * lsb;
+    let speed = |row: usize| {
+        let t_s = row as f64 * 0.05;
+        if t_s < 10.0 {
+            60.0 + 0.8 * t_s
+        } else {
+            (68.0 - 3.5 * (t_s - 10.0)).max(0.0)
+        }
+    };
+    let mut noisy = |name: &str, unit: &str, lsb: f64, noise_lsb: f64, f: &dyn Fn(usize) -> f64| {
+        channels.push(number(name, unit, lsb));
+        let sample = |row| quantised(f(row) + random.noise() * noise_lsb * lsb, lsb);
+        columns.push((0..rows).map(sample).collect());
+    };
+    noisy("speed", "km/h", 0.1, 0.8, &speed);
+    noisy("speed_2", "km/h", 0.1, 0.8, &speed);
+    noisy("tacho_pulses_1", "1", 1.0, 0.6, &|row| speed(row) * 0.35);
+    noisy("tacho_pulses_2", "1", 1.0, 0.6, &|row| speed(row) * 0.35);
+    noisy("position", "m", 0.01, 0.0, &|row| {
+        (0..row).map(|r| speed(r) / 72.0).sum()
+    });
+    noisy("acceleration", "m/s2", 0.01, 1.5, &|row| {
+        if row < 200 { 0.22 } else { -0.97 }
+    });
+    noisy("code_level", "dBm", 0.5, 0.8, &|_| -32.0);
+    noisy("speed_limit", "km/h", 1.0, 0.0, &|row| {
+        if row < 195 { 73.0 } else { 40.0 }
+    });
+    noisy("target_speed", "km/h", 0.1, 0.0, &|row| {
+        if row < 195 { 68.0 } else { 35.0 }
+    });
+    noisy("effort", "1", 1.0, 3.0, &|row| {
+        if row < 200 { 180.0 } else { -640.0 }
+    });
+    noisy("supply", "V", 0.1, 0.6, &|_| 110.2);
+    noisy("temperature", "degC", 0.5, 0.1, &|_| 41.0);
+    for (count, levels, kind) in [
+        (
+            8,
+            5,
+            ChannelKind::Enum {
+                labels: (0..5).map(|n| (n, format!("state {n}"))).collect(),
+            },
+        ),
+        (20, 2, ChannelKind::Bit),
+    ] {
+        for n in 0..count {
+            let name = format!("{}_{n}", if levels == 2 { "bit" } else { "enum" });
+            channels.push(Channel {
+                name,
+                unit: String::new(),
+                kind: kind.clone(),
+            });
+            let mut value = random.next() % levels;
+            let column = (0..rows).map(|_| {
+                if random.one_in(120 + 40 * n) {
+                    value = (value + 1) % levels;
+                }
+                value as f64
+            });
+            columns.push(column.collect());
+        }
+    }
+    TraceData {
+        t0_bench_us: 12_000_000,
+        t0_us: T0_US,
+        period_us: 50_000,
+        trigger_row: Some((rows / 3) as u32),
+        partial: false,
+        gaps: false,
+        channels,
+        columns,
+    }
+}
