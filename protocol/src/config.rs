@@ -113,6 +113,8 @@ pub struct OverspeedConfig {
     /// After a step down of the limit: no emergency brake for this time, ms, while the service
     /// brake is being proved (S2 runs 55 → 45 at 50 km/h, the grace is not printed).
     pub step_down_grace_ms: u32,
+    /// Time the brake line has to follow the EB relay, ms.
+    pub eb_feedback_ms: u32,
     /// Limit in yard mode, km/h.
     pub yard_kmh: f64,
     /// Limit in emergency mode, km/h.
@@ -141,6 +143,8 @@ pub struct LinkConfig {
     pub twc_timeout_ms: u32,
     /// Tester silence that ends arming, ms (design: 1 s).
     pub tester_timeout_ms: u32,
+    /// Rejected frames on one channel within 10 s that are worth an event.
+    pub rejected_per_10s: u32,
 }
 
 /// Markers.
@@ -319,6 +323,11 @@ impl UnitConfig {
         }
         Ok(())
     }
+}
+
+/// CRC-32 of a configuration or line file, as the unit reports it in its identity.
+pub fn checksum(text: &str) -> u32 {
+    crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(text.as_bytes())
 }
 
 pub(crate) fn conflict(text: &str) -> ConfigError {

@@ -1,5 +1,7 @@
 //! The event dictionary: stable numbers, never reused, with severity and the part under suspicion.
 
+use crate::message::SelfTest;
+
 /// How bad an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -83,7 +85,7 @@ events! {
     InputsLost = 110 "inputs_lost" Critical "io_board" "I/O inputs fell silent" "입력 신호 두절" "";
     InputsRestored = 111 "inputs_restored" Info "-" "I/O inputs are back" "입력 신호 복귀" "";
     FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 프레임 다수 폐기" "channel number";
-    CodeLost = 200 "code_lost" Minor "atp_receiver" "Speed code lost while the train line asks for one" "속도코드 상실" "";
+    CodeLost = 200 "code_lost" Info "-" "No valid speed code any more: most restrictive limit" "속도코드 상실" "";
     CodeUnknown = 201 "code_unknown" Minor "atp_receiver" "Signal present but not in the code table" "미등록 속도코드 수신" "code rate, 0.01 Hz";
     Overspeed = 210 "overspeed" Info "-" "Speed above limit and alarm margin" "과속 경보" "excess, cm/s";
     OverspeedFsb = 211 "overspeed_fsb" Info "-" "Overspeed: full service brake" "과속 상용전제동" "excess, cm/s";
@@ -114,6 +116,28 @@ events! {
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason";
     ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
+}
+
+impl Event {
+    /// The part under suspicion, given the event's parameter; `-` = none.
+    pub fn suspect(self, parameter: i32) -> &'static str {
+        if self != Self::SelfTestFailed {
+            return self.definition().lru;
+        }
+        let failed = SelfTest::from_bits_retain(parameter as u16);
+        let parts = [
+            (SelfTest::ATP_RECEIVER, "atp_receiver"),
+            (SelfTest::TRA, "tra"),
+            (SelfTest::TWC_MODEM, "fsk_board"),
+            (SelfTest::TEST_BOARD, "test_board"),
+            (SelfTest::IO_BOARD, "io_board"),
+            (SelfTest::EB_RELAY, "eb_relay"),
+        ];
+        parts
+            .iter()
+            .find(|(item, _)| failed.contains(*item))
+            .map_or(self.definition().lru, |&(_, lru)| lru)
+    }
 }
 
 #[cfg(test)]

@@ -126,7 +126,7 @@ layout! {
         backward: u8,
         /// Speed to reach, cm/s, at most 3000.
         speed_cms: u16,
-        /// How fast to get there, mm/s²; 0 = at once.
+        /// How fast to get there, mm/s²; 0 = the board's own 3000.
         accel_mms2: u16,
     }
 }

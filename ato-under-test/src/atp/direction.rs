@@ -1,0 +1,46 @@
+//! Rollback: way run against the reverser.
+
+use protocol::Instant;
+use protocol::event::Event;
+use protocol::message::TrainLines;
+
+use crate::kernel::EventLog;
+use crate::timer::Edge;
+
+/// Adds up the way run against the reverser.
+#[derive(Debug, Default)]
+pub struct Rollback {
+    against_m: f64,
+    tripped: Edge,
+}
+
+impl Rollback {
+    /// One scan; true once the way against the reverser exceeds `allowed_m`, until the train stands.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        moved_m: f64,
+        lines: TrainLines,
+        standstill: bool,
+        allowed_m: f64,
+        log: &mut EventLog,
+    ) -> bool {
+        let forward = lines.contains(TrainLines::FORWARD);
+        let backward = lines.contains(TrainLines::BACKWARD);
+        let against = match (forward, backward) {
+            (true, false) => -moved_m,
+            (false, true) => moved_m,
+            _ => 0.0,
+        };
+        self.against_m = if standstill && against <= 0.0 {
+            0.0
+        } else {
+            (self.against_m + against).max(0.0)
+        };
+        let trips = self.against_m > allowed_m;
+        if self.tripped.rises(trips) {
+            log.push(now, Event::Rollback, libm::round(self.against_m * 100.0) as i32);
+        }
+        trips
+    }
+}

@@ -1,0 +1,70 @@
+//! Doors: open while moving, departure inhibited while open, and enabling at the platform.
+
+use protocol::config::DoorConfig;
+use protocol::event::Event;
+use protocol::message::{DoorSide, Outputs};
+use protocol::{Duration, Instant, Speed};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, Lasting};
+
+/// What the door supervision looks at.
+#[derive(Clone, Copy, Debug)]
+pub struct DoorInputs {
+    /// Doors proved closed.
+    pub closed: bool,
+    /// Standing still.
+    pub standstill: bool,
+    /// At the stop point.
+    pub aligned: bool,
+    /// The train stands on the arrival station's loop with valid station data.
+    pub at_platform: bool,
+    /// Side given by TWC.
+    pub side: DoorSide,
+    /// Measured speed.
+    pub speed: Speed,
+}
+
+/// The supervision.
+#[derive(Debug, Default)]
+pub struct Doors {
+    open_moving: Lasting,
+    tripped: Edge,
+    refused: Edge,
+    enable: Outputs,
+}
+
+impl Doors {
+    /// One scan; true while a door is open on a moving train.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        inputs: DoorInputs,
+        config: &DoorConfig,
+        log: &mut EventLog,
+    ) -> bool {
+        let moving = !inputs.standstill && inputs.speed > Speed::ZERO;
+        let span = Duration::from_ms(u64::from(config.open_moving_ms));
+        let open_moving = self.open_moving.update(now, moving && !inputs.closed, span);
+        if self.tripped.rises(open_moving) {
+            log.push(now, Event::DoorOpenMoving, i32::from(inputs.speed.to_cms()));
+        }
+        let stopped = inputs.standstill && inputs.at_platform;
+        if self.refused.rises(stopped && !inputs.aligned) {
+            log.push(now, Event::DoorEnableRefused, 0);
+        }
+        self.enable = match inputs.side {
+            _ if !(stopped && inputs.aligned) => Outputs::empty(),
+            DoorSide::Left => Outputs::DOOR_ENABLE_LEFT,
+            DoorSide::Right => Outputs::DOOR_ENABLE_RIGHT,
+            DoorSide::Both => Outputs::DOOR_ENABLE_LEFT | Outputs::DOOR_ENABLE_RIGHT,
+            DoorSide::None | DoorSide::Unknown(_) => Outputs::empty(),
+        };
+        open_moving
+    }
+
+    /// Sides enabled.
+    pub fn enable(&self) -> Outputs {
+        self.enable
+    }
+}

@@ -1,0 +1,121 @@
+//! The emergency brake: applied by any cause, latched until standstill and acknowledgement, and
+//! watched through the train line it opens.
+
+use protocol::event::Event;
+use protocol::message::{EbCause, TrainLines};
+use protocol::{Duration, Instant};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, Lasting};
+
+/// Master controller position that opens the brake line itself.
+const CONTROLLER_EMERGENCY: i8 = -8;
+
+/// What the brake looks at in one scan.
+#[derive(Clone, Copy, Debug)]
+pub struct BrakeInputs {
+    /// A cause that holds now, `None` = none.
+    pub cause: EbCause,
+    /// Unit started, cab active, mode chosen, inputs alive.
+    pub may_release: bool,
+    /// Standing still.
+    pub standstill: bool,
+    /// Train lines.
+    pub lines: TrainLines,
+    /// Inputs alive.
+    pub alive: bool,
+    /// Master controller.
+    pub controller: i8,
+}
+
+/// The brake.
+#[derive(Debug)]
+pub struct EmergencyBrake {
+    cause: EbCause,
+    acknowledge: Edge,
+    welded: Lasting,
+    open: Lasting,
+    welded_reported: Edge,
+    open_reported: Edge,
+    feedback: Duration,
+}
+
+impl EmergencyBrake {
+    /// Applied since power-up; the brake line must follow the relay within `feedback`.
+    pub fn new(feedback: Duration) -> Self {
+        Self {
+            cause: EbCause::NotReleased,
+            acknowledge: Edge::default(),
+            welded: Lasting::default(),
+            open: Lasting::default(),
+            welded_reported: Edge::default(),
+            open_reported: Edge::default(),
+            feedback,
+        }
+    }
+
+    /// One scan.
+    pub fn step(&mut self, now: Instant, inputs: BrakeInputs, log: &mut EventLog) {
+        let acknowledged =
+            self.acknowledge.rises(inputs.lines.contains(TrainLines::ACKNOWLEDGE));
+        if inputs.cause != EbCause::None {
+            self.apply(now, inputs.cause, log);
+        } else if !inputs.may_release {
+            if self.cause == EbCause::None {
+                self.cause = EbCause::NotReleased;
+            }
+        } else if inputs.standstill
+            && (self.cause == EbCause::NotReleased
+                || (self.cause != EbCause::None && acknowledged))
+        {
+            self.cause = EbCause::None;
+            log.push(now, Event::EbReleased, 0);
+        }
+        self.watch_line(now, inputs, log);
+    }
+
+    fn apply(&mut self, now: Instant, cause: EbCause, log: &mut EventLog) {
+        if !matches!(self.cause, EbCause::None | EbCause::NotReleased) {
+            return;
+        }
+        self.cause = cause;
+        match cause {
+            EbCause::Overspeed => log.push(now, Event::OverspeedEb, 0),
+            EbCause::ServiceBrakeIneffective => {
+                log.push(now, Event::ServiceBrakeIneffective, 0);
+            }
+            _ => {}
+        }
+    }
+
+    /// The line must die with the relay, and live with it unless something else opens it.
+    fn watch_line(&mut self, now: Instant, inputs: BrakeInputs, log: &mut EventLog) {
+        let energised = inputs.lines.contains(TrainLines::EB_LOOP);
+        let welded = inputs.alive && self.applied() && energised;
+        let open = inputs.alive
+            && !self.applied()
+            && !energised
+            && inputs.controller != CONTROLLER_EMERGENCY;
+        if self.welded_reported.rises(self.welded.update(now, welded, self.feedback)) {
+            log.push(now, Event::EbRelayWelded, 0);
+        }
+        if self.open_reported.rises(self.open.update(now, open, self.feedback)) {
+            log.push(now, Event::EbRelayOpen, 0);
+        }
+    }
+
+    /// Braking.
+    pub fn applied(&self) -> bool {
+        self.cause != EbCause::None
+    }
+
+    /// Why.
+    pub fn cause(&self) -> EbCause {
+        self.cause
+    }
+
+    /// The relay follows.
+    pub fn relay_sound(&self) -> bool {
+        !self.welded_reported.value() && !self.open_reported.value()
+    }
+}

@@ -1,0 +1,137 @@
+//! Overspeed supervision in stages: alarm, full service brake, emergency brake.
+//!
+//! The service brake brings the train back under the limit by itself and releases there; when it
+//! does not slow the train, or the speed passes the emergency margin, the emergency brake follows.
+
+use protocol::config::{OverspeedConfig, UnitConfig};
+use protocol::event::Event;
+use protocol::{Duration, Instant, Speed};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, Lasting};
+
+/// Scans over which the deceleration is measured (0.5 s).
+const DECEL_SCANS: usize = 50;
+
+/// The supervision's verdict in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Overspeed {
+    /// Sound the alarm.
+    pub alarm: bool,
+    /// Request the full service brake.
+    pub service_brake: bool,
+    /// Speed is beyond the emergency margin.
+    pub emergency: bool,
+    /// The service brake has shown no effect.
+    pub ineffective: bool,
+}
+
+/// The supervision.
+#[derive(Debug)]
+pub struct Supervision {
+    limit: Speed,
+    above_alarm: Lasting,
+    above_service: Lasting,
+    above_emergency: Lasting,
+    alarm: bool,
+    service: bool,
+    service_since: Instant,
+    grace_until: Instant,
+    alarmed: Edge,
+    braked: Edge,
+    history: [f64; DECEL_SCANS],
+    at: usize,
+}
+
+impl Supervision {
+    /// Limit zero, nothing exceeded.
+    pub fn new() -> Self {
+        Self {
+            limit: Speed::ZERO,
+            above_alarm: Lasting::default(),
+            above_service: Lasting::default(),
+            above_emergency: Lasting::default(),
+            alarm: false,
+            service: false,
+            service_since: Instant::ZERO,
+            grace_until: Instant::ZERO,
+            alarmed: Edge::default(),
+            braked: Edge::default(),
+            history: [0.0; DECEL_SCANS],
+            at: 0,
+        }
+    }
+
+    /// One scan.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        speed: Speed,
+        limit: Speed,
+        config: &UnitConfig,
+        log: &mut EventLog,
+    ) -> Overspeed {
+        let margins = &config.overspeed;
+        let decel_mps2 = self.deceleration(speed);
+        self.watch_step_down(now, speed, limit, margins);
+        self.stage(now, speed, limit, margins);
+        let excess = i32::from((speed - limit).to_cms());
+        if self.alarmed.rises(self.alarm) {
+            log.push(now, Event::Overspeed, excess);
+        }
+        if self.braked.rises(self.service) {
+            self.service_since = now;
+            log.push(now, Event::OverspeedFsb, excess);
+        }
+        let proof = Duration::from_ms(u64::from(margins.brake_proof_ms));
+        let unproved = decel_mps2 < margins.brake_proof_mps2;
+        let ineffective =
+            self.service && unproved && now.since(self.service_since) >= proof && speed > limit;
+        let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
+        let in_grace = now < self.grace_until && !ineffective;
+        let beyond = speed.kmh() > limit.kmh() + margins.eb_margin_kmh && !in_grace;
+        let emergency = self.above_emergency.update(now, beyond, delay);
+        Overspeed { alarm: self.alarm, service_brake: self.service, emergency, ineffective }
+    }
+
+    fn deceleration(&mut self, speed: Speed) -> f64 {
+        let before = core::mem::replace(&mut self.history[self.at], speed.mps());
+        self.at = (self.at + 1) % DECEL_SCANS;
+        (before - speed.mps()) / (DECEL_SCANS as f64 * protocol::SCAN.as_secs())
+    }
+
+    /// At a step down the train may be over the new limit at once: the service brake gets its
+    /// chance before the emergency brake [S2 §3.3].
+    fn watch_step_down(
+        &mut self,
+        now: Instant,
+        speed: Speed,
+        limit: Speed,
+        margins: &OverspeedConfig,
+    ) {
+        if limit < self.limit && speed > limit {
+            self.grace_until = now + Duration::from_ms(u64::from(margins.step_down_grace_ms));
+        } else if speed <= limit {
+            self.grace_until = Instant::ZERO;
+        }
+        self.limit = limit;
+    }
+
+    fn stage(&mut self, now: Instant, speed: Speed, limit: Speed, margins: &OverspeedConfig) {
+        let over = |margin_kmh: f64| speed.kmh() > limit.kmh() + margin_kmh;
+        let alarm_delay = Duration::from_ms(u64::from(margins.alarm_delay_ms));
+        let service_delay = Duration::from_ms(u64::from(margins.fsb_delay_ms));
+        self.alarm |= self.above_alarm.update(now, over(margins.alarm_margin_kmh), alarm_delay);
+        self.service |= self.above_service.update(now, over(margins.fsb_margin_kmh), service_delay);
+        if speed <= limit {
+            self.alarm = false;
+            self.service = false;
+        }
+    }
+}
+
+impl Default for Supervision {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,166 @@
+//! Two tachometers compared: speed, way, direction, standstill, and which of them lies.
+
+use protocol::config::UnitConfig;
+use protocol::event::Event;
+use protocol::{Duration, Instant, Speed};
+
+use crate::atp::speedometer::Speedometer;
+use crate::front_end::Inputs;
+use crate::kernel::EventLog;
+use crate::timer::{Edge, Lasting};
+
+/// A channel slower than this beside a turning one counts as dead rather than as different.
+const DEAD_BELOW: Speed = Speed::from_kmh(1.0);
+/// Scans with an impossible jump within [`NOISE_SPAN`] that make a channel noisy.
+const NOISE_SCANS: u32 = 3;
+/// Span in which they are counted.
+const NOISE_SPAN: Duration = Duration::from_ms(1000);
+
+/// The pair of tachometers.
+#[derive(Debug)]
+pub struct Tachometers {
+    meters: [Speedometer; 2],
+    noise: [Noise; 2],
+    from_board: [bool; 2],
+    differ: Lasting,
+    opposed: Lasting,
+    faulty: bool,
+    slow: Lasting,
+    standstill: bool,
+    moved_m: f64,
+    moved_backward: bool,
+}
+
+#[derive(Debug, Default)]
+struct Noise {
+    jumps: u32,
+    since: Instant,
+    reported: Edge,
+}
+
+impl Tachometers {
+    /// Standing.
+    pub fn new(config: &UnitConfig) -> Self {
+        let window = Duration::from_ms(u64::from(config.tacho.window_ms));
+        let meter = || Speedometer::new(window, config.metres_per_pulse());
+        Self {
+            meters: [meter(), meter()],
+            noise: [Noise::default(), Noise::default()],
+            from_board: [false; 2],
+            differ: Lasting::default(),
+            opposed: Lasting::default(),
+            faulty: false,
+            slow: Lasting::default(),
+            standstill: false,
+            moved_m: 0.0,
+            moved_backward: false,
+        }
+    }
+
+    /// One scan.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        inputs: &Inputs,
+        config: &UnitConfig,
+        log: &mut EventLog,
+    ) {
+        for i in 0..2 {
+            if self.from_board[i] != inputs.test_speed[i] {
+                self.from_board[i] = inputs.test_speed[i];
+                self.meters[i].reset();
+                self.noise[i] = Noise::default();
+            }
+            let jump = self.meters[i].step(&inputs.pulses[i]);
+            let impossible = Speedometer::impossible(jump, config.tacho.plausible_accel_mps2);
+            let event = [Event::TachoNoise1, Event::TachoNoise2][i];
+            self.noise[i].step(now, impossible, jump, event, log);
+        }
+        self.compare(now, inputs, config, log);
+        self.measure_way(inputs, config);
+        let slow = self.speed().kmh() <= config.tacho.standstill_kmh;
+        let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
+        self.standstill = self.slow.update(now, slow, span);
+    }
+
+    fn compare(
+        &mut self,
+        now: Instant,
+        inputs: &Inputs,
+        config: &UnitConfig,
+        log: &mut EventLog,
+    ) {
+        let tacho = &config.tacho;
+        let (one, two) = (self.meters[0].speed(), self.meters[1].speed());
+        let difference = one.difference(two);
+        let span = Duration::from_ms(u64::from(tacho.difference_ms));
+        let differ = self.differ.update(now, difference.kmh() > tacho.difference_kmh, span);
+        let turning = one.kmh() > tacho.standstill_kmh && two.kmh() > tacho.standstill_kmh;
+        let against = inputs.pulses[0].backward != inputs.pulses[1].backward;
+        let opposed = self.opposed.update(now, turning && against, span);
+        let faulty = differ || opposed;
+        if faulty && !self.faulty {
+            match (one < DEAD_BELOW, two < DEAD_BELOW) {
+                (true, false) => log.push(now, Event::TachoDead1, i32::from(two.to_cms())),
+                (false, true) => log.push(now, Event::TachoDead2, i32::from(one.to_cms())),
+                _ if opposed => log.push(now, Event::TachoDirection, 0),
+                _ => log.push(now, Event::TachoDisagree, i32::from(difference.to_cms())),
+            }
+        }
+        self.faulty = faulty;
+    }
+
+    /// Way by channel 1, by channel 2 when only that turns.
+    fn measure_way(&mut self, inputs: &Inputs, config: &UnitConfig) {
+        let first_dead =
+            self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
+        let pulses = &inputs.pulses[usize::from(first_dead)];
+        let way = f64::from(pulses.count) * config.metres_per_pulse();
+        self.moved_backward = pulses.backward;
+        self.moved_m = if pulses.backward { -way } else { way };
+    }
+
+    /// The safe speed: the greater of the two.
+    pub fn speed(&self) -> Speed {
+        self.meters[0].speed().max(self.meters[1].speed())
+    }
+
+    /// Speed of channel 0 or 1.
+    pub fn channel(&self, i: usize) -> Speed {
+        self.meters[i].speed()
+    }
+
+    /// The channels cannot both be right.
+    pub fn faulty(&self) -> bool {
+        self.faulty
+    }
+
+    /// Standing still.
+    pub fn standstill(&self) -> bool {
+        self.standstill
+    }
+
+    /// Standing still by the train's own sensors, not by the TEST board.
+    pub fn train_stands(&self) -> bool {
+        self.standstill || self.from_board != [false; 2]
+    }
+
+    /// Way run in this scan, m, backward negative.
+    pub fn moved_m(&self) -> f64 {
+        self.moved_m
+    }
+}
+
+impl Noise {
+    fn step(&mut self, now: Instant, impossible: bool, jump: f64, event: Event, log: &mut EventLog) {
+        if now.since(self.since) > NOISE_SPAN {
+            self.since = now;
+            self.jumps = 0;
+            self.reported.rises(false);
+        }
+        self.jumps += u32::from(impossible);
+        if self.reported.rises(self.jumps >= NOISE_SCANS || self.reported.value()) {
+            log.push(now, event, libm::round(jump * 100.0) as i32);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The input image: the last I/O frame, and whether the harness is alive.
+
+use protocol::message::IoInput;
+use protocol::{Duration, Instant};
+
+/// Latched I/O inputs.
+#[derive(Debug)]
+pub struct IoImage {
+    latest: Option<IoInput>,
+    stamp_ms: u32,
+    sampled_at: Instant,
+    heard: Option<Instant>,
+    alive: bool,
+    timeout: Duration,
+}
+
+impl IoImage {
+    /// An image that dies after `timeout` without a frame.
+    pub fn new(timeout: Duration) -> Self {
+        Self {
+            latest: None,
+            stamp_ms: 0,
+            sampled_at: Instant::ZERO,
+            heard: None,
+            alive: false,
+            timeout,
+        }
+    }
+
+    /// Takes a frame sampled at the sender's `stamp_ms`.
+    pub fn latch(&mut self, now: Instant, stamp_ms: u32, input: IoInput) {
+        // The sender's clock is unwrapped here, so that pulse times do not feel the wire's jitter.
+        let elapsed = if self.alive { stamp_ms.wrapping_sub(self.stamp_ms) } else { 0 };
+        self.sampled_at += Duration::from_ms(u64::from(elapsed));
+        self.stamp_ms = stamp_ms;
+        self.latest = Some(input);
+        self.heard = Some(now);
+        self.alive = true;
+    }
+
+    /// Moves on to the present; a silent harness dies, and with it all its inputs.
+    pub fn step(&mut self, now: Instant) {
+        self.alive = self.heard.is_some_and(|heard| now.since(heard) < self.timeout);
+        if !self.alive {
+            self.latest = None;
+            self.sampled_at = now;
+        }
+    }
+
+    /// The last frame and its sampling time, while the harness is alive.
+    pub fn input(&self) -> Option<(&IoInput, Instant)> {
+        self.latest.as_ref().map(|input| (input, self.sampled_at))
+    }
+
+    /// Frames are coming.
+    pub fn alive(&self) -> bool {
+        self.alive
+    }
+
+    /// Frames have come at least once since power-up.
+    pub fn ever_heard(&self) -> bool {
+        self.heard.is_some()
+    }
+}

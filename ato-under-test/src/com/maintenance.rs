@@ -1,0 +1,248 @@
+//! The tester's session: identity, arm exchange, stimuli, event log.
+//!
+//! Stimuli act only while armed. Arming needs the maintenance key and standstill, and lapses when
+//! the key goes off or the tester falls silent; whoever holds the TEST board then takes every test
+//! signal away.
+
+use alloc::vec::Vec;
+
+use protocol::event::Event;
+use protocol::message::{
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, LogEnd, Message,
+    StimulusAnswer,
+};
+use protocol::{Duration, Instant};
+
+use crate::kernel::EventLog;
+use crate::random::Random;
+use crate::test_board::TestBoard;
+
+/// Time in which a challenge must be answered.
+const CHALLENGE_TIME: Duration = Duration::from_ms(1000);
+/// Log entries sent in one cycle, so that the cycle's byte budget holds.
+const ENTRIES_PER_CYCLE: usize = 2;
+
+/// What arming needs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ArmConditions {
+    /// Start-up has finished.
+    pub started: bool,
+    /// Maintenance key on.
+    pub key_on: bool,
+    /// Standing still by the train's own tachometers.
+    pub standing: bool,
+}
+
+/// The session.
+#[derive(Debug)]
+pub struct Maintenance {
+    armed: Option<u32>,
+    challenge: Option<(u32, u32, Instant)>,
+    heard: Option<Instant>,
+    session_heard: Instant,
+    timeout: Duration,
+    random: Random,
+    reader: Option<LogReader>,
+}
+
+/// How far the log has been read out.
+#[derive(Clone, Copy, Debug)]
+pub struct LogReader {
+    next: u32,
+}
+
+impl Maintenance {
+    /// No tester yet; silence of `timeout` ends arming.
+    pub fn new(timeout: Duration, seed: u64) -> Self {
+        Self {
+            armed: None,
+            challenge: None,
+            heard: None,
+            session_heard: Instant::ZERO,
+            timeout,
+            random: Random::new(seed),
+            reader: None,
+        }
+    }
+
+    /// Armed for stimuli.
+    pub fn armed(&self) -> bool {
+        self.armed.is_some()
+    }
+
+    /// A tester has been heard lately.
+    pub fn listened_to(&self, now: Instant) -> bool {
+        self.heard.is_some_and(|heard| now.since(heard) < self.timeout)
+    }
+
+    /// Moves on to the present; returns the notice to send when arming lapses.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        conditions: ArmConditions,
+        board: &mut TestBoard,
+        log: &mut EventLog,
+    ) -> Option<Message> {
+        let session = self.armed?;
+        let refusal = if now.since(self.session_heard) >= self.timeout {
+            ArmRefusal::TesterSilent
+        } else if !conditions.key_on {
+            ArmRefusal::KeyOff
+        } else {
+            return None;
+        };
+        Some(self.disarm(now, session, refusal, board, log))
+    }
+
+    fn disarm(
+        &mut self,
+        now: Instant,
+        session: u32,
+        refusal: ArmRefusal,
+        board: &mut TestBoard,
+        log: &mut EventLog,
+    ) -> Message {
+        self.armed = None;
+        board.release_all();
+        log.push(now, Event::ArmingLapsed, i32::from(refusal.code()));
+        ArmState { session, armed: 0, refusal }.into()
+    }
+
+    /// Handles one request; answers go to `replies`.
+    pub fn handle(
+        &mut self,
+        now: Instant,
+        (seq, message): (u16, Message),
+        conditions: ArmConditions,
+        (board, log): (&mut TestBoard, &mut EventLog),
+        replies: &mut Vec<Message>,
+    ) {
+        self.heard = Some(now);
+        match message {
+            Message::ArmRequest(request) => replies.push(self.request(now, request, conditions)),
+            Message::ArmConfirm(confirm) => {
+                replies.push(self.confirm(now, confirm, conditions, log));
+            }
+            Message::Disarm(request) if self.armed == Some(request.session) => {
+                let refusal = ArmRefusal::Disarmed;
+                replies.push(self.disarm(now, request.session, refusal, board, log));
+            }
+            Message::KeepAlive(alive) => self.hear_session(now, alive.session),
+            Message::ReadLog(request) => self.reader = Some(LogReader { next: request.from_index }),
+            other => {
+                if let Some(answer) = self.stimulate(now, other, board, log) {
+                    replies.push(StimulusAnswer { request_seq: seq, answer }.into());
+                }
+            }
+        }
+    }
+
+    fn hear_session(&mut self, now: Instant, session: u32) {
+        if self.armed == Some(session) {
+            self.session_heard = now;
+        }
+    }
+
+    fn request(
+        &mut self,
+        now: Instant,
+        request: ArmRequest,
+        conditions: ArmConditions,
+    ) -> Message {
+        let session = request.session;
+        let refusal = if !conditions.started {
+            ArmRefusal::StartingUp
+        } else if !conditions.key_on {
+            ArmRefusal::KeyOff
+        } else if self.armed.is_some_and(|held| held != session) {
+            ArmRefusal::Busy
+        } else if !conditions.standing {
+            ArmRefusal::Moving
+        } else if session == 0 {
+            ArmRefusal::BadAnswer
+        } else {
+            let challenge = self.random.bits() as u32;
+            self.challenge = Some((session, challenge, now));
+            return ArmChallenge { session, challenge }.into();
+        };
+        ArmState { session, armed: 0, refusal }.into()
+    }
+
+    fn confirm(
+        &mut self,
+        now: Instant,
+        confirm: ArmConfirm,
+        conditions: ArmConditions,
+        log: &mut EventLog,
+    ) -> Message {
+        let session = confirm.session;
+        let right = self.challenge.take().is_some_and(|(asked, challenge, at)| {
+            asked == session
+                && confirm.answer == !challenge ^ session
+                && now.since(at) < CHALLENGE_TIME
+        });
+        if !right || !conditions.key_on {
+            return ArmState { session, armed: 0, refusal: ArmRefusal::BadAnswer }.into();
+        }
+        if self.armed.is_none() {
+            log.push(now, Event::Armed, 0);
+        }
+        self.armed = Some(session);
+        self.session_heard = now;
+        ArmState { session, armed: 1, refusal: ArmRefusal::None }.into()
+    }
+
+    /// Carries out a stimulus; `None` for a message that is not one.
+    fn stimulate(
+        &mut self,
+        now: Instant,
+        message: Message,
+        board: &mut TestBoard,
+        log: &mut EventLog,
+    ) -> Option<Answer> {
+        let session = match message {
+            Message::TestCode(m) => m.session,
+            Message::TestSpeed(m) => m.session,
+            Message::TestMarker(m) => m.session,
+            Message::TestTwc(m) => m.session,
+            Message::TestRelease(m) => m.session,
+            Message::ClearLog(m) => m.session,
+            _ => return None,
+        };
+        if self.armed != Some(session) {
+            return Some(Answer::NotArmed);
+        }
+        self.session_heard = now;
+        Some(match message {
+            Message::TestCode(request) => board.set_code(request),
+            Message::TestSpeed(request) => board.set_speed(request),
+            Message::TestMarker(request) => board.set_marker(request),
+            Message::TestTwc(request) => board.set_twc(now, request),
+            Message::TestRelease(request) => {
+                board.release(request);
+                Answer::Accepted
+            }
+            _ => {
+                log.clear();
+                log.push(now, Event::LogCleared, 0);
+                Answer::Accepted
+            }
+        })
+    }
+
+    /// Log entries to send in this cycle.
+    pub fn read_log(&mut self, log: &EventLog, replies: &mut Vec<Message>) {
+        let Some(reader) = &mut self.reader else { return };
+        for _ in 0..ENTRIES_PER_CYCLE {
+            let Some(entry) = log.at_or_after(reader.next) else { break };
+            reader.next = entry.index + 1;
+            replies.push((*entry).into());
+        }
+        if log.at_or_after(reader.next).is_none() {
+            let end =
+                LogEnd { next_index: log.next_index(), oldest_index: log.oldest_index() };
+            replies.push(end.into());
+            self.reader = None;
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! COM: the links to bench, TCMS, wayside and tester [S0 §3.2].
+
+mod image;
+mod maintenance;
+mod reject_watch;
+mod tcms;
+
+pub use image::IoImage;
+pub use maintenance::{ArmConditions, LogReader, Maintenance};
+pub use reject_watch::RejectWatch;
+pub use tcms::TcmsLink;

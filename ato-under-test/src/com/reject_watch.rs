@@ -1,0 +1,62 @@
+//! Watches how many frames each channel loses.
+
+use protocol::event::Event;
+use protocol::link::Counters;
+use protocol::message::Channel;
+use protocol::{Duration, Instant};
+
+use crate::kernel::EventLog;
+
+/// Span over which losses are counted.
+const SPAN: Duration = Duration::from_ms(10_000);
+
+/// Counts losses and reports a bad channel once a span.
+#[derive(Debug)]
+pub struct RejectWatch {
+    threshold: u64,
+    span_began: Instant,
+    at_begin: [u64; 4],
+    lost: [u64; 4],
+    reported: [bool; 4],
+}
+
+impl RejectWatch {
+    /// Reports a channel that loses `threshold` frames within ten seconds.
+    pub fn new(threshold: u32) -> Self {
+        Self {
+            threshold: u64::from(threshold),
+            span_began: Instant::ZERO,
+            at_begin: [0; 4],
+            lost: [0; 4],
+            reported: [false; 4],
+        }
+    }
+
+    /// A frame was lost in a modem or line driver, before it could be rejected.
+    pub fn count_lost(&mut self, channel: Channel) {
+        self.lost[place(channel)] += 1;
+    }
+
+    /// One cycle.
+    pub fn step(&mut self, now: Instant, counters: &Counters, log: &mut EventLog) {
+        for channel in Channel::ALL {
+            let i = place(channel);
+            let total = counters.rejected_on(channel) + self.lost[i];
+            if !self.reported[i] && total - self.at_begin[i] >= self.threshold {
+                self.reported[i] = true;
+                log.push(now, Event::FramesRejected, i32::from(channel.code()));
+            }
+            if now.since(self.span_began) >= SPAN {
+                self.at_begin[i] = total;
+                self.reported[i] = false;
+            }
+        }
+        if now.since(self.span_began) >= SPAN {
+            self.span_began = now;
+        }
+    }
+}
+
+fn place(channel: Channel) -> usize {
+    usize::from(channel.code()) - 1
+}

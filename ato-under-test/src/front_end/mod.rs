@@ -1,0 +1,219 @@
+//! Antennas, sensors, contacts and relays: everything between the terminals and the processors.
+//!
+//! Test signals join here, and injected faults act here, each at its own place in the signal path.
+
+mod faults;
+mod outputs;
+mod sensors;
+
+use protocol::injection::{Effect, Place};
+use protocol::message::{IoInput, ModeSwitch, TrainLines};
+use protocol::{Instant, SCAN};
+
+pub use faults::Faults;
+pub use outputs::OutputStage;
+pub use sensors::PulseSensor;
+
+use crate::com::IoImage;
+use crate::test_board::TestBoard;
+
+/// What is in the ATP antenna.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AntennaSignal {
+    /// Carrier, Hz; 0 = none.
+    pub carrier_hz: f64,
+    /// Code rate, Hz; 0 = unmodulated.
+    pub rate_hz: f64,
+    /// Level, mV.
+    pub level_mv: f64,
+}
+
+/// Pulses of one tachometer input in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pulses {
+    /// How many came.
+    pub count: u32,
+    /// Time of the last one, on the sender's clock.
+    pub edge_at: Instant,
+    /// Time up to which pulses were counted, on the same clock.
+    pub sampled_at: Instant,
+    /// Phase says backward.
+    pub backward: bool,
+}
+
+/// A marker pulse as TRA hands it on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MarkerPulse {
+    /// 1 to 4 = PSM1 to PSM4.
+    pub marker: u8,
+    /// Age when the inputs were sampled, s × 10⁻⁶.
+    pub age_us: u16,
+}
+
+/// The inputs as the processors see them in one scan.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inputs {
+    /// The harness is alive.
+    pub alive: bool,
+    /// Signal at the receiver's output filter.
+    pub signal: AntennaSignal,
+    /// Tachometer pulses.
+    pub pulses: [Pulses; 2],
+    /// Tachometer inputs fed by the TEST board.
+    pub test_speed: [bool; 2],
+    /// Marker pulse, if one came.
+    pub marker: Option<MarkerPulse>,
+    /// TRA answers its test pulse.
+    pub tra_answers: bool,
+    /// Train lines.
+    pub lines: TrainLines,
+    /// Mode switch.
+    pub mode_switch: ModeSwitch,
+    /// Master controller notch.
+    pub controller: i8,
+}
+
+/// The input side.
+#[derive(Debug)]
+pub struct FrontEnd {
+    sensors: [PulseSensor; 2],
+    marker_edges: Option<u8>,
+    held_signal: AntennaSignal,
+}
+
+impl FrontEnd {
+    /// Two speed sensors, one ATP antenna, one marker antenna with TRA.
+    pub fn new() -> Self {
+        Self {
+            sensors: [PulseSensor::default(), PulseSensor::default()],
+            marker_edges: None,
+            held_signal: AntennaSignal::default(),
+        }
+    }
+
+    /// Reads all inputs once.
+    ///
+    /// `coil` is what start-up self-test feeds into the ATP test coil.
+    pub fn scan(
+        &mut self,
+        now: Instant,
+        image: &IoImage,
+        board: &mut TestBoard,
+        coil: Option<AntennaSignal>,
+        faults: &mut Faults,
+    ) -> Inputs {
+        let input = image.input();
+        let test_pulses = board.step_speed(now);
+        let mut pulses = [Pulses::default(); 2];
+        for (i, sensor) in self.sensors.iter_mut().enumerate() {
+            let place = [Place::SpeedSensor1, Place::SpeedSensor2][i];
+            let sensed = sensor.read(input.map(|(frame, at)| raw_pulses(frame, at, i)), place, faults);
+            pulses[i] = test_pulses[i].unwrap_or(sensed);
+            if !image.alive() && test_pulses[i].is_none() {
+                pulses[i].sampled_at = now;
+            }
+        }
+        let frame = input.filter(|_| image.alive()).map(|(frame, _)| *frame).unwrap_or_default();
+        Inputs {
+            alive: image.alive(),
+            signal: self.receive(&frame, board.code().or(coil), faults),
+            pulses,
+            test_speed: test_pulses.map(|pulses| pulses.is_some()),
+            marker: self.marker(input.map(|(frame, _)| frame), board, faults),
+            tra_answers: !matches!(faults.at(Place::Tra), Some(Effect::Dead)),
+            lines: lines(frame.lines, faults),
+            mode_switch: frame.mode_switch,
+            controller: frame.controller,
+        }
+    }
+
+    /// Antenna and receiver: the stronger of track and test coil, through both their faults.
+    fn receive(
+        &mut self,
+        frame: &IoInput,
+        coil: Option<AntennaSignal>,
+        faults: &mut Faults,
+    ) -> AntennaSignal {
+        let track = AntennaSignal {
+            carrier_hz: f64::from(frame.carrier_hz),
+            rate_hz: f64::from(frame.code_rate_chz) / 100.0,
+            level_mv: f64::from(frame.level_mv),
+        };
+        let mut signal = match coil {
+            Some(coil) if coil.level_mv >= track.level_mv => coil,
+            _ => track,
+        };
+        match faults.at(Place::AtpAntenna) {
+            Some(Effect::Dead) => signal.level_mv = 0.0,
+            Some(Effect::Gain { factor }) => signal.level_mv *= factor,
+            _ => {}
+        }
+        match faults.at(Place::AtpReceiver) {
+            Some(Effect::Dead) => signal = AntennaSignal::default(),
+            Some(Effect::Offset { by }) if signal.rate_hz > 0.0 => signal.rate_hz += by,
+            Some(Effect::StuckOn) if self.held_signal.level_mv > 0.0 => signal = self.held_signal,
+            _ => {}
+        }
+        self.held_signal = signal;
+        signal
+    }
+
+    /// Marker antenna and TRA.
+    fn marker(
+        &mut self,
+        frame: Option<&IoInput>,
+        board: &mut TestBoard,
+        faults: &mut Faults,
+    ) -> Option<MarkerPulse> {
+        let before = self.marker_edges;
+        self.marker_edges = frame.map(|frame| frame.marker_edges);
+        let passed = match (before, frame) {
+            (Some(before), Some(frame)) if before != frame.marker_edges => {
+                Some(MarkerPulse { marker: frame.marker, age_us: frame.marker_edge_us })
+            }
+            _ => None,
+        };
+        let antenna_dead = matches!(faults.at(Place::MarkerAntenna), Some(Effect::Dead));
+        let tra_dead = matches!(faults.at(Place::Tra), Some(Effect::Dead));
+        board
+            .take_marker()
+            .map(|marker| MarkerPulse { marker, age_us: 0 })
+            .or(passed)
+            .filter(|_| !antenna_dead && !tra_dead)
+    }
+}
+
+impl Default for FrontEnd {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// One tachometer's part of an input frame: wrapping count, edge and sampling time, phase.
+fn raw_pulses(frame: &IoInput, at: Instant, channel: usize) -> (u16, Pulses) {
+    let (count, edge_us) = match channel {
+        0 => (frame.tacho1_count, frame.tacho1_edge_us),
+        _ => (frame.tacho2_count, frame.tacho2_edge_us),
+    };
+    let pulses = Pulses {
+        count: 0,
+        edge_at: at.back(protocol::Duration::from_us(u64::from(edge_us))),
+        sampled_at: at,
+        backward: frame.tacho_backward & (1 << channel) != 0,
+    };
+    (count, pulses)
+}
+
+fn lines(mut lines: TrainLines, faults: &Faults) -> TrainLines {
+    match faults.at(Place::DoorInput) {
+        Some(Effect::StuckOn) => lines.insert(TrainLines::DOORS_CLOSED),
+        Some(Effect::StuckOff | Effect::Dead) => lines.remove(TrainLines::DOORS_CLOSED),
+        _ => {}
+    }
+    lines
+}
+
+/// Events of a Poisson process of `per_s` in one scan, at most one.
+pub(crate) fn one_in_scan(per_s: f64) -> f64 {
+    per_s * SCAN.as_secs()
+}

@@ -1,0 +1,49 @@
+//! A speed sensor and its input: wrapping counts become pulses of this scan.
+
+use protocol::injection::{Effect, Place};
+
+use super::{Faults, Pulses, one_in_scan};
+
+/// One tachometer input.
+#[derive(Debug, Default)]
+pub struct PulseSensor {
+    last_count: Option<u16>,
+    /// Share of a pulse owed by a sensor that gives too many or too few.
+    owed: f64,
+    last: Pulses,
+}
+
+impl PulseSensor {
+    /// The pulses since the last scan; without an input frame the last sample stands.
+    pub fn read(
+        &mut self,
+        raw: Option<(u16, Pulses)>,
+        place: Place,
+        faults: &mut Faults,
+    ) -> Pulses {
+        let Some((count, mut pulses)) = raw else {
+            self.last_count = None;
+            return Pulses { count: 0, ..self.last };
+        };
+        let before = self.last_count.replace(count).unwrap_or(count);
+        pulses.count = u32::from(count.wrapping_sub(before));
+        match faults.at(place) {
+            Some(Effect::Dead) => pulses.count = 0,
+            Some(Effect::Gain { factor }) => {
+                self.owed += f64::from(pulses.count) * factor;
+                pulses.count = self.owed as u32;
+                self.owed -= f64::from(pulses.count);
+            }
+            Some(Effect::Noise { per_s }) if faults.chance(one_in_scan(per_s)) => {
+                pulses.count += 1;
+                pulses.edge_at = pulses.sampled_at;
+            }
+            _ => {}
+        }
+        if pulses.count == 0 {
+            pulses.edge_at = self.last.edge_at;
+        }
+        self.last = pulses;
+        pulses
+    }
+}

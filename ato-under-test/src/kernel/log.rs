@@ -1,0 +1,99 @@
+//! The event log: a bounded ring whose indices are never reused, each entry with a freeze frame.
+
+use alloc::collections::VecDeque;
+
+use protocol::event::Event;
+use protocol::message::{EbCause, LogEntry, Mode};
+use protocol::{Instant, Speed};
+
+/// Entries kept; older ones fall off and their indices stay used.
+pub const LOG_CAPACITY: usize = 256;
+
+/// State of the unit that each entry freezes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FreezeFrame {
+    /// Measured speed.
+    pub speed: Speed,
+    /// Speed limit in force.
+    pub limit: Speed,
+    /// Position in the section, m.
+    pub position_m: f64,
+    /// Operating mode.
+    pub mode: Mode,
+    /// Emergency brake's cause.
+    pub eb_cause: EbCause,
+}
+
+/// The log.
+#[derive(Debug, Default)]
+pub struct EventLog {
+    entries: VecDeque<LogEntry>,
+    next_index: u32,
+    frame: FreezeFrame,
+}
+
+impl EventLog {
+    /// Sets the state the next entries freeze.
+    pub fn freeze(&mut self, frame: FreezeFrame) {
+        self.frame = frame;
+    }
+
+    /// Logs an event.
+    pub fn push(&mut self, now: Instant, event: Event, parameter: i32) {
+        if self.entries.len() == LOG_CAPACITY {
+            self.entries.pop_front();
+        }
+        self.entries.push_back(LogEntry {
+            index: self.next_index,
+            code: event.definition().code,
+            at_ms: now.stamp_ms(),
+            parameter,
+            speed_cms: self.frame.speed.to_cms(),
+            limit_cms: self.frame.limit.to_cms(),
+            position_cm: libm::round(self.frame.position_m * 100.0) as i32,
+            mode: self.frame.mode,
+            eb_cause: self.frame.eb_cause,
+        });
+        self.next_index += 1;
+    }
+
+    /// The first kept entry with an index of at least `index`.
+    pub fn at_or_after(&self, index: u32) -> Option<&LogEntry> {
+        let skip = index.saturating_sub(self.oldest_index()) as usize;
+        self.entries.get(skip)
+    }
+
+    /// Index the next event will get.
+    pub fn next_index(&self) -> u32 {
+        self.next_index
+    }
+
+    /// Oldest index kept.
+    pub fn oldest_index(&self) -> u32 {
+        self.entries.front().map_or(self.next_index, |entry| entry.index)
+    }
+
+    /// Forgets all entries; indices go on.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn old_entries_fall_off_and_indices_go_on() {
+        let mut log = EventLog::default();
+        for _ in 0..LOG_CAPACITY + 5 {
+            log.push(Instant::ZERO, Event::PowerUp, 0);
+        }
+        assert_eq!(log.oldest_index(), 5);
+        assert_eq!(log.at_or_after(0).unwrap().index, 5);
+        assert_eq!(log.at_or_after(7).unwrap().index, 7);
+        log.clear();
+        assert!(log.at_or_after(0).is_none());
+        assert_eq!(log.oldest_index(), LOG_CAPACITY as u32 + 5);
+    }
+}

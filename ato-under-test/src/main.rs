@@ -1,0 +1,18 @@
+//! Serves an on-board ATC unit on a pseudo-terminal, a serial port or a TCP socket, in real time.
+
+mod program;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let arguments = program::Arguments::parse();
+    match program::serve(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("ato-under-test: {error:#}");
+            ExitCode::from(if error.is::<program::UsageError>() { 2 } else { 3 })
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What the unit tells the tester and TCMS about itself.
+
+use protocol::Instant;
+use protocol::message::{
+    AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits,
+};
+
+use crate::atp::Code;
+use crate::unit::Unit;
+
+/// Software version in the identity.
+const SOFTWARE: [u8; 3] = [0, 1, 0];
+/// Index that means no code.
+const NO_CODE: u8 = 255;
+
+/// Who the unit is.
+pub fn identity(unit: &Unit, now: Instant) -> Message {
+    Identity {
+        serial: padded(&unit.setup.serial),
+        config: padded(&unit.setup.config.name),
+        config_crc: unit.setup.config_crc,
+        tdb_crc: unit.setup.tdb_crc,
+        software: SOFTWARE,
+        uptime_ms: now.stamp_ms(),
+        self_test: unit.self_tester.failed(),
+    }
+    .into()
+}
+
+/// The unit's state.
+pub fn status(unit: &Unit) -> Message {
+    let brake = unit.atp.brake();
+    let tachometers = unit.atp.tachometers();
+    let sequence = unit.atp.sequence();
+    let board_code = unit.board.code().unwrap_or_default();
+    Status {
+        bits: status_bits(unit),
+        mode: sequence.mode(),
+        refusals: sequence.refusals(),
+        code_index: match unit.atp.decoder().code() {
+            Code::Known(index) => index,
+            Code::None | Code::AbsoluteStop => NO_CODE,
+        },
+        eb_cause: brake.cause(),
+        fsb_cause: unit.atp.fsb_cause(),
+        speed1_cms: tachometers.channel(0).to_cms(),
+        speed2_cms: tachometers.channel(1).to_cms(),
+        target_cms: unit.ato_outputs.target.to_cms(),
+        effort: unit.ato_outputs.effort,
+        position_cm: libm::round(unit.locator.position_m() * 100.0) as i32,
+        events: unit.log.next_index(),
+        rejected_frames: unit.link.counters().rejected_total() as u16,
+        twc_received: unit.twc.received(),
+        self_test: unit.self_tester.failed(),
+        test_signals: unit.board.signals(),
+        test_carrier_hz: libm::round(board_code.carrier_hz) as u16,
+        test_code_rate_chz: libm::round(board_code.rate_hz * 100.0) as u16,
+        test_level_mv: libm::round(board_code.level_mv) as u16,
+        test_speed_cms: unit.board.speed().unwrap_or_default().to_cms(),
+    }
+    .into()
+}
+
+fn status_bits(unit: &Unit) -> StatusBits {
+    let mut bits = StatusBits::empty();
+    bits.set(StatusBits::ARMED, unit.maintenance.armed());
+    bits.set(StatusBits::TWC_OK, unit.twc.up());
+    bits.set(StatusBits::TCMS_OK, unit.tcms.alive());
+    bits.set(StatusBits::STATION_VALID, unit.twc.valid());
+    bits.set(StatusBits::ALIGNED, unit.aligned());
+    bits.set(StatusBits::TRA_OK, unit.tra.ok());
+    bits.set(StatusBits::ATO_READY, unit.ato_outputs.ready);
+    bits.set(StatusBits::STARTED, unit.self_tester.finished());
+    bits.set(StatusBits::INPUTS_OK, unit.image.alive());
+    bits
+}
+
+/// Commands and states for TCMS.
+pub fn to_tcms(unit: &Unit) -> Message {
+    let ato = unit.ato_outputs;
+    let mut bits = AtcToTcmsBits::empty();
+    bits.set(AtcToTcmsBits::POWER, ato.effort > 0);
+    bits.set(AtcToTcmsBits::BRAKE, ato.effort < 0);
+    bits.set(AtcToTcmsBits::HOLDING_BRAKE, ato.holding_brake);
+    bits.set(AtcToTcmsBits::ATO_READY, ato.ready);
+    bits.set(AtcToTcmsBits::ATO_FAILED, unit.self_tester.finished() && !ato.ready);
+    AtcToTcms {
+        bits,
+        mode: unit.atp.sequence().mode(),
+        effort: ato.effort,
+        target_cms: ato.target.to_cms(),
+        speed_cms: unit.atp.tachometers().speed().to_cms(),
+    }
+    .into()
+}
+
+/// Text cut to 16 bytes and filled up with zeros.
+fn padded(text: &str) -> [u8; 16] {
+    let mut field = [0; 16];
+    for (cell, byte) in field.iter_mut().zip(text.bytes()) {
+        *cell = byte;
+    }
+    field
+}

@@ -1,0 +1,416 @@
+//! The whole unit: its 10 ms scan and 50 ms cycle.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use protocol::config::UnitConfig;
+use protocol::event::Event;
+use protocol::injection::{Effect, FaultMode, Place};
+use protocol::line::Line;
+use protocol::link::{End, Link, Received};
+use protocol::message::{
+    Channel, IoOutput, Message, ModeSwitch, Outputs, Refusals, TrainLines, TwcWayside,
+};
+use protocol::{Duration, Instant, Speed};
+
+use crate::ato::{Ato, AtoInputs, AtoOutputs};
+use crate::atp::{Atp, Code, ModeInputs, ScanContext};
+use crate::com::{ArmConditions, IoImage, Maintenance, RejectWatch, TcmsLink};
+use crate::front_end::{AntennaSignal, Faults, FrontEnd, Inputs, OutputStage};
+use crate::kernel::{EventLog, FreezeFrame, SelfTestInputs, SelfTester};
+use crate::psm::{Locator, Movement, Tra};
+use crate::report;
+use crate::test_board::TestBoard;
+use crate::twc::{TrainState, Twc};
+
+/// Scans in a control cycle.
+const SCANS_PER_CYCLE: u8 = 5;
+
+/// What one unit is made of.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Serial number.
+    pub serial: String,
+    /// Configuration.
+    pub config: UnitConfig,
+    /// CRC-32 of the configuration file.
+    pub config_crc: u32,
+    /// Track database.
+    pub line: Line,
+    /// CRC-32 of the track database file.
+    pub tdb_crc: u32,
+    /// Seed of arm challenges and injected noise.
+    pub seed: u64,
+    /// Faults injected into it.
+    pub faults: Vec<FaultMode>,
+}
+
+/// An on-board ATC unit.
+#[derive(Debug)]
+pub struct Unit {
+    pub(crate) setup: Setup,
+    pub(crate) link: Link,
+    pub(crate) log: EventLog,
+    pub(crate) maintenance: Maintenance,
+    pub(crate) board: TestBoard,
+    pub(crate) self_tester: SelfTester,
+    pub(crate) atp: Atp,
+    pub(crate) twc: Twc,
+    pub(crate) locator: Locator,
+    pub(crate) tra: Tra,
+    pub(crate) tcms: TcmsLink,
+    pub(crate) ato_outputs: AtoOutputs,
+    pub(crate) inputs: Inputs,
+    pub(crate) image: IoImage,
+    ato: Ato,
+    faults: Faults,
+    front_end: FrontEnd,
+    output_stage: OutputStage,
+    contacts: Outputs,
+    reject_watch: RejectWatch,
+    scan: u8,
+    replies: Vec<Message>,
+}
+
+impl Unit {
+    /// Powers a unit up at [`Instant::ZERO`].
+    pub fn new(setup: Setup) -> Self {
+        let config = &setup.config;
+        let link = &config.link;
+        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
+        let mut log = EventLog::default();
+        log.push(Instant::ZERO, Event::PowerUp, 0);
+        Self {
+            link: Link::new(End::Unit),
+            log,
+            maintenance: Maintenance::new(ms(link.tester_timeout_ms), setup.seed),
+            board: TestBoard::new(config.metres_per_pulse()),
+            self_tester: SelfTester::new(Instant::ZERO, ms(config.start.self_test_ms)),
+            atp: Atp::new(config),
+            twc: Twc::new(ms(link.twc_timeout_ms)),
+            locator: Locator::new(config.marker.window_m),
+            tra: Tra::new(ms(config.marker.tra_test_ms)),
+            tcms: TcmsLink::new(ms(link.tcms_timeout_ms)),
+            ato: Ato::new(&config.ato),
+            ato_outputs: AtoOutputs::default(),
+            inputs: Inputs::default(),
+            image: IoImage::new(ms(link.io_timeout_ms)),
+            faults: Faults::new(&setup.faults, setup.seed ^ 0x5EED),
+            front_end: FrontEnd::new(),
+            output_stage: OutputStage::default(),
+            contacts: Outputs::empty(),
+            reject_watch: RejectWatch::new(link.rejected_per_10s),
+            scan: 0,
+            replies: Vec::new(),
+            setup,
+        }
+    }
+
+    /// Takes bytes from the wire; they are acted on in the next scan.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.link.push(bytes);
+    }
+
+    /// One scan, every 10 ms; frames to send are appended to `out`.
+    pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
+        self.faults.step(now);
+        self.receive_frames(now, out);
+        self.read_inputs(now);
+        self.test_self(now);
+        self.protect(now);
+        self.locate(now);
+        if self.scan == 0 {
+            self.cycle(now, out);
+        }
+        self.scan = (self.scan + 1) % SCANS_PER_CYCLE;
+        self.drive_outputs(now, out);
+    }
+
+    /// Latches what came; answers requests of the tester.
+    fn receive_frames(&mut self, now: Instant, out: &mut Vec<u8>) {
+        while let Some(Received { header, message }) = self.link.poll(now) {
+            match message {
+                Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
+                Message::TcmsToAtc(frame) if !self.loses(Place::TcmsReceiver) => {
+                    self.tcms.take(now, frame);
+                }
+                Message::TwcWayside(data) => self.take_station(now, Some(header.seq), data, out),
+                Message::Identify(_) => {
+                    let identity = report::identity(self, now);
+                    self.link.send(now, &identity, out);
+                }
+                other if header.channel == Channel::Ptu => {
+                    let conditions = self.arm_conditions();
+                    let parts = (&mut self.board, &mut self.log);
+                    let request = (header.seq, other);
+                    self.maintenance.handle(now, request, conditions, parts, &mut self.replies);
+                }
+                _ => {}
+            }
+        }
+        let conditions = self.arm_conditions();
+        let notice = self.maintenance.step(now, conditions, &mut self.board, &mut self.log);
+        self.replies.extend(notice);
+        for reply in self.replies.drain(..) {
+            self.link.send(now, &reply, out);
+        }
+    }
+
+    fn loses(&mut self, place: Place) -> bool {
+        let lost = self.faults.loses_frame(place);
+        if lost {
+            self.reject_watch.count_lost(match place {
+                Place::TcmsReceiver => Channel::Tcms,
+                _ => Channel::Twc,
+            });
+        }
+        lost
+    }
+
+    /// Station data from the loop (`seq` given, answered) or from the TWC TEST module.
+    fn take_station(
+        &mut self,
+        now: Instant,
+        seq: Option<u16>,
+        mut data: TwcWayside,
+        out: &mut Vec<u8>,
+    ) {
+        if self.loses(Place::FskReceiver) {
+            return;
+        }
+        // While the TEST module talks to the modem the loop is not heard.
+        if seq.is_some() && self.board.makes_twc() {
+            return;
+        }
+        if let Some(Effect::Offset { by }) = self.faults.at(Place::TwcCpu) {
+            data.station = data.station.wrapping_add_signed(by as i16);
+        }
+        self.twc.take(now, data, &self.setup.line, &mut self.log);
+        let Some(seq) = seq else { return };
+        let answer = self.twc.answer(seq, &data, self.train_state());
+        if !self.loses(Place::FskTransmitter) {
+            self.link.send(now, &answer.into(), out);
+        }
+    }
+
+    fn train_state(&self) -> TrainState {
+        TrainState {
+            mode: self.atp.sequence().mode(),
+            doors_closed: self.inputs.lines.contains(TrainLines::DOORS_CLOSED),
+            aligned: self.aligned(),
+            standstill: self.atp.tachometers().standstill(),
+            speed: self.atp.tachometers().speed(),
+        }
+    }
+
+    fn arm_conditions(&self) -> ArmConditions {
+        ArmConditions {
+            started: self.self_tester.finished(),
+            key_on: self.inputs.lines.contains(TrainLines::MAINTENANCE_KEY),
+            standing: self.atp.tachometers().train_stands(),
+        }
+    }
+
+    /// Reads all inputs through antennas, sensors and TEST board.
+    fn read_inputs(&mut self, now: Instant) {
+        self.image.step(now);
+        self.tcms.step(now);
+        self.board.set_dead(matches!(self.faults.at(Place::TestBoard), Some(Effect::Dead)));
+        let coil = (!self.self_tester.finished()).then(|| self.self_test_code()).flatten();
+        self.inputs =
+            self.front_end.scan(now, &self.image, &mut self.board, coil, &mut self.faults);
+    }
+
+    /// The code that start-up feeds into the test coil: the first of the table.
+    fn self_test_code(&self) -> Option<AntennaSignal> {
+        self.setup.config.codes.first().map(|code| AntennaSignal {
+            carrier_hz: code.carrier_hz,
+            rate_hz: code.rate_hz,
+            level_mv: self.setup.config.receiver.level_nominal_mv,
+        })
+    }
+
+    fn test_self(&mut self, now: Instant) {
+        if self.self_tester.finished() {
+            return;
+        }
+        let modem_dead = [Place::FskReceiver, Place::FskTransmitter]
+            .iter()
+            .any(|place| matches!(self.faults.at(*place), Some(Effect::Dead)));
+        let seen = SelfTestInputs {
+            receiver_decoded: matches!(self.atp.decoder().candidate(), Code::Known(_)),
+            tra_answered: self.inputs.tra_answers,
+            modem_heard: !modem_dead,
+            test_board_answers: self.board.answers(),
+        };
+        if self.self_tester.step(now, seen) {
+            self.atp.forget_test_code();
+            let failed = self.self_tester.failed();
+            if !failed.is_empty() {
+                self.log.push(now, Event::SelfTestFailed, i32::from(failed.bits()));
+            }
+        }
+    }
+
+    /// One scan of ATP.
+    fn protect(&mut self, now: Instant) {
+        let context = ScanContext {
+            vital_passed: self.self_tester.vital_passed(),
+            started: self.self_tester.finished(),
+            ever_alive: self.image.ever_heard(),
+            aligned: self.aligned(),
+            at_platform: self.at_platform(),
+            door_side: self.twc.data().map(|data| data.door_side).unwrap_or_default(),
+            twc_up: self.twc.up(),
+            tcms_up: self.tcms.alive(),
+            ato_ready: self.ato_outputs.ready,
+        };
+        self.log.freeze(FreezeFrame {
+            speed: self.atp.tachometers().speed(),
+            limit: self.atp.limit(),
+            position_m: self.locator.position_m(),
+            mode: self.atp.sequence().mode(),
+            eb_cause: self.atp.brake().cause(),
+        });
+        self.atp.scan(now, &self.inputs, context, &self.setup.config, &mut self.log);
+    }
+
+    fn locate(&mut self, now: Instant) {
+        let tachometers = self.atp.tachometers();
+        let movement = Movement {
+            moved_m: tachometers.moved_m(),
+            speed: tachometers.speed(),
+            standstill: tachometers.standstill(),
+        };
+        self.locator.step(now, movement, self.inputs.marker, &mut self.log);
+    }
+
+    pub(crate) fn aligned(&self) -> bool {
+        self.atp.tachometers().standstill()
+            && self.locator.aligned(self.setup.config.doors.aligned_m)
+    }
+
+    /// On the arrival station's loop, with valid station data.
+    fn at_platform(&self) -> bool {
+        let on_loop = self.twc.data().zip(self.locator.section());
+        self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
+    }
+
+    /// The 50 ms cycle: TWC, markers, mode, ATO, and what is sent once a cycle.
+    fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
+        if let Some(data) = self.board.take_twc(now) {
+            self.take_station(now, None, data, out);
+        }
+        self.twc.step(now, &mut self.log);
+        if let Some(data) = self.twc.data().filter(|_| self.twc.valid()) {
+            let standstill = self.atp.tachometers().standstill();
+            self.locator.locate(data, &self.setup.line, standstill);
+        }
+        self.tra.step(now, self.inputs.tra_answers, &mut self.log);
+        self.report_tcms(now);
+        self.reject_watch.step(now, self.link.counters(), &mut self.log);
+        let mode_inputs = self.mode_inputs();
+        self.atp.cycle(now, mode_inputs, &mut self.log);
+        self.operate(now);
+        self.send_cycle(now, out);
+    }
+
+    fn report_tcms(&mut self, now: Instant) {
+        match self.tcms.takes_change() {
+            Some(true) => self.log.push(now, Event::TcmsRestored, 0),
+            Some(false) => self.log.push(now, Event::TcmsLost, 0),
+            None => {}
+        }
+    }
+
+    fn mode_inputs(&self) -> ModeInputs {
+        let lines = self.inputs.lines;
+        let standstill = self.atp.tachometers().standstill();
+        let code = matches!(self.atp.decoder().code(), Code::Known(_));
+        let switch = self.inputs.mode_switch;
+        let mut lacking = Refusals::empty();
+        lacking.set(Refusals::NOT_STANDSTILL, !standstill);
+        lacking.set(Refusals::DOORS_OPEN, !lines.contains(TrainLines::DOORS_CLOSED));
+        lacking.set(Refusals::NO_TWC, !self.twc.up());
+        lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
+        lacking.set(Refusals::NO_CODE, !code);
+        lacking.set(Refusals::CAB_INACTIVE, !lines.contains(TrainLines::HCR));
+        lacking.set(Refusals::MODE_SWITCH, !Atp::switch_automatic(switch));
+        lacking.set(Refusals::CONTROLLER_NOT_NEUTRAL, self.inputs.controller != 0);
+        lacking.set(Refusals::EB_APPLIED, self.atp.brake().applied());
+        lacking.set(Refusals::TCMS_NOT_READY, !self.tcms.ready());
+        lacking.set(Refusals::ATO_NOT_READY, !self.ato_outputs.ready);
+        lacking.set(Refusals::TRA_FAILED, !self.tra.ok());
+        lacking.set(Refusals::SELF_TEST, !self.self_tester.failed().is_empty());
+        ModeInputs {
+            ready: self.self_tester.finished() && self.inputs.alive,
+            cab_active: lines.contains(TrainLines::HCR),
+            switch: if self.inputs.alive { switch } else { ModeSwitch::Off },
+            lacking,
+            departure: self.twc.data().is_some_and(|data| data.departure == 1),
+            start: lines.contains(TrainLines::START),
+            arrived: standstill && self.locator.to_stop_m().is_some_and(|d| d < 1.0),
+        }
+    }
+
+    /// One cycle of ATO.
+    fn operate(&mut self, now: Instant) {
+        let was_ready = self.ato_outputs.ready;
+        let data = self.twc.data();
+        let inputs = AtoInputs {
+            mode: self.atp.sequence().mode(),
+            limit: self.atp.limit(),
+            fixed_speed: data
+                .filter(|data| data.fixed_speed_kmh != u8::MAX)
+                .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),
+            running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
+            to_stop_m: self.locator.to_stop_m(),
+            speed: self.atp.tachometers().speed(),
+            standstill: self.atp.tachometers().standstill(),
+            power_cut: self.atp.power_cut(),
+            healthy: self.self_tester.finished()
+                && !matches!(self.faults.at(Place::AtoCpu), Some(Effect::Dead)),
+        };
+        self.ato_outputs = self.ato.step(inputs, &self.setup.config.ato);
+        match self.faults.at(Place::AtoCpu) {
+            Some(Effect::StuckOn) => self.ato_outputs.effort = 1023,
+            Some(Effect::Offset { by }) => {
+                let effort = f64::from(self.ato_outputs.effort) + by;
+                self.ato_outputs.effort = effort.clamp(-1024.0, 1023.0) as i16;
+            }
+            _ => {}
+        }
+        if was_ready && !self.ato_outputs.ready {
+            self.log.push(now, Event::AtoFailed, 0);
+        }
+    }
+
+    fn send_cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
+        if !self.loses(Place::TcmsTransmitter) {
+            self.link.send(now, &report::to_tcms(self), out);
+        }
+        if self.maintenance.listened_to(now) {
+            self.link.send(now, &report::status(self), out);
+            self.maintenance.read_log(&self.log, &mut self.replies);
+            for reply in self.replies.drain(..) {
+                self.link.send(now, &reply, out);
+            }
+        }
+    }
+
+    /// Drives the contacts and tells the bench what they do.
+    fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
+        let healthy = self.self_tester.vital_passed() && self.inputs.alive;
+        let mut wanted = self.atp.outputs(healthy);
+        wanted.set(Outputs::HOLDING_BRAKE, self.ato_outputs.holding_brake);
+        self.contacts = self.output_stage.drive(now, wanted, &self.faults);
+        let output = IoOutput {
+            outputs: self.contacts,
+            limit_cms: self.atp.limit().to_cms(),
+            speed_cms: self.atp.tachometers().speed().to_cms(),
+            marker: self.locator.last_marker(),
+            marker_count: self.locator.count(),
+        };
+        self.link.send(now, &output.into(), out);
+    }
+}
