@@ -12,7 +12,11 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("ato-under-test: {error:#}");
-            ExitCode::from(if error.is::<program::UsageError>() { 2 } else { 3 })
+            ExitCode::from(if error.is::<program::UsageError>() {
+                2
+            } else {
+                3
+            })
         }
     }
 }

@@ -1,9 +1,7 @@
 //! What the unit tells the tester and TCMS about itself.
 
 use protocol::Instant;
-use protocol::message::{
-    AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits,
-};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits};
 
 use crate::atp::Code;
 use crate::unit::Unit;
@@ -83,7 +81,10 @@ pub fn to_tcms(unit: &Unit) -> Message {
     bits.set(AtcToTcmsBits::BRAKE, ato.effort < 0);
     bits.set(AtcToTcmsBits::HOLDING_BRAKE, ato.holding_brake);
     bits.set(AtcToTcmsBits::ATO_READY, ato.ready);
-    bits.set(AtcToTcmsBits::ATO_FAILED, unit.self_tester.finished() && !ato.ready);
+    bits.set(
+        AtcToTcmsBits::ATO_FAILED,
+        unit.self_tester.finished() && !ato.ready,
+    );
     AtcToTcms {
         bits,
         mode: unit.atp.sequence().mode(),

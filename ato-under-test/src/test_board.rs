@@ -41,14 +41,24 @@ struct SpeedGenerator {
 impl TestBoard {
     /// A board whose speed generator imitates tachometers of this resolution.
     pub fn new(metres_per_pulse: f64) -> Self {
-        Self { metres_per_pulse, code: None, speed: None, marker: None, twc: None, dead: false }
+        Self {
+            metres_per_pulse,
+            code: None,
+            speed: None,
+            marker: None,
+            twc: None,
+            dead: false,
+        }
     }
 
     /// Whether the board works; a dead one makes nothing.
     pub fn set_dead(&mut self, dead: bool) {
         self.dead = dead;
         if dead {
-            self.release(TestRelease { session: 0, signals: TestSignals::all() });
+            self.release(TestRelease {
+                session: 0,
+                signals: TestSignals::all(),
+            });
         }
     }
 
@@ -80,8 +90,8 @@ impl TestBoard {
 
     /// Makes a speed signal.
     pub fn set_speed(&mut self, mut request: TestSpeed) -> Answer {
-        let answer = self
-            .take(request.speed_cms <= SPEED_MAX_CMS && matches!(request.channels, 1..=3));
+        let answer =
+            self.take(request.speed_cms <= SPEED_MAX_CMS && matches!(request.channels, 1..=3));
         if answer == Answer::Accepted {
             if request.accel_mms2 == 0 {
                 request.accel_mms2 = OWN_ACCEL_MMS2;
@@ -89,8 +99,11 @@ impl TestBoard {
             match &mut self.speed {
                 Some(generator) => generator.request = request,
                 none => {
-                    *none =
-                        Some(SpeedGenerator { request, speed: Speed::ZERO, pulses: 0.0 });
+                    *none = Some(SpeedGenerator {
+                        request,
+                        speed: Speed::ZERO,
+                        pulses: 0.0,
+                    });
                 }
             }
         }
@@ -144,7 +157,10 @@ impl TestBoard {
 
     /// Takes everything away.
     pub fn release_all(&mut self) {
-        self.release(TestRelease { session: 0, signals: TestSignals::all() });
+        self.release(TestRelease {
+            session: 0,
+            signals: TestSignals::all(),
+        });
     }
 
     /// Code in the test coil.
@@ -171,7 +187,9 @@ impl TestBoard {
 
     /// Pulses made in one scan for each input, `None` where the sensor stays connected.
     pub fn step_speed(&mut self, now: Instant) -> [Option<Pulses>; 2] {
-        let Some(generator) = &mut self.speed else { return [None; 2] };
+        let Some(generator) = &mut self.speed else {
+            return [None; 2];
+        };
         let request = generator.request;
         let goal = f64::from(request.speed_cms) / 100.0;
         let step = f64::from(request.accel_mms2) / 1000.0 * SCAN.as_secs();
@@ -184,14 +202,21 @@ impl TestBoard {
         generator.pulses += made;
         let count = libm::floor(generator.pulses) - before;
         let beyond = generator.pulses - libm::floor(generator.pulses);
-        let age_s = if speed > 0.0 { beyond * self.metres_per_pulse / speed } else { 0.0 };
+        let age_s = if speed > 0.0 {
+            beyond * self.metres_per_pulse / speed
+        } else {
+            0.0
+        };
         let pulses = Pulses {
             count: count as u32,
             edge_at: now.back(Duration::from_secs(age_s)),
             sampled_at: now,
             backward: request.backward != 0,
         };
-        [(request.channels & 1 != 0).then_some(pulses), (request.channels & 2 != 0).then_some(pulses)]
+        [
+            (request.channels & 1 != 0).then_some(pulses),
+            (request.channels & 2 != 0).then_some(pulses),
+        ]
     }
 
     /// The marker pulse asked for, once.

@@ -143,13 +143,16 @@ impl Unit {
                     let conditions = self.arm_conditions();
                     let parts = (&mut self.board, &mut self.log);
                     let request = (header.seq, other);
-                    self.maintenance.handle(now, request, conditions, parts, &mut self.replies);
+                    self.maintenance
+                        .handle(now, request, conditions, parts, &mut self.replies);
                 }
                 _ => {}
             }
         }
         let conditions = self.arm_conditions();
-        let notice = self.maintenance.step(now, conditions, &mut self.board, &mut self.log);
+        let notice = self
+            .maintenance
+            .step(now, conditions, &mut self.board, &mut self.log);
         self.replies.extend(notice);
         for reply in self.replies.drain(..) {
             self.link.send(now, &reply, out);
@@ -215,10 +218,16 @@ impl Unit {
     fn read_inputs(&mut self, now: Instant) {
         self.image.step(now);
         self.tcms.step(now);
-        self.board.set_dead(matches!(self.faults.at(Place::TestBoard), Some(Effect::Dead)));
-        let coil = (!self.self_tester.finished()).then(|| self.self_test_code()).flatten();
+        self.board.set_dead(matches!(
+            self.faults.at(Place::TestBoard),
+            Some(Effect::Dead)
+        ));
+        let coil = (!self.self_tester.finished())
+            .then(|| self.self_test_code())
+            .flatten();
         self.inputs =
-            self.front_end.scan(now, &self.image, &mut self.board, coil, &mut self.faults);
+            self.front_end
+                .scan(now, &self.image, &mut self.board, coil, &mut self.faults);
     }
 
     /// The code that start-up feeds into the test coil: the first of the table.
@@ -247,7 +256,8 @@ impl Unit {
             self.atp.forget_test_code();
             let failed = self.self_tester.failed();
             if !failed.is_empty() {
-                self.log.push(now, Event::SelfTestFailed, i32::from(failed.bits()));
+                self.log
+                    .push(now, Event::SelfTestFailed, i32::from(failed.bits()));
             }
         }
     }
@@ -260,7 +270,11 @@ impl Unit {
             ever_alive: self.image.ever_heard(),
             aligned: self.aligned(),
             at_platform: self.at_platform(),
-            door_side: self.twc.data().map(|data| data.door_side).unwrap_or_default(),
+            door_side: self
+                .twc
+                .data()
+                .map(|data| data.door_side)
+                .unwrap_or_default(),
             twc_up: self.twc.up(),
             tcms_up: self.tcms.alive(),
             ato_ready: self.ato_outputs.ready,
@@ -272,7 +286,13 @@ impl Unit {
             mode: self.atp.sequence().mode(),
             eb_cause: self.atp.brake().cause(),
         });
-        self.atp.scan(now, &self.inputs, context, &self.setup.config, &mut self.log);
+        self.atp.scan(
+            now,
+            &self.inputs,
+            context,
+            &self.setup.config,
+            &mut self.log,
+        );
     }
 
     fn locate(&mut self, now: Instant) {
@@ -282,7 +302,8 @@ impl Unit {
             speed: tachometers.speed(),
             standstill: tachometers.standstill(),
         };
-        self.locator.step(now, movement, self.inputs.marker, &mut self.log);
+        self.locator
+            .step(now, movement, self.inputs.marker, &mut self.log);
     }
 
     pub(crate) fn aligned(&self) -> bool {
@@ -308,7 +329,8 @@ impl Unit {
         }
         self.tra.step(now, self.inputs.tra_answers, &mut self.log);
         self.report_tcms(now);
-        self.reject_watch.step(now, self.link.counters(), &mut self.log);
+        self.reject_watch
+            .step(now, self.link.counters(), &mut self.log);
         let mode_inputs = self.mode_inputs();
         self.atp.cycle(now, mode_inputs, &mut self.log);
         self.operate(now);
@@ -330,13 +352,19 @@ impl Unit {
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
-        lacking.set(Refusals::DOORS_OPEN, !lines.contains(TrainLines::DOORS_CLOSED));
+        lacking.set(
+            Refusals::DOORS_OPEN,
+            !lines.contains(TrainLines::DOORS_CLOSED),
+        );
         lacking.set(Refusals::NO_TWC, !self.twc.up());
         lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
         lacking.set(Refusals::NO_CODE, !code);
         lacking.set(Refusals::CAB_INACTIVE, !lines.contains(TrainLines::HCR));
         lacking.set(Refusals::MODE_SWITCH, !Atp::switch_automatic(switch));
-        lacking.set(Refusals::CONTROLLER_NOT_NEUTRAL, self.inputs.controller != 0);
+        lacking.set(
+            Refusals::CONTROLLER_NOT_NEUTRAL,
+            self.inputs.controller != 0,
+        );
         lacking.set(Refusals::EB_APPLIED, self.atp.brake().applied());
         lacking.set(Refusals::TCMS_NOT_READY, !self.tcms.ready());
         lacking.set(Refusals::ATO_NOT_READY, !self.ato_outputs.ready);
@@ -345,7 +373,11 @@ impl Unit {
         ModeInputs {
             ready: self.self_tester.finished() && self.inputs.alive,
             cab_active: lines.contains(TrainLines::HCR),
-            switch: if self.inputs.alive { switch } else { ModeSwitch::Off },
+            switch: if self.inputs.alive {
+                switch
+            } else {
+                ModeSwitch::Off
+            },
             lacking,
             departure: self.twc.data().is_some_and(|data| data.departure == 1),
             start: lines.contains(TrainLines::START),

@@ -46,7 +46,12 @@ mod tests {
 
     #[test]
     fn a_run_goes_through_start_and_ends_at_the_stop_point() {
-        let at = |run, standstill, arrived| ArtInputs { healthy: true, run, standstill, arrived };
+        let at = |run, standstill, arrived| ArtInputs {
+            healthy: true,
+            run,
+            standstill,
+            arrived,
+        };
         let steps = [
             (at(false, true, false), AtoState::Stop),
             (at(true, true, false), AtoState::Start),
@@ -54,7 +59,13 @@ mod tests {
             (at(true, true, false), AtoState::Run),
             (at(true, true, true), AtoState::Stop),
             (at(true, true, true), AtoState::Stop),
-            (ArtInputs { healthy: false, ..at(true, true, true) }, AtoState::Inspection),
+            (
+                ArtInputs {
+                    healthy: false,
+                    ..at(true, true, true)
+                },
+                AtoState::Inspection,
+            ),
         ];
         let mut state = AtoState::Inspection;
         for (inputs, expected) in steps {

@@ -11,7 +11,7 @@ use protocol::Speed;
 use protocol::config::AtoConfig;
 use protocol::message::{Mode, RunningMode};
 
-pub use art::{AtoState, ArtInputs};
+pub use art::{ArtInputs, AtoState};
 pub use speed_loop::{Drive, SpeedController, SpeedLoop};
 pub use target::{TargetInputs, TargetSpeed};
 
@@ -61,7 +61,10 @@ pub struct Ato<C = SpeedLoop> {
 impl Ato<SpeedLoop> {
     /// Ready once it has been inspected.
     pub fn new(config: &AtoConfig) -> Self {
-        Self { state: AtoState::Inspection, controller: SpeedLoop::new(config) }
+        Self {
+            state: AtoState::Inspection,
+            controller: SpeedLoop::new(config),
+        }
     }
 }
 
@@ -87,8 +90,15 @@ impl<C: SpeedController> Ato<C> {
         );
         match self.state {
             AtoState::Start | AtoState::Run => {
-                let effort = self.controller.step(Drive { target, speed: inputs.speed });
-                let effort = if inputs.power_cut { effort.min(0.0) } else { effort };
+                let effort = self.controller.step(Drive {
+                    target,
+                    speed: inputs.speed,
+                });
+                let effort = if inputs.power_cut {
+                    effort.min(0.0)
+                } else {
+                    effort
+                };
                 AtoOutputs {
                     ready,
                     target: target.speed,
@@ -100,7 +110,12 @@ impl<C: SpeedController> Ato<C> {
                 self.controller.reset();
                 let holding_brake = inputs.mode == Mode::AutomaticRun
                     || inputs.mode == Mode::Automatic && inputs.standstill;
-                AtoOutputs { ready, target: Speed::ZERO, effort: 0, holding_brake }
+                AtoOutputs {
+                    ready,
+                    target: Speed::ZERO,
+                    effort: 0,
+                    holding_brake,
+                }
             }
         }
     }

@@ -55,7 +55,11 @@ impl SpeedController for SpeedLoop {
         if effort.abs() < 1.0 {
             self.integral += error * self.integral_per_s * CYCLE.as_secs();
         }
-        if effort.is_nan() { -1.0 } else { effort.clamp(-1.0, 1.0) }
+        if effort.is_nan() {
+            -1.0
+        } else {
+            effort.clamp(-1.0, 1.0)
+        }
     }
 
     fn reset(&mut self) {

@@ -37,15 +37,23 @@ pub fn target(inputs: TargetInputs, config: &AtoConfig) -> TargetSpeed {
     };
     let below = Speed::from_kmh(config.below_limit_kmh + lowering);
     let allowed = (inputs.limit - below).max(Speed::ZERO);
-    let cruise = inputs.fixed_speed.map_or(allowed, |fixed| allowed.min(fixed));
+    let cruise = inputs
+        .fixed_speed
+        .map_or(allowed, |fixed| allowed.min(fixed));
     let stop = inputs.to_stop_m.map(|distance_m| {
-        Speed::from_mps(libm::sqrt(2.0 * config.stop_rate_mps2 * distance_m.max(0.0)))
+        Speed::from_mps(libm::sqrt(
+            2.0 * config.stop_rate_mps2 * distance_m.max(0.0),
+        ))
     });
     match stop {
-        Some(stop) if stop < cruise => {
-            TargetSpeed { speed: stop, decel_mps2: config.stop_rate_mps2 }
-        }
-        _ => TargetSpeed { speed: cruise, decel_mps2: 0.0 },
+        Some(stop) if stop < cruise => TargetSpeed {
+            speed: stop,
+            decel_mps2: config.stop_rate_mps2,
+        },
+        _ => TargetSpeed {
+            speed: cruise,
+            decel_mps2: 0.0,
+        },
     }
 }
 

@@ -86,7 +86,11 @@ impl CodeDecoder {
             self.unknown_reported &= strange;
         } else if !self.unknown_reported {
             self.unknown_reported = true;
-            log.push(now, Event::CodeUnknown, libm::round(signal.rate_hz * 100.0) as i32);
+            log.push(
+                now,
+                Event::CodeUnknown,
+                libm::round(signal.rate_hz * 100.0) as i32,
+            );
         }
     }
 
@@ -103,9 +107,9 @@ impl CodeDecoder {
     /// The limit the code in force stands for; none means zero.
     pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
         match self.code {
-            Code::Known(index) => {
-                codes.get(usize::from(index)).map_or(Speed::ZERO, |c| Speed::from_kmh(c.limit_kmh))
-            }
+            Code::Known(index) => codes
+                .get(usize::from(index))
+                .map_or(Speed::ZERO, |c| Speed::from_kmh(c.limit_kmh)),
             Code::None | Code::AbsoluteStop => Speed::ZERO,
         }
     }
@@ -131,7 +135,11 @@ fn lookup(signal: AntennaSignal, config: &UnitConfig) -> Code {
     };
     if signal.rate_hz == 0.0 {
         let heard = config.codes.iter().any(|code| on_carrier(&code));
-        return if heard { Code::AbsoluteStop } else { Code::None };
+        return if heard {
+            Code::AbsoluteStop
+        } else {
+            Code::None
+        };
     }
     config
         .codes

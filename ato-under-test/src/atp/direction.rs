@@ -39,7 +39,11 @@ impl Rollback {
         };
         let trips = self.against_m > allowed_m;
         if self.tripped.rises(trips) {
-            log.push(now, Event::Rollback, libm::round(self.against_m * 100.0) as i32);
+            log.push(
+                now,
+                Event::Rollback,
+                libm::round(self.against_m * 100.0) as i32,
+            );
         }
         trips
     }

@@ -35,8 +35,7 @@ pub struct EmergencyBrake {
     acknowledge: Edge,
     welded: Lasting,
     open: Lasting,
-    welded_reported: Edge,
-    open_reported: Edge,
+    relay_sound: bool,
     feedback: Duration,
 }
 
@@ -48,16 +47,16 @@ impl EmergencyBrake {
             acknowledge: Edge::default(),
             welded: Lasting::default(),
             open: Lasting::default(),
-            welded_reported: Edge::default(),
-            open_reported: Edge::default(),
+            relay_sound: true,
             feedback,
         }
     }
 
     /// One scan.
     pub fn step(&mut self, now: Instant, inputs: BrakeInputs, log: &mut EventLog) {
-        let acknowledged =
-            self.acknowledge.rises(inputs.lines.contains(TrainLines::ACKNOWLEDGE));
+        let acknowledged = self
+            .acknowledge
+            .rises(inputs.lines.contains(TrainLines::ACKNOWLEDGE));
         if inputs.cause != EbCause::None {
             self.apply(now, inputs.cause, log);
         } else if !inputs.may_release {
@@ -65,8 +64,7 @@ impl EmergencyBrake {
                 self.cause = EbCause::NotReleased;
             }
         } else if inputs.standstill
-            && (self.cause == EbCause::NotReleased
-                || (self.cause != EbCause::None && acknowledged))
+            && (self.cause == EbCause::NotReleased || (self.cause != EbCause::None && acknowledged))
         {
             self.cause = EbCause::None;
             log.push(now, Event::EbReleased, 0);
@@ -96,11 +94,16 @@ impl EmergencyBrake {
             && !self.applied()
             && !energised
             && inputs.controller != CONTROLLER_EMERGENCY;
-        if self.welded_reported.rises(self.welded.update(now, welded, self.feedback)) {
-            log.push(now, Event::EbRelayWelded, 0);
-        }
-        if self.open_reported.rises(self.open.update(now, open, self.feedback)) {
-            log.push(now, Event::EbRelayOpen, 0);
+        let welded = self.welded.update(now, welded, self.feedback);
+        let open = self.open.update(now, open, self.feedback);
+        if (welded || open) && self.relay_sound {
+            self.relay_sound = false;
+            let event = if welded {
+                Event::EbRelayWelded
+            } else {
+                Event::EbRelayOpen
+            };
+            log.push(now, event, 0);
         }
     }
 
@@ -114,8 +117,8 @@ impl EmergencyBrake {
         self.cause
     }
 
-    /// The relay follows.
+    /// The relay has followed ever since power-up; one failure is not forgotten before the next.
     pub fn relay_sound(&self) -> bool {
-        !self.welded_reported.value() && !self.open_reported.value()
+        self.relay_sound
     }
 }

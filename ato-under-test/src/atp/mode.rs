@@ -59,7 +59,11 @@ impl ModeSequence {
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
         let next = next(self.mode, &inputs, departing);
         if pressed && next != Mode::AutomaticRun {
-            log.push(now, Event::AutomaticRefused, i32::from(self.refusals.bits()));
+            log.push(
+                now,
+                Event::AutomaticRefused,
+                i32::from(self.refusals.bits()),
+            );
         }
         if next != self.mode {
             self.mode = next;
@@ -125,19 +129,72 @@ mod tests {
             (Mode::Manual, GOOD, false, Mode::Automatic),
             (Mode::Manual, GOOD, true, Mode::Automatic),
             (Mode::Automatic, GOOD, true, Mode::AutomaticRun),
-            (Mode::Automatic, lacking(Refusals::NO_TWC), true, Mode::Manual),
-            (Mode::AutomaticRun, lacking(Refusals::NOT_STANDSTILL), false, Mode::AutomaticRun),
-            (Mode::AutomaticRun, lacking(Refusals::NO_TWC), false, Mode::AutomaticRun),
-            (Mode::AutomaticRun, lacking(Refusals::DOORS_OPEN), false, Mode::Manual),
-            (Mode::AutomaticRun, ModeInputs { arrived: true, ..GOOD }, false, Mode::Automatic),
-            (Mode::AutomaticRun, switch(ModeSwitch::Manual), false, Mode::Manual),
-            (Mode::AutomaticRun, ModeInputs { cab_active: false, ..GOOD }, false, Mode::Off),
-            (Mode::Manual, ModeInputs { ready: false, ..GOOD }, true, Mode::Off),
+            (
+                Mode::Automatic,
+                lacking(Refusals::NO_TWC),
+                true,
+                Mode::Manual,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::NOT_STANDSTILL),
+                false,
+                Mode::AutomaticRun,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::NO_TWC),
+                false,
+                Mode::AutomaticRun,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::DOORS_OPEN),
+                false,
+                Mode::Manual,
+            ),
+            (
+                Mode::AutomaticRun,
+                ModeInputs {
+                    arrived: true,
+                    ..GOOD
+                },
+                false,
+                Mode::Automatic,
+            ),
+            (
+                Mode::AutomaticRun,
+                switch(ModeSwitch::Manual),
+                false,
+                Mode::Manual,
+            ),
+            (
+                Mode::AutomaticRun,
+                ModeInputs {
+                    cab_active: false,
+                    ..GOOD
+                },
+                false,
+                Mode::Off,
+            ),
+            (
+                Mode::Manual,
+                ModeInputs {
+                    ready: false,
+                    ..GOOD
+                },
+                true,
+                Mode::Off,
+            ),
             (Mode::Off, switch(ModeSwitch::Yard), false, Mode::Yard),
             (Mode::Off, switch(ModeSwitch::Unknown(9)), false, Mode::Off),
         ];
         for (from, inputs, departing, to) in cases {
-            assert_eq!(next(from, &inputs, departing), to, "{from:?} {inputs:?} {departing}");
+            assert_eq!(
+                next(from, &inputs, departing),
+                to,
+                "{from:?} {inputs:?} {departing}"
+            );
         }
     }
 }

@@ -91,7 +91,12 @@ impl Supervision {
         let in_grace = now < self.grace_until && !ineffective;
         let beyond = speed.kmh() > limit.kmh() + margins.eb_margin_kmh && !in_grace;
         let emergency = self.above_emergency.update(now, beyond, delay);
-        Overspeed { alarm: self.alarm, service_brake: self.service, emergency, ineffective }
+        Overspeed {
+            alarm: self.alarm,
+            service_brake: self.service,
+            emergency,
+            ineffective,
+        }
     }
 
     fn deceleration(&mut self, speed: Speed) -> f64 {
@@ -121,8 +126,12 @@ impl Supervision {
         let over = |margin_kmh: f64| speed.kmh() > limit.kmh() + margin_kmh;
         let alarm_delay = Duration::from_ms(u64::from(margins.alarm_delay_ms));
         let service_delay = Duration::from_ms(u64::from(margins.fsb_delay_ms));
-        self.alarm |= self.above_alarm.update(now, over(margins.alarm_margin_kmh), alarm_delay);
-        self.service |= self.above_service.update(now, over(margins.fsb_margin_kmh), service_delay);
+        self.alarm |= self
+            .above_alarm
+            .update(now, over(margins.alarm_margin_kmh), alarm_delay);
+        self.service |= self
+            .above_service
+            .update(now, over(margins.fsb_margin_kmh), service_delay);
         if speed <= limit {
             self.alarm = false;
             self.service = false;

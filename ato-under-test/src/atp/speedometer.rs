@@ -108,7 +108,8 @@ impl Speedometer {
 
     /// Whether a jump over the compared scans is more than a wheel can do.
     pub fn impossible(jump_mps: f64, plausible_mps2: f64) -> bool {
-        jump_mps > plausible_mps2 * JUMP_SCANS as f64 * protocol::SCAN.as_secs() + JUMP_ALLOWANCE_MPS
+        jump_mps
+            > plausible_mps2 * JUMP_SCANS as f64 * protocol::SCAN.as_secs() + JUMP_ALLOWANCE_MPS
     }
 }
 
@@ -138,7 +139,11 @@ mod tests {
             let mut meter = Speedometer::new(Duration::from_ms(100), METRES);
             drive(&mut meter, 1000, 100, speed);
             let error = (meter.speed().mps() - speed).abs();
-            assert!(error < speed * 1e-3, "{speed} m/s measured as {}", meter.speed().mps());
+            assert!(
+                error < speed * 1e-3,
+                "{speed} m/s measured as {}",
+                meter.speed().mps()
+            );
         }
     }
 
@@ -146,7 +151,10 @@ mod tests {
     fn a_wheel_that_stops_is_seen_to_stop() {
         let mut meter = Speedometer::new(Duration::from_ms(100), METRES);
         drive(&mut meter, 1000, 100, 10.0);
-        let still = |ms| Pulses { sampled_at: Instant::from_ms(ms), ..Pulses::default() };
+        let still = |ms| Pulses {
+            sampled_at: Instant::from_ms(ms),
+            ..Pulses::default()
+        };
         meter.step(&still(2090));
         assert!(meter.speed().mps() < 0.4, "one pulse in 100 ms at most");
         meter.step(&still(3100));

@@ -99,8 +99,9 @@ impl Atp {
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
         let moved_m = self.tachometers.moved_m();
         let allowed_m = config.tacho.rollback_m;
-        let rollback =
-            self.rollback.step(now, moved_m, inputs.lines, standstill, allowed_m, log);
+        let rollback = self
+            .rollback
+            .step(now, moved_m, inputs.lines, standstill, allowed_m, log);
         let cause = self.emergency_cause(now, inputs, context, (door_open, rollback), log);
         let brake_inputs = BrakeInputs {
             cause,
@@ -151,7 +152,10 @@ impl Atp {
             (self.overspeed.emergency, EbCause::Overspeed),
             (self.overspeed.ineffective, EbCause::ServiceBrakeIneffective),
         ];
-        causes.iter().find(|(holds, _)| *holds).map_or(EbCause::None, |(_, cause)| *cause)
+        causes
+            .iter()
+            .find(|(holds, _)| *holds)
+            .map_or(EbCause::None, |(_, cause)| *cause)
     }
 
     fn service_cause(&self, context: ScanContext) -> FsbCause {
@@ -160,12 +164,18 @@ impl Atp {
         let running = mode == Mode::AutomaticRun;
         let causes = [
             (self.overspeed.service_brake, FsbCause::Overspeed),
-            (by_code && self.decoder.code() == Code::None, FsbCause::NoCode),
+            (
+                by_code && self.decoder.code() == Code::None,
+                FsbCause::NoCode,
+            ),
             (running && !context.twc_up, FsbCause::TwcLost),
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),
         ];
-        causes.iter().find(|(holds, _)| *holds).map_or(FsbCause::None, |(_, cause)| *cause)
+        causes
+            .iter()
+            .find(|(holds, _)| *holds)
+            .map_or(FsbCause::None, |(_, cause)| *cause)
     }
 
     /// Start-up is over: the code it fed into the test coil counts no more.

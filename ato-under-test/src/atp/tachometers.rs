@@ -58,13 +58,7 @@ impl Tachometers {
     }
 
     /// One scan.
-    pub fn step(
-        &mut self,
-        now: Instant,
-        inputs: &Inputs,
-        config: &UnitConfig,
-        log: &mut EventLog,
-    ) {
+    pub fn step(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
         for i in 0..2 {
             if self.from_board[i] != inputs.test_speed[i] {
                 self.from_board[i] = inputs.test_speed[i];
@@ -83,18 +77,14 @@ impl Tachometers {
         self.standstill = self.slow.update(now, slow, span);
     }
 
-    fn compare(
-        &mut self,
-        now: Instant,
-        inputs: &Inputs,
-        config: &UnitConfig,
-        log: &mut EventLog,
-    ) {
+    fn compare(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
         let tacho = &config.tacho;
         let (one, two) = (self.meters[0].speed(), self.meters[1].speed());
         let difference = one.difference(two);
         let span = Duration::from_ms(u64::from(tacho.difference_ms));
-        let differ = self.differ.update(now, difference.kmh() > tacho.difference_kmh, span);
+        let differ = self
+            .differ
+            .update(now, difference.kmh() > tacho.difference_kmh, span);
         let turning = one.kmh() > tacho.standstill_kmh && two.kmh() > tacho.standstill_kmh;
         let against = inputs.pulses[0].backward != inputs.pulses[1].backward;
         let opposed = self.opposed.update(now, turning && against, span);
@@ -112,8 +102,7 @@ impl Tachometers {
 
     /// Way by channel 1, by channel 2 when only that turns.
     fn measure_way(&mut self, inputs: &Inputs, config: &UnitConfig) {
-        let first_dead =
-            self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
+        let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
         let pulses = &inputs.pulses[usize::from(first_dead)];
         let way = f64::from(pulses.count) * config.metres_per_pulse();
         self.moved_backward = pulses.backward;
@@ -152,14 +141,24 @@ impl Tachometers {
 }
 
 impl Noise {
-    fn step(&mut self, now: Instant, impossible: bool, jump: f64, event: Event, log: &mut EventLog) {
+    fn step(
+        &mut self,
+        now: Instant,
+        impossible: bool,
+        jump: f64,
+        event: Event,
+        log: &mut EventLog,
+    ) {
         if now.since(self.since) > NOISE_SPAN {
             self.since = now;
             self.jumps = 0;
             self.reported.rises(false);
         }
         self.jumps += u32::from(impossible);
-        if self.reported.rises(self.jumps >= NOISE_SCANS || self.reported.value()) {
+        if self
+            .reported
+            .rises(self.jumps >= NOISE_SCANS || self.reported.value())
+        {
             log.push(now, event, libm::round(jump * 100.0) as i32);
         }
     }

@@ -30,7 +30,11 @@ impl IoImage {
     /// Takes a frame sampled at the sender's `stamp_ms`.
     pub fn latch(&mut self, now: Instant, stamp_ms: u32, input: IoInput) {
         // The sender's clock is unwrapped here, so that pulse times do not feel the wire's jitter.
-        let elapsed = if self.alive { stamp_ms.wrapping_sub(self.stamp_ms) } else { 0 };
+        let elapsed = if self.alive {
+            stamp_ms.wrapping_sub(self.stamp_ms)
+        } else {
+            0
+        };
         self.sampled_at += Duration::from_ms(u64::from(elapsed));
         self.stamp_ms = stamp_ms;
         self.latest = Some(input);
@@ -40,7 +44,9 @@ impl IoImage {
 
     /// Moves on to the present; a silent harness dies, and with it all its inputs.
     pub fn step(&mut self, now: Instant) {
-        self.alive = self.heard.is_some_and(|heard| now.since(heard) < self.timeout);
+        self.alive = self
+            .heard
+            .is_some_and(|heard| now.since(heard) < self.timeout);
         if !self.alive {
             self.latest = None;
             self.sampled_at = now;

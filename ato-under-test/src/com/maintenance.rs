@@ -72,7 +72,8 @@ impl Maintenance {
 
     /// A tester has been heard lately.
     pub fn listened_to(&self, now: Instant) -> bool {
-        self.heard.is_some_and(|heard| now.since(heard) < self.timeout)
+        self.heard
+            .is_some_and(|heard| now.since(heard) < self.timeout)
     }
 
     /// Moves on to the present; returns the notice to send when arming lapses.
@@ -105,7 +106,12 @@ impl Maintenance {
         self.armed = None;
         board.release_all();
         log.push(now, Event::ArmingLapsed, i32::from(refusal.code()));
-        ArmState { session, armed: 0, refusal }.into()
+        ArmState {
+            session,
+            armed: 0,
+            refusal,
+        }
+        .into()
     }
 
     /// Handles one request; answers go to `replies`.
@@ -128,10 +134,20 @@ impl Maintenance {
                 replies.push(self.disarm(now, request.session, refusal, board, log));
             }
             Message::KeepAlive(alive) => self.hear_session(now, alive.session),
-            Message::ReadLog(request) => self.reader = Some(LogReader { next: request.from_index }),
+            Message::ReadLog(request) => {
+                self.reader = Some(LogReader {
+                    next: request.from_index,
+                })
+            }
             other => {
                 if let Some(answer) = self.stimulate(now, other, board, log) {
-                    replies.push(StimulusAnswer { request_seq: seq, answer }.into());
+                    replies.push(
+                        StimulusAnswer {
+                            request_seq: seq,
+                            answer,
+                        }
+                        .into(),
+                    );
                 }
             }
         }
@@ -143,12 +159,7 @@ impl Maintenance {
         }
     }
 
-    fn request(
-        &mut self,
-        now: Instant,
-        request: ArmRequest,
-        conditions: ArmConditions,
-    ) -> Message {
+    fn request(&mut self, now: Instant, request: ArmRequest, conditions: ArmConditions) -> Message {
         let session = request.session;
         let refusal = if !conditions.started {
             ArmRefusal::StartingUp
@@ -165,7 +176,12 @@ impl Maintenance {
             self.challenge = Some((session, challenge, now));
             return ArmChallenge { session, challenge }.into();
         };
-        ArmState { session, armed: 0, refusal }.into()
+        ArmState {
+            session,
+            armed: 0,
+            refusal,
+        }
+        .into()
     }
 
     fn confirm(
@@ -182,14 +198,24 @@ impl Maintenance {
                 && now.since(at) < CHALLENGE_TIME
         });
         if !right || !conditions.key_on {
-            return ArmState { session, armed: 0, refusal: ArmRefusal::BadAnswer }.into();
+            return ArmState {
+                session,
+                armed: 0,
+                refusal: ArmRefusal::BadAnswer,
+            }
+            .into();
         }
         if self.armed.is_none() {
             log.push(now, Event::Armed, 0);
         }
         self.armed = Some(session);
         self.session_heard = now;
-        ArmState { session, armed: 1, refusal: ArmRefusal::None }.into()
+        ArmState {
+            session,
+            armed: 1,
+            refusal: ArmRefusal::None,
+        }
+        .into()
     }
 
     /// Carries out a stimulus; `None` for a message that is not one.
@@ -232,15 +258,21 @@ impl Maintenance {
 
     /// Log entries to send in this cycle.
     pub fn read_log(&mut self, log: &EventLog, replies: &mut Vec<Message>) {
-        let Some(reader) = &mut self.reader else { return };
+        let Some(reader) = &mut self.reader else {
+            return;
+        };
         for _ in 0..ENTRIES_PER_CYCLE {
-            let Some(entry) = log.at_or_after(reader.next) else { break };
+            let Some(entry) = log.at_or_after(reader.next) else {
+                break;
+            };
             reader.next = entry.index + 1;
             replies.push((*entry).into());
         }
         if log.at_or_after(reader.next).is_none() {
-            let end =
-                LogEnd { next_index: log.next_index(), oldest_index: log.oldest_index() };
+            let end = LogEnd {
+                next_index: log.next_index(),
+                oldest_index: log.oldest_index(),
+            };
             replies.push(end.into());
             self.reader = None;
         }

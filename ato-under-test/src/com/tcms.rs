@@ -16,7 +16,13 @@ pub struct TcmsLink {
 impl TcmsLink {
     /// A link that is lost after `timeout` without a moving alive counter.
     pub fn new(timeout: Duration) -> Self {
-        Self { last: TcmsToAtc::default(), counter_moved: None, alive: false, reported: None, timeout }
+        Self {
+            last: TcmsToAtc::default(),
+            counter_moved: None,
+            alive: false,
+            reported: None,
+            timeout,
+        }
     }
 
     /// Takes a frame.
@@ -29,7 +35,9 @@ impl TcmsLink {
 
     /// Moves on to the present.
     pub fn step(&mut self, now: Instant) {
-        self.alive = self.counter_moved.is_some_and(|at| now.since(at) < self.timeout);
+        self.alive = self
+            .counter_moved
+            .is_some_and(|at| now.since(at) < self.timeout);
     }
 
     /// The link is up.

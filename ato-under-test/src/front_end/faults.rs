@@ -21,10 +21,18 @@ impl Faults {
         let modes = modes
             .iter()
             .map(|mode| {
-                (mode.place, mode.effect, Instant::ZERO + Duration::from_secs(mode.onset_s))
+                (
+                    mode.place,
+                    mode.effect,
+                    Instant::ZERO + Duration::from_secs(mode.onset_s),
+                )
             })
             .collect();
-        Self { modes, now: Instant::ZERO, random: Random::new(seed) }
+        Self {
+            modes,
+            now: Instant::ZERO,
+            random: Random::new(seed),
+        }
     }
 
     /// Moves on to the present.

@@ -107,13 +107,20 @@ impl FrontEnd {
         let mut pulses = [Pulses::default(); 2];
         for (i, sensor) in self.sensors.iter_mut().enumerate() {
             let place = [Place::SpeedSensor1, Place::SpeedSensor2][i];
-            let sensed = sensor.read(input.map(|(frame, at)| raw_pulses(frame, at, i)), place, faults);
+            let sensed = sensor.read(
+                input.map(|(frame, at)| raw_pulses(frame, at, i)),
+                place,
+                faults,
+            );
             pulses[i] = test_pulses[i].unwrap_or(sensed);
             if !image.alive() && test_pulses[i].is_none() {
                 pulses[i].sampled_at = now;
             }
         }
-        let frame = input.filter(|_| image.alive()).map(|(frame, _)| *frame).unwrap_or_default();
+        let frame = input
+            .filter(|_| image.alive())
+            .map(|(frame, _)| *frame)
+            .unwrap_or_default();
         Inputs {
             alive: image.alive(),
             signal: self.receive(&frame, board.code().or(coil), faults),
@@ -168,9 +175,10 @@ impl FrontEnd {
         let before = self.marker_edges;
         self.marker_edges = frame.map(|frame| frame.marker_edges);
         let passed = match (before, frame) {
-            (Some(before), Some(frame)) if before != frame.marker_edges => {
-                Some(MarkerPulse { marker: frame.marker, age_us: frame.marker_edge_us })
-            }
+            (Some(before), Some(frame)) if before != frame.marker_edges => Some(MarkerPulse {
+                marker: frame.marker,
+                age_us: frame.marker_edge_us,
+            }),
             _ => None,
         };
         let antenna_dead = matches!(faults.at(Place::MarkerAntenna), Some(Effect::Dead));

@@ -23,7 +23,11 @@ impl OutputStage {
     /// The contacts for what is wanted.
     pub fn drive(&mut self, now: Instant, wanted: Outputs, faults: &Faults) -> Outputs {
         let mut contacts = wanted;
-        let relay = self.relay(now, wanted.contains(Outputs::EB_RELAY), faults.at(Place::EbRelay));
+        let relay = self.relay(
+            now,
+            wanted.contains(Outputs::EB_RELAY),
+            faults.at(Place::EbRelay),
+        );
         contacts.set(Outputs::EB_RELAY, relay);
         match faults.at(Place::FsbOutput) {
             Some(Effect::Dead | Effect::StuckOff) => contacts.remove(Outputs::FSB),

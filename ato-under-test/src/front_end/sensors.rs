@@ -23,7 +23,10 @@ impl PulseSensor {
     ) -> Pulses {
         let Some((count, mut pulses)) = raw else {
             self.last_count = None;
-            return Pulses { count: 0, ..self.last };
+            return Pulses {
+                count: 0,
+                ..self.last
+            };
         };
         let before = self.last_count.replace(count).unwrap_or(count);
         pulses.count = u32::from(count.wrapping_sub(before));

@@ -70,7 +70,9 @@ impl EventLog {
 
     /// Oldest index kept.
     pub fn oldest_index(&self) -> u32 {
-        self.entries.front().map_or(self.next_index, |entry| entry.index)
+        self.entries
+            .front()
+            .map_or(self.next_index, |entry| entry.index)
     }
 
     /// Forgets all entries; indices go on.

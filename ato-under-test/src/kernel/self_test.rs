@@ -51,10 +51,12 @@ impl SelfTester {
             return false;
         }
         self.failed.set(SelfTest::MEMORY, !memory_holds_patterns());
-        self.failed.set(SelfTest::ATP_RECEIVER, !self.seen.receiver_decoded);
+        self.failed
+            .set(SelfTest::ATP_RECEIVER, !self.seen.receiver_decoded);
         self.failed.set(SelfTest::TRA, !self.seen.tra_answered);
         self.failed.set(SelfTest::TWC_MODEM, !self.seen.modem_heard);
-        self.failed.set(SelfTest::TEST_BOARD, !self.seen.test_board_answers);
+        self.failed
+            .set(SelfTest::TEST_BOARD, !self.seen.test_board_answers);
         self.finished = true;
         true
     }
@@ -81,6 +83,8 @@ fn memory_holds_patterns() -> bool {
     let mut block = vec![0u8; 1024];
     [0x55u8, 0xAA, 0x00, 0xFF].iter().all(|&pattern| {
         block.fill(pattern);
-        core::hint::black_box(&mut block).iter().all(|&cell| cell == pattern)
+        core::hint::black_box(&mut block)
+            .iter()
+            .all(|&cell| cell == pattern)
     })
 }

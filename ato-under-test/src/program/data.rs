@@ -51,8 +51,10 @@ fn scripts_directory(given: Option<&Path>) -> Result<PathBuf> {
         .map(|place| place.join("scripts"))
         .find(|directory| directory.join("units").is_dir())
         .ok_or_else(|| {
-            UsageError("no scripts directory here or above the program; name it with --scripts".into())
-                .into()
+            UsageError(
+                "no scripts directory here or above the program; name it with --scripts".into(),
+            )
+            .into()
         })
 }
 

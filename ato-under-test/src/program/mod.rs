@@ -57,7 +57,10 @@ pub struct Arguments {
 pub fn serve(arguments: &Arguments) -> Result<()> {
     let setup = data::setup(arguments)?;
     let mut wire = Wire::open(arguments)?;
-    eprintln!("unit {} with configuration {} is up", setup.serial, setup.config.name);
+    eprintln!(
+        "unit {} with configuration {} is up",
+        setup.serial, setup.config.name
+    );
     run(Unit::new(setup), &mut wire)
 }
 

@@ -22,7 +22,10 @@ pub enum Wire {
     /// A real port.
     Serial(Box<dyn serialport::SerialPort>),
     /// A listener and the present client.
-    Tcp { listener: TcpListener, client: Option<TcpStream> },
+    Tcp {
+        listener: TcpListener,
+        client: Option<TcpStream>,
+    },
 }
 
 impl Wire {
@@ -51,14 +54,19 @@ impl Wire {
         rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
         println!("{}", name.to_string_lossy());
         io::stdout().flush()?;
-        Ok(Self::Pty { master: File::from(master), _slave: File::from(slave) })
+        Ok(Self::Pty {
+            master: File::from(master),
+            _slave: File::from(slave),
+        })
     }
 
     fn open_serial(port: &str) -> Result<Self> {
         let (path, baud) = match port.rsplit_once('@') {
-            Some((path, baud)) => {
-                (path, baud.parse().with_context(|| format!("{baud} is not a baud rate"))?)
-            }
+            Some((path, baud)) => (
+                path,
+                baud.parse()
+                    .with_context(|| format!("{baud} is not a baud rate"))?,
+            ),
             None => (port, BAUD),
         };
         let port = serialport::new(path, baud)
@@ -75,7 +83,10 @@ impl Wire {
         listener.set_nonblocking(true)?;
         println!("{}", listener.local_addr()?);
         io::stdout().flush()?;
-        Ok(Self::Tcp { listener, client: None })
+        Ok(Self::Tcp {
+            listener,
+            client: None,
+        })
     }
 
     /// Reads what is there, 0 when there is nothing.
@@ -107,7 +118,10 @@ impl Wire {
             Self::Tcp { client, .. } => {
                 let Some(stream) = client else { return Ok(()) };
                 let written = stream.write(bytes);
-                if written.as_ref().is_err_and(|e| e.kind() != ErrorKind::WouldBlock) {
+                if written
+                    .as_ref()
+                    .is_err_and(|e| e.kind() != ErrorKind::WouldBlock)
+                {
                     *client = None;
                     return Ok(());
                 }

@@ -47,8 +47,13 @@ impl Locator {
 
     /// At a departure loop the section begins anew.
     pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) {
-        let Some(section) = line.section(data.section) else { return };
-        let same = self.section.as_ref().is_some_and(|s| s.section == section.section);
+        let Some(section) = line.section(data.section) else {
+            return;
+        };
+        let same = self
+            .section
+            .as_ref()
+            .is_some_and(|s| s.section == section.section);
         let departing = data.loop_id == section.from_loop;
         let run = same && self.position_m > section.start_m + self.window_m;
         if standstill && (!same || (departing && run)) {
@@ -104,7 +109,10 @@ impl Locator {
         log: &mut EventLog,
     ) {
         let Some(section) = &self.section else { return };
-        let Some(&place) = section.markers_m.get(usize::from(pulse.marker).wrapping_sub(1)) else {
+        let Some(&place) = section
+            .markers_m
+            .get(usize::from(pulse.marker).wrapping_sub(1))
+        else {
             return;
         };
         if movement.standstill {
@@ -113,7 +121,11 @@ impl Locator {
         let since_m = movement.speed.mps() * f64::from(pulse.age_us) / 1e6;
         let error = self.position_m - since_m - place;
         if libm::fabs(error) > self.window_m {
-            log.push(now, Event::MarkerPosition, libm::round(error * 100.0) as i32);
+            log.push(
+                now,
+                Event::MarkerPosition,
+                libm::round(error * 100.0) as i32,
+            );
             return;
         }
         self.position_m = place + since_m;
@@ -131,7 +143,9 @@ impl Locator {
 
     /// Distance to the stop point, m.
     pub fn to_stop_m(&self) -> Option<f64> {
-        self.section.as_ref().map(|section| section.stop_m - self.position_m)
+        self.section
+            .as_ref()
+            .map(|section| section.stop_m - self.position_m)
     }
 
     /// Section the train is in.

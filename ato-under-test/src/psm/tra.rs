@@ -19,7 +19,11 @@ pub struct Tra {
 impl Tra {
     /// Tests TRA every `period`.
     pub fn new(period: Duration) -> Self {
-        Self { period, next_test: Instant::ZERO, failures: 0 }
+        Self {
+            period,
+            next_test: Instant::ZERO,
+            failures: 0,
+        }
     }
 
     /// One cycle; `answers` is TRA's reply to the test pulse.
@@ -29,9 +33,17 @@ impl Tra {
         }
         self.next_test = now + self.period;
         let was_ok = self.ok();
-        self.failures = if answers { 0 } else { (self.failures + 1).min(FAILURES) };
+        self.failures = if answers {
+            0
+        } else {
+            (self.failures + 1).min(FAILURES)
+        };
         if was_ok != self.ok() {
-            let event = if was_ok { Event::TraFailed } else { Event::TraRestored };
+            let event = if was_ok {
+                Event::TraFailed
+            } else {
+                Event::TraRestored
+            };
             log.push(now, event, 0);
         }
     }

@@ -56,7 +56,9 @@ impl Twc {
         }
         self.heard = Some(now);
         self.up = true;
-        self.valid = line.section(data.section).is_some_and(|section| agrees(&data, section));
+        self.valid = line
+            .section(data.section)
+            .is_some_and(|section| agrees(&data, section));
         if self.valid {
             self.invalid_reported = None;
         } else if self.invalid_reported != Some(data.station) {
@@ -68,7 +70,11 @@ impl Twc {
 
     /// Moves on to the present.
     pub fn step(&mut self, now: Instant, log: &mut EventLog) {
-        if self.up && self.heard.is_some_and(|heard| now.since(heard) >= self.timeout) {
+        if self.up
+            && self
+                .heard
+                .is_some_and(|heard| now.since(heard) >= self.timeout)
+        {
             self.up = false;
             self.valid = false;
             self.data = None;

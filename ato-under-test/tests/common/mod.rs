@@ -1,0 +1,236 @@
+//! A bench of a few lines: holds an input frame, talks to the unit through the wire.
+
+// Each test file uses its own part of the bench.
+#![allow(dead_code)]
+
+use std::f64::consts::PI;
+
+use ato_under_test::{Setup, Unit};
+use protocol::config::UnitConfig;
+use protocol::injection::FaultMode;
+use protocol::line::Line;
+use protocol::link::{End, Link};
+use protocol::message::{
+    IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs, ReadLog, Status,
+    TcmsToAtc, TcmsToAtcBits, TrainLines, TwcWayside,
+};
+use protocol::{Instant, SCAN};
+
+pub struct Bench {
+    pub unit: Unit,
+    pub link: Link,
+    pub now: Instant,
+    pub input: IoInput,
+    /// Speeds of the two wheels, m/s, negative = backward.
+    pub speeds: [f64; 2],
+    pub station: Option<TwcWayside>,
+    pub session: u32,
+    pub io: bool,
+    pub keep_alive: bool,
+    pub output: IoOutput,
+    pub status: Status,
+    pub answers: Vec<Message>,
+    pub log: Vec<LogEntry>,
+    turned: [f64; 2],
+    scans: u64,
+}
+
+pub fn config() -> UnitConfig {
+    UnitConfig::from_toml(include_str!("../../../scripts/units/sg100.toml")).unwrap()
+}
+
+pub fn line() -> Line {
+    Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
+}
+
+pub fn departure(section: &protocol::line::Section) -> TwcWayside {
+    TwcWayside {
+        route: section.route,
+        section: section.section,
+        station: section.from_station,
+        next_station: section.to_station,
+        loop_id: section.from_loop,
+        fixed_speed_kmh: 255,
+        train_number: 8123,
+        ..TwcWayside::default()
+    }
+}
+
+impl Bench {
+    pub fn new(faults: &[FaultMode]) -> Self {
+        let line = line();
+        let station = Some(departure(&line.sections[0]));
+        let unit = Unit::new(Setup {
+            serial: "T-1".into(),
+            config: config(),
+            config_crc: 1,
+            line,
+            tdb_crc: 2,
+            seed: 7,
+            faults: faults.to_vec(),
+        });
+        let mut bench = Self {
+            unit,
+            link: Link::new(End::Bench),
+            now: Instant::ZERO,
+            input: IoInput {
+                lines: TrainLines::DOORS_CLOSED | TrainLines::HCR | TrainLines::FORWARD,
+                mode_switch: ModeSwitch::Manual,
+                ..IoInput::default()
+            },
+            speeds: [0.0; 2],
+            station,
+            session: 0,
+            io: true,
+            keep_alive: true,
+            output: IoOutput::default(),
+            status: Status::default(),
+            answers: Vec::new(),
+            log: Vec::new(),
+            turned: [0.0; 2],
+            scans: 0,
+        };
+        bench.run(2.0);
+        bench
+    }
+
+    /// Sends the code called `name`.
+    pub fn code(&mut self, name: &str) {
+        let config = config();
+        let code = config.codes.iter().find(|code| code.name == name).unwrap();
+        self.input.carrier_hz = code.carrier_hz as u16;
+        self.input.code_rate_chz = (code.rate_hz * 100.0) as u16;
+        self.input.level_mv = 500;
+    }
+
+    /// Both wheels at a speed, reached at 3 m/s².
+    pub fn speed_kmh(&mut self, kmh: f64) {
+        let goal = kmh / 3.6;
+        while (self.speeds[0] - goal).abs() > 0.03 {
+            let step = 0.03 * (goal - self.speeds[0]).signum();
+            self.speeds = self.speeds.map(|speed| speed + step);
+            self.scan();
+        }
+        self.speeds = [goal; 2];
+    }
+
+    pub fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds * 100.0).round() as u64 {
+            self.scan();
+        }
+    }
+
+    /// Runs until `done`, at most `seconds`; the time it took in ms.
+    pub fn until(&mut self, seconds: f64, mut done: impl FnMut(&Self) -> bool) -> Option<u64> {
+        let begin = self.now;
+        for _ in 0..(seconds * 100.0) as u64 {
+            if done(self) {
+                return Some(self.now.since(begin).as_ms());
+            }
+            self.scan();
+        }
+        None
+    }
+
+    pub fn send(&mut self, message: impl Into<Message>) {
+        let mut bytes = Vec::new();
+        self.link.send(self.now, &message.into(), &mut bytes);
+        self.unit.receive(&bytes);
+    }
+
+    pub fn scan(&mut self) {
+        self.now += SCAN;
+        self.scans += 1;
+        let eb_loop = self.output.outputs.contains(Outputs::EB_RELAY);
+        self.input.lines.set(TrainLines::EB_LOOP, eb_loop);
+        self.turn_wheels();
+        if self.io {
+            self.send(self.input);
+        }
+        if self.scans.is_multiple_of(5) {
+            let bits = TcmsToAtcBits::ATO_ENABLE;
+            self.send(TcmsToAtc {
+                bits,
+                load_100kg: 0,
+                alive: (self.scans / 5) as u8,
+            });
+        }
+        if self.scans.is_multiple_of(20) && self.keep_alive {
+            self.send(KeepAlive {
+                session: self.session,
+            });
+        }
+        if let Some(station) = self.station.filter(|_| self.scans.is_multiple_of(25)) {
+            self.send(station);
+        }
+        let mut bytes = Vec::new();
+        self.unit.step(self.now, &mut bytes);
+        self.link.push(&bytes);
+        while let Some(received) = self.link.poll(self.now) {
+            match received.message {
+                Message::IoOutput(output) => self.output = output,
+                Message::Status(status) => self.status = status,
+                Message::LogEntry(entry) => self.log.push(entry),
+                Message::AtcToTcms(_) | Message::TwcTrain(_) | Message::LogEnd(_) => {}
+                other => self.answers.push(other),
+            }
+        }
+    }
+
+    fn turn_wheels(&mut self) {
+        let pulse = PI * 0.86 / 100.0;
+        let mut counts = [0u16; 2];
+        let mut ages = [0u16; 2];
+        for i in 0..2 {
+            let speed = self.speeds[i].abs();
+            self.turned[i] += speed * SCAN.as_secs() / pulse;
+            counts[i] = self.turned[i] as u64 as u16;
+            let beyond = self.turned[i].fract() * pulse;
+            ages[i] = if speed > 0.0 {
+                (beyond / speed * 1e6).min(65535.0) as u16
+            } else {
+                65535
+            };
+        }
+        (self.input.tacho1_count, self.input.tacho2_count) = (counts[0], counts[1]);
+        (self.input.tacho1_edge_us, self.input.tacho2_edge_us) = (ages[0], ages[1]);
+        self.input.tacho_backward =
+            u8::from(self.speeds[0] < 0.0) | u8::from(self.speeds[1] < 0.0) << 1;
+    }
+
+    pub fn marker(&mut self, marker: u8) {
+        self.input.marker = marker;
+        self.input.marker_edges = self.input.marker_edges.wrapping_add(1);
+        self.input.marker_edge_us = 0;
+        self.run(0.1);
+    }
+
+    pub fn has(&self, output: Outputs) -> bool {
+        self.output.outputs.contains(output)
+    }
+
+    pub fn braking(&self) -> bool {
+        !self.has(Outputs::EB_RELAY)
+    }
+
+    pub fn acknowledge(&mut self) {
+        self.input.lines.insert(TrainLines::ACKNOWLEDGE);
+        self.run(0.2);
+        self.input.lines.remove(TrainLines::ACKNOWLEDGE);
+        self.run(0.2);
+    }
+
+    /// Names of all logged events.
+    pub fn events(&mut self) -> Vec<&'static str> {
+        self.log.clear();
+        self.send(ReadLog { from_index: 0 });
+        self.run(3.0);
+        let name = |entry: &LogEntry| {
+            protocol::event::Event::from_code(entry.code)
+                .unwrap()
+                .definition()
+                .name
+        };
+        self.log.iter().map(name).collect()
+    }
+}

@@ -1,0 +1,160 @@
+//! What the unit promises to a tester: arming, stimuli, the event log.
+
+mod common;
+
+use common::Bench;
+use protocol::message::{
+    Answer, ArmConfirm, ArmRefusal, ArmRequest, ClearLog, Message, Outputs, TestCode, TestSpeed,
+    TrainLines,
+};
+
+const SESSION: u32 = 0xBEEF;
+
+fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
+    bench.answers.clear();
+    bench.send(ArmRequest { session: SESSION });
+    bench.run(0.1);
+    let challenge = bench.answers.iter().find_map(|answer| match answer {
+        Message::ArmChallenge(challenge) => Some(challenge.challenge),
+        _ => None,
+    });
+    if let Some(challenge) = challenge {
+        bench.send(ArmConfirm {
+            session: SESSION,
+            answer: !challenge ^ SESSION,
+        });
+        bench.session = SESSION;
+        bench.run(0.1);
+    }
+    bench.answers.iter().find_map(|answer| match answer {
+        Message::ArmState(state) if state.armed == 0 => Some(state.refusal),
+        _ => None,
+    })
+}
+
+fn armed() -> Bench {
+    let mut bench = Bench::new(&[]);
+    bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
+    bench.run(0.1);
+    assert_eq!(arm(&mut bench), None);
+    bench
+}
+
+fn code_75() -> TestCode {
+    TestCode {
+        session: SESSION,
+        carrier_hz: 3000,
+        code_rate_chz: 1000,
+        level_mv: 500,
+    }
+}
+
+fn answer_to(bench: &mut Bench, request: impl Into<Message>) -> Answer {
+    bench.answers.clear();
+    bench.send(request);
+    bench.run(0.1);
+    match bench.answers[..] {
+        [Message::StimulusAnswer(answer)] => answer.answer,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn arming_needs_the_key() {
+    let mut bench = Bench::new(&[]);
+    assert_eq!(arm(&mut bench), Some(ArmRefusal::KeyOff));
+    assert_eq!(answer_to(&mut bench, code_75()), Answer::NotArmed);
+    bench.run(1.0);
+    assert_eq!(
+        bench.output.limit_cms, 0,
+        "a stimulus on an unarmed unit does nothing"
+    );
+}
+
+#[test]
+fn a_test_code_sets_the_limit_until_the_tester_falls_silent() {
+    let mut bench = armed();
+    assert_eq!(answer_to(&mut bench, code_75()), Answer::Accepted);
+    bench.run(1.0);
+    assert_eq!(bench.output.limit_cms, 2083);
+    assert_eq!(bench.status.test_code_rate_chz, 1000, "read back");
+    bench.keep_alive = false;
+    bench.run(1.2);
+    bench.keep_alive = true;
+    bench.run(0.3);
+    assert!(
+        bench.status.test_signals.is_empty(),
+        "taken away within a second"
+    );
+    bench.run(1.0);
+    assert_eq!(bench.output.limit_cms, 0);
+    assert!(bench.events().contains(&"arming_lapsed"));
+}
+
+#[test]
+fn test_speed_replaces_the_tachometers_and_goes_without_a_fault() {
+    let mut bench = armed();
+    answer_to(&mut bench, code_75());
+    let speed = TestSpeed {
+        session: SESSION,
+        channels: 3,
+        backward: 0,
+        speed_cms: 1500,
+        accel_mms2: 0,
+    };
+    assert_eq!(answer_to(&mut bench, speed), Answer::Accepted);
+    bench.run(6.0);
+    assert!(
+        bench.output.speed_cms.abs_diff(1500) <= 2,
+        "{}",
+        bench.output.speed_cms
+    );
+    bench.input.lines.remove(TrainLines::MAINTENANCE_KEY);
+    bench.run(1.0);
+    assert_eq!(bench.output.speed_cms, 0);
+    assert!(
+        bench.has(Outputs::EB_RELAY),
+        "no brake, no noise: {:?}",
+        bench.events()
+    );
+}
+
+#[test]
+fn out_of_range_is_refused() {
+    let mut bench = armed();
+    let request = TestCode {
+        level_mv: 3001,
+        ..code_75()
+    };
+    assert_eq!(answer_to(&mut bench, request), Answer::OutOfRange);
+}
+
+#[test]
+fn the_log_is_read_and_cleared() {
+    let mut bench = armed();
+    assert_eq!(
+        bench.events(),
+        ["power_up", "mode_changed", "eb_released", "armed"]
+    );
+    assert_eq!(
+        answer_to(&mut bench, ClearLog { session: SESSION }),
+        Answer::Accepted
+    );
+    assert_eq!(bench.events(), ["log_cleared"]);
+    assert_eq!(bench.log[0].index, 4, "indices go on");
+}
+
+#[test]
+fn a_cycle_stays_within_its_bytes() {
+    let mut bench = armed();
+    bench.send(protocol::message::ReadLog { from_index: 0 });
+    for _ in 0..100 {
+        let mut bytes = Vec::new();
+        for _ in 0..5 {
+            bench.scan();
+            bench.now += protocol::SCAN;
+            bench.unit.step(bench.now, &mut bytes);
+        }
+        assert!(bytes.len() < 400, "{} bytes in 50 ms", bytes.len());
+    }
+}

@@ -1,0 +1,230 @@
+//! What the unit promises about braking, seen from the wire.
+
+mod common;
+
+use common::Bench;
+use protocol::injection::{Effect, FaultMode, Place};
+use protocol::message::{EbCause, FsbCause, Mode, ModeSwitch, Outputs, Refusals, TrainLines};
+
+fn fault(place: Place, effect: Effect) -> FaultMode {
+    FaultMode {
+        id: "part.mode".into(),
+        lru: "part".into(),
+        mode: String::new(),
+        severity: "major".into(),
+        weight: 1.0,
+        unsafe_: false,
+        place,
+        effect,
+        onset_s: 0.0,
+    }
+}
+
+#[test]
+fn a_healthy_unit_at_rest_logs_no_fault() {
+    let mut bench = Bench::new(&[]);
+    bench.run(10.0);
+    assert_eq!(bench.events(), ["power_up", "mode_changed", "eb_released"]);
+    assert!(!bench.braking());
+    assert_eq!(bench.status.fsb_cause, FsbCause::NoCode);
+    assert_eq!(bench.output.limit_cms, 0);
+}
+
+#[test]
+fn each_code_gives_its_limit_and_its_loss_the_most_restrictive_one() {
+    let mut bench = Bench::new(&[]);
+    for (index, code) in common::config().codes.iter().enumerate() {
+        bench.code(&code.name);
+        bench.run(0.6);
+        assert_eq!(usize::from(bench.status.code_index), index);
+        assert!((f64::from(bench.output.limit_cms) * 0.036 - code.limit_kmh).abs() < 0.02);
+    }
+    bench.input.level_mv = 0;
+    bench.run(0.9);
+    assert!(bench.output.limit_cms > 0, "held for a second");
+    bench.run(0.2);
+    assert_eq!(bench.output.limit_cms, 0);
+}
+
+#[test]
+fn overspeed_goes_from_alarm_to_service_brake_to_emergency_brake() {
+    let mut bench = Bench::new(&[]);
+    bench.code("55");
+    bench.run(0.6);
+    bench.speed_kmh(54.0);
+    bench.run(1.0);
+    assert!(!bench.has(Outputs::ALARM));
+    bench.speed_kmh(57.0);
+    bench.run(1.0);
+    assert!(bench.has(Outputs::ALARM) && !bench.has(Outputs::FSB));
+    bench.speed_kmh(59.0);
+    bench.run(1.0);
+    assert!(bench.has(Outputs::FSB) && !bench.braking());
+    assert!(
+        bench.until(3.0, Bench::braking).is_some(),
+        "the service brake shows no effect"
+    );
+    assert_eq!(bench.status.eb_cause, EbCause::ServiceBrakeIneffective);
+    bench.acknowledge();
+    assert!(bench.braking(), "latched while moving");
+    bench.speed_kmh(0.0);
+    bench.run(2.0);
+    assert!(bench.braking(), "latched until acknowledged");
+    bench.acknowledge();
+    assert!(!bench.braking());
+}
+
+#[test]
+fn the_service_brake_releases_by_itself_under_the_limit() {
+    let mut bench = Bench::new(&[]);
+    bench.code("45");
+    bench.run(0.6);
+    bench.speed_kmh(49.0);
+    bench.run(0.5);
+    assert!(bench.has(Outputs::FSB));
+    bench.speed_kmh(44.0);
+    bench.run(0.2);
+    assert!(!bench.has(Outputs::FSB) && !bench.has(Outputs::ALARM) && !bench.braking());
+}
+
+#[test]
+fn a_step_down_of_the_limit_gets_its_grace() {
+    let mut bench = Bench::new(&[]);
+    bench.code("55");
+    bench.run(0.6);
+    bench.speed_kmh(50.0);
+    bench.run(0.5);
+    bench.code("35");
+    bench.run(1.5);
+    assert!(bench.has(Outputs::FSB), "over the new limit at once");
+    assert!(!bench.braking(), "the service brake gets its chance");
+    let step = 0.9 / 100.0;
+    while bench.speeds[0] * 3.6 > 34.0 {
+        bench.speeds = bench.speeds.map(|speed| speed - step);
+        bench.scan();
+        assert!(!bench.braking());
+    }
+}
+
+#[test]
+fn one_dead_tachometer_brakes_and_is_named() {
+    let mut bench = Bench::new(&[]);
+    bench.code("55");
+    bench.run(0.6);
+    bench.speed_kmh(40.0);
+    bench.speeds[1] = 0.0;
+    assert!(bench.until(2.0, Bench::braking).is_some());
+    assert_eq!(bench.status.eb_cause, EbCause::Tachometer);
+    assert!(bench.events().contains(&"tacho2_dead"));
+}
+
+#[test]
+fn rolling_back_brakes_within_half_a_metre() {
+    let mut bench = Bench::new(&[]);
+    bench.code("25");
+    bench.run(0.6);
+    bench.speeds = [-0.5; 2];
+    let ms = bench.until(3.0, Bench::braking).expect("brake");
+    assert!((1000..1100).contains(&ms), "0.5 m at 0.5 m/s took {ms} ms");
+}
+
+#[test]
+fn doors_open_on_a_moving_train_brake() {
+    let mut bench = Bench::new(&[]);
+    bench.code("25");
+    bench.run(0.6);
+    bench.input.lines.remove(TrainLines::DOORS_CLOSED);
+    bench.run(0.5);
+    assert!(
+        !bench.braking() && bench.has(Outputs::POWER_CUT),
+        "standing: departure inhibited"
+    );
+    bench.input.lines.insert(TrainLines::DOORS_CLOSED);
+    bench.speed_kmh(10.0);
+    bench.input.lines.remove(TrainLines::DOORS_CLOSED);
+    assert!(bench.until(0.5, Bench::braking).is_some());
+    assert!(
+        bench
+            .until(0.2, |b| b.status.eb_cause == EbCause::DoorOpen)
+            .is_some()
+    );
+}
+
+#[test]
+fn silence_of_the_harness_brakes_within_a_quarter_second() {
+    let mut bench = Bench::new(&[]);
+    bench.io = false;
+    let ms = bench.until(1.0, Bench::braking).expect("brake");
+    assert!(ms <= 250, "{ms} ms");
+}
+
+#[test]
+fn a_welded_eb_relay_is_noticed() {
+    let mut bench = Bench::new(&[fault(Place::EbRelay, Effect::StuckOn)]);
+    bench.run(1.0);
+    assert!(bench.events().contains(&"eb_relay_welded"));
+    assert!(!bench.has(Outputs::HEALTHY));
+}
+
+#[test]
+fn automatic_run_needs_every_precondition_and_says_which_is_missing() {
+    let mut bench = Bench::new(&[]);
+    bench.input.mode_switch = ModeSwitch::Automatic;
+    bench.run(0.5);
+    assert_eq!(bench.status.mode, Mode::Manual);
+    assert!(bench.status.refusals.contains(Refusals::NO_CODE));
+    bench.code("55");
+    bench.run(1.0);
+    assert_eq!(bench.status.mode, Mode::Automatic);
+    assert_eq!(bench.status.refusals, Refusals::NO_DEPARTURE);
+    if let Some(station) = &mut bench.station {
+        station.departure = 1;
+    }
+    bench.run(0.5);
+    bench.input.lines.insert(TrainLines::START);
+    bench.run(0.5);
+    assert_eq!(bench.status.mode, Mode::AutomaticRun);
+    assert_eq!(bench.status.effort, 1023, "full power from standstill");
+    assert_eq!(
+        f64::from(bench.status.target_cms).round(),
+        (50.0f64 / 0.036).round()
+    );
+}
+
+#[test]
+fn doors_are_enabled_only_aligned_on_the_right_side() {
+    let mut bench = Bench::new(&[]);
+    let section = common::line().sections[0].clone();
+    bench.code("75");
+    bench.run(1.0);
+    bench.speed_kmh(70.0);
+    for (i, place) in section.markers_m.iter().enumerate() {
+        let place = place * 100.0;
+        assert!(
+            bench
+                .until(90.0, |b| f64::from(b.status.position_cm) >= place - 100.0)
+                .is_some()
+        );
+        if i == 1 {
+            bench.speed_kmh(5.0);
+        }
+        bench.marker(i as u8 + 1);
+    }
+    let remaining = section.stop_m - section.markers_m[3] - 5.0 / 3.6 * 0.1;
+    bench.run(remaining / (5.0 / 3.6));
+    bench.speeds = [0.0; 2];
+    bench.station = Some(protocol::message::TwcWayside {
+        station: section.to_station,
+        next_station: section.to_station + 1,
+        loop_id: section.to_loop,
+        door_side: protocol::message::DoorSide::Right,
+        ..common::departure(&section)
+    });
+    bench.run(2.0);
+    assert!(
+        bench.has(Outputs::DOOR_ENABLE_RIGHT),
+        "position {} cm",
+        bench.status.position_cm
+    );
+    assert!(!bench.has(Outputs::DOOR_ENABLE_LEFT));
+}
