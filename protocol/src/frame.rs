@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
-use crate::message::{Address, Channel};
+use crate::message::{Address, CATALOGUE, Channel};
 
 /// Version of the wire, first byte of every frame.
 pub const VERSION: u8 = 1;
@@ -23,6 +23,14 @@ pub const MAX_BODY: usize = HEADER_LEN + MAX_PAYLOAD + FCS_LEN;
 /// Received bytes a [`Decoder`] keeps at most until they are asked for: about eight seconds of
 /// the wire, so that only a reader that has stopped reading ever meets it.
 pub const MAX_PENDING: usize = 64 * 1024;
+
+const _: () = {
+    let mut i = 0;
+    while i < CATALOGUE.len() {
+        assert!(CATALOGUE[i].payload_len() <= MAX_PAYLOAD);
+        i += 1;
+    }
+};
 
 /// Ends one frame and begins the next.
 pub const FLAG: u8 = 0x7E;
@@ -235,6 +243,11 @@ impl Decoder {
             },
             |()| open(&self.body[..len]),
         ))
+    }
+
+    /// Bytes taken and not yet looked at, at most [`MAX_PENDING`].
+    pub fn pending_len(&self) -> usize {
+        self.pending.len() - self.read
     }
 
     /// Bytes seen outside frames.

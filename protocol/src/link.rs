@@ -172,6 +172,10 @@ impl Link {
                     self.last_error = Some(error);
                     rejected(Reject::Layout)
                 })?;
+                // Whoever hears a message that only it may send hears an echo, or a fool.
+                if message.spec().sent_by_unit() == (self.end == End::Unit) {
+                    return Err(rejected(Reject::Layout));
+                }
                 *receiver = Some(passage.receiver);
                 self.counters.gaps[header.channel as usize] += u64::from(passage.gap);
                 Ok(Received { header, message })

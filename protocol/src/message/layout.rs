@@ -1,5 +1,7 @@
 //! Declared field layouts: one table gives the struct, its codec and its description.
 
+use alloc::format;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use thiserror::Error;
@@ -30,9 +32,6 @@ pub enum DecodeErrorKind {
     /// No message of this channel has this code.
     #[error("unknown message code 0x{0:02X}")]
     UnknownMessage(u8),
-    /// No channel has this number.
-    #[error("unknown channel {0}")]
-    UnknownChannel(u8),
 }
 
 /// One field of a layout.
@@ -48,20 +47,61 @@ pub struct FieldSpec {
     pub doc: &'static str,
 }
 
+/// What `WIRE.md` says about a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MessageSpec {
+    /// Name.
+    pub name: &'static str,
+    /// Channel it travels on.
+    pub channel: super::Channel,
+    /// First payload byte; from 0x80 on the unit is the sender, below it the receiver.
+    pub code: u8,
+    /// What it is for.
+    pub doc: &'static str,
+    /// Fields after the code, in order.
+    pub fields: &'static [FieldSpec],
+}
+
+impl MessageSpec {
+    /// Bytes of the payload, code included.
+    pub const fn payload_len(&self) -> usize {
+        // `const`, so that it is settled at compile time that every message fits a frame.
+        let (mut len, mut i) = (1, 0);
+        while i < self.fields.len() {
+            len += self.fields[i].size;
+            i += 1;
+        }
+        len
+    }
+
+    /// Whether the unit sends it.
+    pub const fn sent_by_unit(&self) -> bool {
+        self.code >= 0x80
+    }
+}
+
+/// What `WIRE.md` says about an enumeration: code, label and meaning of each value; or about a
+/// set of bits: number, name and meaning of each bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WordSpec {
+    /// Name of the type.
+    pub name: &'static str,
+    /// What it says.
+    pub doc: &'static str,
+    /// Its values or bits.
+    pub entries: &'static [(u8, &'static str, &'static str)],
+}
+
 /// A message with a declared layout.
 pub trait Layout: Sized {
-    /// Name as written in `WIRE.md`.
-    const NAME: &'static str;
-    /// Channel it travels on.
-    const CHANNEL: super::Channel;
-    /// First payload byte.
-    const CODE: u8;
-    /// Fields after the code, in order.
-    const FIELDS: &'static [FieldSpec];
+    /// Name, channel, code and fields.
+    const SPEC: MessageSpec;
     /// Appends code and fields.
     fn write(&self, out: &mut Vec<u8>);
     /// Reads a whole payload, code included.
     fn read(payload: &[u8]) -> Result<Self, DecodeError>;
+    /// Each field's value as text, in order.
+    fn show(&self) -> Vec<String>;
 }
 
 /// A reader over a payload that knows where it is.
@@ -109,6 +149,8 @@ pub trait Field: Sized {
     fn put(&self, out: &mut Vec<u8>);
     /// Reads the field called `name`.
     fn get(cursor: &mut Cursor<'_>, name: &'static str) -> Result<Self, DecodeError>;
+    /// The value as people read it: a decimal number, a label, names of bits, text.
+    fn show(&self) -> String;
 }
 
 macro_rules! integer_fields {
@@ -120,6 +162,9 @@ macro_rules! integer_fields {
             }
             fn get(cursor: &mut Cursor<'_>, name: &'static str) -> Result<Self, DecodeError> {
                 Ok(Self::from_be_bytes(cursor.take(name)?))
+            }
+            fn show(&self) -> String {
+                self.to_string()
             }
         }
     )*};
@@ -134,6 +179,16 @@ impl<const N: usize> Field for [u8; N] {
     fn get(cursor: &mut Cursor<'_>, name: &'static str) -> Result<Self, DecodeError> {
         cursor.take(name)
     }
+    /// Text if it is ASCII filled up with 0, else hexadecimal digits; never empty.
+    fn show(&self) -> String {
+        let text_len = self.iter().position(|&byte| byte == 0).unwrap_or(N);
+        let (text, fill) = self.split_at(text_len);
+        let is_text = !text.is_empty() && text.iter().all(u8::is_ascii_graphic);
+        if is_text && fill.iter().all(|&byte| byte == 0) {
+            return text.iter().map(|&byte| char::from(byte)).collect();
+        }
+        self.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
 }
 
 /// Declares a message: struct, codec and field table from one list.
@@ -146,17 +201,18 @@ macro_rules! layout {
         pub struct $name { $( $(#[doc = $fdoc])+ pub $field: $ty ),* }
 
         impl $crate::message::Layout for $name {
-            const NAME: &'static str = stringify!($name);
-            const CHANNEL: $crate::message::Channel = $crate::message::Channel::$channel;
-            const CODE: u8 = $code;
-            const FIELDS: &'static [$crate::message::FieldSpec] = &[
-                $( $crate::message::FieldSpec {
+            const SPEC: $crate::message::MessageSpec = $crate::message::MessageSpec {
+                name: stringify!($name),
+                channel: $crate::message::Channel::$channel,
+                code: $code,
+                doc: concat!($($doc),+).trim_ascii(),
+                fields: &[ $( $crate::message::FieldSpec {
                     name: stringify!($field),
                     ty: stringify!($ty),
                     size: <$ty as $crate::message::Field>::SIZE,
-                    doc: concat!($($fdoc),+),
-                } ),*
-            ];
+                    doc: concat!($($fdoc),+).trim_ascii(),
+                } ),* ],
+            };
             fn write(&self, out: &mut alloc::vec::Vec<u8>) {
                 out.push($code);
                 $( $crate::message::Field::put(&self.$field, out); )*
@@ -169,6 +225,9 @@ macro_rules! layout {
                 };
                 cursor.finish()?;
                 Ok(message)
+            }
+            fn show(&self) -> alloc::vec::Vec<alloc::string::String> {
+                alloc::vec![ $( $crate::message::Field::show(&self.$field) ),* ]
             }
         }
     };
@@ -193,6 +252,12 @@ macro_rules! wire_enum {
             pub const LABELS: &'static [&'static str] = &[$($label),*];
             /// Known values in the order of their numbers.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+            /// Name, meaning, and number, label and meaning of each known value.
+            pub const SPEC: $crate::message::WordSpec = $crate::message::WordSpec {
+                name: stringify!($name),
+                doc: concat!($($doc),+).trim_ascii(),
+                entries: &[$( ($value, $label, concat!($($vdoc),+).trim_ascii()) ),*],
+            };
 
             /// The value for a wire byte.
             pub const fn from_code(code: u8) -> Self {
@@ -225,6 +290,12 @@ macro_rules! wire_enum {
             ) -> Result<Self, $crate::message::DecodeError> {
                 Ok(Self::from_code(cursor.take::<1>(name)?[0]))
             }
+            fn show(&self) -> alloc::string::String {
+                match self {
+                    Self::Unknown(code) => alloc::format!("unknown_{code}"),
+                    known => known.label().into(),
+                }
+            }
         }
     };
 }
@@ -242,9 +313,14 @@ macro_rules! wire_bits {
         }
 
         impl $name {
-            /// Bit number, name and meaning of each bit.
-            pub const BITS: &'static [(u8, &'static str, &'static str)] =
-                &[$( ($shift, stringify!($bit), concat!($($bdoc),+)) ),*];
+            /// Number, name and meaning of each bit.
+            pub const BITS: &'static [(u8, &'static str, &'static str)] = Self::SPEC.entries;
+            /// Name, meaning and bits.
+            pub const SPEC: $crate::message::WordSpec = $crate::message::WordSpec {
+                name: stringify!($name),
+                doc: concat!($($doc),+).trim_ascii(),
+                entries: &[$( ($shift, stringify!($bit), concat!($($bdoc),+).trim_ascii()) ),*],
+            };
         }
 
         impl $crate::message::Field for $name {
@@ -258,7 +334,26 @@ macro_rules! wire_bits {
             ) -> Result<Self, $crate::message::DecodeError> {
                 Ok(Self::from_bits_retain(u16::from_be_bytes(cursor.take(name)?)))
             }
+            fn show(&self) -> alloc::string::String {
+                $crate::message::layout::show_bits(self.bits(), Self::SPEC.entries)
+            }
         }
     };
 }
 pub(super) use wire_bits;
+
+/// Names of the bits set, joined by `|`; a bit without a name as `bit_N`; `0` for none.
+pub(super) fn show_bits(bits: u16, entries: &[(u8, &str, &str)]) -> String {
+    if bits == 0 {
+        return "0".into();
+    }
+    let name = |bit: u8| {
+        let known = entries.iter().find(|entry| entry.0 == bit);
+        known.map_or_else(|| format!("bit_{bit}"), |entry| entry.1.to_string())
+    };
+    let set: Vec<String> = (0..16)
+        .filter(|bit| bits & 1 << bit != 0)
+        .map(name)
+        .collect();
+    set.join("|")
+}

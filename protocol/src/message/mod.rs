@@ -8,10 +8,13 @@ mod tcms;
 mod twc;
 mod words;
 
+use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use io::{IoInput, IoOutput, Outputs, TrainLines};
-pub use layout::{Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout};
+pub use layout::{
+    Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
+};
 pub use ptu::{
     ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
     KeepAlive, LogEnd, LogEntry, ReadLog, SelfTest, Status, StatusBits, StimulusAnswer, TestCode,
@@ -131,7 +134,7 @@ macro_rules! messages {
                         kind: DecodeErrorKind::Truncated,
                     });
                 };
-                $( if $name::CHANNEL as u8 == channel as u8 && $name::CODE == code {
+                $( if $name::SPEC.channel as u8 == channel as u8 && $name::SPEC.code == code {
                     return $name::read(payload).map(Self::$name);
                 } )*
                 Err(DecodeError {
@@ -147,12 +150,23 @@ macro_rules! messages {
 
             /// The channel this message belongs to.
             pub fn channel(&self) -> Channel {
-                match self { $( Self::$name(_) => $name::CHANNEL ),* }
+                self.spec().channel
             }
 
             /// The message's name in `WIRE.md`.
             pub fn name(&self) -> &'static str {
-                match self { $( Self::$name(_) => $name::NAME ),* }
+                self.spec().name
+            }
+
+            /// Its declared layout.
+            pub const fn spec(&self) -> &'static MessageSpec {
+                match self { $( Self::$name(_) => &$name::SPEC ),* }
+            }
+
+            /// Each field with its value as text, for people and for tests.
+            pub fn show(&self) -> Vec<(&'static FieldSpec, String)> {
+                let values = match self { $( Self::$name(message) => message.show() ),* };
+                self.spec().fields.iter().zip(values).collect()
             }
         }
 
@@ -160,9 +174,8 @@ macro_rules! messages {
             fn from(message: $name) -> Self { Self::$name(message) }
         } )*
 
-        /// Name, channel, code and fields of every message.
-        pub const CATALOGUE: &[(&str, Channel, u8, &[FieldSpec])] =
-            &[$( ($name::NAME, $name::CHANNEL, $name::CODE, $name::FIELDS) ),*];
+        /// Every message.
+        pub const CATALOGUE: &[MessageSpec] = &[$( $name::SPEC ),*];
     };
 }
 
@@ -193,3 +206,28 @@ messages!(
     TwcWayside,
     TwcTrain,
 );
+
+/// Every enumeration that is a field's type.
+pub const ENUMS: &[WordSpec] = &[
+    Mode::SPEC,
+    ModeSwitch::SPEC,
+    RunningMode::SPEC,
+    DoorSide::SPEC,
+    EbCause::SPEC,
+    FsbCause::SPEC,
+    Answer::SPEC,
+    ArmRefusal::SPEC,
+];
+
+/// Every set of bits that is a field's type.
+pub const BIT_SETS: &[WordSpec] = &[
+    StatusBits::SPEC,
+    Refusals::SPEC,
+    SelfTest::SPEC,
+    TestSignals::SPEC,
+    TrainLines::SPEC,
+    Outputs::SPEC,
+    TcmsToAtcBits::SPEC,
+    AtcToTcmsBits::SPEC,
+    TwcTrainBits::SPEC,
+];

@@ -1,0 +1,310 @@
+#!/usr/bin/env python3
+"""Writes the vectors beside it from WIRE.md; see wire.py for the codec.
+
+It knows the wire from that text alone, as a stranger's client would, and takes the check sequence
+from zlib: what unit and rig share by mistake, they do not share with this. A field without a value
+in VALUES gets bytes that count up, so that a new field needs no change here.
+"""
+
+import zlib
+from pathlib import Path
+
+from wire import CHANNELS, Wire, closed, fcs, spaced, stuffed
+
+HERE = Path(__file__).parent
+
+# One sample of each message, values far enough apart that two exchanged fields show.
+SESSION = 0x0000CAFE
+CHALLENGE = 0x12345678
+ANSWER = (CHALLENGE ^ 0xFFFFFFFF) ^ SESSION
+STATION = {
+    "route": 8, "section": 3, "station": 812, "next_station": 813, "loop_id": 8121,
+    "fixed_speed_kmh": 255, "running_mode": "recovery", "door_side": "left", "departure": 1,
+    "train_number": 8051,
+}
+VALUES = {
+    "ArmRequest": {"session": SESSION},
+    "ArmConfirm": {"session": SESSION, "answer": ANSWER},
+    "Disarm": {"session": SESSION},
+    "KeepAlive": {"session": SESSION},
+    "TestCode": {"session": SESSION, "carrier_hz": 3000, "code_rate_chz": 1500, "level_mv": 500},
+    "TestSpeed": {"session": SESSION, "channels": 3, "backward": 0, "speed_cms": 1944, "accel_mms2": 278},
+    "TestMarker": {"session": SESSION, "marker": 2},
+    "TestTwc": {"session": SESSION, **STATION},
+    "TestRelease": {"session": SESSION, "signals": "CODE|SPEED_1|SPEED_2"},
+    "ReadLog": {"from_index": 65541},
+    "ClearLog": {"session": SESSION},
+    "Identity": {
+        "serial": "SG-0042", "config": "sg100", "config_crc": 0xDEADBEEF, "tdb_crc": 0x01234567,
+        "software": "010203", "uptime_ms": 3600000, "self_test": "TRA|TEST_BOARD",
+    },
+    "ArmChallenge": {"session": SESSION, "challenge": CHALLENGE},
+    "ArmState": {"session": SESSION, "armed": 0, "refusal": "key_off"},
+    "StimulusAnswer": {"request_seq": 515, "answer": "out_of_range"},
+    "Status": {
+        "bits": "TWC_OK|TCMS_OK|TRA_OK|STARTED|INPUTS_OK", "mode": "manual",
+        "refusals": "NOT_STANDSTILL|MODE_SWITCH", "code_index": 4, "eb_cause": "none",
+        "fsb_cause": "overspeed", "speed1_cms": 1601, "speed2_cms": 1598, "target_cms": 1389,
+        "effort": -512, "position_cm": -12345, "events": 17, "rejected_frames": 3,
+        "twc_received": 44, "self_test": 0, "test_signals": "CODE", "test_carrier_hz": 3000,
+        "test_code_rate_chz": 1500, "test_level_mv": 498, "test_speed_cms": 0,
+    },
+    "LogEntry": {
+        "index": 16, "code": 212, "at_ms": 123456, "parameter": -305, "speed_cms": 1833,
+        "limit_cms": 1528, "position_cm": 98765, "mode": "automatic_run", "eb_cause": "overspeed",
+    },
+    "LogEnd": {"next_index": 17, "oldest_index": 2},
+    "IoInput": {
+        "carrier_hz": 3000, "code_rate_chz": 1500, "level_mv": 500, "tacho1_count": 65530,
+        "tacho1_edge_us": 4321, "tacho2_count": 12, "tacho2_edge_us": 1234, "tacho_backward": 2,
+        "marker": 3, "marker_edges": 7, "marker_edge_us": 9876,
+        "lines": "DOORS_CLOSED|HCR|EB_LOOP|FORWARD", "mode_switch": "automatic", "controller": -8,
+    },
+    "IoOutput": {
+        "outputs": "EB_RELAY|ALARM|CODE_VALID|HEALTHY", "limit_cms": 1528, "speed_cms": 1545,
+        "marker": 3, "marker_count": 9,
+    },
+    "TcmsToAtc": {"bits": "ATO_ENABLE|SERVICE_BRAKE_APPLIED", "load_100kg": 413, "alive": 200},
+    "AtcToTcms": {
+        "bits": "POWER|ATO_READY", "mode": "automatic_run", "effort": 1023, "target_cms": 1389,
+        "speed_cms": 1201,
+    },
+    "TwcWayside": STATION,
+    "TwcTrain": {
+        "answered_seq": 772, "station": 812, "train_number": 8051, "mode": "automatic",
+        "bits": "DOORS_CLOSED|STATION_VALID", "speed_cms": 33,
+    },
+}
+
+
+def block(wire, name, seq, stamp, given=None):
+    """A vector as text."""
+    given = VALUES.get(name, {}) if given is None else given
+    payload, parts = wire.payload(name, given)
+    body = wire.body(name, seq, stamp, given)
+    lines = [f"message {name}"]
+    lines += [f"header  {n:20} {v!s:44} {spaced(b)}" for n, v, b in wire.header(name, seq, stamp)]
+    lines += [f"code    {'':20} 0x{payload[0]:02x}{'':40} {payload[0]:02x}"]
+    lines += [f"field   {n:20} {v!s:44} {spaced(b)}" for n, v, b in parts]
+    lines += [f"fcs     {'':20} 0x{zlib.crc32(body):08x}{'':34} {spaced(fcs(body))}"]
+    lines += [f"frame   {spaced(closed(body))}"]
+    return "\n".join(lines) + "\n"
+
+
+def messages(wire, channel):
+    own = [name for name, entry in wire.messages.items() if entry[0] == channel]
+    blocks = [f"# Channel {channel}: every message, with a value in every field.\n"]
+    for i, name in enumerate(own):
+        blocks.append(block(wire, name, 0x0102 + 0x0101 * i, 0x00010203 + 0x01010101 * i))
+    return "\n".join(blocks)
+
+
+def escapes(wire):
+    """Flags and escapes in every part of a frame; those in the FCS are found by trying."""
+    code = {"session": 0x7E7D7D7E, "carrier_hz": 0x7D7E, "code_rate_chz": 0x5E7D, "level_mv": 0x7E20}
+    blocks = [
+        "# 7e and 7d in header, payload and FCS.\n",
+        "# In sequence number and time stamp.\n" + block(wire, "Identify", 0x7E7D, 0x7D5E7E5D),
+        "# In the payload, twice the same, and next to bytes that look like escaped ones.\n"
+        + block(wire, "TestCode", 1, 1000, code),
+    ]
+    keep = lambda seq: fcs(wire.body("KeepAlive", seq, 5000, VALUES["KeepAlive"]))
+    for place in range(4):
+        for special in (0x7E, 0x7D):
+            seq = next(s for s in range(65536) if keep(s)[place] == special)
+            note = f"# {special:02x} as FCS byte {place + 1} of 4.\n"
+            blocks.append(note + block(wire, "KeepAlive", seq, 5000))
+    seq = next(s for s in range(65536) if sum(b in b"\x7d\x7e" for b in keep(s)) >= 2)
+    blocks.append("# In two of the four FCS bytes.\n" + block(wire, "KeepAlive", seq, 5000))
+    return "\n".join(blocks)
+
+
+def checks():
+    texts = [b"123456789", b"", b"\0", b"\0\0\0\0", b"\xff\xff\xff\xff", b"~}", bytes(range(254))]
+    lines = ["# Bytes and their FCS as a number; `-` is no bytes at all."]
+    lines += [f"0x{zlib.crc32(text):08x}  {spaced(text) or '-'}" for text in texts]
+    return "\n".join(lines) + "\n"
+
+
+def bad(wire):
+    """Cases of frames that must be refused, each with its reason."""
+    one = lambda seq=1, stamp=1000, name="Identify": wire.frame(name, seq, stamp, VALUES.get(name, {}))
+    raw = lambda seq=1, stamp=1000: wire.body("Identify", seq, stamp, {})
+
+    def patched(offset, value, seq=1):
+        data = bytearray(raw(seq))
+        data[offset] = value
+        return closed(bytes(data))
+
+    good = one()
+    ok = "accept Identify"
+    cases = [
+        ("An ordinary frame, to begin with", [(0, ok, good)]),
+        ("Flags alone are no frames", [(0, "nothing", b"\x7e" * 9)]),
+        ("One flag between two frames", [(0, f"{ok},{ok}", one(1) + one(2)[1:])]),
+        ("Four bytes between flags", [(0, "reject too_short", b"\x7e\x01\x02\x03\x04\x7e")]),
+        ("13 bytes with a right FCS", [(0, "reject too_short", closed(raw()[:9]))]),
+        ("Header and FCS right, no payload", [(0, "reject layout", closed(raw()[:10]))]),
+        ("254 bytes, which is not too long, but no message",
+         [(0, "reject layout", closed(raw() + bytes(239)))]),
+        ("255 bytes with a right FCS; the last is garbage",
+         [(0, "reject too_long", closed(raw() + b"a" * 240))], "garbage 1"),
+        ("One bit wrong in the payload", [(0, "reject checksum", flipped(good, 11, 0x10))]),
+        ("One bit wrong in the FCS", [(0, "reject checksum", flipped(good, 13, 0x01))]),
+        ("FCS most significant octet first",
+         [(0, "reject checksum", stuffed(raw() + fcs(raw())[::-1]))]),
+        ("FCS not complemented",
+         [(0, "reject checksum", stuffed(raw() + bytes(b ^ 0xFF for b in fcs(raw()))))]),
+        ("FCS over the stuffed bytes", [(0, "reject checksum", fcs_over_stuffed(wire))]),
+        ("One byte missing", [(0, "reject checksum", good[:6] + good[7:])]),
+        ("Cut off, then a good one; one opening flag ends the first",
+         [(0, "nothing", good[:-4]), (5, f"reject too_short,{ok}", one(2, 1005))]),
+        ("Closing flag lost; the next frame's opening flag stands for it",
+         [(0, "nothing", good[:-1]), (5, f"{ok},{ok}", one(2, 1005))]),
+        ("Version 2", [(0, "reject version", patched(0, 2))]),
+        ("Version 0", [(0, "reject version", patched(0, 0))]),
+        ("Channel 0", [(0, "reject channel", patched(1, 0))]),
+        ("Channel 5", [(0, "reject channel", patched(1, 5))]),
+        ("From an unknown address", [(0, "reject address", patched(2, 0x11))]),
+        ("To an unknown address", [(0, "reject address", patched(3, 0x00))]),
+        ("To the bench, heard by the unit", [(0, "reject address", patched(3, 0x10))]),
+        ("From the I/O rack on the PTU channel", [(0, "reject address", patched(2, 0x30))]),
+        ("The unit's own frame, echoed",
+         [(0, "reject address", one(name="ArmState"))]),
+        ("The unit's own message under the tester's addresses",
+         [(0, "reject layout", closed(raw()[:10] + wire.payload("ArmState", {})[0]))]),
+        ("Aborted", [(0, "reject escape", good[:8] + b"\x7d\x7e")]),
+        ("An escape of a byte that is never escaped",
+         [(0, "reject escape", good[:2] + b"\x7d" + bytes([good[2] ^ 0x20]) + good[3:])],
+         f"garbage {len(good) - 4}"),
+        ("Unknown message code", [(0, "reject layout", patched(10, 0x7F))]),
+        ("One byte too few for the message",
+         [(0, "reject layout", closed(wire.body("TestMarker", 1, 1000, {})[:-1]))]),
+        ("One byte too many for the message", [(0, "reject layout", closed(raw() + b"\0"))]),
+        ("The same frame twice", [(0, ok, good), (10, "reject sequence", good)]),
+        ("Two frames exchanged",
+         [(0, ok, good), (10, ok, one(3, 1010)), (10, "reject sequence", one(2, 1005))], "gaps 1"),
+        ("1000 ahead is the most", [(0, ok, good), (10, ok, one(1001, 1010))], "gaps 999"),
+        ("1001 ahead", [(0, ok, good), (10, "reject sequence", one(1002, 1010))]),
+        ("The sequence number wraps", [(0, ok, one(65535)), (10, ok, one(0, 1010))]),
+        ("An old frame across the wrap", [(0, ok, one(0)), (10, "reject sequence", one(65535, 1010))]),
+        ("The time stamp goes backward by 1 ms", [(0, ok, good), (10, "reject stamp", one(2, 999))]),
+        ("The same time stamp is no fault", [(0, ok, good), (10, ok, one(2, 1000))]),
+        ("The time stamp wraps", [(0, ok, one(1, 0xFFFFFFFF)), (10, ok, one(2, 9))]),
+        ("500 ms late is not too late", [(0, ok, good), (700, ok, one(2, 1200))]),
+        ("501 ms late", [(0, ok, good), (701, "reject stamp", one(2, 1200))]),
+        ("A line blocked for 3 s delivers old frames in one burst, then a new one",
+         [(0, ok, good), (3000, "reject stamp,reject stamp", one(2, 1100) + one(3, 2400)),
+          (3010, ok, one(4, 4000))], "gaps 2"),
+        ("A sender whose clock stood still is taken again after 1 s",
+         [(0, ok, good), (3000, "reject stamp", one(2, 1500)), (3500, "reject stamp", one(3, 2000)),
+          (4000, ok, one(4, 2500)), (4010, ok, one(5, 2510))]),
+        ("A restarted sender is refused at first, and taken after 1 s of silence",
+         [(0, ok, one(500, 60000)), (999, "reject sequence", one(0, 100)), (1000, ok, one(1, 101))]),
+        ("Refused frames do not feed the time-out",
+         [(0, ok, one(500)), (400, "reject sequence", one(500)), (800, "reject sequence", one(500)),
+          (1000, ok, one(7, 5))]),
+        ("Noise before a frame", [(0, ok, b"\x00\xff\x55\x7d\x5e\x41" + good)], "garbage 6"),
+        ("Noise between two frames counts as a frame, for it stands between flags",
+         [(0, f"{ok},reject too_short,{ok}", good + b"\x00\xff\x55" + one(2))]),
+        ("A channel that is refused leaves the others alone",
+         [(0, ok, good), (10, "reject sequence,accept TcmsToAtc",
+                          good + one(1, 1010, "TcmsToAtc"))]),
+        ("The bench hears the unit", [(0, "accept ArmState", one(name="ArmState"))], "end bench"),
+        ("The bench does not hear itself", [(0, "reject address", good)], "end bench"),
+    ]
+    blocks = ["# Frames that must be refused, and some that must not; WIRE.md, section 11, says how to read this.\n"]
+    for what, feeds, *more in cases:
+        lines = [f"case {what}"] + more
+        lines += [f"{at:<5} {outcome:32}  {spaced(data)}" for at, outcome, data in feeds]
+        blocks.append("\n".join(lines) + "\n")
+    return "\n".join(blocks)
+
+
+def flipped(data, offset, mask):
+    return data[:offset] + bytes([data[offset] ^ mask]) + data[offset + 1:]
+
+
+def fcs_over_stuffed(wire):
+    body = wire.body("Identify", 0x7E7E, 1000, {})
+    inner = stuffed(body)[1:-1]
+    return stuffed(body + fcs(inner))
+
+
+def session(wire):
+    """The worked session of WIRE.md."""
+    rack = {
+        "carrier_hz": 0, "code_rate_chz": 0, "level_mv": 0, "tacho1_count": 0, "tacho1_edge_us": 65535,
+        "tacho2_count": 0, "tacho2_edge_us": 65535, "tacho_backward": 0, "marker": 0,
+        "marker_edges": 0, "marker_edge_us": 65535,
+        "lines": "DOORS_CLOSED|HCR|MAINTENANCE_KEY|FORWARD", "mode_switch": "manual", "controller": 0,
+    }
+    idle = {
+        "bits": "TRA_OK|STARTED|INPUTS_OK", "mode": "manual", "refusals": "NO_TWC|NO_CODE",
+        "code_index": 255, "eb_cause": "not_released", "fsb_cause": "no_code", "speed1_cms": 0,
+        "speed2_cms": 0, "target_cms": 0, "effort": 0, "position_cm": 0, "events": 1,
+        "rejected_frames": 0, "twc_received": 0, "self_test": 0, "test_signals": 0,
+        "test_carrier_hz": 0, "test_code_rate_chz": 0, "test_level_mv": 0, "test_speed_cms": 0,
+    }
+    coded = {
+        **idle, "bits": "ARMED|TRA_OK|STARTED|INPUTS_OK", "refusals": "NO_TWC", "code_index": 4,
+        "fsb_cause": "none", "events": 2, "test_signals": "CODE", "test_carrier_hz": 3000,
+        "test_code_rate_chz": 1500, "test_level_mv": 500,
+    }
+    output = {"outputs": "CODE_VALID|STANDSTILL|HEALTHY", "limit_cms": 1528, "speed_cms": 0,
+              "marker": 0, "marker_count": 0}
+    steps = [
+        ("The I/O rack holds the maintenance key on; nothing in the antenna, no tachometer pulse.",
+         0, ">", "IoInput", rack),
+        ("Listen.", 0, ">", "KeepAlive", {"session": 0}),
+        ("Status, every 50 ms: STARTED is set, so the self-test is over.", 50, "<", "Status", idle),
+        ("Who are you?", 60, ">", "Identify", None),
+        ("The unit says who it is.", 100, "<", "Identity", {**VALUES["Identity"], "self_test": 0}),
+        (f"Arm, session 0x{SESSION:08X}.", 110, ">", "ArmRequest", None),
+        (f"Challenge 0x{CHALLENGE:08X}.", 150, "<", "ArmChallenge", None),
+        (f"Its complement, exclusive-or the session: 0x{ANSWER:08X}.", 160, ">", "ArmConfirm", None),
+        ("Armed.", 200, "<", "ArmState", {"session": SESSION, "armed": 1, "refusal": "none"}),
+        ("3000 Hz with 15.00 Hz at 500 mV into the test coil.", 210, ">", "TestCode", None),
+        ("Request 4 (sequence number of the frame above) is accepted.", 250, "<", "StimulusAnswer",
+         {"request_seq": 4, "answer": "accepted"}),
+        ("Stay armed.", 500, ">", "KeepAlive", None),
+        ("Code 4 of the table is received, the board reads back what it makes.", 850, "<", "Status", coded),
+        ("Limit 1528 cm/s = 55 km/h; EB_RELAY is not set: the emergency brake is still applied.",
+         860, "<", "IoOutput", output),
+        ("Take the test code away.", 900, ">", "TestRelease", {"session": SESSION, "signals": "CODE"}),
+        ("Request 6 is accepted.", 950, "<", "StimulusAnswer", {"request_seq": 6, "answer": "accepted"}),
+        ("Leave.", 960, ">", "Disarm", None),
+        ("No longer armed.", 1000, "<", "ArmState", {"session": SESSION, "armed": 0, "refusal": "disarmed"}),
+    ]
+    boot = {">": 4660, "<": 90000}  # each side's own clock at time 0
+    seqs, lines = {}, []
+    for note, at, way, name, given in steps:
+        key = (way, wire.messages[name][0])
+        seq = seqs[key] = seqs.get(key, -1) + 1
+        given = {**wire.zeros(name), **(VALUES.get(name, {}) if given is None else given)}
+        data = spaced(wire.frame(name, seq, boot[way] + at, given))
+        lines += [f"# {note}", f"{at:<4} {way} {name:14} {data}"]
+    return "\n".join(lines) + "\n"
+
+
+def example(wire):
+    body = wire.body("Identify", 0, 0x1234, {})
+    rows = [("version", 0, 1), ("channel PTU", 1, 2), ("from the tester", 2, 3), ("to the unit", 3, 4),
+            ("sequence number 0", 4, 6), ("time stamp 4660 ms", 6, 10), ("code of Identify", 10, 11)]
+    lines = [f"{spaced(body[a:b]):40} {what}" for what, a, b in rows]
+    lines.append(f"{spaced(fcs(body)):40} FCS 0x{zlib.crc32(body):08X}, least significant octet first")
+    lines.append("")
+    lines.append(spaced(closed(body)))
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    wire = Wire((HERE.parent / "WIRE.md").read_text(encoding="utf-8"))
+    files = {f"{channel}.hex": messages(wire, channel) for channel in CHANNELS}
+    files |= {"escapes.hex": escapes(wire), "fcs.hex": checks(), "bad.hex": bad(wire),
+              "session.hex": session(wire), "example.txt": example(wire)}
+    for name, text in files.items():
+        (HERE / name).write_text(text, encoding="utf-8")
+
+
+main()
