@@ -222,6 +222,9 @@ impl Store {
 /// More than the crate has statements that repeat.
 const STATEMENT_CACHE: usize = 64;
 
+/// One page of the smallest size SQLite has.
+const SMALLEST_FILE_BYTES: u64 = 512;
+
 const READ_BUSY_TIMEOUT_MS: u32 = 5_000;
 
 fn connect(
@@ -247,7 +250,15 @@ fn connect(
 /// The schema version of a file of ours, 0 for an empty one; an error for any other file. Looks
 /// only, so that a file that is not ours stays as it is.
 fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError> {
+    // SQLite takes a file too short for its header for an empty one, and would write over it.
+    if std::fs::metadata(path).is_ok_and(|file| (1..SMALLEST_FILE_BYTES).contains(&file.len())) {
+        return Err(StoreError::NotADatabase {
+            path: path.to_path_buf(),
+        });
+    }
     let failed = |error| StoreError::from_sqlite(path, "opening", error);
+    // One snapshot: another program may be creating the file this moment.
+    let _snapshot = conn.unchecked_transaction().map_err(failed)?;
     let pragma = |sql: &str| {
         conn.query_row(sql, [], |row| row.get::<_, i32>(0))
             .map_err(failed)

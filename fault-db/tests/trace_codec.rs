@@ -107,6 +107,8 @@ fn traces() -> impl Strategy<Value = TraceData> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn any_trace_returns(trace in traces()) {
         let blob = codec().encode(&trace).expect("encodable");

@@ -1,0 +1,184 @@
+//! Files that are not what they should be: named, with the next move, and left as they were.
+
+mod common;
+
+use std::path::Path;
+
+use common::{T0_US, end, fault, ids, open, run_record};
+use fault_db::{
+    APPLICATION_ID, FaultFilter, OpenOptions, RunFilter, RunWriter, SCHEMA_VERSION, Store,
+    StoreError, Verdict,
+};
+use rusqlite::Connection;
+use tempfile::tempdir;
+
+fn refusal(path: &Path) -> StoreError {
+    Store::open(path, OpenOptions::new(ids(1))).expect_err("not ours to write")
+}
+
+#[test]
+fn a_text_file_is_not_a_database_and_stays_as_it_is() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("notes.txt");
+    for text in ["x", "speed codes\n", &"a long text ".repeat(1_000)] {
+        std::fs::write(&path, text).expect("written");
+        for error in [
+            refusal(&path),
+            Store::open_read_only(&path).expect_err("nor to read"),
+        ] {
+            assert!(matches!(error, StoreError::NotADatabase { .. }), "{error}");
+            assert!(error.to_string().contains("notes.txt") && error.to_string().contains("--db"));
+        }
+        assert_eq!(std::fs::read_to_string(&path).expect("still there"), text);
+    }
+}
+
+#[test]
+fn another_programs_database_is_refused_untouched() {
+    let dir = tempdir().expect("a directory");
+    for (name, sql) in [
+        (
+            "id.db",
+            "PRAGMA application_id = 77; CREATE TABLE theirs(x)",
+        ),
+        ("none.db", "CREATE TABLE theirs(x)"),
+        ("version.db", "PRAGMA user_version = 1"),
+    ] {
+        let path = dir.path().join(name);
+        Connection::open(&path)
+            .and_then(|conn| conn.execute_batch(sql))
+            .expect("made");
+        let before = std::fs::read(&path).expect("there");
+        let error = refusal(&path);
+        assert!(
+            matches!(error, StoreError::ForeignDatabase { .. }),
+            "{name}: {error}"
+        );
+        assert_eq!(std::fs::read(&path).expect("there"), before, "{name}");
+    }
+}
+
+#[test]
+fn a_newer_schema_is_refused_and_an_older_one_not_migrated_by_reading() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    open(&path).close().expect("closed");
+    let set = |version: i32| {
+        let conn = Connection::open(&path).expect("opens");
+        conn.pragma_update(None, "user_version", version)
+            .expect("set");
+    };
+    set(SCHEMA_VERSION + 1);
+    for error in [
+        refusal(&path),
+        Store::open_read_only(&path).expect_err("nor to read"),
+    ] {
+        let expected = format!(
+            "schema {}, this one knows {SCHEMA_VERSION}",
+            SCHEMA_VERSION + 1
+        );
+        assert!(matches!(error, StoreError::NewerSchema { .. }), "{error}");
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+}
+
+#[test]
+fn a_missing_file_is_created_by_writing_only() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let error = Store::open_read_only(&path).expect_err("nothing there");
+    assert!(matches!(error, StoreError::Missing { .. }), "{error}");
+    assert!(!path.exists());
+    let nowhere = dir.path().join("no/such/directory.db");
+    assert!(matches!(refusal(&nowhere), StoreError::CannotOpen { .. }));
+    assert!(matches!(refusal(dir.path()), StoreError::CannotOpen { .. }));
+    open(&path);
+    let conn = Connection::open(&path).expect("opens");
+    let pragma = |name: &str| -> i64 {
+        conn.pragma_query_value(None, name, |row| row.get(0))
+            .expect("readable")
+    };
+    assert_eq!(pragma("application_id"), i64::from(APPLICATION_ID));
+    assert_eq!(pragma("user_version"), i64::from(SCHEMA_VERSION));
+    assert_eq!(pragma("auto_vacuum"), 2, "incremental");
+}
+
+#[test]
+fn a_file_locked_by_another_is_named_so() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let options = OpenOptions::new(ids(1)).busy_timeout_ms(20);
+    let store = Store::open(&path, options).expect("opens");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let other = Connection::open(&path).expect("opens");
+    other.execute_batch("BEGIN EXCLUSIVE").expect("locked");
+    let error = writer.fault(&fault(1, T0_US)).expect_err("locked out");
+    assert!(matches!(error, StoreError::Locked { .. }), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("a.db is locked by another program"),
+        "{error}"
+    );
+    assert_eq!(
+        store
+            .runs(&RunFilter::default(), &|_| true)
+            .expect("reading goes on")
+            .len(),
+        1
+    );
+    other.execute_batch("ROLLBACK").expect("released");
+    writer.fault(&fault(1, T0_US)).expect("goes on");
+    writer.finish(&end(Verdict::Passed)).expect("finished");
+}
+
+/// Method: tests may run as root, whom permissions do not stop; an immutable attribute or a
+/// read-only mount is not to be had everywhere. What is left is a reader's own connection.
+#[test]
+fn reading_never_writes() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a b?#.db");
+    let writer = open(&path);
+    RunWriter::begin(&writer, &run_record("ATC-7")).expect("begun");
+    writer.close().expect("closed");
+    let before = std::fs::read(&path).expect("there");
+    let store = Store::open_read_only(&path).expect("opens");
+    assert!(store.is_read_only());
+    assert_eq!(
+        store
+            .runs(&RunFilter::default(), &|_| false)
+            .expect("listed")
+            .len(),
+        1
+    );
+    assert_eq!(store.faults(&FaultFilter::default()).expect("listed"), []);
+    let Err(error) = RunWriter::begin(&store, &run_record("ATC-7")) else {
+        panic!("a reader must not write");
+    };
+    assert!(matches!(error, StoreError::ReadOnly { .. }), "{error}");
+    assert_eq!(std::fs::read(&path).expect("there"), before);
+}
+
+#[test]
+fn a_truncated_file_is_damaged_not_a_panic() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    for code in 0..50 {
+        writer.fault(&fault(code, T0_US)).expect("stored");
+    }
+    drop(writer);
+    store.close().expect("closed");
+    let bytes = std::fs::read(&path).expect("there");
+    for part in [10, 3, 2] {
+        std::fs::write(&path, &bytes[..bytes.len() / part]).expect("cut");
+        let found = Store::open_read_only(&path)
+            .and_then(|store| store.check())
+            .map(|report| report.problems.len());
+        assert!(
+            !matches!(found, Ok(0)),
+            "a part of 1/{part} passed for whole"
+        );
+    }
+}
