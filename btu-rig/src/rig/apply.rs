@@ -1,0 +1,279 @@
+//! What each stimulus does, and how the bench is made safe.
+
+use protocol::Instant;
+
+use crate::procedure::Refusal;
+use crate::stimulus::{Stimulus, TachoCondition, WaysideCondition};
+
+use super::antenna::MAX_RATE_HZ;
+use super::exchange::Request;
+use super::ranges::{U16_MAX, in_range, positive};
+use super::{Rig, Track, test_signals};
+
+/// Fastest wheel, km/h: the catalogue's range.
+const MAX_SPEED_KMH: f64 = 200.0;
+/// Hardest acceleration of a wheel, m/s²: far beyond any train, for tests of plausibility.
+const MAX_ACCEL_MPS2: f64 = 100.0;
+/// Longest way of one travel, m.
+const MAX_TRAVEL_M: f64 = 100_000.0;
+/// Most spurious pulses, 1/s.
+const MAX_NOISE_PER_S: f64 = 5_000.0;
+/// Greatest factor between a channel and its wheel.
+const MAX_FACTOR: f64 = 10.0;
+/// Fastest drift: what the whole range in a second would take.
+const MAX_DRIFT_PER_S: f64 = U16_MAX;
+
+impl Rig {
+    /// Does something to the unit, from the next scan on.
+    ///
+    /// # Errors
+    /// What the bench cannot do, in words for the technician.
+    pub fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
+        if self.making_safe {
+            self.rest_quiescent();
+        }
+        match *stimulus {
+            Stimulus::Code {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            } => {
+                self.set_code(carrier_hz, rate_hz, level_mv)?;
+            }
+            Stimulus::CodeDrift {
+                rate_hz_per_s,
+                level_mv_per_s,
+            } => {
+                let limit = MAX_DRIFT_PER_S;
+                in_range(
+                    "drift of the code rate",
+                    rate_hz_per_s,
+                    -limit,
+                    limit,
+                    "Hz/s",
+                )?;
+                in_range("drift of the level", level_mv_per_s, -limit, limit, "mV/s")?;
+                self.antenna.drift(rate_hz_per_s, level_mv_per_s);
+            }
+            Stimulus::CodeOff => self.antenna.off(),
+            Stimulus::Speed { to, accel_mps2 } => {
+                self.need_generator()?;
+                in_range("speed", to.kmh(), 0.0, MAX_SPEED_KMH, "km/h")?;
+                positive("acceleration", accel_mps2, MAX_ACCEL_MPS2, "m/s²")?;
+                self.wheel.go_to(to, accel_mps2);
+            }
+            Stimulus::Travel {
+                distance_m,
+                speed,
+                accel_mps2,
+            } => {
+                self.need_generator()?;
+                positive("distance", distance_m, MAX_TRAVEL_M, "m")?;
+                positive("speed", speed.kmh(), MAX_SPEED_KMH, "km/h")?;
+                positive("acceleration", accel_mps2, MAX_ACCEL_MPS2, "m/s²")?;
+                self.wheel.travel(distance_m, speed, accel_mps2)?;
+            }
+            Stimulus::Direction { backward } => {
+                self.need_generator()?;
+                self.wheel.set_backward(backward)?;
+            }
+            Stimulus::Tacho { channel, condition } => self.set_tacho(channel, condition)?,
+            Stimulus::TrainDriven { on } => self.drive_train(on),
+            Stimulus::Marker { psm } => {
+                in_range("marker", f64::from(psm), 1.0, 4.0, "")?;
+                self.markers.pulse(psm)?;
+            }
+            Stimulus::MarkersAlong { section } => self.lay_section(section)?,
+            Stimulus::Station(data) => self.wayside.set_data(data),
+            Stimulus::Wayside(condition) => self.wayside.set_condition(condition),
+            Stimulus::Doors { closed } => self.desk.doors_closed = closed,
+            Stimulus::Hcr { on } => self.desk.hcr = on,
+            Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
+            Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
+            Stimulus::Controller { notch } => {
+                in_range("controller notch", f64::from(notch), -8.0, 4.0, "")?;
+                self.desk.controller = notch;
+            }
+            Stimulus::Reverser { position } => {
+                in_range("reverser position", f64::from(position), -1.0, 1.0, "")?;
+                self.desk.reverser = position;
+            }
+            Stimulus::Acknowledge => self.desk.press_acknowledge(now),
+            Stimulus::Start => self.desk.press_start(now),
+            Stimulus::Tcms(condition) => self.tcms.condition = condition,
+            Stimulus::AtoEnable { on } => self.tcms.ato_enable = on,
+            Stimulus::Load { passengers_kg } => {
+                let full_kg = self.train.config().full_load_kg;
+                self.tcms.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
+            }
+            _ => self.apply_ptu(now, stimulus)?,
+        }
+        Ok(())
+    }
+
+    /// Stimuli that go through the unit's TEST board.
+    fn apply_ptu(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
+        let session = self.tester.session();
+        let request = match *stimulus {
+            Stimulus::PtuArm => Request::Arm,
+            Stimulus::PtuDisarm => Request::Disarm,
+            Stimulus::PtuSilent { on } => {
+                self.tester.set_silent(now, on);
+                return Ok(());
+            }
+            Stimulus::PtuCode {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            } => test_signals::code(session, carrier_hz, rate_hz, level_mv)?,
+            Stimulus::PtuSpeed {
+                channels,
+                backward,
+                to,
+                accel_mps2,
+            } => test_signals::speed(session, channels, backward, to, accel_mps2)?,
+            Stimulus::PtuMarker { psm } => test_signals::marker(session, psm),
+            Stimulus::PtuTwc(data) => test_signals::station(session, &data),
+            Stimulus::PtuRelease => test_signals::release(session),
+            Stimulus::PtuClearLog => test_signals::clear_log(session),
+            _ => return Err(Refusal(format!("this bench cannot do {stimulus:?}"))),
+        };
+        self.tester.request(request)
+    }
+
+    /// Everything asked of the unit is answered.
+    ///
+    /// # Errors
+    /// What the unit refused or did not answer, once.
+    pub fn settled(&mut self) -> Result<bool, Refusal> {
+        self.tester.settled()
+    }
+
+    /// Goes back to the quiescent state: at once what can be, and what a turning wheel needs so
+    /// that the unit sees nothing implausible (code, reverser, tachometers) at standstill.
+    pub fn make_safe(&mut self, now: Instant) {
+        self.train_driven = false;
+        self.wheel.stop();
+        self.antenna.drift(0.0, 0.0);
+        self.markers.clear();
+        self.desk.doors_closed = true;
+        self.tcms.reset();
+        self.wayside.set_condition(WaysideCondition::Good);
+        self.tester.make_safe(now);
+        self.making_safe = true;
+        self.finish_making_safe();
+    }
+
+    /// Quiescent: at standstill, tester listening, nothing under way.
+    pub fn safe(&self) -> bool {
+        !self.making_safe && !self.train_driven && self.wheel.standing() && self.tester.safe()
+    }
+
+    /// Once the wheels stand, the rest of the bench rests, too.
+    pub(super) fn finish_making_safe(&mut self) {
+        if self.making_safe && self.wheel.standing() {
+            self.rest_quiescent();
+        }
+    }
+
+    fn rest_quiescent(&mut self) {
+        self.making_safe = false;
+        self.antenna.off();
+        self.track = None;
+        self.desk.reset();
+        self.wayside.reset(&self.line.sections[0]);
+        let way_m = self.wheel.motion().way_m;
+        for tacho in &mut self.tachos {
+            tacho.set_condition(TachoCondition::Good, way_m);
+        }
+    }
+
+    fn set_code(&mut self, carrier: f64, rate: f64, level: f64) -> Result<(), Refusal> {
+        let carrier_hz = in_range("carrier", carrier, 0.0, U16_MAX, "Hz")?;
+        let rate_hz = in_range("code rate", rate, 0.0, MAX_RATE_HZ, "Hz")?;
+        let level_mv = in_range("level", level, 0.0, U16_MAX, "mV")?;
+        self.antenna.set(carrier_hz, rate_hz, level_mv);
+        Ok(())
+    }
+
+    fn set_tacho(&mut self, channel: u8, condition: TachoCondition) -> Result<(), Refusal> {
+        match condition {
+            TachoCondition::Noisy { per_s } => {
+                positive("spurious pulses", per_s, MAX_NOISE_PER_S, "1/s")?;
+            }
+            TachoCondition::Scaled { factor } => {
+                in_range("tachometer factor", factor, 0.0, MAX_FACTOR, "")?;
+            }
+            TachoCondition::Good | TachoCondition::Dead => {}
+        }
+        let way_m = self.wheel.motion().way_m;
+        let tacho = usize::from(channel)
+            .checked_sub(1)
+            .and_then(|i| self.tachos.get_mut(i));
+        tacho
+            .ok_or_else(|| Refusal(format!("there is no tachometer {channel}: use 1 or 2")))?
+            .set_condition(condition, way_m);
+        Ok(())
+    }
+
+    fn drive_train(&mut self, on: bool) {
+        if on && !self.train_driven {
+            self.train.set_velocity(self.wheel.velocity_mps());
+        }
+        if self.train_driven && !on {
+            // The generators take over the train's speed and bring it to rest.
+            self.wheel.stop();
+        }
+        self.train_driven = on;
+    }
+
+    fn need_generator(&self) -> Result<(), Refusal> {
+        if self.train_driven {
+            return Err(Refusal(
+                "the train model turns the wheels: switch it off to use the generators".to_owned(),
+            ));
+        }
+        Ok(())
+    }
+
+    fn lay_section(&mut self, number: Option<u16>) -> Result<(), Refusal> {
+        let Some(number) = number else {
+            self.markers.lift();
+            self.track = None;
+            return Ok(());
+        };
+        let Some(section) = self.line.section(number) else {
+            let known: Vec<_> = self
+                .line
+                .sections
+                .iter()
+                .map(|s| s.section.to_string())
+                .collect();
+            return Err(Refusal(format!(
+                "line {} has no section {number}; it has {}",
+                self.line.name,
+                known.join(", ")
+            )));
+        };
+        let position_m = self.wheel.motion().position_m;
+        self.markers.lay(section, position_m);
+        self.track = Some(Track::new(section.clone(), position_m));
+        Ok(())
+    }
+}
+
+/// The trait the procedure runner drives; the inherent methods above are its whole content.
+impl crate::procedure::Driver for Rig {
+    fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
+        Self::apply(self, now, stimulus)
+    }
+    fn settled(&mut self) -> Result<bool, Refusal> {
+        Self::settled(self)
+    }
+    fn make_safe(&mut self, now: Instant) {
+        Self::make_safe(self, now);
+    }
+    fn safe(&self) -> bool {
+        Self::safe(self)
+    }
+}

@@ -1,0 +1,93 @@
+//! The rig and a unit on a wire, moved on together one scan at a time.
+
+use protocol::{Instant, SCAN};
+use thiserror::Error;
+
+use super::Rig;
+
+/// The connection to the unit broke.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{link}: {reason}")]
+pub struct LinkFailure {
+    /// What it is connected by, as the user named it.
+    pub link: String,
+    /// What went wrong.
+    pub reason: String,
+}
+
+/// A unit at the other end of a byte stream: embedded, or on a port.
+pub trait UnitLink {
+    /// Hands over what the rig sent in this scan and appends what has come from the unit.
+    ///
+    /// # Errors
+    /// When nothing can be sent or received any more.
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure>;
+}
+
+/// A rig with its unit. Time is virtual; over a port, whoever calls paces the ticks.
+#[derive(Debug)]
+pub struct Bench<L> {
+    rig: Rig,
+    link: L,
+    now: Instant,
+    to_unit: Vec<u8>,
+    from_unit: Vec<u8>,
+}
+
+impl<L: UnitLink> Bench<L> {
+    /// A bench at the beginning of time.
+    pub fn new(rig: Rig, link: L) -> Self {
+        Self {
+            rig,
+            link,
+            now: Instant::ZERO,
+            to_unit: Vec::new(),
+            from_unit: Vec::new(),
+        }
+    }
+
+    /// Moves on by one scan.
+    ///
+    /// # Errors
+    /// When the connection to the unit broke.
+    pub fn tick(&mut self) -> Result<(), LinkFailure> {
+        self.now += SCAN;
+        self.to_unit.clear();
+        self.rig.step(self.now, &mut self.to_unit);
+        self.from_unit.clear();
+        self.link
+            .exchange(self.now, &self.to_unit, &mut self.from_unit)?;
+        self.rig.receive(self.now, &self.from_unit);
+        Ok(())
+    }
+
+    /// Time of the last tick.
+    pub fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// The rig.
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    /// The rig, to be driven.
+    pub fn rig_mut(&mut self) -> &mut Rig {
+        &mut self.rig
+    }
+
+    /// The unit's side.
+    pub fn link(&self) -> &L {
+        &self.link
+    }
+
+    /// The unit's side, to be changed.
+    pub fn link_mut(&mut self) -> &mut L {
+        &mut self.link
+    }
+}

@@ -1,0 +1,299 @@
+//! Requests of the tester that the unit must answer: arming, disarming, test signals.
+//!
+//! One request is under way at a time, and one begins in a cycle at most: the wire has a budget. Each is repeated when no answer comes, and given up with
+//! a text that names it; whatever was waiting behind it is dropped then, because it may depend on
+//! it.
+
+use std::collections::VecDeque;
+
+use protocol::link::Link;
+use protocol::message::{
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, Message,
+    StimulusAnswer,
+};
+use protocol::{CYCLE, Duration, Instant};
+
+use crate::procedure::Refusal;
+
+/// Requests that may wait.
+const MAX_QUEUE: usize = 32;
+/// Times a request is sent before it is given up.
+const MAX_ATTEMPTS: usize = 3;
+/// Time the unit has to answer; a unit at 115 200 baud answers within two cycles.
+const ANSWER_TIME: Duration = Duration::from_ms(300);
+/// Pause before arming is tried again while the unit starts up or another session lapses.
+const ARM_PAUSE: Duration = Duration::from_ms(200);
+/// How long that is tried [default].
+const ARM_PATIENCE: Duration = Duration::from_ms(5000);
+
+/// Something asked of the unit.
+#[derive(Clone, Copy, Debug)]
+pub enum Request {
+    /// The whole arm exchange.
+    Arm,
+    /// The end of the session.
+    Disarm,
+    /// A message that is answered by `StimulusAnswer`.
+    Stimulus {
+        /// The message.
+        message: Message,
+        /// What to call it.
+        what: &'static str,
+        /// Doing it twice is the same as doing it once.
+        repeatable: bool,
+    },
+}
+
+/// The request under way.
+#[derive(Debug)]
+struct Current {
+    request: Request,
+    begun: Instant,
+    /// When it is sent or given up next.
+    due: Instant,
+    attempts: usize,
+    /// Sequence numbers it was sent with: a late answer to an earlier try is an answer.
+    seqs: [u16; MAX_ATTEMPTS],
+    /// Challenge to be answered.
+    challenge: Option<u32>,
+}
+
+/// Requests and their outcome.
+#[derive(Debug)]
+pub struct Exchange {
+    session: u32,
+    queue: VecDeque<Request>,
+    current: Option<Current>,
+    /// Earliest time of the next request.
+    may_send: Instant,
+    armed_at: Option<Instant>,
+    failure: Option<Refusal>,
+    /// Nobody waits for the outcome: the bench is being made safe.
+    quiet: bool,
+}
+
+impl Exchange {
+    /// Nothing asked, not armed; `session` must not be 0.
+    pub fn new(session: u32) -> Self {
+        Self {
+            session,
+            queue: VecDeque::with_capacity(MAX_QUEUE),
+            current: None,
+            may_send: Instant::ZERO,
+            armed_at: None,
+            failure: None,
+            quiet: false,
+        }
+    }
+
+    /// Puts a request at the end.
+    ///
+    /// # Errors
+    /// When too many wait.
+    pub fn push(&mut self, request: Request) -> Result<(), Refusal> {
+        if self.queue.len() >= MAX_QUEUE {
+            return Err(Refusal(format!(
+                "{MAX_QUEUE} requests to the unit wait for an answer already"
+            )));
+        }
+        self.quiet = false;
+        if matches!(request, Request::Disarm) && self.idle() && !self.armed() {
+            // A unit that is not armed for this session does not answer a disarm request.
+            return Ok(());
+        }
+        self.queue.push_back(request);
+        Ok(())
+    }
+
+    /// Drops everything under way and asks for `requests` instead, whose failure is not reported.
+    pub fn replace(&mut self, requests: impl IntoIterator<Item = Request>) {
+        self.queue.clear();
+        self.current = None;
+        self.failure = None;
+        self.queue.extend(requests);
+        self.quiet = true;
+    }
+
+    /// Nothing is under way.
+    pub fn idle(&self) -> bool {
+        self.current.is_none() && self.queue.is_empty()
+    }
+
+    /// Armed for this session, as far as is known.
+    pub fn armed(&self) -> bool {
+        self.armed_at.is_some()
+    }
+
+    /// Arming is under way or done: there is something to disarm.
+    pub fn may_be_armed(&self) -> bool {
+        self.armed()
+            || self
+                .current
+                .as_ref()
+                .is_some_and(|c| matches!(c.request, Request::Arm))
+    }
+
+    /// The end of the session is asked for.
+    pub fn disarming(&self) -> bool {
+        let current = self.current.as_ref().map(|current| &current.request);
+        current
+            .into_iter()
+            .chain(&self.queue)
+            .any(|r| matches!(r, Request::Disarm))
+    }
+
+    /// What failed since this was asked last.
+    pub fn take_failure(&mut self) -> Option<Refusal> {
+        self.failure.take()
+    }
+
+    /// Sends what is due.
+    pub fn step(&mut self, now: Instant, link: &mut Link, out: &mut Vec<u8>) {
+        if self.current.is_none()
+            && now >= self.may_send
+            && let Some(request) = self.queue.pop_front()
+        {
+            self.current = Some(Current::new(request, now));
+        }
+        let session = self.session;
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        if let Some(challenge) = current.challenge.take() {
+            let answer = !challenge ^ session;
+            link.send(now, &ArmConfirm { session, answer }.into(), out);
+            current.due = now + ANSWER_TIME;
+            return;
+        }
+        if now < current.due {
+            return;
+        }
+        if current.attempts == current.most_attempts() {
+            let text = format!(
+                "the unit did not answer {} within {} ms",
+                current.what(),
+                now.since(current.begun).as_ms()
+            );
+            self.fail(text);
+            return;
+        }
+        let message = match current.request {
+            Request::Arm => ArmRequest { session }.into(),
+            Request::Disarm => Disarm { session }.into(),
+            Request::Stimulus { message, .. } => message,
+        };
+        current.seqs[current.attempts] = link.send(now, &message, out);
+        current.attempts += 1;
+        current.due = now + ANSWER_TIME;
+        self.may_send = now + CYCLE;
+    }
+
+    /// Takes the unit's challenge; the next step answers it.
+    pub fn hear_challenge(&mut self, heard: &ArmChallenge) {
+        if let Some(current) = &mut self.current
+            && matches!(current.request, Request::Arm)
+            && heard.session == self.session
+        {
+            current.challenge = Some(heard.challenge);
+        }
+    }
+
+    /// Takes the outcome of arming, or the notice that it lapsed.
+    pub fn hear_arm_state(&mut self, now: Instant, state: &ArmState) {
+        if state.session != self.session {
+            return;
+        }
+        self.armed_at = (state.armed != 0).then_some(now);
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        let patient = now.since(current.begun) < ARM_PATIENCE;
+        match (current.request, state.armed != 0) {
+            (Request::Arm, true) | (Request::Disarm, false) => self.current = None,
+            (Request::Arm, false) => match state.refusal {
+                // Not about this exchange but the end of the last one.
+                ArmRefusal::TesterSilent | ArmRefusal::Disarmed => {}
+                ArmRefusal::StartingUp | ArmRefusal::Busy if patient => {
+                    current.attempts = 0;
+                    current.due = now + ARM_PAUSE;
+                }
+                refusal => self.fail(format!("the unit refused to arm: {}", refusal.label())),
+            },
+            _ => {}
+        }
+    }
+
+    /// Takes the answer to a stimulus.
+    pub fn hear_answer(&mut self, heard: &StimulusAnswer) {
+        let Some(current) = &self.current else { return };
+        let asked = current.seqs[..current.attempts].contains(&heard.request_seq);
+        if !asked || !matches!(current.request, Request::Stimulus { .. }) {
+            return;
+        }
+        let what = current.what();
+        match heard.answer {
+            Answer::Accepted => self.current = None,
+            answer => self.fail(format!("unit refused {what}: {}", answer.label())),
+        }
+    }
+
+    /// Takes the armed bit of the unit's status.
+    pub fn hear_armed_bit(&mut self, now: Instant, armed: bool) {
+        // A status made just before arming may still be on its way.
+        if !armed && self.armed_at.is_some_and(|at| now.since(at) >= ANSWER_TIME) {
+            self.armed_at = None;
+        }
+    }
+
+    /// The unit was started again: nothing it agreed to holds.
+    pub fn hear_restart(&mut self) {
+        self.armed_at = None;
+        if !self.idle() {
+            self.fail("the unit restarted before it answered".to_owned());
+        }
+    }
+
+    fn fail(&mut self, text: String) {
+        let failed = self.current.take();
+        if failed.is_some_and(|current| matches!(current.request, Request::Disarm)) {
+            // From here on the keep-alive names no session, and arming lapses by itself.
+            self.armed_at = None;
+        }
+        if self.quiet {
+            // Making safe goes on: what one request did not reach the next may.
+            return;
+        }
+        self.queue.clear();
+        self.failure.get_or_insert(Refusal(text));
+    }
+}
+
+impl Current {
+    fn new(request: Request, now: Instant) -> Self {
+        Self {
+            request,
+            begun: now,
+            due: now,
+            attempts: 0,
+            seqs: [0; MAX_ATTEMPTS],
+            challenge: None,
+        }
+    }
+
+    fn most_attempts(&self) -> usize {
+        match self.request {
+            Request::Stimulus {
+                repeatable: false, ..
+            } => 1,
+            _ => MAX_ATTEMPTS,
+        }
+    }
+
+    fn what(&self) -> &'static str {
+        match self.request {
+            Request::Arm => "the arm request",
+            Request::Disarm => "the disarm request",
+            Request::Stimulus { what, .. } => what,
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! The bench around the unit under test: what a train, a wayside and a tester give it, and what
+//! it answers. It sees the unit only through frames.
+//!
+//! A scan is [`Rig::step`], the exchange of bytes, [`Rig::receive`]. Read in this order: this
+//! file, `apply` (what each stimulus does), `wheel` and `tacho` (pulses), `tester` (the session).
+//!
+//! Terms: *way* is distance rolled, never falling; *position* is distance run, forward positive;
+//! *quiescent* is the state after [`Rig::new`] and after making safe, in which a healthy unit logs
+//! no fault.
+
+mod antenna;
+mod apply;
+mod bench;
+mod desk;
+mod exchange;
+mod link_watch;
+mod log_reader;
+mod markers;
+mod motion;
+mod random;
+mod ranges;
+mod sample;
+mod tacho;
+mod tcms;
+mod test_signals;
+mod tester;
+#[cfg(test)]
+mod tests;
+mod track;
+mod train;
+mod wayside;
+mod wheel;
+
+use protocol::config::UnitConfig;
+use protocol::line::Line;
+use protocol::link::{Counters, End, Link};
+use protocol::message::{Identity, IoInput, Message};
+use protocol::signal::{Sample, Signal};
+use protocol::{Instant, SCAN};
+
+use crate::procedure::UnitEvent;
+use crate::stimulus::{TachoCondition, WaysideCondition};
+
+pub use bench::{Bench, LinkFailure, UnitLink};
+
+use antenna::Antenna;
+use desk::Desk;
+use link_watch::LinkWatch;
+use markers::Markers;
+use random::Random;
+use sample::Recorder;
+use tacho::Tacho;
+use tcms::Tcms;
+use tester::Tester;
+use track::Track;
+use train::{Train, TrainInputs};
+use wayside::Wayside;
+use wheel::Wheel;
+
+/// The train is integrated in this many steps a scan: 5 ms each.
+const TRAIN_STEPS: usize = 2;
+
+/// Everything around the unit.
+#[derive(Debug)]
+pub struct Rig {
+    line: Line,
+    antenna: Antenna,
+    wheel: Wheel,
+    tachos: [Tacho; 2],
+    train: Train,
+    /// The wheels follow the train model instead of their generator.
+    train_driven: bool,
+    track: Option<Track>,
+    markers: Markers,
+    wayside: Wayside,
+    tcms: Tcms,
+    desk: Desk,
+    tester: Tester,
+    /// Slowing down to a standstill, after which the rest is made quiescent.
+    making_safe: bool,
+    braking: bool,
+    link: Link,
+    watch: LinkWatch,
+    recorder: Recorder,
+    now: Instant,
+}
+
+impl Rig {
+    /// A quiescent rig for a type of unit on a line. `line` must have a section, as every
+    /// [`Line::from_toml`] has.
+    pub fn new(config: &UnitConfig, line: &Line, seed: u64) -> Self {
+        let mut random = Random::new(seed);
+        let pulse_m = config.metres_per_pulse();
+        let tachos = [0, 1].map(|channel| Tacho::new(channel, pulse_m, random.fork()));
+        let wayside = Wayside::new(&line.sections[0], random.fork());
+        // A session number is never 0.
+        let session = random.next_u64() as u32 | 1;
+        let mut rig = Self {
+            line: line.clone(),
+            antenna: Antenna::default(),
+            wheel: Wheel::default(),
+            tachos,
+            train: Train::default(),
+            train_driven: false,
+            track: None,
+            markers: Markers::default(),
+            wayside,
+            tcms: Tcms::default(),
+            desk: Desk::default(),
+            tester: Tester::new(session),
+            making_safe: false,
+            braking: false,
+            link: Link::new(End::Bench),
+            watch: LinkWatch::default(),
+            recorder: Recorder::default(),
+            now: Instant::ZERO,
+        };
+        rig.record();
+        rig
+    }
+
+    /// One scan: generators advance, frames that are due are appended to `out`.
+    pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
+        self.now = now;
+        self.watch.step(now);
+        self.recorder.step(now);
+        self.desk.step(self.recorder.outputs());
+        self.antenna.step();
+        self.roll();
+        for tacho in &mut self.tachos {
+            tacho.step(self.wheel.motion());
+        }
+        self.markers.step(self.wheel.motion());
+        self.finish_making_safe();
+
+        self.link.send(now, &self.io_input(now).into(), out);
+        if let Some(message) = self.tcms.step(now, self.braking) {
+            self.link.send(now, &message.into(), out);
+        }
+        self.wayside.step(now, &mut self.link, out);
+        self.tester.step(now, &mut self.link, out);
+        self.record();
+    }
+
+    /// Takes what came from the unit.
+    pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
+        self.now = now;
+        self.watch.note(bytes.len());
+        self.link.push(bytes);
+        while let Some(received) = self.link.poll(now) {
+            match &received.message {
+                Message::IoOutput(io) => self.recorder.hear_io(now, io),
+                Message::AtcToTcms(command) => {
+                    self.tcms.hear(now, command);
+                    self.recorder.hear_tcms(now, command);
+                }
+                Message::TwcTrain(answer) => {
+                    self.wayside.hear_answer();
+                    self.recorder.hear_twc(now, answer, self.wayside.answers());
+                }
+                message => {
+                    if let Message::Status(status) = message {
+                        self.recorder.hear_status(now, status);
+                    }
+                    self.tester.hear(now, message);
+                }
+            }
+        }
+    }
+
+    /// The present value of every signal. What the unit has not said for 500 ms is not known.
+    pub fn sample(&self) -> &Sample {
+        &self.recorder.sample
+    }
+
+    /// New entries of the unit's log in the order of their indices, each once. Indices begin anew
+    /// when the unit is started again.
+    pub fn take_events(&mut self) -> Vec<UnitEvent> {
+        self.tester.take_events()
+    }
+
+    /// Entries the log had when the unit was first heard: those with a lower index are older than
+    /// this bench's work. 0 after a restart of the unit, `None` before it is heard.
+    pub fn events_at_contact(&self) -> Option<u32> {
+        self.tester.events_at_contact()
+    }
+
+    /// Every event the unit says it has logged has been read.
+    pub fn log_up_to_date(&self) -> bool {
+        self.tester.log().up_to_date()
+    }
+
+    /// Log entries that were overwritten or cleared in the unit before they could be read.
+    pub fn events_overwritten(&self) -> u64 {
+        self.tester.log().overwritten()
+    }
+
+    /// Who the unit is, once it has said so.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.tester.identity()
+    }
+
+    /// Times the unit was started again since it was first heard.
+    pub fn unit_restarts(&self) -> u32 {
+        self.tester.restarts()
+    }
+
+    /// What is wrong with the connection, after a time allowed for first contact.
+    pub fn link_error(&self) -> Option<String> {
+        self.watch
+            .error(self.now, &self.link, self.tester.speaks_since())
+    }
+
+    /// Frames taken and refused by the rig.
+    pub fn counters(&self) -> &Counters {
+        self.link.counters()
+    }
+
+    /// The wheels do what they were last told to: speed reached, or distance run.
+    pub fn motion_settled(&self) -> bool {
+        self.train_driven || self.wheel.settled()
+    }
+
+    /// Turns the wheels through one scan.
+    fn roll(&mut self) {
+        let inputs = self.train_inputs();
+        if !self.train_driven {
+            self.wheel.step();
+            self.braking = inputs.full_service || inputs.emergency || inputs.demand < 0.0;
+            return;
+        }
+        let dt = SCAN.as_secs() / TRAIN_STEPS as f64;
+        let states: [_; TRAIN_STEPS] = std::array::from_fn(|_| self.train.step(dt, &inputs));
+        self.wheel
+            .follow(states.iter().flat_map(|state| state.pieces));
+        self.braking = states[TRAIN_STEPS - 1].braking;
+    }
+
+    fn train_inputs(&self) -> TrainInputs {
+        let mut inputs = self
+            .tcms
+            .train_inputs(self.now, &self.desk, self.recorder.outputs());
+        if let Some(track) = &self.track {
+            let position_m = self.wheel.motion().position_m;
+            inputs.gradient_permille = track.gradient_permille(position_m);
+            inputs.curve_radius_m = track.curve_radius_m(position_m);
+        }
+        inputs
+    }
+
+    /// What the unit's inputs see at `now`.
+    fn io_input(&self, now: Instant) -> IoInput {
+        let [one, two] = &self.tachos;
+        IoInput {
+            carrier_hz: self.antenna.carrier_hz(),
+            code_rate_chz: self.antenna.rate_chz(),
+            level_mv: self.antenna.level_mv(),
+            tacho1_count: one.count(),
+            tacho1_edge_us: one.age_us(),
+            tacho2_count: two.count(),
+            tacho2_edge_us: two.age_us(),
+            tacho_backward: if self.wheel.backward() { 0b11 } else { 0 },
+            marker: self.markers.last(),
+            marker_edges: self.markers.edges(),
+            marker_edge_us: self.markers.age_us(),
+            lines: self.desk.lines(now),
+            mode_switch: self.desk.mode_switch,
+            controller: self.desk.controller,
+        }
+    }
+
+    /// Records what the rig makes, as it is sent.
+    fn record(&mut self) {
+        self.recorder.note_lines(self.desk.lines(self.now));
+        let data = self.wayside.data();
+        let sample = &mut self.recorder.sample;
+        for (signal, value) in [
+            (Signal::CarrierHz, f64::from(self.antenna.carrier_hz())),
+            (
+                Signal::CodeRateHz,
+                f64::from(self.antenna.rate_chz()) / 100.0,
+            ),
+            (Signal::LevelMv, f64::from(self.antenna.level_mv())),
+            (Signal::TrainSpeed, self.wheel.speed().kmh()),
+            (Signal::TrainPosition, self.wheel.motion().position_m),
+            (Signal::Tacho1, condition_index(self.tachos[0].condition())),
+            (Signal::Tacho2, condition_index(self.tachos[1].condition())),
+            (Signal::MarkerCoil, f64::from(self.markers.last())),
+            (Signal::Wayside, wayside_index(self.wayside.condition())),
+            (Signal::WaysideStation, f64::from(data.station)),
+            (Signal::WaysideLoop, f64::from(data.loop_id)),
+            (Signal::WaysideDoorSide, f64::from(data.door_side.code())),
+            (Signal::WaysideMode, f64::from(data.running_mode.code())),
+            (Signal::Departure, f64::from(u8::from(data.departure))),
+            (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
+            (Signal::Controller, f64::from(self.desk.controller)),
+            (Signal::TwcAnswers, f64::from(self.wayside.answers())),
+        ] {
+            sample.set(signal, value);
+        }
+    }
+}
+
+/// Place of a tachometer condition among the catalogue's labels.
+fn condition_index(condition: TachoCondition) -> f64 {
+    match condition {
+        TachoCondition::Good => 0.0,
+        TachoCondition::Dead => 1.0,
+        TachoCondition::Noisy { .. } => 2.0,
+        TachoCondition::Scaled { .. } => 3.0,
+    }
+}
+
+/// Place of a wayside condition among the catalogue's labels.
+fn wayside_index(condition: WaysideCondition) -> f64 {
+    match condition {
+        WaysideCondition::Silent => 0.0,
+        WaysideCondition::Good => 1.0,
+        WaysideCondition::Corrupt => 2.0,
+    }
+}

@@ -1,0 +1,156 @@
+//! What a wheel did in one scan, exactly enough to time each pulse within it.
+//!
+//! Way: distance rolled whatever the direction, never falling. Position: forward counts up,
+//! backward down.
+
+/// Pieces one scan can need: three legs of a travel and the rest after it.
+const MAX_PIECES: usize = 4;
+
+/// Constant acceleration for a part of a scan; the sign of speed never changes within it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Piece {
+    /// How long, s.
+    pub seconds: f64,
+    /// Speed at its start, m/s, forward positive.
+    pub speed_mps: f64,
+    /// Acceleration, m/s², forward positive.
+    pub accel_mps2: f64,
+}
+
+impl Piece {
+    /// Distance covered, m, forward positive.
+    pub fn distance_m(&self) -> f64 {
+        (self.speed_mps + 0.5 * self.accel_mps2 * self.seconds) * self.seconds
+    }
+
+    /// Speed at its end, m/s, forward positive.
+    pub fn end_speed_mps(&self) -> f64 {
+        self.speed_mps + self.accel_mps2 * self.seconds
+    }
+
+    /// Time from its start until `way_m` has been rolled, s.
+    fn time_of_way(&self, way_m: f64) -> f64 {
+        let sign = if self.distance_m() < 0.0 { -1.0 } else { 1.0 };
+        let (speed, accel) = (sign * self.speed_mps, sign * self.accel_mps2);
+        // The stable form of the quadratic's root: no difference of near-equal numbers.
+        let root = (speed * speed + 2.0 * accel * way_m).max(0.0).sqrt();
+        let seconds = 2.0 * way_m / (speed + root);
+        if seconds.is_finite() {
+            seconds.clamp(0.0, self.seconds)
+        } else {
+            self.seconds
+        }
+    }
+}
+
+/// The motion of one scan.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Motion {
+    pieces: [Piece; MAX_PIECES],
+    len: usize,
+    seconds: f64,
+    /// Way at the scan's start, m.
+    pub way_before_m: f64,
+    /// Way at its end, m.
+    pub way_m: f64,
+    /// Position at the scan's start, m.
+    pub position_before_m: f64,
+    /// Position at its end, m.
+    pub position_m: f64,
+}
+
+impl Motion {
+    /// Begins the next scan where this one ended.
+    pub fn begin_scan(&mut self) {
+        self.len = 0;
+        self.seconds = 0.0;
+        self.way_before_m = self.way_m;
+        self.position_before_m = self.position_m;
+    }
+
+    /// Adds a piece to the scan.
+    pub fn roll(&mut self, piece: Piece) {
+        let distance = piece.distance_m();
+        self.way_m += distance.abs();
+        self.position_m += distance;
+        self.seconds += piece.seconds;
+        assert!(
+            self.len < MAX_PIECES,
+            "a scan of more than {MAX_PIECES} pieces"
+        );
+        self.pieces[self.len] = piece;
+        self.len += 1;
+    }
+
+    /// Moves the end of the scan by a rounding error, so that a whole travel is exact.
+    pub fn correct(&mut self, way_m: f64, position_m: f64) {
+        self.way_m = way_m.max(self.way_before_m);
+        self.position_m = position_m;
+    }
+
+    /// How long before the scan's end the wheel had rolled up to `way_m`, s.
+    pub fn age_of_way_s(&self, way_m: f64) -> f64 {
+        let mut way_left = way_m - self.way_before_m;
+        let mut time_left = self.seconds;
+        for piece in &self.pieces[..self.len] {
+            let rolled = piece.distance_m().abs();
+            // The last pieces may be a rest in which nothing is rolled.
+            if way_left <= rolled {
+                return time_left - piece.time_of_way(way_left.max(0.0));
+            }
+            way_left -= rolled;
+            time_left -= piece.seconds;
+        }
+        0.0
+    }
+
+    /// How long before the scan's end the train was at `position_m`, s; `None` if it was not
+    /// reached in this scan.
+    pub fn age_of_position_s(&self, position_m: f64) -> Option<f64> {
+        let (from, to) = (self.position_before_m, self.position_m);
+        let reached =
+            (from < position_m && position_m <= to) || (to <= position_m && position_m < from);
+        reached.then(|| self.age_of_way_s(self.way_before_m + (position_m - from).abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From 1 m/s at 2 m/s² for 5 ms, then a rest: 0.003 m is reached after t with
+    /// 1·t + 1·t² = 0.003, t = (−1 + √1.012)/2 = 2.991054 ms, so 7.008946 ms before the end.
+    #[test]
+    fn time_within_a_scan_is_exact() {
+        let mut motion = Motion::default();
+        motion.begin_scan();
+        motion.roll(Piece {
+            seconds: 0.005,
+            speed_mps: 1.0,
+            accel_mps2: 2.0,
+        });
+        motion.roll(Piece {
+            seconds: 0.005,
+            speed_mps: 0.0,
+            accel_mps2: 0.0,
+        });
+        let age = motion.age_of_way_s(0.003);
+        assert!((age - 7.008_946e-3).abs() < 1e-9, "{age}");
+        assert_eq!(motion.age_of_position_s(0.003), Some(age));
+        assert_eq!(motion.age_of_position_s(0.2), None);
+    }
+
+    #[test]
+    fn backward_rolls_the_same_way_and_falls_in_position() {
+        let mut motion = Motion::default();
+        motion.begin_scan();
+        motion.roll(Piece {
+            seconds: 0.01,
+            speed_mps: -2.0,
+            accel_mps2: 0.0,
+        });
+        assert!((motion.way_m - 0.02).abs() < 1e-15 && (motion.position_m + 0.02).abs() < 1e-15);
+        let age = motion.age_of_position_s(-0.005);
+        assert!((age.unwrap_or_default() - 0.0075).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,251 @@
+//! One value of every signal: what the rig makes, and what the unit was last heard to say.
+
+use protocol::message::{
+    AtcToTcms, AtcToTcmsBits, IoOutput, Outputs, Status, StatusBits, TrainLines, TwcTrain,
+};
+use protocol::signal::{Sample, Signal};
+use protocol::{Duration, Instant, Speed};
+
+/// Age at which what the unit said is forgotten.
+const FORGOTTEN: Duration = Duration::from_ms(500);
+
+/// Frames of the unit that carry signals.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    Io,
+    Tcms,
+    Status,
+    Twc,
+}
+
+/// Signals each kind of frame carries, forgotten with it. Mode and target come by two ways, so
+/// that they stay known when one of them fails.
+const CARRIED: [(Source, &[Signal]); 4] = [
+    (Source::Io, &IO_SIGNALS),
+    (
+        Source::Tcms,
+        &[Signal::Effort, Signal::Power, Signal::Brake],
+    ),
+    (Source::Status, &STATUS_SIGNALS),
+    (
+        Source::Twc,
+        &[Signal::TwcAnswerStation, Signal::TwcAnswerTrain],
+    ),
+];
+
+const IO_SIGNALS: [Signal; 14] = [
+    Signal::Eb,
+    Signal::Fsb,
+    Signal::PowerCut,
+    Signal::Alarm,
+    Signal::HoldingBrake,
+    Signal::DoorEnableLeft,
+    Signal::DoorEnableRight,
+    Signal::CodeValid,
+    Signal::Standstill,
+    Signal::Healthy,
+    Signal::Limit,
+    Signal::Speed,
+    Signal::Marker,
+    Signal::MarkerCount,
+];
+
+const STATUS_SIGNALS: [Signal; 21] = [
+    Signal::Refusals,
+    Signal::CodeIndex,
+    Signal::EbCause,
+    Signal::FsbCause,
+    Signal::Speed1,
+    Signal::Speed2,
+    Signal::Position,
+    Signal::Armed,
+    Signal::TwcOk,
+    Signal::TcmsOk,
+    Signal::StationValid,
+    Signal::Aligned,
+    Signal::TraOk,
+    Signal::AtoReady,
+    Signal::Started,
+    Signal::Events,
+    Signal::RejectedFrames,
+    Signal::TwcReceived,
+    Signal::SelfTest,
+    Signal::TestCodeRate,
+    Signal::TestSpeed,
+];
+
+/// The sample and how fresh its parts are.
+#[derive(Debug, Default)]
+pub struct Recorder {
+    /// The sample.
+    pub sample: Sample,
+    heard: [Option<Instant>; CARRIED.len()],
+    outputs: Outputs,
+}
+
+impl Recorder {
+    /// Contacts of the unit, unless it has not been heard lately.
+    pub fn outputs(&self) -> Option<Outputs> {
+        self.heard[Source::Io as usize].map(|_| self.outputs)
+    }
+
+    /// Forgets what the unit has not said again for too long.
+    pub fn step(&mut self, now: Instant) {
+        let both_ways = [Source::Tcms as usize, Source::Status as usize];
+        for (source, signals) in CARRIED {
+            let heard = &mut self.heard[source as usize];
+            if heard.is_some_and(|at| now.since(at) >= FORGOTTEN) {
+                *heard = None;
+                signals
+                    .iter()
+                    .for_each(|&signal| self.sample.forget(signal));
+                if both_ways.iter().all(|&way| self.heard[way].is_none()) {
+                    self.sample.forget(Signal::Mode);
+                    self.sample.forget(Signal::Target);
+                }
+            }
+        }
+    }
+
+    /// Takes the unit's contacts and cab display.
+    pub fn hear_io(&mut self, now: Instant, io: &IoOutput) {
+        self.heard[Source::Io as usize] = Some(now);
+        self.outputs = io.outputs;
+        let sample = &mut self.sample;
+        sample.set_bit(Signal::Eb, !io.outputs.contains(Outputs::EB_RELAY));
+        for (signal, output) in [
+            (Signal::Fsb, Outputs::FSB),
+            (Signal::PowerCut, Outputs::POWER_CUT),
+            (Signal::Alarm, Outputs::ALARM),
+            (Signal::HoldingBrake, Outputs::HOLDING_BRAKE),
+            (Signal::DoorEnableLeft, Outputs::DOOR_ENABLE_LEFT),
+            (Signal::DoorEnableRight, Outputs::DOOR_ENABLE_RIGHT),
+            (Signal::CodeValid, Outputs::CODE_VALID),
+            (Signal::Standstill, Outputs::STANDSTILL),
+            (Signal::Healthy, Outputs::HEALTHY),
+        ] {
+            sample.set_bit(signal, io.outputs.contains(output));
+        }
+        sample.set(Signal::Limit, kmh(io.limit_cms));
+        sample.set(Signal::Speed, kmh(io.speed_cms));
+        sample.set(Signal::Marker, f64::from(io.marker));
+        sample.set(Signal::MarkerCount, f64::from(io.marker_count));
+    }
+
+    /// Takes the unit's commands to TCMS.
+    pub fn hear_tcms(&mut self, now: Instant, tcms: &AtcToTcms) {
+        self.heard[Source::Tcms as usize] = Some(now);
+        let sample = &mut self.sample;
+        sample.set(Signal::Mode, f64::from(tcms.mode.code()));
+        sample.set(Signal::Target, kmh(tcms.target_cms));
+        sample.set(Signal::Effort, f64::from(tcms.effort));
+        sample.set_bit(Signal::Power, tcms.bits.contains(AtcToTcmsBits::POWER));
+        sample.set_bit(Signal::Brake, tcms.bits.contains(AtcToTcmsBits::BRAKE));
+    }
+
+    /// Takes the unit's status.
+    pub fn hear_status(&mut self, now: Instant, status: &Status) {
+        self.heard[Source::Status as usize] = Some(now);
+        let sample = &mut self.sample;
+        for (signal, bit) in [
+            (Signal::Armed, StatusBits::ARMED),
+            (Signal::TwcOk, StatusBits::TWC_OK),
+            (Signal::TcmsOk, StatusBits::TCMS_OK),
+            (Signal::StationValid, StatusBits::STATION_VALID),
+            (Signal::Aligned, StatusBits::ALIGNED),
+            (Signal::TraOk, StatusBits::TRA_OK),
+            (Signal::AtoReady, StatusBits::ATO_READY),
+            (Signal::Started, StatusBits::STARTED),
+        ] {
+            sample.set_bit(signal, status.bits.contains(bit));
+        }
+        for (signal, value) in [
+            (Signal::Mode, f64::from(status.mode.code())),
+            (Signal::Target, kmh(status.target_cms)),
+            (Signal::Refusals, f64::from(status.refusals.bits())),
+            (Signal::CodeIndex, f64::from(status.code_index)),
+            (Signal::EbCause, f64::from(status.eb_cause.code())),
+            (Signal::FsbCause, f64::from(status.fsb_cause.code())),
+            (Signal::Speed1, kmh(status.speed1_cms)),
+            (Signal::Speed2, kmh(status.speed2_cms)),
+            (Signal::Position, f64::from(status.position_cm) / 100.0),
+            (Signal::Events, f64::from(status.events)),
+            (Signal::RejectedFrames, f64::from(status.rejected_frames)),
+            (Signal::TwcReceived, f64::from(status.twc_received)),
+            (Signal::SelfTest, f64::from(status.self_test.bits())),
+            (
+                Signal::TestCodeRate,
+                f64::from(status.test_code_rate_chz) / 100.0,
+            ),
+            (Signal::TestSpeed, kmh(status.test_speed_cms)),
+        ] {
+            sample.set(signal, value);
+        }
+    }
+
+    /// Takes the train's answer to the wayside, one of `answers` so far.
+    pub fn hear_twc(&mut self, now: Instant, answer: &TwcTrain, answers: u16) {
+        self.heard[Source::Twc as usize] = Some(now);
+        self.sample.set(Signal::TwcAnswers, f64::from(answers));
+        self.sample
+            .set(Signal::TwcAnswerStation, f64::from(answer.station));
+        self.sample
+            .set(Signal::TwcAnswerTrain, f64::from(answer.train_number));
+    }
+
+    /// Takes the train lines as sent.
+    pub fn note_lines(&mut self, lines: TrainLines) {
+        for (signal, line) in [
+            (Signal::Doors, TrainLines::DOORS_CLOSED),
+            (Signal::Hcr, TrainLines::HCR),
+            (Signal::MaintenanceKey, TrainLines::MAINTENANCE_KEY),
+        ] {
+            self.sample.set_bit(signal, lines.contains(line));
+        }
+        self.sample
+            .set_bit(Signal::EbLoop, !lines.contains(TrainLines::EB_LOOP));
+    }
+}
+
+fn kmh(cms: u16) -> f64 {
+    Speed::from_cms(cms).kmh()
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::signal::Origin;
+
+    use super::*;
+
+    /// Every signal of the unit is heard in some frame and forgotten 500 ms after the last; the
+    /// count of TWC answers is the wayside's own knowledge and stays.
+    #[test]
+    fn what_is_not_said_again_is_forgotten() {
+        let mut recorder = Recorder::default();
+        recorder.hear_io(Instant::ZERO, &IoOutput::default());
+        recorder.hear_tcms(Instant::ZERO, &AtcToTcms::default());
+        recorder.hear_status(Instant::ZERO, &Status::default());
+        recorder.hear_twc(Instant::ZERO, &TwcTrain::default(), 1);
+        let known = |recorder: &Recorder| {
+            let all = Signal::ALL.iter().copied();
+            all.filter(|&s| s.definition().origin == Origin::Unit && s != Signal::TwcAnswers)
+                .filter(|&s| recorder.sample.get(s).is_some())
+                .count()
+        };
+        let unit_signals = Signal::ALL
+            .iter()
+            .filter(|s| s.definition().origin == Origin::Unit);
+        let expected = unit_signals.count() - 1;
+        recorder.step(Instant::from_ms(490));
+        assert_eq!(known(&recorder), expected);
+        recorder.hear_tcms(Instant::from_ms(490), &AtcToTcms::default());
+        recorder.step(Instant::from_ms(500));
+        assert_eq!(
+            known(&recorder),
+            5,
+            "effort, power, brake, and mode and target with them"
+        );
+        recorder.step(Instant::from_ms(990));
+        assert_eq!(known(&recorder), 0);
+    }
+}

@@ -1,0 +1,226 @@
+//! Two tachometers on one wheel: counts, and the exact age of each channel's last pulse.
+
+use protocol::SCAN;
+
+use crate::stimulus::TachoCondition;
+
+use super::motion::Motion;
+use super::random::Random;
+
+/// Where in its tooth space each channel starts, pulses: a quarter apart, and clear of an edge.
+const PHASES: [f64; 2] = [0.5, 0.75];
+/// Ages are sent in 16 bits.
+pub const MAX_AGE_US: f64 = u16::MAX as f64;
+/// Most spurious pulses in one scan; what lies beyond is not told apart by any counter input.
+const MAX_NOISE_PER_SCAN: usize = 100;
+
+/// One channel's generator.
+#[derive(Debug)]
+pub struct Tacho {
+    condition: TachoCondition,
+    metres_per_pulse: f64,
+    random: Random,
+    /// Way at which the present condition began, and the phase there: no error adds up.
+    base_way_m: f64,
+    base_phase: f64,
+    phase: f64,
+    /// Time until the next spurious pulse, s.
+    noise_in_s: f64,
+    count: u16,
+    age_us: f64,
+}
+
+impl Tacho {
+    /// Channel 0 or 1 at rest, that has not made a pulse for long.
+    pub fn new(channel: usize, metres_per_pulse: f64, random: Random) -> Self {
+        Self {
+            condition: TachoCondition::Good,
+            metres_per_pulse,
+            random,
+            base_way_m: 0.0,
+            base_phase: PHASES[channel],
+            phase: PHASES[channel],
+            noise_in_s: f64::INFINITY,
+            count: 0,
+            age_us: MAX_AGE_US,
+        }
+    }
+
+    /// Sets the condition from now on.
+    pub fn set_condition(&mut self, condition: TachoCondition, way_m: f64) {
+        self.base_phase = self.phase;
+        self.base_way_m = way_m;
+        self.noise_in_s = match condition {
+            TachoCondition::Noisy { per_s } => self.random.waiting_time_s(per_s),
+            _ => f64::INFINITY,
+        };
+        self.condition = condition;
+    }
+
+    /// Its condition.
+    pub fn condition(&self) -> TachoCondition {
+        self.condition
+    }
+
+    /// Makes the pulses of one scan.
+    pub fn step(&mut self, motion: &Motion) {
+        self.age_us = (self.age_us + SCAN.as_us() as f64).min(MAX_AGE_US);
+        let factor = match self.condition {
+            TachoCondition::Scaled { factor } => factor,
+            _ => 1.0,
+        };
+        let pulse_m = self.metres_per_pulse / factor;
+        let phase = self.base_phase + (motion.way_m - self.base_way_m) / pulse_m;
+        let edges = phase.floor() - self.phase.floor();
+        self.phase = phase;
+        if self.condition == TachoCondition::Dead {
+            return;
+        }
+        if edges > 0.0 {
+            let edge_way_m = motion.way_m - (phase - phase.floor()) * pulse_m;
+            self.count = self.count.wrapping_add(edges as u16);
+            self.age_us = self.age_us.min(motion.age_of_way_s(edge_way_m) * 1e6);
+        }
+        if let TachoCondition::Noisy { per_s } = self.condition {
+            self.add_noise(per_s);
+        }
+    }
+
+    fn add_noise(&mut self, per_s: f64) {
+        let scan_s = SCAN.as_secs();
+        for _ in 0..MAX_NOISE_PER_SCAN {
+            if self.noise_in_s >= scan_s {
+                break;
+            }
+            self.count = self.count.wrapping_add(1);
+            self.age_us = self.age_us.min((scan_s - self.noise_in_s) * 1e6);
+            self.noise_in_s += self.random.waiting_time_s(per_s);
+        }
+        self.noise_in_s = (self.noise_in_s - scan_s).max(0.0);
+    }
+
+    /// Pulses so far, wrapping.
+    pub fn count(&self) -> u16 {
+        self.count
+    }
+
+    /// Age of the last pulse, µs, at most 65535.
+    pub fn age_us(&self) -> u16 {
+        self.age_us.round() as u16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::Speed;
+
+    use super::super::wheel::Wheel;
+    use super::*;
+
+    /// [S2 gives none] 860 mm, 100 pulses per turn as in the default configuration.
+    const PULSE_M: f64 = std::f64::consts::PI * 0.86 / 100.0;
+
+    fn channels() -> [Tacho; 2] {
+        [0, 1].map(|i| Tacho::new(i, PULSE_M, Random::new(7)))
+    }
+
+    #[test]
+    fn counts_are_the_distance_to_a_pulse() {
+        let (mut wheel, [mut one, mut two]) = (Wheel::default(), channels());
+        wheel.travel(850.03, Speed::from_kmh(60.0), 0.83).unwrap();
+        let mut counts = [0u64; 2];
+        while !wheel.settled() {
+            let before = [one.count(), two.count()];
+            wheel.step();
+            one.step(wheel.motion());
+            two.step(wheel.motion());
+            counts[0] += u64::from(one.count().wrapping_sub(before[0]));
+            counts[1] += u64::from(two.count().wrapping_sub(before[1]));
+        }
+        let expected = 850.03 / PULSE_M;
+        for (count, phase) in counts.into_iter().zip(PHASES) {
+            assert_eq!(count, (expected + phase).floor() as u64);
+        }
+    }
+
+    /// Method: as a measuring instrument would, speed = pulses · way / time between first and last
+    /// edge of a 100 ms window, at constant speed, against the true speed.
+    #[test]
+    fn edge_ages_agree_with_speed() {
+        for kmh in [3.0, 25.0, 61.7, 108.0] {
+            let (mut wheel, [mut tacho, _]) = (Wheel::default(), channels());
+            wheel.go_to(Speed::from_kmh(kmh), 3.0);
+            for scan in 0..2000u32 {
+                wheel.step();
+                tacho.step(wheel.motion());
+                if scan == 1900 {
+                    assert!(wheel.settled());
+                }
+            }
+            let (count, age) = (tacho.count(), f64::from(tacho.age_us()));
+            for _ in 0..10 {
+                wheel.step();
+                tacho.step(wheel.motion());
+            }
+            let pulses = f64::from(tacho.count().wrapping_sub(count));
+            let seconds = (100_000.0 + age - f64::from(tacho.age_us())) / 1e6;
+            let measured = pulses * PULSE_M / seconds;
+            assert!(
+                (measured * 3.6 / kmh - 1.0).abs() < 1e-3,
+                "{kmh}: {}",
+                measured * 3.6
+            );
+        }
+    }
+
+    /// While the wheel speeds up, each edge is younger than the last one plus the time passed.
+    #[test]
+    fn edge_times_never_go_back() {
+        let (mut wheel, [mut tacho, _]) = (Wheel::default(), channels());
+        wheel.go_to(Speed::from_kmh(30.0), 0.5);
+        let mut last_edge_us = f64::NEG_INFINITY;
+        for scan in 1..3000u32 {
+            let before = tacho.count();
+            wheel.step();
+            tacho.step(wheel.motion());
+            let edge_us = f64::from(scan) * 1e4 - f64::from(tacho.age_us());
+            if tacho.count() != before {
+                assert!(edge_us > last_edge_us && tacho.age_us() <= 10_000);
+                last_edge_us = edge_us;
+            }
+        }
+    }
+
+    #[test]
+    fn conditions_act_on_their_channel_only() {
+        let (mut wheel, [mut good, mut bad]) = (Wheel::default(), channels());
+        wheel.go_to(Speed::from_mps(10.0), 1000.0);
+        let mut run = |good: &mut Tacho, bad: &mut Tacho| {
+            let before = (good.count(), bad.count());
+            for _ in 0..1000 {
+                wheel.step();
+                good.step(wheel.motion());
+                bad.step(wheel.motion());
+            }
+            (
+                f64::from(good.count().wrapping_sub(before.0)),
+                f64::from(bad.count().wrapping_sub(before.1)),
+                wheel.motion().way_m,
+            )
+        };
+        let (a, b, way) = run(&mut good, &mut bad);
+        assert!((a - b).abs() <= 1.0);
+        bad.set_condition(TachoCondition::Scaled { factor: 0.5 }, way);
+        let (a, b, way) = run(&mut good, &mut bad);
+        assert!((a / 2.0 - b).abs() <= 1.0);
+        bad.set_condition(TachoCondition::Noisy { per_s: 100.0 }, way);
+        let (a, b, way) = run(&mut good, &mut bad);
+        assert!((b - a - 1000.0).abs() < 100.0, "{}", b - a);
+        bad.set_condition(TachoCondition::Dead, way);
+        let (_, b, way) = run(&mut good, &mut bad);
+        assert_eq!((b, bad.age_us()), (0.0, u16::MAX));
+        bad.set_condition(TachoCondition::Good, way);
+        let (a, b, _) = run(&mut good, &mut bad);
+        assert!((a - b).abs() <= 1.0);
+    }
+}

@@ -1,0 +1,138 @@
+//! The closed loop of train, TCMS and desk, and the way back to the quiescent state.
+
+use protocol::Speed;
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, Outputs};
+use protocol::signal::Signal;
+
+use super::{FakeUnit, bench};
+use crate::rig::Bench;
+use crate::stimulus::{Stimulus, TachoCondition};
+
+fn speed(bench: &Bench<FakeUnit>) -> f64 {
+    bench.rig().sample().get(Signal::TrainSpeed).unwrap()
+}
+
+fn order(bits: AtcToTcmsBits, effort: i16) -> AtcToTcms {
+    AtcToTcms {
+        bits,
+        effort,
+        mode: Mode::AutomaticRun,
+        ..AtcToTcms::default()
+    }
+}
+
+#[test]
+fn the_train_obeys_ato_passes_its_markers_and_stops_for_the_relay() {
+    let mut bench = bench(FakeUnit::default());
+    bench.apply(Stimulus::MarkersAlong { section: Some(61) });
+    bench.apply(Stimulus::TrainDriven { on: true });
+    bench.link_mut().to_tcms = order(AtcToTcmsBits::POWER, 1023);
+    bench.run_ms(25_000);
+    assert!((50.0..75.0).contains(&speed(&bench)), "{}", speed(&bench));
+    bench.run_ms(10_000);
+    assert_eq!(bench.rig().sample().get(Signal::MarkerCoil), Some(1.0));
+    let position = bench.rig().sample().get(Signal::TrainPosition).unwrap();
+    assert!(position > 304.03, "{position}");
+    bench.link_mut().outputs = Outputs::empty();
+    bench.run_ms(30_000);
+    assert_eq!(speed(&bench), 0.0);
+    assert_eq!(bench.rig().sample().get(Signal::EbLoop), Some(1.0));
+}
+
+#[test]
+fn generators_wait_while_the_train_drives() {
+    let mut bench = bench(FakeUnit::default());
+    bench.apply(Stimulus::TrainDriven { on: true });
+    let go = Stimulus::Speed {
+        to: Speed::from_kmh(30.0),
+        accel_mps2: 1.0,
+    };
+    let now = bench.now();
+    assert!(bench.rig_mut().apply(now, &go).is_err());
+    bench.apply(Stimulus::TrainDriven { on: false });
+    bench.apply(go);
+    bench.run_ms(10_000);
+    assert!((speed(&bench) - 30.0).abs() < 1e-9);
+}
+
+/// Code and reverser stay until the wheels stand: taking them away at speed would make a healthy
+/// unit log an overspeed or a rollback.
+#[test]
+fn making_safe_keeps_what_a_turning_wheel_needs() {
+    let mut bench = bench(FakeUnit::default());
+    let (carrier_hz, rate_hz, level_mv) = (3000.0, 15.0, 500.0);
+    bench.apply(Stimulus::Code {
+        carrier_hz,
+        rate_hz,
+        level_mv,
+    });
+    bench.apply(Stimulus::Reverser { position: -1 });
+    bench.apply(Stimulus::Direction { backward: true });
+    bench.apply(Stimulus::Tacho {
+        channel: 1,
+        condition: TachoCondition::Dead,
+    });
+    bench.apply(Stimulus::Doors { closed: false });
+    bench.apply(Stimulus::Speed {
+        to: Speed::from_mps(9.0),
+        accel_mps2: 3.0,
+    });
+    bench.run_ms(4000);
+    let now = bench.now();
+    bench.rig_mut().make_safe(now);
+    bench.run_ms(2900);
+    let value = |bench: &Bench<FakeUnit>, signal| bench.rig().sample().get(signal).unwrap();
+    assert!(!bench.rig().safe());
+    assert_eq!(value(&bench, Signal::CarrierHz), 3000.0);
+    assert_eq!(value(&bench, Signal::Tacho1), 1.0);
+    assert_eq!(value(&bench, Signal::Doors), 1.0);
+    bench.run_ms(200);
+    assert!(bench.rig().safe());
+    assert_eq!(value(&bench, Signal::CarrierHz), 0.0);
+    assert_eq!(value(&bench, Signal::Tacho1), 0.0);
+    assert_eq!(speed(&bench), 0.0);
+}
+
+#[test]
+fn what_cannot_be_is_refused_in_words() {
+    let mut bench = bench(FakeUnit::default());
+    let now = bench.now();
+    for (stimulus, text) in [
+        (
+            Stimulus::Tacho {
+                channel: 3,
+                condition: TachoCondition::Good,
+            },
+            "tachometer 3",
+        ),
+        (
+            Stimulus::MarkersAlong { section: Some(99) },
+            "no section 99; it has 61",
+        ),
+        (Stimulus::Controller { notch: 5 }, "controller notch 5"),
+        (Stimulus::Marker { psm: 0 }, "marker 0"),
+        (
+            Stimulus::Speed {
+                to: Speed::from_mps(f64::NAN),
+                accel_mps2: 1.0,
+            },
+            "speed NaN km/h",
+        ),
+        (
+            Stimulus::Speed {
+                to: Speed::ZERO,
+                accel_mps2: 0.0,
+            },
+            "acceleration 0 m/s²",
+        ),
+        (
+            Stimulus::Load {
+                passengers_kg: -1.0,
+            },
+            "load -1 kg",
+        ),
+    ] {
+        let refusal = bench.rig_mut().apply(now, &stimulus).unwrap_err();
+        assert!(refusal.0.contains(text), "{}", refusal.0);
+    }
+}

@@ -1,0 +1,251 @@
+//! The other end of the wire: answers as WIRE.md says a unit does, and loses frames on request.
+
+use protocol::Instant;
+use protocol::link::{End, Link};
+use protocol::message::{
+    Answer, ArmChallenge, ArmRefusal, ArmState, AtcToTcms, Channel, Identity, IoOutput, LogEnd,
+    LogEntry, Message, Outputs, Status, StatusBits, StimulusAnswer, TwcTrain,
+};
+
+use crate::rig::random::Random;
+use crate::rig::{LinkFailure, UnitLink};
+
+const CHALLENGE: u32 = 0x7D7E_1234;
+
+pub struct FakeUnit {
+    pub link: Link,
+    pub random: Random,
+    pub scan: u64,
+    pub session: Option<u32>,
+    pub reading: Option<u32>,
+    pub log: Vec<LogEntry>,
+    pub oldest: u32,
+    /// Share of frames lost, both ways.
+    pub loss: f64,
+    pub refusal: ArmRefusal,
+    pub answer: Answer,
+    /// Channels on which nothing is sent or heard.
+    pub dead: Vec<Channel>,
+    pub to_tcms: AtcToTcms,
+    pub outputs: Outputs,
+    /// Every accepted message but the cyclic ones.
+    pub heard: Vec<Message>,
+    pub bytes_per_scan: Vec<usize>,
+    pub all_bytes: Vec<u8>,
+}
+
+impl Default for FakeUnit {
+    fn default() -> Self {
+        Self {
+            link: Link::new(End::Unit),
+            random: Random::new(99),
+            scan: 0,
+            session: None,
+            reading: None,
+            log: Vec::new(),
+            oldest: 0,
+            loss: 0.0,
+            refusal: ArmRefusal::None,
+            answer: Answer::Accepted,
+            dead: Vec::new(),
+            to_tcms: AtcToTcms::default(),
+            outputs: Outputs::EB_RELAY,
+            heard: Vec::new(),
+            bytes_per_scan: Vec::new(),
+            all_bytes: Vec::new(),
+        }
+    }
+}
+
+impl FakeUnit {
+    pub fn log_event(&mut self, code: u16) {
+        let index = self.oldest + self.log.len() as u32;
+        self.log.push(LogEntry {
+            index,
+            code,
+            ..LogEntry::default()
+        });
+    }
+
+    /// Power off and on again.
+    pub fn restart(&mut self) {
+        let heard = std::mem::take(&mut self.heard);
+        *self = Self {
+            heard,
+            loss: self.loss,
+            ..Self::default()
+        };
+    }
+
+    pub fn armed(&self) -> bool {
+        self.session.is_some()
+    }
+
+    fn next_index(&self) -> u32 {
+        self.oldest + self.log.len() as u32
+    }
+
+    fn reply(&mut self, seq: u16, message: &Message) -> Option<Message> {
+        let disarmed = |session, refusal| {
+            ArmState {
+                session,
+                armed: 0,
+                refusal,
+            }
+            .into()
+        };
+        match *message {
+            Message::Identify(_) => Some(
+                Identity {
+                    uptime_ms: self.scan as u32 * 10,
+                    ..Identity::default()
+                }
+                .into(),
+            ),
+            Message::ArmRequest(m) if self.refusal != ArmRefusal::None => {
+                Some(disarmed(m.session, self.refusal))
+            }
+            Message::ArmRequest(m) => Some(
+                ArmChallenge {
+                    session: m.session,
+                    challenge: CHALLENGE,
+                }
+                .into(),
+            ),
+            Message::ArmConfirm(m) if m.answer == !CHALLENGE ^ m.session => {
+                self.session = Some(m.session);
+                let refusal = ArmRefusal::None;
+                Some(
+                    ArmState {
+                        session: m.session,
+                        armed: 1,
+                        refusal,
+                    }
+                    .into(),
+                )
+            }
+            Message::ArmConfirm(m) => Some(disarmed(m.session, ArmRefusal::BadAnswer)),
+            Message::Disarm(m) => {
+                self.session = None;
+                Some(disarmed(m.session, ArmRefusal::Disarmed))
+            }
+            Message::ReadLog(m) => {
+                self.reading = Some(m.from_index);
+                None
+            }
+            Message::TwcWayside(m) => {
+                let (station, train_number) = (m.station, m.train_number);
+                let answered_seq = seq;
+                Some(
+                    TwcTrain {
+                        answered_seq,
+                        station,
+                        train_number,
+                        ..Default::default()
+                    }
+                    .into(),
+                )
+            }
+            Message::KeepAlive(_) | Message::IoInput(_) | Message::TcmsToAtc(_) => None,
+            _ => {
+                let answer = if self.armed() {
+                    self.answer
+                } else {
+                    Answer::NotArmed
+                };
+                Some(
+                    StimulusAnswer {
+                        request_seq: seq,
+                        answer,
+                    }
+                    .into(),
+                )
+            }
+        }
+    }
+
+    fn read_log(&mut self, replies: &mut Vec<Message>) {
+        let Some(from) = self.reading else { return };
+        let from = from.max(self.oldest);
+        let rest = &self.log[(from - self.oldest) as usize..];
+        replies.extend(rest.iter().take(2).map(|&entry| Message::from(entry)));
+        self.reading = Some(from + 2);
+        if rest.len() <= 2 {
+            let (next_index, oldest_index) = (self.next_index(), self.oldest);
+            replies.push(
+                LogEnd {
+                    next_index,
+                    oldest_index,
+                }
+                .into(),
+            );
+            self.reading = None;
+        }
+    }
+
+    fn cyclic(&self, replies: &mut Vec<Message>) {
+        replies.push(
+            IoOutput {
+                outputs: self.outputs,
+                ..IoOutput::default()
+            }
+            .into(),
+        );
+        if self.scan.is_multiple_of(5) {
+            replies.push(self.to_tcms.into());
+            let bits = if self.armed() {
+                StatusBits::ARMED
+            } else {
+                StatusBits::empty()
+            };
+            replies.push(
+                Status {
+                    bits,
+                    events: self.next_index(),
+                    ..Status::default()
+                }
+                .into(),
+            );
+        }
+    }
+}
+
+impl UnitLink for FakeUnit {
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        self.scan += 1;
+        self.bytes_per_scan.push(to_unit.len());
+        self.all_bytes.extend_from_slice(to_unit);
+        self.link.push(to_unit);
+        let mut replies = Vec::new();
+        while let Some(received) = self.link.poll(now) {
+            let cyclic = matches!(received.header.channel, Channel::Io | Channel::Tcms);
+            if self.dead.contains(&received.header.channel)
+                || (!cyclic && self.random.unit() < self.loss)
+            {
+                continue;
+            }
+            replies.extend(self.reply(received.header.seq, &received.message));
+            if !cyclic {
+                self.heard.push(received.message);
+            }
+        }
+        if self.scan.is_multiple_of(5) {
+            self.read_log(&mut replies);
+        }
+        self.cyclic(&mut replies);
+        for message in replies {
+            let mut frame = Vec::new();
+            self.link.send(now, &message, &mut frame);
+            let lost = self.random.unit() < self.loss || self.dead.contains(&message.channel());
+            if !lost {
+                from_unit.extend_from_slice(&frame);
+            }
+        }
+        Ok(())
+    }
+}

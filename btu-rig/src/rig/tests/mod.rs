@@ -1,0 +1,56 @@
+//! The rig as a whole, against a unit that is nothing but a script of answers.
+
+mod driving;
+mod fake_unit;
+mod properties;
+mod session;
+mod wire;
+
+use protocol::config::UnitConfig;
+use protocol::line::Line;
+
+use super::{Bench, Rig};
+use crate::procedure::Refusal;
+use crate::stimulus::Stimulus;
+use fake_unit::FakeUnit;
+
+fn config() -> UnitConfig {
+    UnitConfig::from_toml(include_str!("../../../../scripts/units/sg100.toml")).unwrap()
+}
+
+fn line() -> Line {
+    Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap()
+}
+
+fn rig(seed: u64) -> Rig {
+    Rig::new(&config(), &line(), seed)
+}
+
+fn bench(unit: FakeUnit) -> Bench<FakeUnit> {
+    Bench::new(rig(1), unit)
+}
+
+impl Bench<FakeUnit> {
+    fn run_ms(&mut self, ms: u64) {
+        for _ in 0..ms / 10 {
+            self.tick().unwrap();
+        }
+    }
+
+    fn apply(&mut self, stimulus: Stimulus) {
+        let now = self.now();
+        self.rig_mut().apply(now, &stimulus).unwrap();
+    }
+
+    /// Applies and waits for the outcome, for at most 10 s.
+    fn settle(&mut self, stimulus: Stimulus) -> Result<(), Refusal> {
+        self.apply(stimulus);
+        for _ in 0..1000 {
+            self.tick().unwrap();
+            if self.rig_mut().settled()? {
+                return Ok(());
+            }
+        }
+        panic!("{stimulus:?} never settles");
+    }
+}

@@ -1,0 +1,145 @@
+//! Whatever is asked of the rig in whatever order, it neither panics nor loses a pulse.
+
+use proptest::prelude::*;
+use protocol::Speed;
+use protocol::message::ModeSwitch;
+use protocol::signal::Signal;
+
+use super::{FakeUnit, config, rig};
+use crate::rig::Bench;
+use crate::stimulus::{Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
+
+/// A number that may be anything, often something sensible.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => 0.0..50.0, 1 => any::<f64>(), 1 => Just(0.0), 1 => Just(f64::NAN)]
+}
+
+fn condition() -> impl Strategy<Value = TachoCondition> {
+    prop_oneof![
+        Just(TachoCondition::Good),
+        Just(TachoCondition::Dead),
+        number().prop_map(|per_s| TachoCondition::Noisy { per_s }),
+        number().prop_map(|factor| TachoCondition::Scaled { factor }),
+    ]
+}
+
+fn motion() -> impl Strategy<Value = Stimulus> {
+    prop_oneof![
+        (number(), number()).prop_map(|(v, accel_mps2)| Stimulus::Speed {
+            to: Speed::from_mps(v),
+            accel_mps2
+        }),
+        (number(), number(), number()).prop_map(|(distance_m, v, accel_mps2)| Stimulus::Travel {
+            distance_m,
+            speed: Speed::from_mps(v),
+            accel_mps2
+        }),
+        any::<bool>().prop_map(|backward| Stimulus::Direction { backward }),
+        any::<bool>().prop_map(|on| Stimulus::TrainDriven { on }),
+    ]
+}
+
+fn other() -> impl Strategy<Value = Stimulus> {
+    prop_oneof![
+        (number(), number(), number()).prop_map(|(carrier_hz, rate_hz, level_mv)| {
+            Stimulus::Code {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            }
+        }),
+        (number(), number()).prop_map(|(rate_hz_per_s, level_mv_per_s)| Stimulus::CodeDrift {
+            rate_hz_per_s,
+            level_mv_per_s
+        }),
+        (0u8..4, condition())
+            .prop_map(|(channel, condition)| Stimulus::Tacho { channel, condition }),
+        any::<u8>().prop_map(|psm| Stimulus::Marker { psm }),
+        prop::option::of(60u16..63).prop_map(|section| Stimulus::MarkersAlong { section }),
+        (-9i8..6).prop_map(|notch| Stimulus::Controller { notch }),
+        (-2i8..3).prop_map(|position| Stimulus::Reverser { position }),
+        number().prop_map(|passengers_kg| Stimulus::Load { passengers_kg }),
+        any::<bool>().prop_map(|closed| Stimulus::Doors { closed }),
+        any::<bool>().prop_map(|on| Stimulus::PtuSilent { on }),
+        Just(Stimulus::ModeSwitch(ModeSwitch::Automatic)),
+        Just(Stimulus::Wayside(WaysideCondition::Corrupt)),
+        Just(Stimulus::Tcms(TcmsCondition::Stale)),
+        Just(Stimulus::PtuArm),
+        Just(Stimulus::PtuDisarm),
+        Just(Stimulus::PtuRelease),
+        Just(Stimulus::PtuClearLog),
+        (any::<u8>(), number(), number()).prop_map(|(channels, v, accel_mps2)| {
+            Stimulus::PtuSpeed {
+                channels,
+                backward: false,
+                to: Speed::from_mps(v),
+                accel_mps2,
+            }
+        }),
+    ]
+}
+
+/// Every known rig signal within its range, so that it can be stored.
+fn check_sample(bench: &Bench<FakeUnit>) -> Result<(), TestCaseError> {
+    for &signal in Signal::ALL {
+        if let Some(value) = bench.rig().sample().get(signal) {
+            let definition = signal.definition();
+            prop_assert!(
+                (definition.low..=definition.high).contains(&value),
+                "{} = {value}",
+                definition.name
+            );
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn any_sequence_is_survived_and_made_safe(
+        seed: u64,
+        steps in prop::collection::vec((prop_oneof![motion(), other()], 0u64..300), 1..25),
+    ) {
+        let mut bench = Bench::new(rig(seed), FakeUnit::default());
+        for (stimulus, scans) in steps {
+            let now = bench.now();
+            let _ = bench.rig_mut().apply(now, &stimulus);
+            bench.run_ms(scans * 10);
+            check_sample(&bench)?;
+            let _ = bench.rig_mut().settled();
+        }
+        let now = bench.now();
+        bench.rig_mut().make_safe(now);
+        // 200 km/h at 3 m/s² is 18.5 s.
+        bench.run_ms(20_000);
+        prop_assert!(bench.rig().safe());
+    }
+
+    /// Two good channels count the same way, to a pulse, whatever the wheels do.
+    #[test]
+    fn counts_follow_the_way(
+        steps in prop::collection::vec((motion(), 0u64..300), 1..20),
+    ) {
+        let pulse_m = config().metres_per_pulse();
+        let mut bench = Bench::new(rig(1), FakeUnit::default());
+        let mut pulses = [0u64; 2];
+        let mut last = [0u16; 2];
+        for (stimulus, scans) in steps {
+            let now = bench.now();
+            let _ = bench.rig_mut().apply(now, &stimulus);
+            for _ in 0..scans {
+                bench.tick().unwrap();
+                for (i, tacho) in bench.rig().tachos.iter().enumerate() {
+                    pulses[i] += u64::from(tacho.count().wrapping_sub(last[i]));
+                    last[i] = tacho.count();
+                }
+            }
+            let way = bench.rig().wheel.motion().way_m / pulse_m;
+            for counted in pulses {
+                prop_assert!((counted as f64 - way).abs() <= 1.0, "{counted} of {way}");
+            }
+        }
+    }
+}
