@@ -16,6 +16,7 @@ mod error;
 mod fault_log;
 mod fault_state;
 mod id;
+mod insert;
 mod lookup;
 mod query;
 mod record;

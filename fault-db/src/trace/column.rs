@@ -403,7 +403,7 @@ mod tests {
             (vec![f64::INFINITY, 0.0], Form::RawF32),
             (vec![9.1e15, 1.0], Form::RawF64),
             // Saturates as an integer, where its magnitude has no i64.
-            (vec![-9.223372036854775808e18, 0.0], Form::RawF32),
+            (vec![i64::MIN as f64, 0.0], Form::RawF32),
         ] {
             let (tag, body) = packed(&samples, 1.0);
             assert_eq!(tag.form, form, "{samples:?}");

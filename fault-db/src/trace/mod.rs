@@ -1,7 +1,7 @@
 //! Traces: equally spaced rows of named channels, as they are handed in and out.
 //!
-//! [`codec`] packs one into a blob, column by column, so that one channel is read without
-//! unpacking the others; [`column`] holds what a column can look like.
+//! `codec` packs one into a blob, column by column, so that one channel is read without
+//! unpacking the others; `column` holds what a column can look like.
 
 mod codec;
 mod column;
