@@ -24,7 +24,8 @@ const MAX_FACTOR: f64 = 10.0;
 const MAX_DRIFT_PER_S: f64 = U16_MAX;
 
 impl Rig {
-    /// Does something to the unit, from the next scan on.
+    /// Does something to the unit, from the next scan on. What making safe still had to do is done
+    /// at once, so wait for [`Self::safe`] first where the wheels turn.
     ///
     /// # Errors
     /// What the bench cannot do, in words for the technician.
@@ -86,6 +87,14 @@ impl Rig {
             Stimulus::MarkersAlong { section } => self.lay_section(section)?,
             Stimulus::Station(data) => self.wayside.set_data(data),
             Stimulus::Wayside(condition) => self.wayside.set_condition(condition),
+            _ => return self.apply_desk(now, stimulus),
+        }
+        Ok(())
+    }
+
+    /// Stimuli of cab desk, train lines and TCMS.
+    fn apply_desk(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
+        match *stimulus {
             Stimulus::Doors { closed } => self.desk.doors_closed = closed,
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
@@ -106,7 +115,7 @@ impl Rig {
                 let full_kg = self.train.config().full_load_kg;
                 self.tcms.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
             }
-            _ => self.apply_ptu(now, stimulus)?,
+            _ => return self.apply_ptu(now, stimulus),
         }
         Ok(())
     }

@@ -82,7 +82,7 @@ impl Motion {
         self.len += 1;
     }
 
-    /// Moves the end of the scan by a rounding error, so that a whole travel is exact.
+    /// Moves the end of the scan by what rounding has added up, so that a whole travel is exact.
     pub fn correct(&mut self, way_m: f64, position_m: f64) {
         self.way_m = way_m.max(self.way_before_m);
         self.position_m = position_m;

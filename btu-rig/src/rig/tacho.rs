@@ -117,7 +117,7 @@ mod tests {
     use super::super::wheel::Wheel;
     use super::*;
 
-    /// [S2 gives none] 860 mm, 100 pulses per turn as in the default configuration.
+    /// 860 mm and 100 pulses per turn, as in the default configuration.
     const PULSE_M: f64 = std::f64::consts::PI * 0.86 / 100.0;
 
     fn channels() -> [Tacho; 2] {

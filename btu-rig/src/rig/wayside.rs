@@ -11,7 +11,7 @@ use super::random::Random;
 
 /// Period of the wayside's frames.
 pub const PERIOD: Duration = Duration::from_ms(250);
-/// Most bits flipped in a corrupt frame; the FCS finds up to three for certain.
+/// Most bits flipped in a corrupt frame: so few that the check sequence finds each of them.
 const MAX_FLIPS: usize = 3;
 /// Fixed speed that stands for none.
 const NO_FIXED_SPEED: u8 = 255;
