@@ -353,3 +353,48 @@ fn open(body: &[u8]) -> Result<(Header, &[u8]), Rejected> {
 fn claimed_channel(body: &[u8]) -> Option<Channel> {
     body.get(1).and_then(|&code| Channel::from_code(code))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tail of a frame whose head was dropped is garbage; the flag behind it ends no frame and
+    /// aborts none.
+    #[test]
+    fn an_overrun_leaves_no_half_frame_behind() {
+        let mut decoder = Decoder::new();
+        decoder.push(&[FLAG, 1, 2, ESCAPE]);
+        assert!(decoder.next_frame().is_none());
+        let mut flood = alloc::vec![0; MAX_PENDING];
+        flood[10] = FLAG;
+        decoder.push(&flood[..20]);
+        decoder.push(&flood);
+        assert!(decoder.next_frame().is_none());
+        assert_eq!(decoder.pending_len(), 0);
+        // Two of the body, twenty of the first push, ten before the flag: all but the frame that
+        // the flag began, and what of it exceeds the longest body.
+        let began = MAX_PENDING - 11;
+        assert_eq!(decoder.garbage(), (2 + 20 + 10 + began - MAX_BODY) as u64);
+    }
+
+    #[test]
+    fn the_worked_example() {
+        let header = Header {
+            channel: Channel::Ptu,
+            source: Address::Tester,
+            destination: Address::Unit,
+            seq: 0,
+            stamp_ms: 4660,
+        };
+        // The check sequence 0xC3F2914A was worked out bit by bit, as WIRE.md shows.
+        let frame = [
+            0x7E, 1, 1, 0x10, 0x20, 0, 0, 0, 0, 0x12, 0x34, 1, 0x4A, 0x91, 0xF2, 0xC3, 0x7E,
+        ];
+        let mut out = Vec::new();
+        encode(&header, &[1], &mut out);
+        assert_eq!(out, frame);
+        let mut decoder = Decoder::new();
+        decoder.push(&frame);
+        assert_eq!(decoder.next_frame(), Some(Ok((header, &[1][..]))));
+    }
+}

@@ -5,7 +5,7 @@
 //! * [`link`]: sequence, time stamp, time-out and address checks for each peer;
 //! * [`message`]: the typed messages of the four channels, with declared field layouts;
 //! * [`signal`], [`event`]: the catalogue of recorded signals and of unit events;
-//! * [`config`], [`line`], [`injection`]: unit configuration, track database and fault modes as
+//! * [`config`], [`mod@line`], [`injection`]: unit configuration, track database and fault modes as
 //!   checked data.
 //!
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep

@@ -297,7 +297,8 @@ fn the_sequence_number_wraps() {
 fn a_restarted_tester_is_heard_after_silence() {
     let (mut bench, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));
     run(&mut bench, &mut unit, NOW, 1 + u64::from(MAX_AHEAD));
-    let last = unit.last_heard(Channel::Ptu).expect("heard");
+    let last = NOW + Duration::from_ms(u64::from(MAX_AHEAD));
+    assert_eq!(unit.last_heard(Channel::Ptu), Some(last));
 
     let mut restarted = Link::new(End::Bench);
     let own_clock = Instant::from_ms(3);
@@ -335,6 +336,20 @@ fn clocks_that_drift_apart_stay_in_step() {
             unit.push(&bytes);
             assert!(unit.poll(now).is_some(), "{drift_ppm} ppm, {now}");
         }
+        // Relaxing forgives drift, not delay.
+        let mut bytes = Vec::new();
+        let sent = (unit.last_heard(Channel::Ptu).expect("heard")).as_us() as i64 + 1000;
+        let theirs = sent + sent * drift_ppm / 1_000_000;
+        bench.send(
+            Instant::from_us(theirs as u64),
+            &Identify {}.into(),
+            &mut bytes,
+        );
+        unit.push(&bytes);
+        assert!(
+            unit.poll(Instant::from_us(sent as u64 + 510_000)).is_none(),
+            "{drift_ppm} ppm"
+        );
     }
 }
 

@@ -51,7 +51,7 @@ layout! {
         bits: AtcToTcmsBits,
         /// Operating mode.
         mode: Mode,
-        /// Effort: -1024 full brake .. 1023 full power, of what is available at this speed [S4].
+        /// Effort: -1024 full brake .. 1023 full power, of what is available at this speed (S4).
         effort: i16,
         /// ATO target speed, cm/s.
         target_cms: u16,
