@@ -33,6 +33,7 @@ impl Rig {
         if self.making_safe {
             self.rest_quiescent();
         }
+        self.tester.forget_failure();
         match *stimulus {
             Stimulus::Code {
                 carrier_hz,
@@ -62,6 +63,7 @@ impl Rig {
                 in_range("speed", to.kmh(), 0.0, MAX_SPEED_KMH, "km/h")?;
                 positive("acceleration", accel_mps2, MAX_ACCEL_MPS2, "m/s²")?;
                 self.wheel.go_to(to, accel_mps2);
+                self.awaits_motion = true;
             }
             Stimulus::Travel {
                 distance_m,
@@ -73,6 +75,7 @@ impl Rig {
                 positive("speed", speed.kmh(), MAX_SPEED_KMH, "km/h")?;
                 positive("acceleration", accel_mps2, MAX_ACCEL_MPS2, "m/s²")?;
                 self.wheel.travel(distance_m, speed, accel_mps2)?;
+                self.awaits_motion = true;
             }
             Stimulus::Direction { backward } => {
                 self.need_generator()?;
@@ -147,15 +150,17 @@ impl Rig {
             Stimulus::PtuClearLog => test_signals::clear_log(session),
             _ => return Err(Refusal(format!("this bench cannot do {stimulus:?}"))),
         };
+        self.awaits_motion = false;
         self.tester.request(request)
     }
 
-    /// Everything asked of the unit is answered.
+    /// The last thing begun that takes its time is done: a ramp or travel, or else everything asked
+    /// of the unit. A ramp may run on while requests are answered, so only the later one counts.
     ///
     /// # Errors
-    /// What the unit refused or did not answer, once.
-    pub fn settled(&mut self) -> Result<bool, Refusal> {
-        self.tester.settled()
+    /// What the unit refused or did not answer, until the next stimulus.
+    pub fn settled(&self) -> Result<bool, Refusal> {
+        Ok(self.tester.settled()? && (!self.awaits_motion || self.motion_settled()))
     }
 
     /// Goes back to the quiescent state: at once what can be, and what a turning wheel needs so
@@ -276,7 +281,7 @@ impl crate::procedure::Driver for Rig {
     fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
         Self::apply(self, now, stimulus)
     }
-    fn settled(&mut self) -> Result<bool, Refusal> {
+    fn settled(&self) -> Result<bool, Refusal> {
         Self::settled(self)
     }
     fn make_safe(&mut self, now: Instant) {

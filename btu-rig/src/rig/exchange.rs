@@ -23,8 +23,8 @@ const MAX_ATTEMPTS: usize = 3;
 const ANSWER_TIME: Duration = Duration::from_ms(300);
 /// Pause before arming is tried again while the unit starts up or another session lapses.
 const ARM_PAUSE: Duration = Duration::from_ms(200);
-/// How long that is tried [default].
-const ARM_PATIENCE: Duration = Duration::from_ms(5000);
+/// How long that is tried: shorter than a procedure waits, so that the unit's reason is told.
+const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 
 /// Something asked of the unit.
 #[derive(Clone, Copy, Debug)]
@@ -142,9 +142,14 @@ impl Exchange {
             .any(|r| matches!(r, Request::Disarm))
     }
 
-    /// What failed since this was asked last.
-    pub fn take_failure(&mut self) -> Option<Refusal> {
-        self.failure.take()
+    /// What failed and is not forgotten yet.
+    pub fn failure(&self) -> Option<&Refusal> {
+        self.failure.as_ref()
+    }
+
+    /// The bench goes on to something else.
+    pub fn forget_failure(&mut self) {
+        self.failure = None;
     }
 
     /// Sends what is due.

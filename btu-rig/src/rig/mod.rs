@@ -78,6 +78,8 @@ pub struct Rig {
     tester: Tester,
     /// Slowing down to a standstill, after which the rest is made quiescent.
     making_safe: bool,
+    /// What was begun last and takes its time is a motion.
+    awaits_motion: bool,
     braking: bool,
     link: Link,
     watch: LinkWatch,
@@ -109,6 +111,7 @@ impl Rig {
             desk: Desk::default(),
             tester: Tester::new(session),
             making_safe: false,
+            awaits_motion: false,
             braking: false,
             link: Link::new(End::Bench),
             watch: LinkWatch::default(),

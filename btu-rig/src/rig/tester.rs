@@ -163,11 +163,17 @@ impl Tester {
     /// Every request has its outcome.
     ///
     /// # Errors
-    /// What the unit refused or did not answer, once.
-    pub fn settled(&mut self) -> Result<bool, Refusal> {
-        self.exchange
-            .take_failure()
-            .map_or_else(|| Ok(self.exchange.idle()), Err)
+    /// What the unit refused or did not answer, until it is forgotten.
+    pub fn settled(&self) -> Result<bool, Refusal> {
+        match self.exchange.failure() {
+            Some(refusal) => Err(refusal.clone()),
+            None => Ok(self.exchange.idle()),
+        }
+    }
+
+    /// The bench goes on to something else: what failed before is told.
+    pub fn forget_failure(&mut self) {
+        self.exchange.forget_failure();
     }
 
     /// Listening, not armed, nothing under way.

@@ -136,3 +136,31 @@ fn what_cannot_be_is_refused_in_words() {
         assert!(refusal.0.contains(text), "{}", refusal.0);
     }
 }
+
+/// Making safe may be called every scan, and a motion counts as unsettled only until a request
+/// comes after it.
+#[test]
+fn settling_follows_what_was_begun_last() {
+    let mut bench = bench(FakeUnit::default());
+    let to = Speed::from_mps(10.0);
+    let ramp = Stimulus::Speed {
+        to,
+        accel_mps2: 1.0,
+    };
+    assert_eq!(bench.settle(ramp), Ok(()));
+    assert_eq!(bench.now().as_secs(), 10.0);
+    bench.apply(Stimulus::Travel {
+        distance_m: 200.0,
+        speed: to,
+        accel_mps2: 1.0,
+    });
+    assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
+    assert!(bench.now().as_secs() < 11.0 && !bench.rig().motion_settled());
+    while !bench.rig().safe() {
+        let now = bench.now();
+        bench.rig_mut().make_safe(now);
+        bench.run_ms(10);
+        assert!(now.as_secs() < 14.0, "10 m/s at 3 m/s² is 3.4 s");
+    }
+    assert!(!bench.link().armed());
+}

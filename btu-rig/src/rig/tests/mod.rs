@@ -47,7 +47,7 @@ impl Bench<FakeUnit> {
         self.apply(stimulus);
         for _ in 0..1000 {
             self.tick().unwrap();
-            if self.rig_mut().settled()? {
+            if self.rig().settled()? {
                 return Ok(());
             }
         }

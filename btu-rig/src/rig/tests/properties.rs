@@ -108,7 +108,7 @@ proptest! {
             let _ = bench.rig_mut().apply(now, &stimulus);
             bench.run_ms(scans * 10);
             check_sample(&bench)?;
-            let _ = bench.rig_mut().settled();
+            let _ = bench.rig().settled();
         }
         let now = bench.now();
         bench.rig_mut().make_safe(now);

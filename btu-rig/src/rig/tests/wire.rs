@@ -51,7 +51,7 @@ fn no_cycle_exceeds_the_budget() {
             bench.apply(Stimulus::PtuTwc(STATION));
         }
         bench.run_ms(500);
-        assert!(bench.rig_mut().settled().is_ok());
+        assert!(bench.rig().settled().is_ok());
     }
     let bytes = &bench.link().bytes_per_scan;
     let worst = bytes
