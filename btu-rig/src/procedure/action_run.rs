@@ -1,0 +1,184 @@
+//! Carrying out a list of actions, one after the other, without ever blocking.
+
+use protocol::signal::Sample;
+use protocol::{Duration, Instant};
+
+use super::Driver;
+use super::condition::{Captured, Truth};
+use super::plan::Action;
+use super::report::RunEvent;
+use super::runner::PromptPolicy;
+
+/// How often a wait is reported.
+const WAITING_EVERY: Duration = Duration::from_ms(500);
+
+/// What one scan gives to everything that watches.
+#[derive(Clone, Copy)]
+pub(super) struct Scan<'a> {
+    pub now: Instant,
+    pub sample: &'a Sample,
+    pub captured: &'a Captured,
+}
+
+/// Operator's side of a prompt.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Operator {
+    pub policy: PromptPolicy,
+    /// Answer given since the last scan.
+    pub answer: Option<bool>,
+}
+
+/// Why an action did not succeed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Problem {
+    /// The unit did not do its part.
+    Failed(String),
+    /// Data are missing, so nothing can be said.
+    NoData(String),
+    /// The bench, the link or the operator did not do theirs.
+    Bench(String),
+}
+
+impl Problem {
+    pub(super) fn message(&self) -> &str {
+        match self {
+            Self::Failed(text) | Self::NoData(text) | Self::Bench(text) => text,
+        }
+    }
+}
+
+/// How far a list of actions is.
+#[derive(Debug, PartialEq)]
+pub(super) enum Progress {
+    /// An action takes its time.
+    Waiting,
+    /// All are done.
+    Done,
+    /// An action did not succeed; the list can be [resumed](ActionRun::skip) after it.
+    Stuck(Problem),
+}
+
+/// Progress through a list of actions.
+#[derive(Debug, Default)]
+pub(super) struct ActionRun {
+    at: usize,
+    /// When the present action began to wait.
+    since: Option<Instant>,
+    /// When the last stimulus was applied.
+    stimulated: Option<Instant>,
+    reported: Option<Instant>,
+}
+
+impl ActionRun {
+    /// Whether the sample of this scan is older than the last stimulus: it proves nothing then.
+    pub(super) fn sample_is_stale(&self, now: Instant) -> bool {
+        self.stimulated == Some(now)
+    }
+
+    /// Goes on with the action after a stuck one.
+    pub(super) fn skip(&mut self) {
+        self.at += 1;
+        self.since = None;
+        self.reported = None;
+    }
+
+    /// Carries out actions until one takes its time or all are done.
+    pub(super) fn advance(
+        &mut self,
+        actions: &[Action],
+        scan: Scan<'_>,
+        operator: Operator,
+        driver: &mut dyn Driver,
+        out: &mut Vec<RunEvent>,
+    ) -> Progress {
+        while let Some(action) = actions.get(self.at) {
+            let since = *self.since.get_or_insert(scan.now);
+            let waited = scan.now.since(since);
+            let done = match action {
+                Action::Stimulus(stimulus) => {
+                    if let Err(refusal) = driver.apply(scan.now, stimulus) {
+                        return Progress::Stuck(Problem::Bench(refusal.0));
+                    }
+                    self.stimulated = Some(scan.now);
+                    true
+                }
+                Action::Wait(span) => waited >= *span,
+                _ if self.sample_is_stale(scan.now) => false,
+                Action::Until { condition, within } => {
+                    match until(
+                        condition.truth(scan.sample, scan.captured),
+                        waited >= *within,
+                    ) {
+                        Ok(done) => done,
+                        Err(make) => {
+                            return Progress::Stuck(make(format!(
+                                "{condition} did not come within {within}"
+                            )));
+                        }
+                    }
+                }
+                Action::Settle { within } => match driver.settled() {
+                    Err(refusal) => return Progress::Stuck(Problem::Bench(refusal.0)),
+                    Ok(false) if waited >= *within => {
+                        let text = format!("motion or tester request not finished within {within}");
+                        return Progress::Stuck(Problem::Bench(text));
+                    }
+                    Ok(settled) => settled,
+                },
+                Action::Prompt { text, within } => {
+                    match prompt(text, operator, waited >= *within) {
+                        Ok(done) => done,
+                        Err(problem) => return Progress::Stuck(problem),
+                    }
+                }
+            };
+            if !done {
+                self.report(action, scan.now, waited, out);
+                return Progress::Waiting;
+            }
+            self.skip();
+        }
+        Progress::Done
+    }
+
+    /// Says what is waited for: prompts at once, the rest if it takes longer than a moment.
+    fn report(&mut self, action: &Action, now: Instant, waited: Duration, out: &mut Vec<RunEvent>) {
+        let left = action.worst_case() - waited;
+        if let Action::Prompt { text, .. } = action {
+            if self.reported.replace(now).is_none() {
+                let text = text.clone();
+                out.push(RunEvent::Prompt { text, left });
+            }
+            return;
+        }
+        if now.since(*self.reported.get_or_insert(now)) >= WAITING_EVERY {
+            self.reported = Some(now);
+            let what = action.to_string();
+            out.push(RunEvent::Waiting { what, left });
+        }
+    }
+}
+
+/// Whether a wait for a condition is over, or how to make the problem it ended with.
+fn until(truth: Truth, late: bool) -> Result<bool, fn(String) -> Problem> {
+    match truth {
+        Truth::Yes => Ok(true),
+        Truth::No if late => Err(Problem::Failed),
+        Truth::NoData(_) if late => Err(Problem::NoData),
+        Truth::No | Truth::NoData(_) => Ok(false),
+    }
+}
+
+fn prompt(text: &str, operator: Operator, late: bool) -> Result<bool, Problem> {
+    match (operator.policy, operator.answer) {
+        (PromptPolicy::Refuse, _) => Err(Problem::Bench(format!("needs an operator: {text}"))),
+        (PromptPolicy::Ask, Some(true)) => Ok(true),
+        (PromptPolicy::Ask, Some(false)) => {
+            Err(Problem::Failed(format!("the operator said no: {text}")))
+        }
+        (PromptPolicy::Ask, None) if late => Err(Problem::Bench(format!(
+            "the operator did not answer: {text}"
+        ))),
+        (PromptPolicy::Ask, None) => Ok(false),
+    }
+}

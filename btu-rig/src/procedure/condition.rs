@@ -1,0 +1,285 @@
+//! Conditions over signals: three-valued, so that missing data is never taken for an answer.
+
+use protocol::signal::{Kind, Sample, Signal};
+
+/// What a signal is compared with, or a limit: a number in the unit of the thing compared.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Operand {
+    /// Written in the script.
+    Literal(f64),
+    /// Measured by an earlier step.
+    Measured {
+        /// Which of the procedure's measurements.
+        slot: usize,
+        /// Its name, for people.
+        name: String,
+        /// Added to it, in its own unit.
+        offset: f64,
+    },
+}
+
+/// How a signal is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Comparison {
+    /// The same recorded step.
+    Equal,
+    /// Another recorded step.
+    NotEqual,
+    /// Less.
+    Below,
+    /// Less or the same.
+    AtMost,
+    /// Greater.
+    Above,
+    /// Greater or the same.
+    AtLeast,
+    /// No further away than this.
+    Near {
+        /// Greatest distance, in the signal's unit.
+        tolerance: f64,
+    },
+}
+
+/// A statement about signals that is true, false or cannot be told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Condition {
+    /// One signal against one operand.
+    Compare {
+        /// The signal.
+        signal: Signal,
+        /// How.
+        comparison: Comparison,
+        /// With what.
+        operand: Operand,
+    },
+    /// All of them.
+    All(Vec<Condition>),
+    /// At least one of them.
+    Any(Vec<Condition>),
+}
+
+/// Values captured by the procedure's measures so far, by slot.
+pub(super) type Captured = [Option<f64>];
+
+/// The data a condition or limit needed and did not get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lack {
+    /// A signal is not known.
+    Signal(Signal),
+    /// An earlier measurement has no value.
+    Measurement,
+}
+
+impl std::fmt::Display for Lack {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Signal(signal) => write!(f, "no data for {}", signal.name()),
+            Self::Measurement => f.write_str("an earlier measurement it refers to has no value"),
+        }
+    }
+}
+
+/// Answer to a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Truth {
+    /// It holds.
+    Yes,
+    /// It does not.
+    No,
+    /// It cannot be told.
+    NoData(Lack),
+}
+
+impl Operand {
+    /// Its value now.
+    pub(super) fn value(&self, captured: &Captured) -> Result<f64, Lack> {
+        let value = match self {
+            Self::Literal(value) => Some(*value),
+            Self::Measured { slot, offset, .. } => {
+                captured.get(*slot).copied().flatten().map(|v| v + offset)
+            }
+        };
+        value.filter(|v| v.is_finite()).ok_or(Lack::Measurement)
+    }
+}
+
+impl Condition {
+    /// Whether it holds in `sample`.
+    pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> Truth {
+        match self {
+            Self::Compare {
+                signal,
+                comparison,
+                operand,
+            } => compare(*signal, *comparison, operand, sample, captured),
+            Self::All(parts) => fold(parts, sample, captured, Truth::Yes, Truth::No),
+            Self::Any(parts) => fold(parts, sample, captured, Truth::No, Truth::Yes),
+        }
+    }
+
+    /// Calls `f` with each signal it looks at.
+    pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
+        match self {
+            Self::Compare { signal, .. } => f(*signal),
+            Self::All(parts) | Self::Any(parts) => {
+                parts.iter().for_each(|part| part.for_each_signal(f));
+            }
+        }
+    }
+
+    /// Calls `f` with each operand and the signal it is compared with.
+    pub(super) fn try_for_each_operand<E>(
+        &mut self,
+        f: &mut impl FnMut(Signal, &mut Operand) -> Result<(), E>,
+    ) -> Result<(), E> {
+        match self {
+            Self::Compare {
+                signal, operand, ..
+            } => f(*signal, operand),
+            Self::All(parts) | Self::Any(parts) => parts
+                .iter_mut()
+                .try_for_each(|part| part.try_for_each_operand(f)),
+        }
+    }
+}
+
+/// `decisive` as soon as a part gives it; else a lack of data if there is one; else `otherwise`.
+fn fold(
+    parts: &[Condition],
+    sample: &Sample,
+    captured: &Captured,
+    otherwise: Truth,
+    decisive: Truth,
+) -> Truth {
+    let mut result = otherwise;
+    for part in parts {
+        match part.truth(sample, captured) {
+            truth if truth == decisive => return decisive,
+            lack @ Truth::NoData(_) => result = lack,
+            _ => {}
+        }
+    }
+    result
+}
+
+/// Both sides are rounded to the signal's recorded step first: a limit of 55 km/h is 1528 cm/s on
+/// the wire, 55.008 km/h in a sample, and still *is* 55 km/h.
+fn compare(
+    signal: Signal,
+    comparison: Comparison,
+    operand: &Operand,
+    sample: &Sample,
+    captured: &Captured,
+) -> Truth {
+    let Some(found) = sample.get(signal).filter(|v| v.is_finite()) else {
+        return Truth::NoData(Lack::Signal(signal));
+    };
+    let wanted = match operand.value(captured) {
+        Ok(wanted) => wanted,
+        Err(lack) => return Truth::NoData(lack),
+    };
+    let lsb = match signal.definition().kind {
+        Kind::Number { lsb } => lsb,
+        Kind::Enum(_) | Kind::Bit => 1.0,
+    };
+    let (left, right) = ((found / lsb).round(), (wanted / lsb).round());
+    let holds = match comparison {
+        Comparison::Equal => left == right,
+        Comparison::NotEqual => left != right,
+        Comparison::Below => left < right,
+        Comparison::AtMost => left <= right,
+        Comparison::Above => left > right,
+        Comparison::AtLeast => left >= right,
+        // Half a step of grace: the tolerance is about the thing, not about its recording.
+        Comparison::Near { tolerance } => (found - wanted).abs() <= tolerance + lsb / 2.0,
+    };
+    if holds { Truth::Yes } else { Truth::No }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is(signal: Signal, comparison: Comparison, value: f64) -> Condition {
+        Condition::Compare {
+            signal,
+            comparison,
+            operand: Operand::Literal(value),
+        }
+    }
+
+    fn sample(limit: f64) -> Sample {
+        let mut sample = Sample::default();
+        sample.set(Signal::Limit, limit);
+        sample
+    }
+
+    #[test]
+    fn each_comparison_below_at_and_above() {
+        let wire_55 = 15.28 * 3.6;
+        let table = [
+            (Comparison::Equal, [false, true, false]),
+            (Comparison::NotEqual, [true, false, true]),
+            (Comparison::Below, [true, false, false]),
+            (Comparison::AtMost, [true, true, false]),
+            (Comparison::Above, [false, false, true]),
+            (Comparison::AtLeast, [false, true, true]),
+            (Comparison::Near { tolerance: 0.5 }, [false, true, false]),
+        ];
+        for (comparison, expected) in table {
+            for (value, expected) in [54.0, wire_55, 56.0].into_iter().zip(expected) {
+                let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
+                assert_eq!(truth == Truth::Yes, expected, "{comparison:?} {value}");
+            }
+            for value in [f64::NAN, f64::INFINITY] {
+                let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
+                assert_eq!(truth, Truth::NoData(Lack::Signal(Signal::Limit)));
+            }
+        }
+    }
+
+    #[test]
+    fn missing_data_never_makes_a_group_true() {
+        let known = is(Signal::Limit, Comparison::Above, 50.0);
+        let known_false = is(Signal::Limit, Comparison::Below, 50.0);
+        let missing = is(Signal::Eb, Comparison::Equal, 1.0);
+        let lack = Truth::NoData(Lack::Signal(Signal::Eb));
+        let cases = [
+            (Condition::All(vec![known.clone(), missing.clone()]), lack),
+            (
+                Condition::All(vec![missing.clone(), known_false.clone()]),
+                Truth::No,
+            ),
+            (Condition::Any(vec![missing.clone(), known]), Truth::Yes),
+            (Condition::Any(vec![known_false, missing]), lack),
+        ];
+        for (condition, expected) in cases {
+            assert_eq!(
+                condition.truth(&sample(55.0), &[]),
+                expected,
+                "{condition:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_measured_operand_needs_its_measurement() {
+        let condition = Condition::Compare {
+            signal: Signal::Limit,
+            comparison: Comparison::Above,
+            operand: Operand::Measured {
+                slot: 0,
+                name: "v".into(),
+                offset: 1.0,
+            },
+        };
+        assert_eq!(condition.truth(&sample(55.0), &[Some(53.0)]), Truth::Yes);
+        assert_eq!(condition.truth(&sample(55.0), &[Some(54.5)]), Truth::No);
+        for captured in [&[None][..], &[Some(f64::NAN)], &[]] {
+            assert_eq!(
+                condition.truth(&sample(55.0), captured),
+                Truth::NoData(Lack::Measurement)
+            );
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Watching one expectation while its step runs.
+
+use protocol::Instant;
+
+use super::action_run::{Problem, Scan};
+use super::condition::{Lack, Truth};
+use super::event_set::EventSet;
+use super::plan::Expectation;
+
+/// What is known about an expectation so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watch {
+    decided: bool,
+    lack: Option<Lack>,
+    problem: Option<Problem>,
+}
+
+impl Watch {
+    /// Looks at one scan. `actions_end` is set as soon as the actions are done and the sample is
+    /// newer than the last stimulus.
+    pub(super) fn look(
+        &mut self,
+        expectation: &Expectation,
+        scan: Scan<'_>,
+        actions_end: Option<Instant>,
+        logged: EventSet,
+    ) {
+        if self.decided {
+            return;
+        }
+        let since_end = actions_end.map(|end| scan.now.since(end));
+        match expectation {
+            Expectation::Becomes { condition, within } => {
+                let Some(waited) = since_end else { return };
+                match condition.truth(scan.sample, scan.captured) {
+                    Truth::Yes => self.decided = true,
+                    truth if waited >= *within => {
+                        self.fail(truth, || {
+                            format!("{condition} did not come within {within}")
+                        });
+                    }
+                    Truth::No | Truth::NoData(_) => {}
+                }
+            }
+            Expectation::Holds {
+                condition,
+                duration,
+            } => {
+                let Some(waited) = since_end else { return };
+                match condition.truth(scan.sample, scan.captured) {
+                    Truth::Yes => self.decided = waited >= *duration,
+                    truth => self.fail(truth, || format!("{condition} held only for {waited}")),
+                }
+            }
+            Expectation::Never { condition } => match condition.truth(scan.sample, scan.captured) {
+                truth @ Truth::Yes => self.fail(truth, || format!("{condition} came true")),
+                Truth::NoData(lack) => self.lack = Some(lack),
+                Truth::No => {}
+            },
+            Expectation::Logs { event, within } => {
+                let name = event.definition().name;
+                if logged.contains(*event) {
+                    self.decided = true;
+                } else if since_end.is_some_and(|waited| waited >= *within) {
+                    self.fail(Truth::No, || {
+                        format!("the unit did not log {name} within {within}")
+                    });
+                }
+            }
+            Expectation::NeverLogs { event } => {
+                let name = event.definition().name;
+                if logged.contains(*event) {
+                    self.fail(Truth::Yes, || format!("the unit logged {name}"));
+                }
+            }
+        }
+    }
+
+    /// Whether the step must go on for it.
+    pub(super) fn is_open(&self, expectation: &Expectation) -> bool {
+        !self.decided
+            && !matches!(
+                expectation,
+                Expectation::Never { .. } | Expectation::NeverLogs { .. }
+            )
+    }
+
+    /// Ends watching; the problem, if there is one.
+    pub(super) fn finish(self, expectation: &Expectation) -> Option<Problem> {
+        match (self.problem, self.lack, expectation) {
+            (Some(problem), _, _) => Some(problem),
+            // A condition that could not be told in a single scan may have been true in it.
+            (None, Some(lack), Expectation::Never { condition }) => Some(Problem::NoData(format!(
+                "{lack}, so never {condition} cannot be told"
+            ))),
+            _ => None,
+        }
+    }
+
+    fn fail(&mut self, truth: Truth, text: impl FnOnce() -> String) {
+        self.decided = true;
+        self.problem = Some(match truth {
+            Truth::NoData(lack) => Problem::NoData(format!("{}: {lack}", text())),
+            Truth::Yes | Truth::No => Problem::Failed(text()),
+        });
+    }
+}

@@ -1,0 +1,213 @@
+//! From what a script declared to a procedure that can be run: names resolved, times computed.
+
+use protocol::Duration;
+use sha2::{Digest, Sha256};
+use starlark::codemap::FileSpan;
+
+use super::draft::{Declaration, ProcedureDraft, StepDraft};
+use super::suggest::hint;
+use super::{LoadError, error_at};
+use crate::procedure::plan::{
+    Action, Condition, Expectation, Measure, Operand, Procedure, Step, TIME_LIMIT_MARGIN, TimeFrom,
+    What,
+};
+
+/// Longest time a whole procedure may take.
+const LONGEST: Duration = Duration::from_ms(24 * 3600 * 1000);
+
+/// A measurement that later steps may refer to.
+struct Known {
+    step: String,
+    name: String,
+    unit: &'static str,
+}
+
+/// A procedure out of the declarations of the script at `path`.
+pub(super) fn assemble(
+    path: &str,
+    text: &str,
+    declared: Vec<(Declaration, Vec<FileSpan>)>,
+) -> Result<Procedure, Vec<LoadError>> {
+    let at_top = |message: &str| LoadError {
+        file: path.to_owned(),
+        line: 1,
+        column: 1,
+        message: message.to_owned(),
+    };
+    let mut errors = Vec::new();
+    let mut head: Option<ProcedureDraft> = None;
+    let mut steps: Vec<Step> = Vec::new();
+    let mut known: Vec<Known> = Vec::new();
+    for (declaration, places) in declared {
+        // The place in this file; a step may be declared by a function of a library.
+        let place = places
+            .iter()
+            .find(|p| p.filename() == path)
+            .or(places.first());
+        let fail = |message: String| match place {
+            Some(place) => error_at(place, message),
+            None => at_top(&message),
+        };
+        match declaration {
+            Declaration::Procedure(_) if head.is_some() => {
+                errors.push(fail("a second procedure() in one file".into()));
+            }
+            Declaration::Procedure(draft) => head = Some(draft),
+            Declaration::Step(draft) => {
+                if steps.iter().any(|step| step.name == draft.name) {
+                    errors.push(fail(format!("two steps are called \"{}\"", draft.name)));
+                }
+                let line = place.map_or(0, |p| p.resolve_span().begin.line as u32 + 1);
+                match step(draft, line, &mut known) {
+                    Ok(step) => steps.push(step),
+                    Err(message) => errors.push(fail(message)),
+                }
+            }
+        }
+    }
+    if head.is_none() {
+        errors.push(at_top("no procedure(title = …)"));
+    }
+    if steps.is_empty() && errors.is_empty() {
+        errors.push(at_top("the procedure has no step"));
+    }
+    let (Some(mut head), true) = (head, errors.is_empty()) else {
+        return Err(errors);
+    };
+    let no_earlier = |actions: &mut Vec<Action>| {
+        resolve_actions(actions, &[]).map_err(|e| vec![at_top(&format!("setup or cleanup: {e}"))])
+    };
+    no_earlier(&mut head.setup)?;
+    no_earlier(&mut head.cleanup)?;
+    let procedure = Procedure {
+        id: path.strip_suffix(".star").unwrap_or(path).to_owned(),
+        title: head.title,
+        title_ko: head.title_ko,
+        needs: head.needs,
+        suspect: head.suspect,
+        path: path.to_owned(),
+        sha256: sha256(text),
+        setup: head.setup,
+        cleanup: head.cleanup,
+        steps,
+        slots: known.len(),
+    };
+    if procedure.worst_case() > LONGEST {
+        return Err(vec![at_top("the procedure can take longer than 24 hours")]);
+    }
+    Ok(procedure)
+}
+
+fn sha256(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn step(draft: StepDraft, line: u32, known: &mut Vec<Known>) -> Result<Step, String> {
+    let mut step = Step {
+        name: draft.name,
+        line,
+        actions: draft.actions,
+        expectations: draft.expectations,
+        measures: draft.measures,
+        provokes: draft.provokes,
+        when: draft.when,
+        repeat: draft.repeat,
+        on_fail: draft.on_fail,
+        time_limit: Duration::ZERO,
+        worst_case: Duration::ZERO,
+        suspect: draft.suspect,
+        note: draft.note,
+    };
+    step.worst_case = step.compute_worst_case(draft.limit);
+    step.time_limit = draft.limit.unwrap_or(step.worst_case + TIME_LIMIT_MARGIN);
+    resolve_step(&mut step, known)?;
+    for measure in &mut step.measures {
+        measure.slot = known.len();
+        known.push(Known {
+            step: step.name.clone(),
+            name: measure.name.clone(),
+            unit: measure.unit(),
+        });
+    }
+    Ok(step)
+}
+
+fn resolve_step(step: &mut Step, known: &[Known]) -> Result<(), String> {
+    resolve_actions(&mut step.actions, known)?;
+    for expectation in &mut step.expectations {
+        match expectation {
+            Expectation::Becomes { condition, .. }
+            | Expectation::Holds { condition, .. }
+            | Expectation::Never { condition } => resolve_condition(condition, known)?,
+            Expectation::Logs { .. } | Expectation::NeverLogs { .. } => {}
+        }
+    }
+    for measure in &mut step.measures {
+        resolve_measure(measure, known)?;
+    }
+    match &mut step.when {
+        Some(when) => resolve_condition(when, known),
+        None => Ok(()),
+    }
+}
+
+fn resolve_measure(measure: &mut Measure, known: &[Known]) -> Result<(), String> {
+    let unit = measure.unit();
+    for limit in [&mut measure.low, &mut measure.high].into_iter().flatten() {
+        resolve(limit, unit, known)?;
+    }
+    match &mut measure.what {
+        What::Time { from, to } => {
+            if let TimeFrom::Condition(condition) = from {
+                resolve_condition(condition, known)?;
+            }
+            resolve_condition(to, known)
+        }
+        What::At { when, .. } => resolve_condition(when, known),
+        What::Value(_) | What::Maximum(_) | What::Minimum(_) | What::Change(_) => Ok(()),
+    }
+}
+
+fn resolve_actions(actions: &mut [Action], known: &[Known]) -> Result<(), String> {
+    for action in actions {
+        if let Action::Until { condition, .. } = action {
+            resolve_condition(condition, known)?;
+        }
+    }
+    Ok(())
+}
+
+fn resolve_condition(condition: &mut Condition, known: &[Known]) -> Result<(), String> {
+    condition.try_for_each_operand(&mut |signal, operand| {
+        resolve(operand, signal.definition().unit, known)
+    })
+}
+
+/// Finds the latest earlier measurement an operand names, as `name` or `step/name`.
+fn resolve(operand: &mut Operand, unit: &str, known: &[Known]) -> Result<(), String> {
+    let Operand::Measured { slot, name, .. } = operand else {
+        return Ok(());
+    };
+    let is_meant = |k: &Known| k.name == *name || format!("{}/{}", k.step, k.name) == *name;
+    let Some(at) = known.iter().rposition(is_meant) else {
+        let hint = hint(name, known.iter().map(|k| k.name.as_str()));
+        return Err(format!("no earlier step measures \"{name}\"{hint}"));
+    };
+    if known[at].unit != unit {
+        let (have, want) = (word(known[at].unit), word(unit));
+        return Err(format!(
+            "\"{name}\" is measured in {have}, here {want} is needed"
+        ));
+    }
+    *slot = at;
+    Ok(())
+}
+
+fn word(unit: &str) -> &str {
+    if unit.is_empty() {
+        "plain numbers"
+    } else {
+        unit
+    }
+}

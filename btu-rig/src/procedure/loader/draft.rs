@@ -1,0 +1,40 @@
+//! What `procedure()` and `step()` declare, before names are resolved and times computed.
+
+use protocol::Duration;
+use protocol::event::Event;
+
+use crate::procedure::plan::{Action, Condition, Connection, Expectation, Measure, OnFail};
+
+/// A call that declares something.
+#[derive(Clone, Debug)]
+pub(super) enum Declaration {
+    Procedure(ProcedureDraft),
+    Step(StepDraft),
+}
+
+/// A `procedure()` call.
+#[derive(Clone, Debug)]
+pub(super) struct ProcedureDraft {
+    pub title: String,
+    pub title_ko: Option<String>,
+    pub needs: Connection,
+    pub suspect: String,
+    pub setup: Vec<Action>,
+    pub cleanup: Vec<Action>,
+}
+
+/// A `step()` call.
+#[derive(Clone, Debug)]
+pub(super) struct StepDraft {
+    pub name: String,
+    pub actions: Vec<Action>,
+    pub expectations: Vec<Expectation>,
+    pub measures: Vec<Measure>,
+    pub provokes: Vec<Event>,
+    pub when: Option<Condition>,
+    pub repeat: u32,
+    pub on_fail: OnFail,
+    pub limit: Option<Duration>,
+    pub suspect: Option<String>,
+    pub note: Option<String>,
+}

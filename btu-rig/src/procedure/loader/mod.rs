@@ -1,0 +1,145 @@
+//! Loads check procedures: Starlark scripts in, typed plans or errors out.
+//!
+//! Layers, bottom up:
+//! * [`quantity`], [`item`]: the values of the script language, free of Starlark;
+//! * [`verb`], [`verbs`]: its words, each a table entry with typed parameters;
+//! * [`context`], [`globals`]: unit configuration, line, signals: the names a script knows;
+//! * [`handle`]: those values inside Starlark;
+//! * [`check`]: finds errors without running a script, also where it would never run;
+//! * [`evaluate`]: runs it once, within bounds, with no access to anything but its libraries;
+//! * [`assemble`]: resolves names between steps and computes times.
+
+mod assemble;
+mod check;
+mod context;
+mod draft;
+mod evaluate;
+mod globals;
+mod handle;
+mod item;
+mod quantity;
+mod suggest;
+mod verb;
+mod verbs;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use protocol::config::UnitConfig;
+use protocol::line::Line;
+use starlark::codemap::FileSpan;
+use thiserror::Error;
+
+use super::plan::Procedure;
+use context::Context;
+use evaluate::Evaluation;
+
+/// Script texts by path under the scripts folder, with `/` between names.
+pub type Scripts = BTreeMap<String, String>;
+
+/// Most steps one script may declare.
+pub const MOST_STEPS: usize = 10_000;
+/// Most errors reported for one file: the rest is usually a consequence.
+const MOST_ERRORS: usize = 50;
+
+/// What is wrong with a script, and where.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{file}:{line}:{column}: {message}")]
+pub struct LoadError {
+    /// Path under the scripts folder.
+    pub file: String,
+    /// Line, from 1.
+    pub line: u32,
+    /// Column, from 1.
+    pub column: u32,
+    /// What is wrong, with a hint where there is one.
+    pub message: String,
+}
+
+/// What came of loading scripts.
+#[derive(Clone, Debug, Default)]
+pub struct Loaded {
+    /// The procedures of all scripts without errors, by path.
+    pub procedures: Vec<Arc<Procedure>>,
+    /// All errors of all scripts, by path and line.
+    pub errors: Vec<LoadError>,
+    /// What scripts printed.
+    pub printed: Vec<String>,
+}
+
+/// Loads all `scripts` for a unit of type `unit` on `line`.
+///
+/// Files whose names start with `_` are libraries for `load()`; every other is one procedure.
+pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line) -> Loaded {
+    let context = Context::new(unit.clone(), line.clone());
+    let predeclared = globals::predeclared(&context);
+    let globals = globals::build(&predeclared);
+    let names = globals::names(&globals);
+    let evaluation = Evaluation::new(scripts, &context, &predeclared, &names, &globals);
+    let mut loaded = Loaded::default();
+    for (path, text) in scripts {
+        if is_library(path) {
+            // Its errors are kept aside, so that each is reported once.
+            let _ = evaluation.library(path);
+            continue;
+        }
+        let procedure = evaluation
+            .procedure(path, text)
+            .and_then(|declared| assemble::assemble(path, text, declared));
+        match procedure {
+            Ok(procedure) => loaded.procedures.push(Arc::new(procedure)),
+            Err(errors) => loaded.errors.extend(errors.into_iter().take(MOST_ERRORS)),
+        }
+    }
+    let (library_errors, printed) = evaluation.finish();
+    loaded.errors.extend(library_errors);
+    loaded.errors.sort_by(|a, b| {
+        (&a.file, a.line, a.column, &a.message).cmp(&(&b.file, b.line, b.column, &b.message))
+    });
+    loaded.errors.dedup();
+    loaded.printed = printed;
+    loaded
+}
+
+fn is_library(path: &str) -> bool {
+    path.rsplit('/')
+        .next()
+        .is_some_and(|name| name.starts_with('_'))
+}
+
+fn error_at(place: &FileSpan, message: String) -> LoadError {
+    let begin = place.resolve_span().begin;
+    LoadError {
+        file: place.filename().to_owned(),
+        line: begin.line as u32 + 1,
+        column: begin.column as u32 + 1,
+        message,
+    }
+}
+
+fn error_from(path: &str, error: &starlark::Error) -> LoadError {
+    let message = plain_words(&error.without_diagnostic().to_string());
+    match error.span() {
+        Some(span) => error_at(span, message),
+        None => LoadError {
+            file: path.to_owned(),
+            line: 1,
+            column: 1,
+            message,
+        },
+    }
+}
+
+/// Starlark's messages are for programmers; the two that need it are said in plain words.
+fn plain_words(message: &str) -> String {
+    let first = message.lines().next().unwrap_or_default();
+    if first.starts_with("Heap memory limit") {
+        "needs too much memory while it is loaded; does a loop go too far?".into()
+    } else if first.contains("tick") && first.contains("limit") {
+        "does too much while it is loaded; does a loop go too far?".into()
+    } else if first.starts_with("Starlark call stack overflow") {
+        "functions call each other too deeply; does one call itself?".into()
+    } else {
+        first.to_owned()
+    }
+}

@@ -1,0 +1,144 @@
+//! Quantities of scripts: a number that knows what it is a number of.
+
+use std::cmp::Ordering;
+
+/// What a quantity is an amount of, with the unit it is kept in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Dimension {
+    /// km/h.
+    Speed,
+    /// m/s².
+    Acceleration,
+    /// ms.
+    Time,
+    /// m.
+    Distance,
+    /// Hz.
+    Frequency,
+    /// mV.
+    Level,
+    /// kg.
+    Mass,
+}
+
+impl Dimension {
+    /// The unit it is kept and shown in.
+    pub(super) const fn unit(self) -> &'static str {
+        match self {
+            Self::Speed => "km/h",
+            Self::Acceleration => "m/s²",
+            Self::Time => "ms",
+            Self::Distance => "m",
+            Self::Frequency => "Hz",
+            Self::Level => "mV",
+            Self::Mass => "kg",
+        }
+    }
+
+    /// The dimension of signals and measurements in `unit`; `None` for plain numbers.
+    pub(super) fn of_unit(unit: &str) -> Option<Self> {
+        match unit {
+            "km/h" => Some(Self::Speed),
+            "ms" => Some(Self::Time),
+            "m" => Some(Self::Distance),
+            "Hz" => Some(Self::Frequency),
+            "mV" => Some(Self::Level),
+            "kg" => Some(Self::Mass),
+            _ => None,
+        }
+    }
+
+    /// With article and an example, for messages.
+    pub(super) const fn wanted(self) -> &'static str {
+        match self {
+            Self::Speed => "a speed such as kmh(55)",
+            Self::Acceleration => "an acceleration such as kmh_per_s(1)",
+            Self::Time => "a time such as s(2)",
+            Self::Distance => "a distance such as m(10)",
+            Self::Frequency => "a frequency such as hz(15)",
+            Self::Level => "a level such as mv(500)",
+            Self::Mass => "a mass such as kg(20000)",
+        }
+    }
+
+    /// With article.
+    pub(super) const fn found(self) -> &'static str {
+        match self {
+            Self::Speed => "a speed",
+            Self::Acceleration => "an acceleration",
+            Self::Time => "a time",
+            Self::Distance => "a distance",
+            Self::Frequency => "a frequency",
+            Self::Level => "a level",
+            Self::Mass => "a mass",
+        }
+    }
+}
+
+/// An amount of something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Quantity {
+    pub dimension: Dimension,
+    /// In the dimension's unit.
+    pub value: f64,
+}
+
+impl Quantity {
+    /// `value` is rounded to a thousand-millionth, so that 1.1 s are 1100 ms and not a hair more.
+    pub(super) fn new(dimension: Dimension, value: f64) -> Self {
+        let rounded = (value * 1e9).round() / 1e9;
+        // Huge numbers would overflow on the way.
+        let value = if rounded.is_finite() { rounded } else { value };
+        Self { dimension, value }
+    }
+
+    /// Sum or difference.
+    pub(super) fn plus(self, other: Self, sign: f64) -> Result<Self, String> {
+        self.same(other, if sign < 0.0 { "subtract" } else { "add" })?;
+        Ok(Self::new(self.dimension, self.value + sign * other.value))
+    }
+
+    /// Multiple.
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self::new(self.dimension, self.value * factor)
+    }
+
+    /// Which is greater.
+    pub(super) fn compare(self, other: Self) -> Result<Ordering, String> {
+        self.same(other, "compare")?;
+        Ok(self.value.total_cmp(&other.value))
+    }
+
+    fn same(self, other: Self, verb: &str) -> Result<(), String> {
+        if self.dimension == other.dimension {
+            return Ok(());
+        }
+        let (a, b) = (self.dimension.found(), other.dimension.found());
+        Err(format!("cannot {verb} {a} ({self}) and {b} ({other})"))
+    }
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let number = crate::procedure::describe::number(self.value);
+        write!(f, "{number} {}", self.dimension.unit())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_like_quantities_mix() {
+        let speed = Quantity::new(Dimension::Speed, 55.0);
+        let time = Quantity::new(Dimension::Time, 1100.0);
+        assert_eq!(speed.plus(speed, -1.0).unwrap().value, 0.0);
+        assert_eq!(
+            speed.plus(time, 1.0).unwrap_err(),
+            "cannot add a speed (55 km/h) and a time (1100 ms)"
+        );
+        assert!(speed.compare(time).is_err());
+        assert_eq!(Quantity::new(Dimension::Time, 1.1 * 1000.0).value, 1100.0);
+    }
+}

@@ -1,0 +1,33 @@
+//! "Did you mean …?"
+
+/// The end of a message: `; did you mean X?` if a candidate is near, else the candidates if they
+/// are few, else nothing.
+pub(super) fn hint<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    let nearest = candidates
+        .iter()
+        .map(|&name| (strsim::osa_distance(wrong, name), name))
+        .min();
+    match nearest {
+        Some((distance, name)) if distance <= (wrong.chars().count() / 3).max(2) => {
+            format!("; did you mean `{name}`?")
+        }
+        _ if !candidates.is_empty() && candidates.len() <= 12 => {
+            format!("; possible: {}", candidates.join(", "))
+        }
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hint;
+
+    #[test]
+    fn near_names_are_offered_and_short_lists_shown() {
+        let few = ["eb", "fsb", "speed"];
+        assert_eq!(hint("sped", few), "; did you mean `speed`?");
+        assert_eq!(hint("altogether", few), "; possible: eb, fsb, speed");
+        assert_eq!(hint("x", []), "");
+    }
+}

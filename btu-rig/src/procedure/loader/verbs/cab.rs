@@ -1,0 +1,78 @@
+//! Cab desk, doors and TCMS.
+
+use protocol::message::ModeSwitch;
+
+use super::at_once;
+use crate::procedure::loader::item::Item;
+use crate::procedure::loader::quantity::Dimension;
+use crate::procedure::loader::verb::{Args, Verb, Want, needs};
+use crate::stimulus::{Stimulus, TcmsCondition};
+
+macro_rules! plain {
+    ($name:literal, $stimulus:expr) => {
+        Verb {
+            name: $name,
+            params: &[],
+            make: |_| at_once($stimulus),
+        }
+    };
+}
+
+macro_rules! switch {
+    ($name:literal, $stimulus:ident) => {
+        Verb {
+            name: $name,
+            params: &[needs("on", Want::Bool)],
+            make: |args| {
+                at_once(Stimulus::$stimulus {
+                    on: args.flag("on", true),
+                })
+            },
+        }
+    };
+}
+
+pub(super) static VERBS: &[Verb] = &[
+    plain!("door.close", Stimulus::Doors { closed: true }),
+    plain!("door.open", Stimulus::Doors { closed: false }),
+    switch!("cab.active", Hcr),
+    switch!("cab.key", MaintenanceKey),
+    Verb {
+        name: "cab.mode",
+        params: &[needs("mode", Want::Choice(ModeSwitch::LABELS))],
+        make: |args| {
+            let mode = args.text("mode").and_then(ModeSwitch::from_label);
+            at_once(Stimulus::ModeSwitch(mode.ok_or("no such mode")?))
+        },
+    },
+    Verb {
+        name: "cab.controller",
+        params: &[needs("notch", Want::Int(-8, 4))],
+        make: controller,
+    },
+    plain!("cab.forward", Stimulus::Reverser { position: 1 }),
+    plain!("cab.neutral", Stimulus::Reverser { position: 0 }),
+    plain!("cab.backward", Stimulus::Reverser { position: -1 }),
+    plain!("cab.acknowledge", Stimulus::Acknowledge),
+    plain!("cab.start", Stimulus::Start),
+    plain!("tcms.good", Stimulus::Tcms(TcmsCondition::Good)),
+    plain!("tcms.silent", Stimulus::Tcms(TcmsCondition::Silent)),
+    plain!("tcms.stale", Stimulus::Tcms(TcmsCondition::Stale)),
+    switch!("tcms.ato_enable", AtoEnable),
+    Verb {
+        name: "tcms.load",
+        params: &[needs("passengers", Want::Amount(Dimension::Mass))],
+        make: |args| {
+            let passengers_kg = args.amount("passengers")?;
+            if !(0.0..=200_000.0).contains(&passengers_kg) {
+                return Err("`passengers` must be from 0 to 200000 kg".into());
+            }
+            at_once(Stimulus::Load { passengers_kg })
+        },
+    },
+];
+
+fn controller(args: &Args<'_>) -> Result<Item, String> {
+    let notch = i8::try_from(args.int("notch")?).map_err(|e| e.to_string())?;
+    at_once(Stimulus::Controller { notch })
+}

@@ -1,0 +1,242 @@
+//! Conditions over signals, and what is expected of them.
+
+use protocol::Duration;
+use protocol::signal::{Kind, Signal};
+
+use crate::procedure::loader::item::Item;
+use crate::procedure::loader::quantity::Dimension;
+use crate::procedure::loader::suggest::hint;
+use crate::procedure::loader::verb::{Args, Verb, Want, event, needs, takes};
+use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand};
+
+/// Time for something to become true if a script gives none.
+const BECOMES_WITHIN: Duration = Duration::from_ms(2000);
+/// The same for `until`.
+const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
+
+const TIME: Want = Want::Amount(Dimension::Time);
+
+/// Ways to compare, by parameter.
+const COMPARISONS: [(&str, Comparison); 6] = [
+    ("value", Comparison::Equal),
+    ("not_", Comparison::NotEqual),
+    ("above", Comparison::Above),
+    ("at_least", Comparison::AtLeast),
+    ("below", Comparison::Below),
+    ("at_most", Comparison::AtMost),
+];
+
+/// A verb whose first parameters are a condition.
+macro_rules! about {
+    ($name:literal, [$($more:expr),*], $make:expr) => {
+        Verb {
+            name: $name,
+            params: &[
+                needs("signal", Want::Subject),
+                takes("value", Want::Value),
+                takes("not_", Want::Value),
+                takes("above", Want::Value),
+                takes("below", Want::Value),
+                takes("at_least", Want::Value),
+                takes("at_most", Want::Value),
+                takes("near", Want::Value),
+                takes("tol", Want::Value),
+                $($more),*
+            ],
+            make: $make,
+        }
+    };
+}
+
+pub(super) static VERBS: &[Verb] = &[
+    about!("is_", [], |args| Ok(Item::Condition(condition(args)?))),
+    about!("when", [], |args| Ok(Item::Condition(condition(args)?))),
+    Verb {
+        name: "all_of",
+        params: &[takes("conditions", Want::Conditions)],
+        make: |args| Ok(Item::Condition(Condition::All(parts(args)?))),
+    },
+    Verb {
+        name: "any_of",
+        params: &[takes("conditions", Want::Conditions)],
+        make: |args| Ok(Item::Condition(Condition::Any(parts(args)?))),
+    },
+    about!("until", [takes("within", TIME)], |args| {
+        Ok(Item::Actions(vec![Action::Until {
+            condition: condition(args)?,
+            within: args.time_or("within", UNTIL_WITHIN)?,
+        }]))
+    }),
+    about!("becomes", [takes("within", TIME)], |args| {
+        Ok(Item::Expectation(Expectation::Becomes {
+            condition: condition(args)?,
+            within: args.time_or("within", BECOMES_WITHIN)?,
+        }))
+    }),
+    about!("holds", [needs("for_", TIME)], |args| {
+        Ok(Item::Expectation(Expectation::Holds {
+            condition: condition(args)?,
+            duration: args.time_or("for_", Duration::ZERO)?,
+        }))
+    }),
+    about!("never", [], |args| {
+        Ok(Item::Expectation(Expectation::Never {
+            condition: condition(args)?,
+        }))
+    }),
+    Verb {
+        name: "logs",
+        params: &[needs("event", Want::Text), takes("within", TIME)],
+        make: |args| {
+            Ok(Item::Expectation(Expectation::Logs {
+                event: event(args.text("event").unwrap_or_default())?,
+                within: args.time_or("within", BECOMES_WITHIN)?,
+            }))
+        },
+    },
+    Verb {
+        name: "never_logs",
+        params: &[needs("event", Want::Text)],
+        make: |args| {
+            Ok(Item::Expectation(Expectation::NeverLogs {
+                event: event(args.text("event").unwrap_or_default())?,
+            }))
+        },
+    },
+    Verb {
+        name: "measured",
+        params: &[needs("name", Want::Text)],
+        make: |args| {
+            let name = args.text("name").unwrap_or_default();
+            Ok(Item::Measured(name.to_owned(), None))
+        },
+    },
+];
+
+/// The condition a verb's first parameters make.
+fn condition(args: &Args<'_>) -> Result<Condition, String> {
+    if let Some(Item::Condition(condition)) = args.get("signal") {
+        let extra = COMPARISONS.iter().any(|(name, _)| args.get(name).is_some());
+        if extra || args.get("near").is_some() || args.get("tol").is_some() {
+            return Err("a condition is complete, nothing more to compare".into());
+        }
+        return Ok(condition.clone());
+    }
+    let signal = args.signal("signal")?;
+    let mut all = Vec::new();
+    for (name, comparison) in COMPARISONS {
+        let Some(item) = args.get(name) else { continue };
+        let ordered = !matches!(comparison, Comparison::Equal | Comparison::NotEqual);
+        if ordered && !matches!(signal.definition().kind, Kind::Number { .. }) {
+            return Err(format!(
+                "{} is a state, it cannot be `{name}` something",
+                signal.name()
+            ));
+        }
+        all.push((comparison, operand(signal, item)?));
+    }
+    if let Some(item) = args.get("near") {
+        let tolerance = match args.get("tol").map(|tol| operand(signal, tol)) {
+            Some(Ok(Operand::Literal(tolerance))) if tolerance >= 0.0 => tolerance,
+            Some(Err(error)) => return Err(error),
+            Some(Ok(_)) => return Err("`tol` must be a quantity that is not negative".into()),
+            None => return Err("`near` needs `tol`".into()),
+        };
+        all.push((Comparison::Near { tolerance }, operand(signal, item)?));
+    } else if args.get("tol").is_some() {
+        return Err("`tol` goes with `near` only".into());
+    }
+    let mut compares: Vec<_> = all
+        .into_iter()
+        .map(|(comparison, operand)| Condition::Compare {
+            signal,
+            comparison,
+            operand,
+        })
+        .collect();
+    match compares.len() {
+        0 => Err(format!(
+            "what should {} be? {}",
+            signal.name(),
+            values_of(signal)
+        )),
+        1 => Ok(compares.remove(0)),
+        _ => Ok(Condition::All(compares)),
+    }
+}
+
+fn parts(args: &Args<'_>) -> Result<Vec<Condition>, String> {
+    let parts: Vec<_> = args
+        .flat("conditions")
+        .into_iter()
+        .filter_map(|item| match item {
+            Item::Condition(condition) => Some(condition.clone()),
+            _ => None,
+        })
+        .collect();
+    if parts.is_empty() {
+        return Err("needs at least one condition".into());
+    }
+    Ok(parts)
+}
+
+/// What `signal` is compared with, or limited by, checked against its kind and unit.
+pub(super) fn operand(signal: Signal, item: &Item) -> Result<Operand, String> {
+    let definition = signal.definition();
+    let wrong = |end: String| {
+        let (name, values, found) = (definition.name, values_of(signal), item.found());
+        Err(format!("{name} {values}, found {found}{end}"))
+    };
+    match (definition.kind, item) {
+        (Kind::Enum(labels), Item::Text(text)) => match labels.iter().position(|l| l == text) {
+            Some(index) => Ok(Operand::Literal(index as f64)),
+            None => wrong(match hint(text, labels.iter().copied()) {
+                near if near.contains("did you mean") => near,
+                _ => String::new(),
+            }),
+        },
+        (Kind::Bit, Item::Bool(on)) => Ok(Operand::Literal(f64::from(u8::from(*on)))),
+        (Kind::Enum(_) | Kind::Bit, Item::Measured(name, None)) => Ok(measured(name, 0.0)),
+        (Kind::Number { .. }, item) => {
+            amount(definition.unit, item).or_else(|()| wrong(String::new()))
+        }
+        _ => wrong(String::new()),
+    }
+}
+
+/// A literal or measured amount in `unit`.
+pub(super) fn amount(unit: &str, item: &Item) -> Result<Operand, ()> {
+    let dimension = Dimension::of_unit(unit);
+    match (item, dimension) {
+        (Item::Quantity(q), Some(dimension)) if q.dimension == dimension => {
+            Ok(Operand::Literal(q.value))
+        }
+        (Item::Measured(name, None), _) => Ok(measured(name, 0.0)),
+        (Item::Measured(name, Some(offset)), Some(dimension)) if offset.dimension == dimension => {
+            Ok(measured(name, offset.value))
+        }
+        (item, None) => item.number().map(Operand::Literal).ok_or(()),
+        _ => Err(()),
+    }
+}
+
+/// The slot is found when the whole script is known.
+fn measured(name: &str, offset: f64) -> Operand {
+    Operand::Measured {
+        slot: usize::MAX,
+        name: name.to_owned(),
+        offset,
+    }
+}
+
+fn values_of(signal: Signal) -> String {
+    let definition = signal.definition();
+    match definition.kind {
+        Kind::Enum(labels) => format!("is one of \"{}\"", labels.join("\", \"")),
+        Kind::Bit => "is True or False".into(),
+        Kind::Number { .. } => match Dimension::of_unit(definition.unit) {
+            Some(dimension) => format!("is {}", dimension.wanted()),
+            None => "is a number".into(),
+        },
+    }
+}

@@ -1,0 +1,101 @@
+//! `procedure()` and `step()`.
+
+use crate::procedure::loader::draft::{Declaration, ProcedureDraft, StepDraft};
+use crate::procedure::loader::item::Item;
+use crate::procedure::loader::quantity::Dimension;
+use crate::procedure::loader::verb::{Args, Verb, Want, needs, takes};
+use crate::procedure::plan::{Connection, Measure, OnFail};
+
+/// More repetitions than this are a slip of the finger.
+const MOST_REPETITIONS: i64 = 1000;
+
+pub(super) static VERBS: &[Verb] = &[
+    Verb {
+        name: "procedure",
+        params: &[
+            needs("title", Want::Text),
+            takes("title_ko", Want::Text),
+            takes("needs", Want::Choice(&["btu", "ptu"])),
+            takes("suspect", Want::Text),
+            takes("setup", Want::Actions),
+            takes("cleanup", Want::Actions),
+        ],
+        make: |args| {
+            declare(Declaration::Procedure(ProcedureDraft {
+                title: named(args, "title")?,
+                title_ko: args.text("title_ko").map(str::to_owned),
+                needs: match args.text("needs") {
+                    Some("ptu") => Connection::Ptu,
+                    _ => Connection::Btu,
+                },
+                suspect: args.text("suspect").unwrap_or("-").to_owned(),
+                setup: args.actions("setup"),
+                cleanup: args.actions("cleanup"),
+            }))
+        },
+    },
+    Verb {
+        name: "step",
+        params: &[
+            needs("name", Want::Text),
+            takes("do", Want::Actions),
+            takes("expect", Want::Expectations),
+            takes("measure", Want::Measures),
+            takes("provokes", Want::Events),
+            takes("when", Want::Condition),
+            takes("repeat", Want::Int(1, MOST_REPETITIONS)),
+            takes("on_fail", Want::Choice(&["continue", "stop"])),
+            takes("limit", Want::Amount(Dimension::Time)),
+            takes("suspect", Want::Text),
+            takes("note", Want::Text),
+        ],
+        make: step,
+    },
+];
+
+fn declare(declaration: Declaration) -> Result<Item, String> {
+    Ok(Item::Declaration(Box::new(declaration)))
+}
+
+fn step(args: &Args<'_>) -> Result<Item, String> {
+    let mut expectations = Vec::new();
+    for item in args.flat("expect") {
+        if let Item::Expectation(expectation) = item {
+            expectations.push(expectation.clone());
+        }
+    }
+    let mut measures = Vec::new();
+    for item in args.flat("measure") {
+        if let Item::Measure(measure) = item {
+            if measures.iter().any(|m: &Measure| m.name == measure.name) {
+                return Err(format!("two measurements are called \"{}\"", measure.name));
+            }
+            measures.push(measure.as_ref().clone());
+        }
+    }
+    declare(Declaration::Step(StepDraft {
+        name: named(args, "name")?,
+        actions: args.actions("do"),
+        expectations,
+        measures,
+        provokes: args.events("provokes")?,
+        when: args.condition("when").ok(),
+        repeat: args
+            .int("repeat")
+            .map_or(1, |n| n.clamp(1, MOST_REPETITIONS) as u32),
+        on_fail: match args.text("on_fail") {
+            Some("stop") => OnFail::Stop,
+            _ => OnFail::Continue,
+        },
+        limit: args.time("limit")?,
+        suspect: args.text("suspect").map(str::to_owned),
+        note: args.text("note").map(str::to_owned),
+    }))
+}
+
+fn named(args: &Args<'_>, name: &str) -> Result<String, String> {
+    match args.text(name).map(str::trim) {
+        Some(text) if !text.is_empty() => Ok(text.to_owned()),
+        _ => Err(format!("`{name}` is empty")),
+    }
+}

@@ -1,0 +1,121 @@
+//! Measurements.
+
+use protocol::Duration;
+
+use super::conditions::{amount, operand};
+use crate::procedure::loader::item::Item;
+use crate::procedure::loader::quantity::Dimension;
+use crate::procedure::loader::verb::{Args, Verb, Want, needs, takes};
+use crate::procedure::plan::{Measure, Operand, TimeFrom, What};
+
+/// Time a measurement waits for its condition if neither `within` nor `high` says.
+const MEASURE_WITHIN: Duration = Duration::from_ms(10_000);
+/// How much longer than its upper limit a time is waited for, so that a late one has a value.
+const BEYOND_LIMIT_MS: f64 = 1000.0;
+
+const TIME: Want = Want::Amount(Dimension::Time);
+
+/// A measurement of one signal that needs nothing but the step.
+macro_rules! of_signal {
+    ($name:literal, $what:ident) => {
+        Verb {
+            name: $name,
+            params: &[
+                needs("name", Want::Text),
+                needs("signal", Want::Signal),
+                takes("low", Want::Value),
+                takes("high", Want::Value),
+            ],
+            make: |args| measure(args, What::$what(args.signal("signal")?)),
+        }
+    };
+}
+
+pub(super) static VERBS: &[Verb] = &[
+    Verb {
+        name: "time",
+        params: &[
+            needs("name", Want::Text),
+            needs("to", Want::Condition),
+            takes("from_", Want::TimeFrom),
+            takes("low", Want::Value),
+            takes("high", Want::Value),
+            takes("within", TIME),
+        ],
+        make: |args| {
+            let from = match args.get("from_") {
+                Some(Item::Condition(condition)) => TimeFrom::Condition(condition.clone()),
+                Some(Item::Text(word)) if word == "start" => TimeFrom::StepStart,
+                _ => TimeFrom::ActionsEnd,
+            };
+            let to = args.condition("to")?;
+            measure(args, What::Time { from, to })
+        },
+    },
+    of_signal!("value", Value),
+    of_signal!("maximum", Maximum),
+    of_signal!("minimum", Minimum),
+    of_signal!("change", Change),
+    Verb {
+        name: "at",
+        params: &[
+            needs("name", Want::Text),
+            needs("signal", Want::Signal),
+            needs("when", Want::Condition),
+            takes("low", Want::Value),
+            takes("high", Want::Value),
+            takes("within", TIME),
+        ],
+        make: |args| {
+            let (signal, when) = (args.signal("signal")?, args.condition("when")?);
+            measure(args, What::At { signal, when })
+        },
+    },
+];
+
+fn measure(args: &Args<'_>, what: What) -> Result<Item, String> {
+    let mut measure = Measure {
+        name: args.text("name").unwrap_or_default().to_owned(),
+        slot: usize::MAX,
+        what,
+        low: None,
+        high: None,
+        within: MEASURE_WITHIN,
+    };
+    if measure.name.trim().is_empty() {
+        return Err("a measurement needs a name".into());
+    }
+    measure.low = limit(args, "low", &measure)?;
+    measure.high = limit(args, "high", &measure)?;
+    if let (Some(Operand::Literal(low)), Some(Operand::Literal(high))) =
+        (&measure.low, &measure.high)
+        && low > high
+    {
+        return Err("`low` is above `high`: nothing could pass".into());
+    }
+    if let (What::Time { .. }, Some(Operand::Literal(high))) = (&measure.what, &measure.high) {
+        measure.within = Duration::from_secs((high + BEYOND_LIMIT_MS) / 1000.0);
+    }
+    measure.within = args.time_or("within", measure.within)?;
+    Ok(Item::Measure(Box::new(measure)))
+}
+
+fn limit(args: &Args<'_>, name: &str, measure: &Measure) -> Result<Option<Operand>, String> {
+    let Some(item) = args.get(name) else {
+        return Ok(None);
+    };
+    let limit = match &measure.what {
+        What::Time { .. } => amount("ms", item).map_err(|()| {
+            let (wanted, found) = (Dimension::Time.wanted(), item.found());
+            format!("`{name}` wants {wanted}, found {found}")
+        })?,
+        What::Value(signal)
+        | What::At { signal, .. }
+        | What::Maximum(signal)
+        | What::Minimum(signal)
+        | What::Change(signal) => {
+            operand(*signal, item).map_err(|error| format!("`{name}`: {error}"))?
+        }
+    };
+    Ok(Some(limit))
+}

@@ -1,0 +1,124 @@
+//! The TWC wayside and station data.
+
+use protocol::line::Section;
+use protocol::message::{DoorSide, RunningMode};
+
+use super::at_once;
+use crate::procedure::loader::quantity::Dimension;
+use crate::procedure::loader::verb::{Args, Param, Verb, Want, takes};
+use crate::stimulus::{StationData, Stimulus, WaysideCondition};
+
+const NUMBER: Want = Want::Int(0, 65535);
+
+/// Parameters of all verbs that send station data.
+pub(super) const STATION: &[Param] = &[
+    takes("section", Want::Section),
+    takes("station", NUMBER),
+    takes("next_station", NUMBER),
+    takes("loop", NUMBER),
+    takes("fixed_speed", Want::Amount(Dimension::Speed)),
+    takes("running_mode", Want::Choice(RunningMode::LABELS)),
+    takes("door_side", Want::Choice(DoorSide::LABELS)),
+    takes("departure", Want::Bool),
+    takes("train_number", NUMBER),
+    takes("route", NUMBER),
+];
+
+pub(super) static VERBS: &[Verb] = &[
+    Verb {
+        name: "twc.station",
+        params: STATION,
+        make: |args| at_once(Stimulus::Station(station(args, Place::Departure)?)),
+    },
+    Verb {
+        name: "twc.at_departure",
+        params: STATION,
+        make: |args| at_once(Stimulus::Station(station(args, Place::Departure)?)),
+    },
+    Verb {
+        name: "twc.at_arrival",
+        params: STATION,
+        make: |args| at_once(Stimulus::Station(station(args, Place::Arrival)?)),
+    },
+    Verb {
+        name: "twc.good",
+        params: &[],
+        make: |_| at_once(Stimulus::Wayside(WaysideCondition::Good)),
+    },
+    Verb {
+        name: "twc.silent",
+        params: &[],
+        make: |_| at_once(Stimulus::Wayside(WaysideCondition::Silent)),
+    },
+    Verb {
+        name: "twc.corrupt",
+        params: &[],
+        make: |_| at_once(Stimulus::Wayside(WaysideCondition::Corrupt)),
+    },
+];
+
+/// Where the train stands in a section.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    Departure,
+    Arrival,
+}
+
+/// Station data of a place, with what the script gives in place of it.
+pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, String> {
+    let line = &args.context.line;
+    let section = match args.section("section") {
+        Some(number) => line.section(number),
+        None => line.sections.first(),
+    };
+    let section = section.ok_or("the line has no section")?;
+    let mut data = defaults(section, place, &line.sections);
+    let number = |name: &str, field: &mut u16| -> Result<(), String> {
+        if args.get(name).is_some() {
+            *field = u16::try_from(args.int(name)?).map_err(|e| e.to_string())?;
+        }
+        Ok(())
+    };
+    number("station", &mut data.station)?;
+    number("next_station", &mut data.next_station)?;
+    number("loop", &mut data.loop_id)?;
+    number("train_number", &mut data.train_number)?;
+    number("route", &mut data.route)?;
+    if let Some(speed) = args.quantity("fixed_speed") {
+        if !(0.0..=254.0).contains(&speed.value) {
+            return Err("`fixed_speed` must be from 0 to 254 km/h".into());
+        }
+        data.fixed_speed_kmh = Some(speed.value.round() as u8);
+    }
+    if let Some(mode) = args.text("running_mode").and_then(RunningMode::from_label) {
+        data.running_mode = mode;
+    }
+    if let Some(side) = args.text("door_side").and_then(DoorSide::from_label) {
+        data.door_side = side;
+    }
+    data.departure = args.flag("departure", data.departure);
+    Ok(data)
+}
+
+fn defaults(section: &Section, place: Place, all: &[Section]) -> StationData {
+    let (station, next_station, loop_id) = match place {
+        Place::Departure => (section.from_station, section.to_station, section.from_loop),
+        Place::Arrival => {
+            let onward = all.iter().find(|s| s.from_station == section.to_station);
+            let next = onward.map_or(section.to_station, |s| s.to_station);
+            (section.to_station, next, section.to_loop)
+        }
+    };
+    StationData {
+        route: section.route,
+        section: section.section,
+        station,
+        next_station,
+        loop_id,
+        fixed_speed_kmh: None,
+        running_mode: RunningMode::Normal,
+        door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
+        departure: false,
+        train_number: 1,
+    }
+}

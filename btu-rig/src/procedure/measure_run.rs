@@ -1,0 +1,170 @@
+//! Taking one measurement while its step runs.
+
+use protocol::Instant;
+use protocol::signal::Signal;
+
+use super::action_run::Scan;
+use super::condition::{Captured, Lack, Truth};
+use super::limit::{Bound, judge};
+use super::plan::{Measure, TimeFrom, What};
+use super::report::{Measurement, Verdict};
+
+/// What is known about a measurement so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Taking {
+    /// When the time measured began.
+    start: Option<Instant>,
+    /// First value of a change.
+    first: Option<f64>,
+    value: Option<f64>,
+    lack: Option<Lack>,
+    done: bool,
+}
+
+impl Taking {
+    /// Looks at one scan; `actions_end` as in [`super::expectation_run::Watch::look`].
+    pub(super) fn look(
+        &mut self,
+        measure: &Measure,
+        scan: Scan<'_>,
+        step_start: Instant,
+        actions_end: Option<Instant>,
+    ) {
+        if self.done {
+            return;
+        }
+        match &measure.what {
+            What::Time { from, to } => self.time(from, to, scan, step_start, actions_end),
+            What::At { signal, when } => match when.truth(scan.sample, scan.captured) {
+                Truth::Yes => {
+                    self.done = true;
+                    self.value = self.known(*signal, scan);
+                }
+                Truth::NoData(lack) => self.lack = Some(lack),
+                Truth::No => {}
+            },
+            What::Maximum(signal) => self.extreme(*signal, scan, f64::max),
+            What::Minimum(signal) => self.extreme(*signal, scan, f64::min),
+            What::Change(signal) => {
+                if self.start.replace(step_start).is_none() {
+                    self.first = self.known(*signal, scan);
+                }
+            }
+            What::Value(_) => {}
+        }
+        let late = |end| scan.now.since(end) >= measure.within;
+        if measure.is_awaited() && actions_end.is_some_and(late) {
+            self.done = true;
+        }
+    }
+
+    /// Whether the step must go on for it.
+    pub(super) fn is_open(&self, measure: &Measure) -> bool {
+        measure.is_awaited() && !self.done
+    }
+
+    /// Ends the measurement with the step's last scan and judges it.
+    pub(super) fn finish(mut self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+        match measure.what {
+            What::Value(signal) => self.value = self.known(signal, scan),
+            What::Change(signal) => {
+                let last = self.known(signal, scan);
+                self.value = self.first.zip(last).map(|(first, last)| last - first);
+            }
+            // A gap in the data may have hidden the greatest or least value.
+            What::Maximum(_) | What::Minimum(_) if self.lack.is_some() => self.value = None,
+            _ => {}
+        }
+        let measurement = measured(measure, self.value, scan.captured);
+        let message = self.message(measure, &measurement);
+        (measurement, message)
+    }
+
+    fn time(
+        &mut self,
+        from: &TimeFrom,
+        to: &super::plan::Condition,
+        scan: Scan<'_>,
+        step_start: Instant,
+        actions_end: Option<Instant>,
+    ) {
+        if self.start.is_none() {
+            self.start = match from {
+                TimeFrom::StepStart => Some(step_start),
+                TimeFrom::ActionsEnd => actions_end,
+                TimeFrom::Condition(condition) => {
+                    match condition.truth(scan.sample, scan.captured) {
+                        Truth::Yes => Some(scan.now),
+                        Truth::No => None,
+                        Truth::NoData(lack) => {
+                            self.lack = Some(lack);
+                            None
+                        }
+                    }
+                }
+            };
+        }
+        let Some(start) = self.start else { return };
+        // The scan a step begins in shows the unit before the step's first stimulus.
+        if scan.now == start && !matches!(from, TimeFrom::Condition(_)) {
+            return;
+        }
+        match to.truth(scan.sample, scan.captured) {
+            Truth::Yes => {
+                self.done = true;
+                self.value = Some(scan.now.since(start).as_us() as f64 / 1000.0);
+            }
+            Truth::NoData(lack) => self.lack = Some(lack),
+            Truth::No => {}
+        }
+    }
+
+    fn extreme(&mut self, signal: Signal, scan: Scan<'_>, choose: fn(f64, f64) -> f64) {
+        if let Some(value) = self.known(signal, scan) {
+            self.value = Some(self.value.map_or(value, |best| choose(best, value)));
+        }
+    }
+
+    fn known(&mut self, signal: Signal, scan: Scan<'_>) -> Option<f64> {
+        let value = scan.sample.get(signal).filter(|v| v.is_finite());
+        if value.is_none() {
+            self.lack = Some(Lack::Signal(signal));
+        }
+        value
+    }
+
+    /// Why it did not pass; empty if it did.
+    fn message(&self, measure: &Measure, measurement: &Measurement) -> String {
+        let name = &measure.name;
+        match (measurement.verdict, measurement.value, self.lack) {
+            (Verdict::Passed, ..) => String::new(),
+            (Verdict::Failed, Some(value), _) => {
+                let limits = super::describe::limits(measurement.low, measurement.high);
+                format!(
+                    "{name} = {}, allowed {limits} {}",
+                    super::describe::number(value),
+                    measurement.unit
+                )
+                .trim_end()
+                .into()
+            }
+            (_, Some(_), _) => format!("{name}: a limit refers to a measurement without a value"),
+            (_, None, Some(lack)) => format!("{name}: {lack}"),
+            (_, None, None) => format!("{name}: no value within {}", measure.within),
+        }
+    }
+}
+
+/// A measurement with its limits as they stand now.
+fn measured(measure: &Measure, value: Option<f64>, captured: &Captured) -> Measurement {
+    let low = Bound::resolve(measure.low.as_ref(), captured);
+    let high = Bound::resolve(measure.high.as_ref(), captured);
+    Measurement {
+        name: measure.name.clone(),
+        value,
+        unit: measure.unit(),
+        low: low.number(),
+        high: high.number(),
+        verdict: judge(value, low, high),
+    }
+}

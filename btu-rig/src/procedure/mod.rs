@@ -1,0 +1,82 @@
+//! Check procedures: scripts become plans when they are loaded, plans are run by a polled machine.
+//!
+//! * [`plan`]: what a procedure is, as plain data: actions, conditions, expectations, measures;
+//! * [`loader`]: Starlark scripts in, plans or errors with file, line and column out;
+//! * [`describe`]: a plan as lines a technician can read before anything is driven;
+//! * [`runner`]: runs one procedure; stepped once per I/O scan, told what the unit does by samples
+//!   and log entries, acts through a [`Driver`], reports as a stream of [`RunEvent`]s.
+//!
+//! No clock, no thread and no script code while a unit is driven.
+
+mod action_run;
+mod condition;
+pub mod describe;
+mod event_set;
+mod expectation_run;
+mod limit;
+pub mod loader;
+mod measure_run;
+pub mod plan;
+pub mod report;
+pub mod runner;
+mod step_run;
+
+use protocol::message::{EbCause, Mode};
+use protocol::{Instant, Speed};
+use thiserror::Error;
+
+pub use loader::{LoadError, Loaded, Scripts};
+pub use plan::{Procedure, Step};
+pub use report::{Measurement, RunEvent, StepResult, Verdict};
+pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
+
+use crate::stimulus::Stimulus;
+
+/// What a procedure drives: the rig, or a stand-in for it.
+pub trait Driver {
+    /// Begins a stimulus.
+    ///
+    /// # Errors
+    /// The bench cannot or may not do it.
+    fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal>;
+
+    /// Whether no ramp, travel or tester request is under way any more.
+    ///
+    /// # Errors
+    /// A request was refused, for instance "unit refused arming: key_off".
+    fn settled(&mut self) -> Result<bool, Refusal>;
+
+    /// Takes all generators and test signals away at once; may be called again and again.
+    fn make_safe(&mut self, now: Instant);
+
+    /// Whether [`Driver::make_safe`] has taken effect.
+    fn safe(&self) -> bool;
+}
+
+/// Why a stimulus was not carried out.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Refusal(pub String);
+
+/// An entry of the unit's event log, as received.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitEvent {
+    /// Place in the unit's log.
+    pub index: u32,
+    /// Number in the event dictionary, kept even if this version does not know it.
+    pub code: u16,
+    /// The unit's own time, ms since its power-up.
+    pub at_ms: u32,
+    /// What the dictionary says it is.
+    pub parameter: i32,
+    /// Measured speed at that time.
+    pub speed: Speed,
+    /// Limit in force at that time.
+    pub limit: Speed,
+    /// Position in the section, m.
+    pub position_m: f64,
+    /// Operating mode.
+    pub mode: Mode,
+    /// Why the emergency brake was applied.
+    pub eb_cause: EbCause,
+}

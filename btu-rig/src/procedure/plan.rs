@@ -1,0 +1,358 @@
+//! What a check procedure is: plain data that can be shown, chosen from, stored and run.
+
+use protocol::event::Event;
+use protocol::signal::Signal;
+use protocol::{Duration, Speed};
+
+pub use super::condition::{Comparison, Condition, Operand};
+use crate::stimulus::Stimulus;
+
+/// How much longer than its worst case a step may take before it is ended.
+pub const TIME_LIMIT_MARGIN: Duration = Duration::from_ms(1000);
+/// Time allowed for an exchange of the tester with the unit.
+pub const REQUEST_TIME: Duration = Duration::from_ms(5000);
+/// Time allowed to a tachometer ramp or travel beyond what its speeds need.
+const MOTION_MARGIN_S: f64 = 2.0;
+/// Highest speed a generator may have to come down from.
+const TOP_SPEED: Speed = Speed::from_kmh(120.0);
+
+/// How the tester reaches the unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Connection {
+    /// The bench drives every input of a unit alone.
+    Btu,
+    /// The laptop on the train, through the TEST board.
+    Ptu,
+}
+
+/// One check procedure: one script file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Procedure {
+    /// Path under the scripts folder without `.star`, for instance `atp/overspeed`.
+    pub id: String,
+    /// What it checks, in English.
+    pub title: String,
+    /// The same in Korean.
+    pub title_ko: Option<String>,
+    /// What it needs.
+    pub needs: Connection,
+    /// Part to suspect when a step fails and names none itself.
+    pub suspect: String,
+    /// Path of the script under the scripts folder.
+    pub path: String,
+    /// SHA-256 of the script text, in hex.
+    pub sha256: String,
+    /// Done before the first step.
+    pub setup: Vec<Action>,
+    /// Done after the last step, whatever happened.
+    pub cleanup: Vec<Action>,
+    /// The steps in order.
+    pub steps: Vec<Step>,
+    /// How many measurements its steps make: the number of slots to capture them.
+    pub slots: usize,
+}
+
+/// One step of a procedure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// Name, unique in the procedure.
+    pub name: String,
+    /// Source line of the `step()` call.
+    pub line: u32,
+    /// What is done, in order.
+    pub actions: Vec<Action>,
+    /// What must be seen.
+    pub expectations: Vec<Expectation>,
+    /// What is measured.
+    pub measures: Vec<Measure>,
+    /// Events this step is meant to cause.
+    pub provokes: Vec<Event>,
+    /// Run only if this holds when the step's turn comes; else skipped.
+    pub when: Option<Condition>,
+    /// How often it is run; every repetition must pass.
+    pub repeat: u32,
+    /// What happens after it did not pass.
+    pub on_fail: OnFail,
+    /// When it is ended as an error.
+    pub time_limit: Duration,
+    /// Longest time one repetition can take.
+    pub worst_case: Duration,
+    /// Part to suspect when it fails.
+    pub suspect: Option<String>,
+    /// A remark for the technician.
+    pub note: Option<String>,
+}
+
+/// What happens after a step that did not pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnFail {
+    /// The next step is run.
+    Continue,
+    /// The remaining steps are skipped.
+    Stop,
+}
+
+/// One thing done by a step, setup or clean-up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Something is done to the unit.
+    Stimulus(Stimulus),
+    /// Time passes.
+    Wait(Duration),
+    /// Waits until a condition holds; not in time = failed.
+    Until {
+        /// The condition.
+        condition: Condition,
+        /// Time allowed.
+        within: Duration,
+    },
+    /// Waits until tachometer motion or the tester's request is finished; not in time = error.
+    Settle {
+        /// Time allowed.
+        within: Duration,
+    },
+    /// Asks the operator; without one this is an error.
+    Prompt {
+        /// The question.
+        text: String,
+        /// Time allowed.
+        within: Duration,
+    },
+}
+
+/// What must be seen for a step to pass.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expectation {
+    /// True at the end of the actions or at some time after.
+    Becomes {
+        /// The condition.
+        condition: Condition,
+        /// Time allowed from the end of the actions.
+        within: Duration,
+    },
+    /// True from the end of the actions on, without a break.
+    Holds {
+        /// The condition.
+        condition: Condition,
+        /// How long.
+        duration: Duration,
+    },
+    /// Not true at any time from the beginning to the end of the step.
+    Never {
+        /// The condition.
+        condition: Condition,
+    },
+    /// The unit logs this event in this step.
+    Logs {
+        /// The event.
+        event: Event,
+        /// Time allowed from the end of the actions.
+        within: Duration,
+    },
+    /// The unit does not log this event in this step.
+    NeverLogs {
+        /// The event.
+        event: Event,
+    },
+}
+
+/// From when a time is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimeFrom {
+    /// From the beginning of the step.
+    StepStart,
+    /// From the end of the actions, that is the last stimulus or wait.
+    ActionsEnd,
+    /// From the first scan in which this holds.
+    Condition(Condition),
+}
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// Time to the first scan in which a condition holds, ms.
+    Time {
+        /// From when.
+        from: TimeFrom,
+        /// To when.
+        to: Condition,
+    },
+    /// Value at the end of the step.
+    Value(Signal),
+    /// Value in the first scan in which a condition holds.
+    At {
+        /// The signal.
+        signal: Signal,
+        /// The condition.
+        when: Condition,
+    },
+    /// Greatest value in the step.
+    Maximum(Signal),
+    /// Least value in the step.
+    Minimum(Signal),
+    /// Value at the end of the step less value at its beginning.
+    Change(Signal),
+}
+
+/// A named value with limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name, unique in its step.
+    pub name: String,
+    /// Where its value is kept for later steps.
+    pub slot: usize,
+    /// What is measured.
+    pub what: What,
+    /// Least value allowed.
+    pub low: Option<Operand>,
+    /// Greatest value allowed.
+    pub high: Option<Operand>,
+    /// Time allowed from the end of the actions; unused by values taken at the step's end.
+    pub within: Duration,
+}
+
+impl Measure {
+    /// Unit of its value.
+    pub fn unit(&self) -> &'static str {
+        match &self.what {
+            What::Time { .. } => "ms",
+            What::Value(signal)
+            | What::At { signal, .. }
+            | What::Maximum(signal)
+            | What::Minimum(signal)
+            | What::Change(signal) => signal.definition().unit,
+        }
+    }
+
+    /// Whether the step must wait for it.
+    pub fn is_awaited(&self) -> bool {
+        matches!(self.what, What::Time { .. } | What::At { .. })
+    }
+}
+
+impl Expectation {
+    /// Longest time it takes after the actions.
+    pub fn worst_case(&self) -> Duration {
+        match self {
+            Self::Becomes { within, .. } | Self::Logs { within, .. } => *within,
+            Self::Holds { duration, .. } => *duration,
+            Self::Never { .. } | Self::NeverLogs { .. } => Duration::ZERO,
+        }
+    }
+}
+
+impl Action {
+    /// Longest time it takes.
+    pub fn worst_case(&self) -> Duration {
+        match self {
+            Self::Stimulus(_) => Duration::ZERO,
+            Self::Wait(span) => *span,
+            Self::Until { within, .. } | Self::Settle { within } | Self::Prompt { within, .. } => {
+                *within
+            }
+        }
+    }
+
+    /// The wait that goes with a stimulus that takes its time: ramp, travel or tester request.
+    pub fn settle_after(stimulus: &Stimulus) -> Self {
+        let seconds = match stimulus {
+            Stimulus::Speed { to, accel_mps2 } => {
+                to.max(TOP_SPEED).mps() / accel_mps2 + MOTION_MARGIN_S
+            }
+            Stimulus::Travel {
+                distance_m,
+                speed,
+                accel_mps2,
+            } => {
+                let moving = distance_m.abs() / speed.mps() + 2.0 * speed.mps() / accel_mps2;
+                moving + TOP_SPEED.mps() / accel_mps2 + MOTION_MARGIN_S
+            }
+            _ => REQUEST_TIME.as_secs(),
+        };
+        Self::Settle {
+            within: Duration::from_secs(seconds),
+        }
+    }
+}
+
+impl Step {
+    /// Longest time its actions, expectations and measures can take, cut by `limit` if one is set.
+    pub fn compute_worst_case(&self, limit: Option<Duration>) -> Duration {
+        let after = self
+            .expectations
+            .iter()
+            .map(Expectation::worst_case)
+            .chain(
+                self.measures
+                    .iter()
+                    .filter(|m| m.is_awaited())
+                    .map(|m| m.within),
+            )
+            .max()
+            .unwrap_or(Duration::ZERO);
+        let total = total_worst_case(&self.actions) + after;
+        limit.map_or(total, |limit| total.min(limit))
+    }
+
+    /// Calls `f` with each signal the step looks at, apart from `when`.
+    pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
+        for action in &self.actions {
+            if let Action::Until { condition, .. } = action {
+                condition.for_each_signal(f);
+            }
+        }
+        for expectation in &self.expectations {
+            match expectation {
+                Expectation::Becomes { condition, .. }
+                | Expectation::Holds { condition, .. }
+                | Expectation::Never { condition } => condition.for_each_signal(f),
+                Expectation::Logs { .. } | Expectation::NeverLogs { .. } => {}
+            }
+        }
+        for measure in &self.measures {
+            match &measure.what {
+                What::Time { from, to } => {
+                    if let TimeFrom::Condition(condition) = from {
+                        condition.for_each_signal(f);
+                    }
+                    to.for_each_signal(f);
+                }
+                What::At { signal, when } => {
+                    f(*signal);
+                    when.for_each_signal(f);
+                }
+                What::Value(signal)
+                | What::Maximum(signal)
+                | What::Minimum(signal)
+                | What::Change(signal) => f(*signal),
+            }
+        }
+    }
+
+    /// Events it is meant to cause or waits for.
+    pub fn provoked(&self) -> impl Iterator<Item = Event> + '_ {
+        let awaited = self.expectations.iter().filter_map(|e| match e {
+            Expectation::Logs { event, .. } => Some(*event),
+            _ => None,
+        });
+        self.provokes.iter().copied().chain(awaited)
+    }
+}
+
+impl Procedure {
+    /// Longest time it can take: setup, all steps with repetitions, clean-up.
+    pub fn worst_case(&self) -> Duration {
+        let mut total = total_worst_case(&self.setup) + total_worst_case(&self.cleanup);
+        for step in &self.steps {
+            total += Duration::from_us(step.worst_case.as_us() * u64::from(step.repeat));
+        }
+        total
+    }
+}
+
+/// Sum of the longest times of `actions`.
+pub fn total_worst_case(actions: &[Action]) -> Duration {
+    actions
+        .iter()
+        .fold(Duration::ZERO, |sum, action| sum + action.worst_case())
+}

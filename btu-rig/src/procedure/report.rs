@@ -1,0 +1,161 @@
+//! What a run says: verdicts, measurements, step results, and the one stream of events.
+
+use protocol::{Duration, Instant};
+
+use super::UnitEvent;
+
+/// Outcome of a step, a measurement or a procedure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// As it should be.
+    Passed,
+    /// The unit does not do what it should.
+    Failed,
+    /// Could not be tested.
+    Error,
+    /// Not run.
+    Skipped,
+    /// Stopped by the operator.
+    Aborted,
+}
+
+impl Verdict {
+    /// The word stored and shown.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Error => "error",
+            Self::Skipped => "skipped",
+            Self::Aborted => "aborted",
+        }
+    }
+
+    /// The verdict over two steps or procedures: aborted, then error, then failed outrank passed.
+    ///
+    /// What was not tested must not hide behind what was, so an error outranks a failure; a skipped
+    /// part changes nothing, and only parts that are all skipped give `Skipped`.
+    pub const fn and(self, other: Self) -> Self {
+        if self.rank() >= other.rank() {
+            self
+        } else {
+            other
+        }
+    }
+
+    const fn rank(self) -> u8 {
+        match self {
+            Self::Skipped => 0,
+            Self::Passed => 1,
+            Self::Failed => 2,
+            Self::Error => 3,
+            Self::Aborted => 4,
+        }
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.label())
+    }
+}
+
+/// A measured value with its limits and verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Name within its step.
+    pub name: String,
+    /// The value, if there is one.
+    pub value: Option<f64>,
+    /// Its unit; empty for counts and states.
+    pub unit: &'static str,
+    /// Least value allowed.
+    pub low: Option<f64>,
+    /// Greatest value allowed.
+    pub high: Option<f64>,
+    /// Passed, failed or error.
+    pub verdict: Verdict,
+}
+
+/// Result of one step, or of one repetition of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepResult {
+    /// Place in the procedure.
+    pub index: usize,
+    /// Name, with ` (2/3)` when it is repeated.
+    pub name: String,
+    /// Source line.
+    pub line: u32,
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// Why, when it did not pass; may also be a note.
+    pub message: String,
+    /// Part the script suspects when it fails.
+    pub suspect: String,
+    /// When it began.
+    pub started: Instant,
+    /// How long it took on the bench.
+    pub bench_time: Duration,
+    /// What it measured.
+    pub measurements: Vec<Measurement>,
+}
+
+/// The stream of a run: console, window, database and reports all read this.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunEvent {
+    /// A procedure begins with its setup.
+    ProcedureStarted {
+        /// Steps to be run, repetitions counted.
+        steps: usize,
+        /// When.
+        at: Instant,
+    },
+    /// A step begins.
+    StepStarted {
+        /// Place in the procedure.
+        index: usize,
+        /// Name, with ` (2/3)` when it is repeated.
+        name: String,
+        /// When.
+        at: Instant,
+    },
+    /// Something is being waited for; repeated twice a second.
+    Waiting {
+        /// What.
+        what: String,
+        /// How long it may still take.
+        left: Duration,
+    },
+    /// The operator is asked; answer with [`super::Runner::answer`].
+    Prompt {
+        /// The question.
+        text: String,
+        /// How long it may take.
+        left: Duration,
+    },
+    /// A measurement is done.
+    Measured {
+        /// Step's place in the procedure.
+        index: usize,
+        /// The measurement.
+        measurement: Measurement,
+    },
+    /// A step is done.
+    StepFinished(StepResult),
+    /// The unit logged an event above information that no step so far provoked.
+    UnsolicitedEvent(UnitEvent),
+    /// The emergency brake was applied in a step that did not ask for it.
+    UnsolicitedBrake {
+        /// When.
+        at: Instant,
+    },
+    /// The procedure is over and outputs are safe, or could not be made so, which is an error.
+    ProcedureFinished {
+        /// Its verdict.
+        verdict: Verdict,
+        /// What went wrong outside steps; empty if nothing did.
+        message: String,
+        /// When.
+        at: Instant,
+    },
+}

@@ -1,0 +1,207 @@
+//! One repetition of one step, from its first scan to its verdict.
+
+use protocol::event::Event;
+use protocol::{Duration, Instant};
+
+use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
+use super::event_set::EventSet;
+use super::expectation_run::Watch;
+use super::measure_run::Taking;
+use super::plan::Step;
+use super::report::{Measurement, RunEvent, Verdict};
+use super::{Driver, UnitEvent};
+
+/// A live step.
+#[derive(Debug)]
+pub(super) struct StepRun {
+    started: Instant,
+    actions: ActionRun,
+    actions_done: Option<Instant>,
+    watches: Vec<Watch>,
+    takings: Vec<Taking>,
+    problems: Vec<Problem>,
+    logged: EventSet,
+    /// The step was given up: its remaining expectations are not judged.
+    given_up: bool,
+}
+
+/// How a step ended.
+pub(super) struct StepEnd {
+    pub verdict: Verdict,
+    pub message: String,
+    pub bench_time: Duration,
+    pub measurements: Vec<Measurement>,
+}
+
+impl StepRun {
+    pub(super) fn new(step: &Step, now: Instant) -> Self {
+        Self {
+            started: now,
+            actions: ActionRun::default(),
+            actions_done: None,
+            watches: vec![Watch::default(); step.expectations.len()],
+            takings: vec![Taking::default(); step.measures.len()],
+            problems: Vec::new(),
+            logged: EventSet::default(),
+            given_up: false,
+        }
+    }
+
+    pub(super) fn started(&self) -> Instant {
+        self.started
+    }
+
+    /// Takes note of an event of the unit.
+    pub(super) fn note_event(&mut self, event: Event) {
+        self.logged.insert(event);
+    }
+
+    /// Holds an event nobody asked for against the step.
+    pub(super) fn blame_event(&mut self, entry: &UnitEvent) {
+        let name = Event::from_code(entry.code).map_or("unknown", |e| e.definition().name);
+        let text = format!(
+            "the unit logged {name} ({}), which no step provoked",
+            entry.code
+        );
+        let problem = Problem::Failed(text);
+        if !self.problems.contains(&problem) {
+            self.problems.push(problem);
+        }
+    }
+
+    /// Holds an emergency brake nobody asked for against the step.
+    pub(super) fn blame_brake(&mut self) {
+        self.problems.push(Problem::Failed(
+            "the emergency brake was applied, which this step does not ask for".into(),
+        ));
+    }
+
+    /// Ends the step as it stands, with a reason.
+    pub(super) fn give_up(&mut self, problem: Problem) {
+        self.problems.push(problem);
+        self.given_up = true;
+    }
+
+    /// One scan; `true` when the step is over.
+    pub(super) fn advance(
+        &mut self,
+        step: &Step,
+        scan: Scan<'_>,
+        operator: Operator,
+        driver: &mut dyn Driver,
+        out: &mut Vec<RunEvent>,
+    ) -> bool {
+        if self.given_up {
+            return true;
+        }
+        let was_done = self.actions_done;
+        self.look(step, scan, was_done);
+        if self.actions_done.is_none() {
+            match self
+                .actions
+                .advance(&step.actions, scan, operator, driver, out)
+            {
+                Progress::Waiting => {}
+                Progress::Done => self.actions_done = Some(scan.now),
+                Progress::Stuck(problem) => self.give_up(problem),
+            }
+            if self.actions_done.is_some() && !self.actions.sample_is_stale(scan.now) {
+                self.look(step, scan, self.actions_done);
+            }
+        }
+        if self.given_up || self.is_complete(step, scan.now) {
+            return true;
+        }
+        if scan.now.since(self.started) >= step.time_limit {
+            let what = self.waiting_for(step);
+            let text = format!(
+                "took longer than its time limit of {}{what}",
+                step.time_limit
+            );
+            self.give_up(Problem::Bench(text));
+        }
+        self.given_up
+    }
+
+    /// Verdict, message and measurements. A bench problem outranks all: then the step says nothing
+    /// about the unit. A failure outranks missing data: a brake that never came also leaves its
+    /// reaction time without a value, and the finding is the brake.
+    pub(super) fn finish(mut self, step: &Step, scan: Scan<'_>, aborted: bool) -> StepEnd {
+        let bench_time = scan.now.since(self.started);
+        let complete = !self.given_up && !aborted;
+        for (watch, expectation) in self.watches.into_iter().zip(&step.expectations) {
+            let decided = complete || !watch.is_open(expectation);
+            self.problems
+                .extend(watch.finish(expectation).filter(|_| decided));
+        }
+        let mut measurements = Vec::with_capacity(step.measures.len());
+        for (taking, measure) in self.takings.into_iter().zip(&step.measures) {
+            let (measurement, message) = taking.finish(measure, scan);
+            match measurement.verdict {
+                Verdict::Passed => {}
+                Verdict::Failed => self.problems.push(Problem::Failed(message)),
+                _ if complete => self.problems.push(Problem::NoData(message)),
+                _ => {}
+            }
+            measurements.push(measurement);
+        }
+        StepEnd {
+            verdict: verdict(&self.problems, aborted),
+            message: message(&self.problems, step, aborted),
+            bench_time,
+            measurements,
+        }
+    }
+
+    fn look(&mut self, step: &Step, scan: Scan<'_>, actions_end: Option<Instant>) {
+        for (watch, expectation) in self.watches.iter_mut().zip(&step.expectations) {
+            watch.look(expectation, scan, actions_end, self.logged);
+        }
+        for (taking, measure) in self.takings.iter_mut().zip(&step.measures) {
+            taking.look(measure, scan, self.started, actions_end);
+        }
+    }
+
+    fn is_complete(&self, step: &Step, now: Instant) -> bool {
+        // After a stimulus one more scan, so that the last sample shows its effect.
+        self.actions_done.is_some()
+            && !self.actions.sample_is_stale(now)
+            && !(self.watches.iter().zip(&step.expectations)).any(|(w, e)| w.is_open(e))
+            && !(self.takings.iter().zip(&step.measures)).any(|(t, m)| t.is_open(m))
+    }
+
+    /// What the step is still waiting for, as the end of a sentence.
+    fn waiting_for(&self, step: &Step) -> String {
+        if self.actions_done.is_none() {
+            return " in its actions".into();
+        }
+        let open = (self.watches.iter().zip(&step.expectations)).find(|(w, e)| w.is_open(e));
+        open.map_or(String::new(), |(_, e)| format!(" waiting for: {e}"))
+    }
+}
+
+fn verdict(problems: &[Problem], aborted: bool) -> Verdict {
+    let any = |wanted: fn(&Problem) -> bool| problems.iter().any(wanted);
+    if aborted {
+        Verdict::Aborted
+    } else if any(|p| matches!(p, Problem::Bench(_))) {
+        Verdict::Error
+    } else if any(|p| matches!(p, Problem::Failed(_))) {
+        Verdict::Failed
+    } else if any(|p| matches!(p, Problem::NoData(_))) {
+        Verdict::Error
+    } else {
+        Verdict::Passed
+    }
+}
+
+fn message(problems: &[Problem], step: &Step, aborted: bool) -> String {
+    if problems.is_empty() && !aborted {
+        return step.note.clone().unwrap_or_default();
+    }
+    let stopped = aborted.then_some("stopped by the operator");
+    let texts = stopped
+        .into_iter()
+        .chain(problems.iter().map(Problem::message));
+    texts.collect::<Vec<_>>().join("; ")
+}
