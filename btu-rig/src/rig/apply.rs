@@ -281,7 +281,7 @@ impl crate::procedure::Driver for Rig {
     fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
         Self::apply(self, now, stimulus)
     }
-    fn settled(&self) -> Result<bool, Refusal> {
+    fn settled(&mut self) -> Result<bool, Refusal> {
         Self::settled(self)
     }
     fn make_safe(&mut self, now: Instant) {
