@@ -1,1 +1,20 @@
-//! ptu-app
+//! The edge of the maintenance test unit: command line, ports, clocks, files and reports.
+//!
+//! * [`cli`]: one file per verb;
+//! * [`run`]: procedures on benches, one stream of events, recording;
+//! * [`link`]: the embedded unit and units on ports;
+//! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
+//! * [`data`]: the scripts directory.
+//!
+//! Only here are clocks read, threads started and files opened.
+
+pub mod cli;
+pub mod clock;
+mod console;
+pub mod data;
+pub mod failure;
+pub mod link;
+mod owner;
+pub mod report;
+pub mod run;
+pub mod stop;

@@ -1,0 +1,136 @@
+//! `ptu catalog`: what there is to name in commands and scripts.
+
+use clap::{Args, ValueEnum};
+use protocol::signal::{Kind, Origin, Signal};
+use serde_json::{Value, json};
+
+use super::table::Table;
+use super::{ScriptsOption, print_json, print_out};
+use crate::failure::{Exit, Failure};
+
+/// Show faults, signals, speed codes, lines or parts
+#[derive(Debug, Args)]
+pub struct CatalogArguments {
+    /// What to show
+    #[arg(value_enum)]
+    what: What,
+    /// Unit configuration whose speed codes to show
+    #[arg(long, value_name = "NAME", default_value = "sg100")]
+    unit_config: String,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum What {
+    /// Fault modes that can be injected
+    Faults,
+    /// Recorded signals
+    Signals,
+    /// Speed codes of the unit configuration
+    Codes,
+    /// Lines and their sections
+    Lines,
+    /// Parts that can be replaced
+    Lrus,
+}
+
+impl CatalogArguments {
+    /// Prints the catalogue.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let entries = match self.what {
+            What::Faults => self.faults()?,
+            What::Signals => signals(),
+            What::Codes => self.codes()?,
+            What::Lines => self.lines()?,
+            What::Lrus => self.lrus()?,
+        };
+        if self.json { print_json(&entries) } else { print_out(&as_table(&entries)) }
+    }
+
+    fn faults(&self) -> Result<Vec<Value>, Failure> {
+        let catalogue = self.scripts.find()?.faults()?;
+        let entry = |fault: &protocol::injection::FaultMode| {
+            json!({
+                "id": fault.id, "lru": fault.lru, "mode": fault.mode,
+                "severity": fault.severity, "weight": fault.weight, "unsafe": fault.unsafe_,
+            })
+        };
+        Ok(catalogue.faults.iter().map(entry).collect())
+    }
+
+    fn lrus(&self) -> Result<Vec<Value>, Failure> {
+        let catalogue = self.scripts.find()?.faults()?;
+        let entry = |lru: &protocol::injection::Lru| {
+            json!({ "id": lru.id, "name": lru.name, "name_ko": lru.name_ko })
+        };
+        Ok(catalogue.lrus.iter().map(entry).collect())
+    }
+
+    fn codes(&self) -> Result<Vec<Value>, Failure> {
+        let config = self.scripts.find()?.unit_config(&self.unit_config)?.content;
+        let entry = |(index, code): (usize, &protocol::config::SpeedCode)| {
+            json!({
+                "index": index, "name": code.name, "limit_kmh": code.limit_kmh,
+                "carrier_hz": code.carrier_hz, "rate_hz": code.rate_hz,
+            })
+        };
+        Ok(config.codes.iter().enumerate().map(entry).collect())
+    }
+
+    fn lines(&self) -> Result<Vec<Value>, Failure> {
+        let scripts = self.scripts.find()?;
+        let mut entries = Vec::new();
+        for name in scripts.line_names() {
+            for section in scripts.line(&name)?.content.sections {
+                entries.push(json!({
+                    "line": name, "section": section.section, "length_m": section.length_m,
+                    "from_station": section.from_station, "to_station": section.to_station,
+                }));
+            }
+        }
+        Ok(entries)
+    }
+}
+
+fn signals() -> Vec<Value> {
+    let entry = |signal: &Signal| {
+        let definition = signal.definition();
+        let (kind, lsb, labels) = match definition.kind {
+            Kind::Number { lsb } => ("number", Some(lsb), None),
+            Kind::Enum(labels) => ("enum", None, Some(labels)),
+            Kind::Bit => ("bit", None, None),
+        };
+        json!({
+            "name": definition.name, "unit": definition.unit, "kind": kind, "lsb": lsb,
+            "labels": labels, "low": definition.low, "high": definition.high,
+            "from": match definition.origin { Origin::Rig => "rig", Origin::Unit => "unit" },
+            "about": definition.doc,
+        })
+    };
+    Signal::ALL.iter().map(entry).collect()
+}
+
+/// One row an entry, one column a key in the order of the first entry.
+fn as_table(entries: &[Value]) -> String {
+    let Some(keys) = entries.first().and_then(Value::as_object).map(|o| o.keys()) else {
+        return "nothing there".into();
+    };
+    let keys: Vec<_> = keys.map(String::as_str).collect();
+    let mut table = Table::new(&keys);
+    for entry in entries {
+        table.row(keys.iter().map(|key| match &entry[*key] {
+            Value::String(text) => text.clone(),
+            Value::Null => String::new(),
+            Value::Array(items) => {
+                let words: Vec<_> = items.iter().filter_map(Value::as_str).collect();
+                words.join("/")
+            }
+            other => other.to_string(),
+        }));
+    }
+    table.render()
+}

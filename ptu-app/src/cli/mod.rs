@@ -1,0 +1,154 @@
+//! The command line: one file per verb.
+
+mod catalog;
+mod db;
+mod faults;
+mod ports;
+mod run;
+mod runs;
+mod table;
+mod trace;
+
+pub use table::Table;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Parser, Subcommand};
+use fault_db::Store;
+use serde::Serialize;
+
+use crate::clock;
+use crate::data::ScriptsDirectory;
+use crate::failure::{Exit, Failure};
+
+/// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
+///
+/// Examples:
+///   ptu run                                  whole acceptance suite on the embedded unit
+///   ptu run atp/overspeed --unit serial:/dev/ttyUSB0
+///   ptu run --inject eb_relay.slow --report result.json
+///   ptu faults list --state open
+#[derive(Debug, Parser)]
+#[command(name = "ptu", version, verbatim_doc_comment, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Run check procedures
+    Run(Box<run::RunArguments>),
+    /// Show faults, signals, speed codes, lines or parts
+    Catalog(catalog::CatalogArguments),
+    /// Show recorded runs
+    Runs(runs::RunsArguments),
+    /// Query and keep the fault history
+    Faults(faults::FaultsArguments),
+    /// Show and export recorded traces
+    Trace(trace::TraceArguments),
+    /// Check, back up, prune, merge or query the database
+    Db(db::DbArguments),
+    /// List serial ports
+    Ports(ports::PortsArguments),
+}
+
+impl Cli {
+    /// Does what was asked.
+    ///
+    /// # Errors
+    /// With a message for a person and an exit code.
+    pub fn run(self) -> Result<Exit, Failure> {
+        match self.verb {
+            Verb::Run(arguments) => arguments.run(),
+            Verb::Catalog(arguments) => arguments.run(),
+            Verb::Runs(arguments) => arguments.run(),
+            Verb::Faults(arguments) => arguments.run(),
+            Verb::Trace(arguments) => arguments.run(),
+            Verb::Db(arguments) => arguments.run(),
+            Verb::Ports(arguments) => arguments.run(),
+        }
+    }
+}
+
+/// Which database.
+#[derive(Debug, Args)]
+pub struct Database {
+    /// Database file [default: history.db in the user's data directory]
+    #[arg(long, value_name = "FILE", env = "PTU_DB", global = true)]
+    db: Option<PathBuf>,
+}
+
+impl Database {
+    /// Its path.
+    fn path(&self) -> Result<PathBuf, Failure> {
+        if let Some(path) = &self.db {
+            return Ok(path.clone());
+        }
+        directories::ProjectDirs::from("", "", "ptu")
+            .map(|directories| directories.data_dir().join("history.db"))
+            .ok_or_else(|| Failure::usage("no user data directory; name a database with --db"))
+    }
+
+    /// Opens it for writing; the user's own data directory is made if need be.
+    fn open(&self) -> Result<Store, Failure> {
+        let path = self.path()?;
+        if let Some(folder) = path.parent().filter(|_| self.db.is_none()) {
+            std::fs::create_dir_all(folder).map_err(|error| {
+                Failure::bench(format!("cannot make {}: {error}", folder.display()))
+            })?;
+        }
+        Ok(Store::open(&path, clock::open_options())?)
+    }
+
+    /// Opens it for reading.
+    fn open_read_only(&self) -> Result<Store, Failure> {
+        Ok(Store::open_read_only(&self.path()?)?)
+    }
+}
+
+/// Where procedures and data files are.
+#[derive(Debug, Args)]
+pub struct ScriptsOption {
+    /// Directory with procedures, units/ and lines/ [default: ./scripts, or above the program]
+    #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
+    scripts: Option<PathBuf>,
+}
+
+impl ScriptsOption {
+    fn find(&self) -> Result<ScriptsDirectory, Failure> {
+        ScriptsDirectory::find(self.scripts.as_deref())
+    }
+}
+
+/// Prints one JSON document.
+fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+    print_out(&text)
+}
+
+/// Prints text and a line end; a reader that has gone away (`| head`) is no error.
+fn print_out(text: &str) -> Result<Exit, Failure> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::bench(format!("cannot write the answer: {error}")))
+        }
+        _ => Ok(Exit::Passed),
+    }
+}
+
+/// Writes a file, or says which one could not be written.
+fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    std::fs::write(path, content)
+        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", path.display())))
+}
+
+/// A point in time such as `30d`, `12h`, `2026-03` or `2026-03-21`.
+fn since_argument(text: &str) -> Result<i64, String> {
+    clock::parse_since(text).ok_or_else(|| {
+        format!("\"{text}\" is neither a span (30d, 12h) nor a date (2026-03, 2026-03-21)")
+    })
+}

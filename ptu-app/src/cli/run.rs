@@ -1,0 +1,252 @@
+//! `ptu run`: check procedures.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::loader::{Loaded, load};
+use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
+use clap::Args;
+use protocol::message::Identity;
+use serde_json::json;
+
+use super::{Database, ScriptsOption, print_json, print_out};
+use crate::console::{Console, verdict_table};
+use crate::data::{ScriptsDirectory, sha256};
+use crate::failure::{Exit, Failure};
+use crate::link::Endpoint;
+use crate::report::Target;
+use crate::run::{self, BenchSetup, RunPlan, Task, select};
+use crate::stop::Stop;
+
+/// Run check procedures; by default all under scripts/
+///
+/// Examples:
+///   ptu run                                     everything, on the embedded unit
+///   ptu run door 'atp/over*'                    by folder or glob
+///   ptu run --unit serial:/dev/ttyUSB0@115200   on a unit on a port
+///   ptu run --check                             all script errors, nothing driven
+///   ptu run --list atp/overspeed                what would be done
+///   ptu run --report out.json --report out.junit.xml
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct RunArguments {
+    /// Procedures: paths, folders or globs
+    #[arg(value_name = "PATH|GLOB")]
+    procedures: Vec<String>,
+    /// The unit: sim, serial:PATH[@BAUD] or tcp:HOST:PORT
+    #[arg(long, value_name = "UNIT", default_value = "sim")]
+    unit: Endpoint,
+    /// Line, lines/NAME.toml
+    #[arg(long, value_name = "NAME", default_value = "line8")]
+    line: String,
+    /// Unit configuration, units/NAME.toml
+    #[arg(long, value_name = "NAME", default_value = "sg100")]
+    unit_config: String,
+    /// Serial number: of the embedded unit, or expected of a real one
+    #[arg(long, value_name = "TEXT")]
+    serial_no: Option<String>,
+    /// Who tests
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    operator: String,
+    /// Faults to inject into the embedded unit, see `ptu catalog faults`
+    #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
+    inject: Vec<String>,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Run the embedded unit at the wall clock's pace
+    #[arg(long)]
+    realtime: bool,
+    /// Embedded units to test side by side
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    jobs: u32,
+    /// Report all errors of all scripts and drive nothing
+    #[arg(long, conflicts_with = "list")]
+    check: bool,
+    /// Show what would be run and drive nothing
+    #[arg(long)]
+    list: bool,
+    /// With --list, print JSON
+    #[arg(long, requires = "list")]
+    json: bool,
+    /// Only steps whose name matches
+    #[arg(long, value_name = "GLOB")]
+    step: Option<String>,
+    /// Run the steps of each procedure so often
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    repeat: u32,
+    /// End after the first step that does not pass
+    #[arg(long)]
+    stop_on_fail: bool,
+    /// Write a report, .json or .junit.xml; repeatable
+    #[arg(long, value_name = "FILE")]
+    report: Vec<Target>,
+    #[command(flatten)]
+    database: Database,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl RunArguments {
+    /// Loads, then checks, lists or runs.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let directory = self.scripts.find()?;
+        let setup = self.setup(&directory)?;
+        let texts = select::scripts(&directory, &self.procedures)?;
+        let scripts_sha256 = sha256(&texts.values().map(String::as_str).collect::<String>());
+        let Loaded { procedures, errors, printed } =
+            load(&texts, &setup.config.content, &setup.line.content);
+        for line in &printed {
+            eprintln!("{line}");
+        }
+        if !errors.is_empty() {
+            for error in &errors {
+                eprintln!("{error}");
+            }
+            let what = if errors.len() == 1 { "error" } else { "errors" };
+            return Err(Failure::usage(format!(
+                "{} {what} in the scripts; nothing was driven",
+                errors.len()
+            )));
+        }
+        if self.check {
+            let steps: usize = procedures.iter().map(|procedure| procedure.steps.len()).sum();
+            return print_out(&format!("{} procedures, {steps} steps, no errors", procedures.len()));
+        }
+        let tasks = self.tasks(procedures)?;
+        if self.list {
+            return self.show(&tasks);
+        }
+        let unit_config_sha256 = setup.config.sha256.clone();
+        let plan = RunPlan {
+            tasks,
+            jobs: self.jobs as usize,
+            stop_on_fail: self.stop_on_fail,
+            operator: self.operator.clone(),
+            scripts_sha256,
+            unit_config_sha256,
+        };
+        self.execute(&plan, setup)
+    }
+
+    fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
+        if self.unit != Endpoint::Sim {
+            let misplaced = [
+                (!self.inject.is_empty(), "--inject works on the embedded unit only; inject into a served one with `ato-under-test --inject`"),
+                (self.jobs > 1, "--jobs works on embedded units only; one port is one unit"),
+            ];
+            if let Some((_, message)) = misplaced.iter().find(|(wrong, _)| *wrong) {
+                return Err(Failure::usage(*message));
+            }
+        }
+        if let Some(serial) = &self.serial_no {
+            let longest = size_of_val(&Identity::default().serial);
+            if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {
+                return Err(Failure::usage(format!(
+                    "--serial-no must be 1 to {longest} ASCII characters"
+                )));
+            }
+        }
+        Ok(BenchSetup {
+            endpoint: self.unit.clone(),
+            config: directory.unit_config(&self.unit_config)?,
+            line: directory.line(&self.line)?,
+            faults: directory.chosen_faults(&self.inject)?,
+            seed: self.seed,
+            serial: self.serial_no.clone(),
+            realtime: self.realtime,
+        })
+    }
+
+    /// Procedures with the steps chosen; those with none are left out.
+    fn tasks(&self, procedures: Vec<Arc<Procedure>>) -> Result<Vec<Task>, Failure> {
+        let pattern = select::step_pattern(self.step.as_deref())?;
+        let task = |procedure: Arc<Procedure>| {
+            let chosen = pattern.as_ref().map(|pattern| {
+                let steps = procedure.steps.iter().enumerate();
+                steps.filter(|(_, step)| pattern.matches(&step.name)).map(|(i, _)| i).collect()
+            });
+            let options = RunOptions {
+                chosen,
+                repeat: self.repeat,
+                stop_on_fail: self.stop_on_fail,
+                prompts: PromptPolicy::Refuse,
+            };
+            Task { procedure, options }
+        };
+        let mut tasks: Vec<_> = procedures.into_iter().map(task).collect();
+        if let Some(glob) = &self.step {
+            tasks.retain(|task| task.options.chosen.as_ref().is_none_or(|c| !c.is_empty()));
+            if tasks.is_empty() {
+                return Err(Failure::usage(format!(
+                    "no step matches \"{glob}\"; `ptu run --list` shows all steps"
+                )));
+            }
+        }
+        Ok(tasks)
+    }
+
+    fn show(&self, tasks: &[Task]) -> Result<Exit, Failure> {
+        if self.json {
+            return print_json(&tasks.iter().map(listed).collect::<Vec<_>>());
+        }
+        let lines: Vec<String> = tasks.iter().flat_map(described).collect();
+        print_out(&lines.join("\n"))
+    }
+
+    fn execute(&self, plan: &RunPlan, setup: BenchSetup) -> Result<Exit, Failure> {
+        for target in &self.report {
+            target.check()?;
+        }
+        let store = self.database.open()?;
+        let stop = Stop::default();
+        stop.listen();
+        let mut console = Console::new(plan);
+        let result = run::run(plan, setup, store, &stop, &mut console);
+        console.finish();
+        let (store, outcome) = result?;
+        let detail = store.run(outcome.id, &crate::owner::is_alive)?;
+        print_out(&verdict_table(&detail))?;
+        for target in &self.report {
+            target.write(&detail)?;
+        }
+        store.close()?;
+        Ok(outcome.exit)
+    }
+}
+
+/// The plan in words, with the chosen steps only.
+fn described(task: &Task) -> Vec<String> {
+    let mut procedure = (*task.procedure).clone();
+    if let Some(chosen) = &task.options.chosen {
+        let steps = std::mem::take(&mut procedure.steps).into_iter().enumerate();
+        procedure.steps =
+            steps.filter(|(index, _)| chosen.contains(index)).map(|(_, step)| step).collect();
+    }
+    procedure.describe()
+}
+
+fn listed(task: &Task) -> serde_json::Value {
+    let procedure = &task.procedure;
+    let chosen = |index: &usize| {
+        task.options.chosen.as_ref().is_none_or(|chosen| chosen.contains(index))
+    };
+    let steps: Vec<_> = procedure
+        .steps
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| chosen(index))
+        .map(|(_, step)| {
+            json!({
+                "name": step.name, "line": step.line, "repeat": step.repeat,
+                "worst_case_s": step.worst_case.as_secs(), "note": step.note,
+            })
+        })
+        .collect();
+    json!({
+        "procedure": procedure.id, "title": procedure.title, "title_ko": procedure.title_ko,
+        "needs": match procedure.needs { Connection::Btu => "btu", Connection::Ptu => "ptu" },
+        "sha256": procedure.sha256, "worst_case_s": procedure.worst_case().as_secs(),
+        "steps": steps,
+    })
+}

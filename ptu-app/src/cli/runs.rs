@@ -1,0 +1,100 @@
+//! `ptu runs`: recorded runs.
+
+use clap::{Args, Subcommand};
+use fault_db::RunFilter;
+
+use super::{Database, print_json, print_out, since_argument};
+use crate::cli::Table;
+use crate::clock;
+use crate::console::verdict_table;
+use crate::failure::{Exit, Failure};
+use crate::owner;
+use crate::report::{run_json, run_summary_json};
+
+/// Show recorded runs
+#[derive(Debug, Args)]
+pub struct RunsArguments {
+    #[command(subcommand)]
+    verb: Verb,
+    #[command(flatten)]
+    database: Database,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// List runs, newest first
+    List {
+        /// Only of this unit (serial number)
+        #[arg(long, value_name = "SERIAL")]
+        unit: Option<String>,
+        /// Only with this verdict
+        #[arg(long)]
+        verdict: Option<fault_db::Verdict>,
+        /// Only since: 30d, 12h, 2026-03, 2026-03-21
+        #[arg(long, value_name = "TIME", value_parser = since_argument)]
+        since: Option<i64>,
+        /// At most so many
+        #[arg(long, value_name = "N", default_value_t = 50)]
+        limit: u32,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Show one run: an id, its beginning or end (at least 4 digits), or `latest`
+    Show {
+        /// The run
+        id: String,
+        /// Print JSON, the same as `ptu run --report FILE.json`
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+impl RunsArguments {
+    /// Lists or shows.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let store = self.database.open_read_only()?;
+        match self.verb {
+            Verb::List { unit, verdict, since, limit, json } => {
+                let filter = RunFilter {
+                    unit,
+                    verdict,
+                    since_us: since,
+                    limit: Some(limit),
+                    ..RunFilter::default()
+                };
+                let runs = store.runs(&filter, &owner::is_alive)?;
+                if json {
+                    return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
+                }
+                print_out(&table(&runs))
+            }
+            Verb::Show { id, json } => {
+                let run = store.run(store.resolve_run(&id)?, &owner::is_alive)?;
+                if json { print_json(&run_json(&run)) } else { print_out(&verdict_table(&run)) }
+            }
+        }
+    }
+}
+
+fn table(runs: &[fault_db::RunSummary]) -> String {
+    if runs.is_empty() {
+        return "no runs recorded; `ptu run` makes one".into();
+    }
+    let mut table =
+        Table::new(&["RUN", "STARTED", "UNIT", "SOURCE", "STATE", "STEPS", "FAULTS", "INJECTED"]);
+    for run in runs {
+        let state = run.verdict.map_or(run.state.as_str(), |verdict| verdict.as_str());
+        table.row([
+            run.id.short(),
+            clock::local(run.started_at_us),
+            run.unit_serial.clone(),
+            run.source.clone(),
+            state.to_owned(),
+            run.steps.to_string(),
+            run.faults.to_string(),
+            run.injected.clone().unwrap_or_default(),
+        ]);
+    }
+    table.render()
+}

@@ -1,0 +1,61 @@
+//! The only clock, and the only chance, of the program: wall-time labels and new identities.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use chrono::{DateTime, Local, SecondsFormat, Utc};
+use fault_db::{IdSource, OpenOptions};
+
+/// Microseconds since 1970, UTC.
+pub fn now_us() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(since.as_micros()).unwrap_or(i64::MAX)
+}
+
+/// New identities: the time, and ten bytes from the system.
+pub fn ids() -> IdSource {
+    IdSource::new(|| {
+        let mut random = [0; 10];
+        // Without a random source the time and the process keep two writers apart.
+        if getrandom::fill(&mut random).is_err() {
+            random[..4].copy_from_slice(&std::process::id().to_be_bytes());
+            random[4..8].copy_from_slice(&(now_us() as u32).to_be_bytes());
+        }
+        (now_us() as u64 / 1000, random)
+    })
+}
+
+/// How the program opens a database for writing.
+pub fn open_options() -> OpenOptions {
+    OpenOptions::new(ids())
+}
+
+/// RFC 3339 in UTC, for JSON and reports.
+pub fn rfc3339(at_us: i64) -> String {
+    DateTime::<Utc>::from_timestamp_micros(at_us)
+        .unwrap_or_default()
+        .to_rfc3339_opts(SecondsFormat::Millis, true)
+}
+
+/// Local date and time, for tables.
+pub fn local(at_us: i64) -> String {
+    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
+    at.with_timezone(&Local).format("%Y-%m-%d %H:%M:%S").to_string()
+}
+
+/// The point in time a span such as `30d` or `12h` ago, or a date such as `2026-03` or
+/// `2026-03-21`, stands for; microseconds since 1970.
+pub fn parse_since(text: &str) -> Option<i64> {
+    const DAY_US: i64 = 86_400_000_000;
+    if let Some(days) = text.strip_suffix('d').and_then(|n| n.parse::<i64>().ok()) {
+        return Some(now_us() - days.checked_mul(DAY_US)?);
+    }
+    if let Some(hours) = text.strip_suffix('h').and_then(|n| n.parse::<i64>().ok()) {
+        return Some(now_us() - hours.checked_mul(DAY_US / 24)?);
+    }
+    let day = match text.len() {
+        7 => format!("{text}-01"),
+        _ => text.to_owned(),
+    };
+    let date = chrono::NaiveDate::parse_from_str(&day, "%Y-%m-%d").ok()?;
+    Some(date.and_hms_opt(0, 0, 0)?.and_utc().timestamp_micros())
+}

@@ -1,0 +1,178 @@
+//! The scripts directory: procedures, unit configurations, lines and the fault catalogue.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use protocol::config::{UnitConfig, checksum};
+use protocol::injection::{FaultCatalogue, FaultMode};
+use protocol::line::Line;
+use sha2::{Digest, Sha256};
+
+use crate::failure::{Failure, did_you_mean};
+
+/// Where all data files are.
+#[derive(Clone, Debug)]
+pub struct ScriptsDirectory(PathBuf);
+
+/// A data file's content and checksums.
+#[derive(Clone, Debug)]
+pub struct DataFile<T> {
+    /// The checked content.
+    pub content: T,
+    /// CRC-32 of the text, as the unit reports it.
+    pub crc: u32,
+    /// SHA-256 of the text, in hex.
+    pub sha256: String,
+}
+
+impl ScriptsDirectory {
+    /// The directory given, `PTU_SCRIPTS`, `./scripts`, or `scripts` above the program.
+    ///
+    /// # Errors
+    /// None of them is there.
+    pub fn find(given: Option<&Path>) -> Result<Self, Failure> {
+        if let Some(directory) = given {
+            return if directory.is_dir() {
+                Ok(Self(directory.to_owned()))
+            } else {
+                Err(Failure::usage(format!("{} is not a directory", directory.display())))
+            };
+        }
+        let program = std::env::current_exe().unwrap_or_default();
+        std::iter::once(Path::new("."))
+            .chain(program.ancestors())
+            .map(|place| place.join("scripts"))
+            .find(|directory| directory.join("units").is_dir())
+            .map(Self)
+            .ok_or_else(|| {
+                Failure::usage("no scripts directory here or above the program; name it with --scripts")
+            })
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Text of every `.star` file by its path under this directory.
+    ///
+    /// # Errors
+    /// A file or folder cannot be read.
+    pub fn procedures(&self) -> Result<BTreeMap<String, String>, Failure> {
+        let mut texts = BTreeMap::new();
+        collect(&self.0, &self.0, &mut texts)?;
+        Ok(texts)
+    }
+
+    /// The unit configuration `units/NAME.toml`.
+    ///
+    /// # Errors
+    /// There is none of that name, or it is wrong.
+    pub fn unit_config(&self, name: &str) -> Result<DataFile<UnitConfig>, Failure> {
+        self.load("units", name, "unit configuration", UnitConfig::from_toml)
+    }
+
+    /// The line `lines/NAME.toml`.
+    ///
+    /// # Errors
+    /// There is none of that name, or it is wrong.
+    pub fn line(&self, name: &str) -> Result<DataFile<Line>, Failure> {
+        self.load("lines", name, "line", Line::from_toml)
+    }
+
+    /// The catalogue of parts and fault modes.
+    ///
+    /// # Errors
+    /// The file is missing or wrong.
+    pub fn faults(&self) -> Result<FaultCatalogue, Failure> {
+        let load = |text: &str| FaultCatalogue::from_toml(text);
+        Ok(self.load("units", "faults", "fault catalogue", load)?.content)
+    }
+
+    /// The fault modes of these names.
+    ///
+    /// # Errors
+    /// One of them is not in the catalogue.
+    pub fn chosen_faults(&self, names: &[String]) -> Result<Vec<FaultMode>, Failure> {
+        if names.is_empty() {
+            return Ok(Vec::new());
+        }
+        let catalogue = self.faults()?;
+        let find = |name: &String| {
+            catalogue.fault(name).cloned().ok_or_else(|| {
+                let known = catalogue.faults.iter().map(|fault| fault.id.as_str());
+                Failure::usage(format!(
+                    "no fault \"{name}\"{}; `ptu catalog faults` lists them",
+                    did_you_mean(name, known)
+                ))
+            })
+        };
+        names.iter().map(find).collect()
+    }
+
+    /// Names of the lines there are.
+    pub fn line_names(&self) -> Vec<String> {
+        self.names("lines")
+    }
+
+    fn names(&self, folder: &str) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.join(folder)).into_iter().flatten().flatten();
+        let mut names: Vec<_> = entries
+            .filter_map(|entry| entry.file_name().into_string().ok())
+            .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn load<T, E: Display>(
+        &self,
+        folder: &str,
+        name: &str,
+        what: &str,
+        parse: impl Fn(&str) -> Result<T, E>,
+    ) -> Result<DataFile<T>, Failure> {
+        let file = self.0.join(folder).join(format!("{name}.toml"));
+        if !file.is_file() {
+            let known = self.names(folder);
+            return Err(Failure::usage(format!(
+                "no {what} \"{name}\"{}; known: {}",
+                did_you_mean(name, known.iter().map(String::as_str)),
+                known.join(", ")
+            )));
+        }
+        let text = read(&file)?;
+        let content =
+            parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", file.display())))?;
+        Ok(DataFile { content, crc: checksum(&text), sha256: sha256(&text) })
+    }
+}
+
+/// SHA-256 of a text, in hex.
+pub fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Reads a file, or says which one could not be read.
+///
+/// # Errors
+/// The file cannot be read or is not UTF-8.
+pub fn read(file: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(file)
+        .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))
+}
+
+fn collect(root: &Path, folder: &Path, into: &mut BTreeMap<String, String>) -> Result<(), Failure> {
+    let cannot = |e| Failure::usage(format!("cannot read {}: {e}", folder.display()));
+    for entry in std::fs::read_dir(folder).map_err(cannot)? {
+        let path = entry.map_err(cannot)?.path();
+        if path.is_dir() {
+            collect(root, &path, into)?;
+        } else if path.extension().is_some_and(|ending| ending == "star") {
+            let name = path.strip_prefix(root).unwrap_or(&path);
+            into.insert(name.to_string_lossy().replace('\\', "/"), read(&path)?);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,39 @@
+//! The embedded unit, reached through the same frames as one on a cable.
+
+use ato_under_test::{Setup, Unit};
+use btu_rig::rig::{LinkFailure, UnitLink};
+use protocol::Instant;
+
+/// A unit that is powered up at a chosen time.
+pub struct SimLink {
+    setup: Option<Setup>,
+    power_at: Instant,
+    unit: Option<Unit>,
+}
+
+impl SimLink {
+    /// A unit made from `setup`, powered at `power_at`.
+    pub fn new(setup: Setup, power_at: Instant) -> Self {
+        Self { setup: Some(setup), power_at, unit: None }
+    }
+}
+
+impl UnitLink for SimLink {
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        if now >= self.power_at
+            && let Some(setup) = self.setup.take()
+        {
+            self.unit = Some(Unit::new(setup));
+        }
+        if let Some(unit) = &mut self.unit {
+            unit.receive(to_unit);
+            unit.step(Instant::ZERO + now.since(self.power_at), from_unit);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,175 @@
+//! A unit on a serial port or a TCP socket.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::time::Duration;
+
+use btu_rig::rig::{LinkFailure, UnitLink};
+use protocol::Instant;
+use serialport::SerialPort;
+
+use crate::failure::Failure;
+
+/// Baud rate when none is given.
+const BAUD: u32 = 115_200;
+/// Patience with a TCP connection.
+const CONNECT: Duration = Duration::from_secs(3);
+
+/// Where a unit is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Endpoint {
+    /// The embedded unit.
+    Sim,
+    /// A serial port.
+    Serial {
+        /// Its path.
+        path: String,
+        /// Its rate.
+        baud: u32,
+    },
+    /// A TCP socket, `HOST:PORT`.
+    Tcp(String),
+}
+
+impl std::str::FromStr for Endpoint {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "sim" {
+            return Ok(Self::Sim);
+        }
+        if let Some(address) = text.strip_prefix("tcp:") {
+            return match address.rsplit_once(':') {
+                Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => {
+                    Ok(Self::Tcp(address.to_owned()))
+                }
+                _ => Err(format!("\"{address}\" is not HOST:PORT")),
+            };
+        }
+        let Some(port) = text.strip_prefix("serial:") else {
+            return Err("a unit is `sim`, `serial:PATH[@BAUD]` or `tcp:HOST:PORT`".into());
+        };
+        let (path, baud) = match port.rsplit_once('@') {
+            Some((path, baud)) => {
+                (path, baud.parse().map_err(|_| format!("\"{baud}\" is not a baud rate"))?)
+            }
+            None => (port, BAUD),
+        };
+        if path.is_empty() {
+            return Err("serial: needs a port; `ptu ports` lists them".into());
+        }
+        Ok(Self::Serial { path: path.to_owned(), baud })
+    }
+}
+
+impl std::fmt::Display for Endpoint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Sim => f.write_str("sim"),
+            Self::Serial { path, baud } => write!(f, "serial:{path}@{baud}"),
+            Self::Tcp(address) => write!(f, "tcp:{address}"),
+        }
+    }
+}
+
+/// An open link; reading and writing never wait.
+pub struct WireLink {
+    name: String,
+    port: Port,
+}
+
+enum Port {
+    Serial(Box<dyn SerialPort>),
+    Tcp(TcpStream),
+}
+
+impl WireLink {
+    /// Opens the port or connects.
+    ///
+    /// # Errors
+    /// It is not there or not to be had; the message says what to do next.
+    pub fn open(endpoint: &Endpoint) -> Result<Self, Failure> {
+        let port = match endpoint {
+            Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),
+            Endpoint::Serial { path, baud } => open_serial(path, *baud)?,
+            Endpoint::Tcp(address) => connect(address)?,
+        };
+        Ok(Self { name: endpoint.to_string(), port })
+    }
+}
+
+fn open_serial(path: &str, baud: u32) -> Result<Port, Failure> {
+    // Not exclusive: a killed tester must not keep the next one out of a port whose other end
+    // stays open.
+    let port = serialport::new(path, baud)
+        .timeout(Duration::ZERO)
+        .exclusive(false)
+        .open()
+        .map_err(|error| {
+            Failure::bench(format!(
+                "cannot open port {path}: {error}; check the cable, or choose one of `ptu ports`"
+            ))
+        })?;
+    let _ = port.clear(serialport::ClearBuffer::All);
+    Ok(Port::Serial(port))
+}
+
+fn connect(address: &str) -> Result<Port, Failure> {
+    let cannot = |error: std::io::Error| {
+        Failure::bench(format!(
+            "cannot connect to {address}: {error}; check that the unit is served there"
+        ))
+    };
+    let target = address
+        .to_socket_addrs()
+        .map_err(cannot)?
+        .next()
+        .ok_or_else(|| Failure::bench(format!("{address} names no host")))?;
+    let stream = TcpStream::connect_timeout(&target, CONNECT).map_err(cannot)?;
+    stream.set_nonblocking(true).map_err(cannot)?;
+    stream.set_nodelay(true).map_err(cannot)?;
+    Ok(Port::Tcp(stream))
+}
+
+impl UnitLink for WireLink {
+    fn exchange(
+        &mut self,
+        _now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        let exchanged = match &mut self.port {
+            Port::Serial(port) => exchange(port, to_unit, from_unit),
+            Port::Tcp(stream) => exchange(stream, to_unit, from_unit),
+        };
+        exchanged.map_err(|reason| LinkFailure { link: self.name.clone(), reason })
+    }
+}
+
+/// Reads what is there and writes what the port takes; a full buffer is a slow line, and the link's
+/// own checks see it.
+fn exchange(
+    port: &mut (impl Read + Write),
+    to_unit: &[u8],
+    from_unit: &mut Vec<u8>,
+) -> Result<(), String> {
+    let mut chunk = [0; 4096];
+    match port.read(&mut chunk) {
+        Ok(0) => return Err("closed at the other end".into()),
+        Ok(count) => from_unit.extend_from_slice(&chunk[..count]),
+        Err(error) if is_nothing(&error) => {}
+        Err(error) => return Err(format!("reading failed: {error}")),
+    }
+    match port.write(to_unit) {
+        Ok(_) => Ok(()),
+        Err(error) if is_nothing(&error) => Ok(()),
+        Err(error) => Err(format!("writing failed: {error}")),
+    }
+}
+
+fn is_nothing(error: &std::io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}

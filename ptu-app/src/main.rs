@@ -1,0 +1,16 @@
+//! `ptu`: the maintenance test unit for on-board ATC units, from the command line.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use ptu_app::cli::Cli;
+
+fn main() -> ExitCode {
+    match Cli::parse().run() {
+        Ok(exit) => ExitCode::from(exit.code()),
+        Err(failure) => {
+            eprintln!("ptu: {failure}");
+            ExitCode::from(failure.exit.code())
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Names this process so that another can tell whether it still lives.
+
+/// `pid:start` of this process; the start time keeps a reused pid apart.
+pub fn this_process() -> String {
+    let pid = std::process::id();
+    format!("{pid}:{}", start_of(pid).unwrap_or_default())
+}
+
+/// Whether the process named by [`this_process`] still lives, as far as can be told.
+pub fn is_alive(owner: &str) -> bool {
+    let Some((pid, start)) = owner.split_once(':') else { return false };
+    let Ok(pid) = pid.parse() else { return false };
+    start_of(pid).is_some_and(|found| found == start)
+}
+
+/// Field 22 of `/proc/PID/stat`: ticks from boot to the process's start.
+fn start_of(pid: u32) -> Option<String> {
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    let after_name = stat.rsplit_once(')')?.1;
+    after_name.split_whitespace().nth(19).map(str::to_owned)
+}

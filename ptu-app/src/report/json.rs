@@ -1,0 +1,104 @@
+//! The JSON shapes of runs and faults.
+
+use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepDetail};
+use serde_json::{Value, json};
+
+use crate::clock::rfc3339;
+
+/// A run with its steps and faults.
+pub fn run_json(run: &RunDetail) -> Value {
+    json!({
+        "run": run_summary_json(&run.run),
+        "scripts": run.scripts.iter().map(|script| json!({
+            "path": script.path, "sha256": script.sha256,
+        })).collect::<Vec<_>>(),
+        "steps": run.steps.iter().map(step_json).collect::<Vec<_>>(),
+        "faults": run.faults.iter().map(run_fault_json).collect::<Vec<_>>(),
+    })
+}
+
+/// A run in a list.
+pub fn run_summary_json(run: &RunSummary) -> Value {
+    json!({
+        "id": run.id.to_string(),
+        "verdict": run.verdict.map(|verdict| verdict.as_str()),
+        "state": run.state.as_str(),
+        "unit_serial": run.unit_serial,
+        "unit_config": run.unit_config_name,
+        "line": run.line,
+        "seed": run.seed,
+        "source": run.source,
+        "operator": run.operator,
+        "started_at": rfc3339(run.started_at_us),
+        "finished_at": run.finished_at_us.map(rfc3339),
+        "bench_time_s": run.bench_time_us.map(seconds),
+        "wall_time_s": run.wall_time_us.map(seconds),
+        "injected": run.injected,
+        "app_version": run.app_version,
+        "scripts_sha256": run.scripts_sha256,
+        "unit_config_sha256": run.unit_config_sha256,
+        "step_count": run.steps,
+        "steps_not_passed": run.steps_not_passed,
+        "fault_count": run.faults,
+    })
+}
+
+fn step_json(step: &StepDetail) -> Value {
+    json!({
+        "procedure": step.procedure,
+        "name": step.name,
+        "verdict": step.verdict.as_str(),
+        "bench_time_s": seconds(step.bench_time_us),
+        "measurements": step.measurements.iter().map(measurement_json).collect::<Vec<_>>(),
+        "message": step.message,
+        "script_line": step.script_line,
+    })
+}
+
+fn measurement_json(measurement: &MeasurementRecord) -> Value {
+    json!({
+        "name": measurement.name,
+        "value": measurement.value,
+        "unit": measurement.unit,
+        "low": measurement.low,
+        "high": measurement.high,
+        "verdict": measurement.verdict.as_str(),
+    })
+}
+
+fn run_fault_json(fault: &RunFault) -> Value {
+    json!({
+        "id": fault.id.to_string(),
+        "code": fault.code,
+        "name": fault.code_name,
+        "lru": fault.lru,
+        "severity": fault.severity,
+        "first_at": rfc3339(fault.first_at_us),
+        "last_at": rfc3339(fault.last_at_us),
+        "occurrences": fault.occurrences,
+        "state": fault.state.as_str(),
+        "trace_id": fault.trace_id.map(|id| id.to_string()),
+    })
+}
+
+/// A fault in a list.
+pub fn fault_json(fault: &FaultSummary) -> Value {
+    json!({
+        "id": fault.id.to_string(),
+        "unit_serial": fault.unit_serial,
+        "code": fault.code,
+        "name": fault.code_name,
+        "lru": fault.lru,
+        "severity": fault.severity,
+        "state": fault.state.as_str(),
+        "first_at": rfc3339(fault.first_at_us),
+        "last_at": rfc3339(fault.last_at_us),
+        "occurrences": fault.occurrences,
+        "trace_id": fault.trace_id.map(|id| id.to_string()),
+    })
+}
+
+/// Microseconds as seconds.
+fn seconds(us: i64) -> f64 {
+    us as f64 / 1e6
+}

@@ -1,0 +1,75 @@
+//! What a run came to, written to a file by its ending: `.json` or `.junit.xml`.
+
+mod json;
+mod junit;
+
+use std::path::{Path, PathBuf};
+
+use fault_db::RunDetail;
+
+pub use json::{fault_json, run_json, run_summary_json};
+
+use crate::failure::Failure;
+
+/// A report to write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    path: PathBuf,
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Json,
+    Junit,
+}
+
+impl std::str::FromStr for Target {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let format = if text.ends_with(".junit.xml") {
+            Format::Junit
+        } else if text.ends_with(".json") {
+            Format::Json
+        } else {
+            return Err("a report ends in .json or .junit.xml".into());
+        };
+        Ok(Self { path: text.into(), format })
+    }
+}
+
+impl Target {
+    /// Finds out before the run whether the file can be written after it.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check(&self) -> Result<(), Failure> {
+        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if folder.is_some_and(|folder| !folder.is_dir()) || self.path.is_dir() {
+            return Err(Failure::usage(format!(
+                "cannot write the report {}: its folder does not exist, or it is one",
+                self.path.display()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Writes the report.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, run: &RunDetail) -> Result<(), Failure> {
+        let text = match self.format {
+            Format::Json => serde_json::to_string_pretty(&run_json(run))
+                .map_err(|error| Failure::bench(format!("cannot make the report: {error}")))?,
+            Format::Junit => junit::junit(run)?,
+        };
+        write(&self.path, &text)
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text)
+        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", path.display())))
+}

@@ -1,0 +1,277 @@
+//! Benches for a run: a fresh embedded unit for each procedure, or the one unit on a port.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::{Arc, Mutex};
+use std::thread::Scope;
+
+use ato_under_test::Setup;
+use btu_rig::procedure::{RunEvent, Verdict};
+use btu_rig::rig::{Bench, Rig, UnitLink};
+use btu_rig::stimulus::Stimulus;
+use protocol::config::UnitConfig;
+use protocol::injection::FaultMode;
+use protocol::line::Line;
+use protocol::message::Identity;
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::recorder::BEFORE;
+use super::session::{Session, SessionEvent};
+use super::{RunPlan, Task, fault_watch::FaultSeen, stream};
+use crate::data::DataFile;
+use crate::failure::Failure;
+use crate::link::{Endpoint, Pace, SimLink, WireLink};
+use crate::stop::Stop;
+
+/// Time a unit may take from power-up, or from first contact, until it is ready.
+const READY_WITHIN: Duration = Duration::from_ms(8_000);
+/// Quiet time after a unit is ready, before anything is judged.
+const SETTLE: Duration = Duration::from_ms(500);
+
+/// What benches are made of.
+#[derive(Clone)]
+pub struct BenchSetup {
+    /// Where the unit is.
+    pub endpoint: Endpoint,
+    /// Unit configuration.
+    pub config: DataFile<UnitConfig>,
+    /// Track database.
+    pub line: DataFile<Line>,
+    /// Faults injected into the embedded unit.
+    pub faults: Vec<FaultMode>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Serial number asked for.
+    pub serial: Option<String>,
+    /// Wall-clock pace also for the embedded unit.
+    pub realtime: bool,
+}
+
+/// A unit that has been reached.
+pub enum Connected {
+    /// The embedded unit, made anew for each procedure.
+    Sim(Box<BenchSetup>),
+    /// The unit on a port.
+    Port(Box<Session<WireLink>>, Identity),
+}
+
+impl BenchSetup {
+    /// Serial number before the unit has said its own.
+    pub fn expected_serial(&self) -> String {
+        self.serial.clone().unwrap_or_else(|| match self.endpoint {
+            Endpoint::Sim => "SIM-0001".into(),
+            _ => "unknown".into(),
+        })
+    }
+
+    /// Names of the injected faults.
+    pub fn injected(&self) -> Option<String> {
+        let names: Vec<_> = self.faults.iter().map(|fault| fault.id.as_str()).collect();
+        (!names.is_empty()).then(|| names.join(","))
+    }
+
+    /// Reaches the unit. A unit on a port is identified and brought to a known state.
+    ///
+    /// # Errors
+    /// It cannot be reached, is another one, or has another configuration.
+    pub fn connect(&self, stop: &Stop) -> Result<Connected, Failure> {
+        if self.endpoint == Endpoint::Sim {
+            return Ok(Connected::Sim(Box::new(self.clone())));
+        }
+        let link = WireLink::open(&self.endpoint)?;
+        let bench = Bench::new(self.rig(self.seed), link);
+        let mut session = Session::new(bench, Pace::real(), stop.clone());
+        let identity = self.bring_up(&mut session)?;
+        self.check_identity(&identity)?;
+        Ok(Connected::Port(Box::new(session), identity))
+    }
+
+    fn rig(&self, seed: u64) -> Rig {
+        Rig::new(&self.config.content, &self.line.content, seed)
+    }
+
+    /// Contact, identity, the old log read, and a brake left from before acknowledged.
+    fn bring_up(&self, session: &mut Session<WireLink>) -> Result<Identity, Failure> {
+        let ready = session.idle(READY_WITHIN, |_, _, _| {}, |bench| {
+            bench.rig().identity().is_some() && started(bench)
+        });
+        if let Some(error) = session.link_error() {
+            return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
+        }
+        let Some(identity) = session.bench().rig().identity().copied().filter(|_| ready) else {
+            return Err(Failure::bench(format!(
+                "{}: the unit answers but does not become ready within {READY_WITHIN}; power it \
+                 off and on",
+                self.endpoint
+            )));
+        };
+        let now = session.now();
+        // A brake latched since the last tester left needs its acknowledgement.
+        let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
+        session.idle(BEFORE, |_, _, _| {}, |bench| bench.now().since(Instant::ZERO) > BEFORE);
+        Ok(identity)
+    }
+
+    fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
+        let serial = text(&identity.serial);
+        if let Some(expected) = self.serial.as_ref().filter(|expected| **expected != serial) {
+            return Err(Failure::bench(format!(
+                "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
+                self.endpoint
+            )));
+        }
+        let checks = [
+            ("unit configuration", identity.config_crc, self.config.crc, "--unit-config"),
+            ("track database", identity.tdb_crc, self.line.crc, "--line"),
+        ];
+        for (what, unit, ours, option) in checks {
+            if unit != ours {
+                return Err(Failure::bench(format!(
+                    "the {what} of unit {serial} has checksum {unit:08x}, the tests were loaded \
+                     for {ours:08x}; choose the unit's with {option}"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
+    fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<SimLink> {
+        let seed = seed_for(self.seed, procedure);
+        let setup = Setup {
+            serial: self.expected_serial(),
+            config: self.config.content.clone(),
+            config_crc: self.config.crc,
+            line: self.line.content.clone(),
+            tdb_crc: self.line.crc,
+            seed,
+            faults: self.faults.clone(),
+        };
+        let link = SimLink::new(setup, Instant::ZERO + BEFORE);
+        let pace = if self.realtime { Pace::real() } else { Pace::Virtual };
+        Session::new(Bench::new(self.rig(seed), link), pace, stop.clone())
+    }
+}
+
+impl Connected {
+    /// Serial number of the unit.
+    pub fn serial(&self) -> String {
+        match self {
+            Self::Sim(setup) => setup.expected_serial(),
+            Self::Port(_, identity) => text(&identity.serial),
+        }
+    }
+}
+
+/// Starts the workers; the streams come in the order of the tasks.
+pub fn start<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    plan: &'scope RunPlan,
+    connected: Connected,
+    stop: &'scope Stop,
+) -> Vec<Receiver<SessionEvent>> {
+    let (senders, receivers): (Vec<_>, Vec<_>) = plan.tasks.iter().map(|_| stream()).unzip();
+    match connected {
+        Connected::Port(mut session, _) => {
+            scope.spawn(move || {
+                for (task, sender) in plan.tasks.iter().zip(senders) {
+                    if !stop.may_begin() {
+                        break;
+                    }
+                    let began = session.now();
+                    run_task(&mut session, task, Vec::new(), began, &sender);
+                }
+            });
+        }
+        Connected::Sim(setup) => {
+            let work = Arc::new(Work {
+                next: AtomicUsize::new(0),
+                senders: Mutex::new(senders.into_iter().map(Some).collect()),
+            });
+            for _ in 0..plan.jobs.clamp(1, plan.tasks.len().max(1)) {
+                let (work, setup) = (work.clone(), setup.clone());
+                scope.spawn(move || {
+                    while let Some((task, sender)) = work.take(plan).filter(|_| stop.may_begin()) {
+                        run_sim_task(&setup, task, stop, &sender);
+                    }
+                });
+            }
+        }
+    }
+    receivers
+}
+
+/// Tasks not begun yet.
+struct Work {
+    next: AtomicUsize,
+    senders: Mutex<Vec<Option<SyncSender<SessionEvent>>>>,
+}
+
+impl Work {
+    fn take<'a>(&self, plan: &'a RunPlan) -> Option<(&'a Task, SyncSender<SessionEvent>)> {
+        let index = self.next.fetch_add(1, Ordering::Relaxed);
+        let task = plan.tasks.get(index)?;
+        let sender = self.senders.lock().ok()?.get_mut(index)?.take()?;
+        Some((task, sender))
+    }
+}
+
+fn run_sim_task(
+    setup: &BenchSetup,
+    task: &Task,
+    stop: &Stop,
+    sender: &SyncSender<SessionEvent>,
+) {
+    let mut session = setup.sim_session(&task.procedure.id, stop);
+    let suspect = task.procedure.suspect.clone();
+    let mut quiet_since = None;
+    let (_, faults) = session.judge_bring_up(&suspect, BEFORE + READY_WITHIN, |bench| {
+        if !started(bench) || !bench.rig().log_up_to_date() {
+            return false;
+        }
+        let since = *quiet_since.get_or_insert(bench.now());
+        bench.now().since(since) >= SETTLE
+    });
+    run_task(&mut session, task, faults, Instant::ZERO, sender);
+}
+
+fn run_task<L: UnitLink>(
+    session: &mut Session<L>,
+    task: &Task,
+    found: Vec<FaultSeen>,
+    began: Instant,
+    sender: &SyncSender<SessionEvent>,
+) {
+    // The collector listens until the stream ends, so sending cannot fail.
+    let mut sink = |event| drop(sender.send(event));
+    session.run(&task.procedure, task.options.clone(), found, &mut sink);
+    let bench_time = session.now().since(began);
+    sink(SessionEvent::Ended { bench_time });
+}
+
+fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
+    bench.rig().sample().get(Signal::Started) == Some(1.0)
+}
+
+/// ASCII filled up with zeros.
+fn text(field: &[u8]) -> String {
+    let end = field.iter().position(|byte| *byte == 0).unwrap_or(field.len());
+    String::from_utf8_lossy(&field[..end]).into_owned()
+}
+
+/// A seed for one procedure of a run: the same whatever else is run (FNV-1a over its name).
+fn seed_for(seed: u64, procedure: &str) -> u64 {
+    procedure.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
+    })
+}
+
+/// Whether an event closes a procedure that did not pass.
+pub fn not_passed(event: &SessionEvent) -> bool {
+    matches!(
+        event,
+        SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. })
+            if !matches!(verdict, Verdict::Passed | Verdict::Skipped)
+    )
+}

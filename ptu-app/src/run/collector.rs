@@ -1,0 +1,203 @@
+//! Takes the streams of the procedures in order: numbers steps and faults through the run, hands
+//! them to the store, tells the listener.
+
+use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
+use fault_db::{FaultRecord, Id, MeasurementRecord, StepRecord};
+use protocol::Duration;
+
+use super::benches::not_passed;
+use super::recorder::Cut;
+use super::session::SessionEvent;
+use super::store_thread::RunStore;
+use super::{FaultSeen, Task};
+use crate::failure::Exit;
+
+/// Someone who looks on while a run goes on.
+pub trait Listener {
+    /// Something happened in `procedure`.
+    fn hear(&mut self, procedure: &Procedure, event: &SessionEvent);
+}
+
+/// What a run came to.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The run.
+    pub id: Id,
+    /// Over all procedures.
+    pub verdict: Verdict,
+    /// Bench time of all procedures.
+    pub bench_time: Duration,
+    /// Exit code that goes with it.
+    pub exit: Exit,
+}
+
+impl Outcome {
+    /// The verdict in the words of the store.
+    pub fn stored_verdict(&self) -> fault_db::Verdict {
+        stored(self.verdict)
+    }
+}
+
+/// The collector.
+pub struct Collector<'a> {
+    store: RunStore,
+    started_at_us: i64,
+    listener: &'a mut dyn Listener,
+    stop_on_fail: bool,
+    procedure: Option<std::sync::Arc<Procedure>>,
+    /// Bench time of the procedures before the present one.
+    before: Duration,
+    steps: u32,
+    steps_before: u32,
+    faults: usize,
+    faults_before: usize,
+    verdict: Verdict,
+    failed: bool,
+}
+
+impl<'a> Collector<'a> {
+    /// A collector for a run that began at `started_at_us`.
+    pub fn new(
+        store: RunStore,
+        started_at_us: i64,
+        listener: &'a mut dyn Listener,
+        stop_on_fail: bool,
+    ) -> Self {
+        Self {
+            store,
+            started_at_us,
+            listener,
+            stop_on_fail,
+            procedure: None,
+            before: Duration::ZERO,
+            steps: 0,
+            steps_before: 0,
+            faults: 0,
+            faults_before: 0,
+            verdict: Verdict::Skipped,
+            failed: false,
+        }
+    }
+
+    /// The next stream is of this procedure.
+    pub fn begin(&mut self, procedure: &std::sync::Arc<Procedure>) {
+        self.procedure = Some(procedure.clone());
+        self.steps_before = self.steps;
+        self.faults_before = self.faults;
+    }
+
+    /// Nothing is recorded any more: the run is worth nothing and must stop.
+    pub fn recording_failed(&self) -> bool {
+        self.store.failed()
+    }
+
+    /// A check failed and the run is to end with its procedure.
+    pub fn must_end(&self) -> bool {
+        self.stop_on_fail && self.failed
+    }
+
+    /// Takes one event.
+    pub fn take(&mut self, event: SessionEvent) {
+        let Some(procedure) = self.procedure.clone() else { return };
+        self.listener.hear(&procedure, &event);
+        self.failed |= not_passed(&event);
+        match event {
+            SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
+            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
+                self.verdict = self.verdict.and(verdict);
+            }
+            SessionEvent::Run(_) => {}
+            SessionEvent::Fault(fault) => self.fault(fault),
+            SessionEvent::Trace(cut) => self.trace(*cut),
+            SessionEvent::Ended { bench_time } => self.before += bench_time,
+        }
+    }
+
+    fn step(&mut self, procedure: &Procedure, result: StepResult) {
+        let index = self.steps;
+        self.steps += 1;
+        let measurement = |m: btu_rig::procedure::Measurement| MeasurementRecord {
+            name: m.name,
+            value: m.value,
+            unit: m.unit.into(),
+            low: m.low,
+            high: m.high,
+            verdict: stored(m.verdict),
+        };
+        self.store.step(StepRecord {
+            index,
+            procedure: procedure.id.clone(),
+            name: result.name,
+            verdict: stored(result.verdict),
+            started_bench_us: (self.before + Duration::from_us(result.started.as_us())).as_us()
+                as i64,
+            bench_time_us: result.bench_time.as_us() as i64,
+            message: result.message,
+            script_line: Some(result.line),
+            measurements: result.measurements.into_iter().map(measurement).collect(),
+        });
+    }
+
+    fn fault(&mut self, fault: FaultSeen) {
+        let bench_us = (self.before.as_us() + fault.at.as_us()) as i64;
+        self.faults += 1;
+        self.store.fault(FaultRecord {
+            code: i64::from(fault.code),
+            code_name: fault.name,
+            lru: fault.lru,
+            severity: fault.severity.into(),
+            at_us: self.started_at_us + bench_us,
+            bench_us,
+            step_index: fault.step.map(|turn| self.steps_before + turn as u32),
+            message: fault.message,
+            freeze: fault.freeze,
+        });
+    }
+
+    fn trace(&mut self, cut: Cut) {
+        let Cut { faults, mut trace } = cut;
+        trace.t0_bench_us += self.before.as_us() as i64;
+        trace.t0_us = self.started_at_us + trace.t0_bench_us;
+        let faults = faults.iter().map(|number| self.faults_before + number).collect();
+        self.store.trace(faults, trace);
+    }
+
+    /// The end of all streams.
+    pub fn finish(self, id: Id) -> (RunStore, Outcome) {
+        let verdict = match self.verdict {
+            // Nothing ran: nothing was tested.
+            Verdict::Skipped => Verdict::Error,
+            verdict => verdict,
+        };
+        let exit = match verdict {
+            Verdict::Passed | Verdict::Skipped => Exit::Passed,
+            Verdict::Failed => Exit::Failed,
+            Verdict::Error => Exit::Bench,
+            Verdict::Aborted => Exit::Aborted,
+        };
+        (self.store, Outcome { id, verdict, bench_time: self.before, exit })
+    }
+}
+
+fn stored(verdict: Verdict) -> fault_db::Verdict {
+    match verdict {
+        Verdict::Passed => fault_db::Verdict::Passed,
+        Verdict::Failed => fault_db::Verdict::Failed,
+        Verdict::Error => fault_db::Verdict::Error,
+        Verdict::Skipped => fault_db::Verdict::Skipped,
+        Verdict::Aborted => fault_db::Verdict::Aborted,
+    }
+}
+
+/// Steps a plan will run, repetitions counted.
+pub fn steps_of(tasks: &[Task]) -> usize {
+    let steps = |task: &Task| {
+        let all = &task.procedure.steps;
+        let turns: u32 = match &task.options.chosen {
+            Some(chosen) => chosen.iter().filter_map(|i| all.get(*i)).map(|s| s.repeat).sum(),
+            None => all.iter().map(|step| step.repeat).sum(),
+        };
+        turns as usize * task.options.repeat as usize
+    };
+    tasks.iter().map(steps).sum()
+}

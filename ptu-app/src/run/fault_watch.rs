@@ -1,0 +1,106 @@
+//! Turns what happens in a run into faults: events of the unit nobody provoked, a brake nobody
+//! asked for, a check that failed.
+
+use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
+use protocol::Instant;
+use protocol::event::{Event, Severity};
+use protocol::signal::Sample;
+
+use super::recorder::freeze_frame;
+
+/// Code of a fault found by a failed check.
+pub const CHECK_FAILED: u16 = 9000;
+/// Code of an emergency brake nobody asked for.
+pub const EB_UNREQUESTED: u16 = 9001;
+/// Part named when nothing points at one.
+const UNKNOWN_PART: &str = "unknown";
+
+/// A fault as a procedure finds it.
+#[derive(Clone, Debug)]
+pub struct FaultSeen {
+    /// Number of the fault.
+    pub code: u16,
+    /// Its name.
+    pub name: String,
+    /// Part it points at.
+    pub lru: String,
+    /// How bad it is.
+    pub severity: &'static str,
+    /// When, on the procedure's bench.
+    pub at: Instant,
+    /// Step under way, by its turn in the procedure.
+    pub step: Option<usize>,
+    /// What was seen.
+    pub message: String,
+    /// All signals at that moment.
+    pub freeze: Vec<fault_db::FreezeSample>,
+}
+
+/// The event entry as a fault; the part under suspicion is `suspect` where the event names none.
+pub fn of_event(entry: &UnitEvent, suspect: &str, at: Instant, sample: &Sample) -> FaultSeen {
+    let event = Event::from_code(entry.code);
+    let part = event.map_or("-", |event| event.suspect(entry.parameter));
+    let (name, severity, text) = match event.map(Event::definition) {
+        Some(known) => (known.name.to_owned(), known.severity, known.text.to_owned()),
+        None => {
+            let text = format!("event {} is not in the dictionary", entry.code);
+            (format!("event_{}", entry.code), Severity::Major, text)
+        }
+    };
+    FaultSeen {
+        code: entry.code,
+        name,
+        lru: if part == "-" { part_or_unknown(suspect) } else { part.to_owned() },
+        severity: severity.label(),
+        at,
+        step: None,
+        message: format!(
+            "{text} (parameter {}) at {:.1} km/h, limit {:.1} km/h, unit time {:.3} s",
+            entry.parameter,
+            entry.speed.kmh(),
+            entry.limit.kmh(),
+            f64::from(entry.at_ms) / 1000.0
+        ),
+        freeze: freeze_frame(sample),
+    }
+}
+
+/// An emergency brake nobody asked for.
+pub fn of_brake(suspect: &str, at: Instant, sample: &Sample) -> FaultSeen {
+    FaultSeen {
+        code: EB_UNREQUESTED,
+        name: "eb_unrequested".into(),
+        lru: part_or_unknown(suspect),
+        severity: Severity::Critical.label(),
+        at,
+        step: None,
+        message: "emergency brake applied in a step that did not ask for it".into(),
+        freeze: freeze_frame(sample),
+    }
+}
+
+/// A step that failed, unless an event already stands for it.
+pub fn of_step(
+    procedure: &Procedure,
+    result: &StepResult,
+    explained: bool,
+    sample: &Sample,
+) -> Option<FaultSeen> {
+    if result.verdict != Verdict::Failed || explained {
+        return None;
+    }
+    Some(FaultSeen {
+        code: CHECK_FAILED,
+        name: "check_failed".into(),
+        lru: part_or_unknown(&result.suspect),
+        severity: Severity::Major.label(),
+        at: result.started + result.bench_time,
+        step: None,
+        message: format!("{}, {}: {}", procedure.id, result.name, result.message),
+        freeze: freeze_frame(sample),
+    })
+}
+
+fn part_or_unknown(part: &str) -> String {
+    if part.is_empty() { UNKNOWN_PART } else { part }.to_owned()
+}

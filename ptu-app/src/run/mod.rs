@@ -1,0 +1,170 @@
+//! One run: procedures on benches, their one stream of events, and all who read it.
+//!
+//! ```text
+//! bench (rig + unit) → Session → SessionEvent → Collector → store thread → fault-db
+//!                                                        ↘ console
+//! ```
+//! Workers drive benches; the collector takes their streams in the order of the procedures, so the
+//! record does not depend on how many work side by side.
+
+mod benches;
+mod collector;
+mod fault_watch;
+mod recorder;
+pub mod select;
+mod session;
+mod store_thread;
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+use btu_rig::procedure::{Procedure, RunOptions};
+use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
+
+pub use benches::{BenchSetup, Connected};
+pub use collector::{Listener, Outcome, steps_of};
+pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
+pub use session::SessionEvent;
+
+use crate::clock;
+use crate::failure::{Exit, Failure};
+use crate::stop::Stop;
+use collector::Collector;
+use store_thread::RunStore;
+
+/// Events of one procedure that may wait for the collector.
+const QUEUE: usize = 4096;
+
+/// A procedure and what of it is to be run.
+pub struct Task {
+    /// The procedure.
+    pub procedure: Arc<Procedure>,
+    /// Steps, repetitions, behaviour on failure.
+    pub options: RunOptions,
+}
+
+/// What stays the same for a whole run.
+pub struct RunPlan {
+    /// Procedures in order.
+    pub tasks: Vec<Task>,
+    /// Benches to run side by side; one on a port.
+    pub jobs: usize,
+    /// Do not begin another procedure after one that did not pass.
+    pub stop_on_fail: bool,
+    /// Who tests.
+    pub operator: String,
+    /// SHA-256 over all scripts.
+    pub scripts_sha256: String,
+    /// SHA-256 of the unit configuration.
+    pub unit_config_sha256: String,
+}
+
+/// Runs the plan and records it; the store comes back for the report.
+///
+/// # Errors
+/// The unit cannot be reached or the database fails; what was recorded stays.
+pub fn run(
+    plan: &RunPlan,
+    setup: BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+) -> Result<(Store, Outcome), Failure> {
+    let began = std::time::Instant::now();
+    let started_at_us = clock::now_us();
+    let connected = setup.connect(stop);
+    let serial = connected.as_ref().map_or_else(|_| setup.expected_serial(), Connected::serial);
+    let record = run_record(plan, &setup, serial, started_at_us);
+    let run_store = RunStore::begin(store, record)?;
+    let id = run_store.id;
+    let connected = match connected {
+        Ok(connected) => connected,
+        Err(failure) => {
+            // A run that never started is kept, too.
+            let end = run_end(Verdict::Error, 0, began);
+            run_store.finish(end)?;
+            return Err(failure);
+        }
+    };
+    let mut collector = Collector::new(run_store, started_at_us, listener, plan.stop_on_fail);
+    std::thread::scope(|scope| {
+        let streams = benches::start(scope, plan, connected, stop);
+        collect(plan, streams, &mut collector, stop);
+    });
+    let (run_store, mut outcome) = collector.finish(id);
+    let end = run_end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64, began);
+    let store = run_store.finish(end)?;
+    if stop.presses() > 0 {
+        outcome.exit = Exit::Aborted;
+    }
+    Ok((store, outcome))
+}
+
+/// Takes the procedures' streams one after the other.
+fn collect(
+    plan: &RunPlan,
+    streams: Vec<Receiver<SessionEvent>>,
+    collector: &mut Collector<'_>,
+    stop: &Stop,
+) {
+    for (task, stream) in plan.tasks.iter().zip(streams) {
+        collector.begin(&task.procedure);
+        for event in stream {
+            collector.take(event);
+            if collector.recording_failed() && stop.presses() == 0 {
+                stop.press();
+            }
+            if collector.must_end() {
+                stop.end();
+            }
+        }
+    }
+}
+
+/// A stream's two ends.
+fn stream() -> (mpsc::SyncSender<SessionEvent>, Receiver<SessionEvent>) {
+    mpsc::sync_channel(QUEUE)
+}
+
+fn run_record(
+    plan: &RunPlan,
+    setup: &BenchSetup,
+    serial: String,
+    started_at_us: i64,
+) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial,
+            kind: "atc".into(),
+            config_name: setup.config.content.name.clone(),
+            sw_versions: std::collections::BTreeMap::new(),
+        },
+        line: setup.line.content.name.clone(),
+        seed: setup.seed,
+        operator: plan.operator.clone(),
+        source: setup.endpoint.to_string(),
+        started_at_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        scripts_sha256: plan.scripts_sha256.clone(),
+        unit_config_sha256: plan.unit_config_sha256.clone(),
+        injected: setup.injected(),
+        owner: crate::owner::this_process(),
+        scripts: plan
+            .tasks
+            .iter()
+            .map(|task| fault_db::ScriptRecord {
+                path: task.procedure.path.clone(),
+                sha256: task.procedure.sha256.clone(),
+            })
+            .collect(),
+    }
+}
+
+fn run_end(verdict: Verdict, bench_time_us: i64, began: std::time::Instant) -> RunEnd {
+    RunEnd {
+        verdict,
+        finished_at_us: clock::now_us(),
+        bench_time_us,
+        wall_time_us: i64::try_from(began.elapsed().as_micros()).unwrap_or(i64::MAX),
+    }
+}

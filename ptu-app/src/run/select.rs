@@ -1,0 +1,91 @@
+//! Chooses procedures by path or glob, and steps by glob.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glob::Pattern;
+
+use crate::data::{self, ScriptsDirectory};
+use crate::failure::{Failure, did_you_mean};
+
+/// The texts the loader needs for the procedures asked for: those, and all libraries.
+///
+/// # Errors
+/// A path or glob that names nothing, or a file that cannot be read.
+pub fn scripts(
+    directory: &ScriptsDirectory,
+    asked: &[String],
+) -> Result<BTreeMap<String, String>, Failure> {
+    let all = directory.procedures()?;
+    if asked.is_empty() {
+        return Ok(all);
+    }
+    let mut chosen: BTreeMap<_, _> =
+        all.iter().filter(|(path, _)| is_library(path)).map(clone_pair).collect();
+    for name in asked {
+        let found = matching(directory, &all, name)?;
+        if found.is_empty() {
+            chosen.extend([outside(name, &all)?]);
+        }
+        chosen.extend(found);
+    }
+    Ok(chosen)
+}
+
+fn clone_pair((path, text): (&String, &String)) -> (String, String) {
+    (path.clone(), text.clone())
+}
+
+/// Files whose name begins with `_` are libraries.
+fn is_library(path: &str) -> bool {
+    path.rsplit('/').next().is_some_and(|name| name.starts_with('_'))
+}
+
+fn matching(
+    directory: &ScriptsDirectory,
+    all: &BTreeMap<String, String>,
+    name: &str,
+) -> Result<BTreeMap<String, String>, Failure> {
+    let wanted = under(directory.path(), name);
+    let pattern = Pattern::new(&wanted)
+        .map_err(|error| Failure::usage(format!("\"{name}\" is not a glob: {error}")))?;
+    let matches = |path: &String| {
+        let id = path.strip_suffix(".star").unwrap_or(path);
+        !is_library(path)
+            && (id == wanted || pattern.matches(id) || id.starts_with(&format!("{wanted}/")))
+    };
+    Ok(all.iter().filter(|(path, _)| matches(path)).map(clone_pair).collect())
+}
+
+/// The name without the scripts directory before it and `.star` behind it.
+fn under(root: &Path, name: &str) -> String {
+    let path = Path::new(name);
+    let path = path.strip_prefix(root).or_else(|_| path.strip_prefix("scripts")).unwrap_or(path);
+    let text = path.to_string_lossy().replace('\\', "/");
+    let text = text.trim_start_matches("./").trim_end_matches('/');
+    text.strip_suffix(".star").unwrap_or(text).to_owned()
+}
+
+/// A script file outside the scripts directory.
+fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String), Failure> {
+    let path = Path::new(name);
+    if path.is_file() {
+        return Ok((name.to_owned(), data::read(path)?));
+    }
+    let known: Vec<_> =
+        all.keys().filter(|p| !is_library(p)).map(|p| p.trim_end_matches(".star")).collect();
+    Err(Failure::usage(format!(
+        "no procedure or file \"{name}\"{}; `ptu run --list` shows all",
+        did_you_mean(name, known)
+    )))
+}
+
+/// A glob over step names.
+///
+/// # Errors
+/// It is not a glob.
+pub fn step_pattern(glob: Option<&str>) -> Result<Option<Pattern>, Failure> {
+    glob.map(Pattern::new)
+        .transpose()
+        .map_err(|error| Failure::usage(format!("--step is not a glob: {error}")))
+}

@@ -1,0 +1,256 @@
+//! Runs one procedure on one bench, scan by scan, and says what happens as a stream.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::{Poll, Procedure, RunEvent, RunOptions, Runner, StepResult};
+use btu_rig::rig::{Bench, UnitLink};
+use protocol::event::{Event, Severity};
+use protocol::signal::Sample;
+use protocol::{CYCLE, Duration, Instant};
+
+use super::fault_watch::{self, FaultSeen};
+use super::recorder::{Cut, Recorder};
+use crate::link::Pace;
+use crate::stop::Stop;
+
+/// What happens on a bench. Times are the bench's own.
+#[derive(Debug)]
+pub enum SessionEvent {
+    /// From the runner.
+    Run(RunEvent),
+    /// A fault was found; its number counts from 0 in this procedure.
+    Fault(FaultSeen),
+    /// The window around faults is complete.
+    Trace(Box<Cut>),
+    /// Nothing more comes.
+    Ended {
+        /// Bench time this procedure took, bring-up included.
+        bench_time: Duration,
+    },
+}
+
+/// A bench, its recorder and its pace.
+pub struct Session<L: UnitLink> {
+    bench: Bench<L>,
+    pace: Pace,
+    stop: Stop,
+    recorder: Recorder,
+    sample: Sample,
+    link_error: Option<String>,
+}
+
+/// What one procedure has come to so far.
+struct Progress<'a> {
+    procedure: &'a Procedure,
+    step: Option<usize>,
+    turn: usize,
+    step_began: Instant,
+    explained: bool,
+    faults: usize,
+}
+
+impl<L: UnitLink> Session<L> {
+    /// A session on `bench`.
+    pub fn new(bench: Bench<L>, pace: Pace, stop: Stop) -> Self {
+        Self {
+            bench,
+            pace,
+            stop,
+            recorder: Recorder::default(),
+            sample: Sample::default(),
+            link_error: None,
+        }
+    }
+
+    /// The bench.
+    pub fn bench(&mut self) -> &mut Bench<L> {
+        &mut self.bench
+    }
+
+    /// Time on the bench.
+    pub fn now(&self) -> Instant {
+        self.bench.now()
+    }
+
+    /// Scans until `done` or for `at_most`; events of the unit go to `seen`. False when time ran
+    /// out or stop was pressed.
+    pub fn idle(
+        &mut self,
+        at_most: Duration,
+        mut seen: impl FnMut(&btu_rig::procedure::UnitEvent, Instant, &Sample),
+        mut done: impl FnMut(&Bench<L>) -> bool,
+    ) -> bool {
+        let until = self.bench.now() + at_most;
+        while self.bench.now() < until && self.stop.presses() == 0 {
+            self.scan(&mut |_| {});
+            for entry in self.bench.rig_mut().take_events() {
+                seen(&entry, self.bench.now(), &self.sample);
+            }
+            if done(&self.bench) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Why the unit cannot be reached, if so.
+    pub fn link_error(&self) -> Option<String> {
+        self.link_error.clone().or_else(|| self.bench.rig().link_error())
+    }
+
+    /// One scan of the bench, recorded; a completed window goes to `cut`.
+    fn scan(&mut self, cut: &mut dyn FnMut(Cut)) {
+        self.pace.wait();
+        if let Err(failure) = self.bench.tick() {
+            self.link_error.get_or_insert(failure.to_string());
+        }
+        self.sample.clone_from(self.bench.rig().sample());
+        let now = self.bench.now();
+        if now.as_us().is_multiple_of(CYCLE.as_us())
+            && let Some(done) = self.recorder.record(now, &self.sample)
+        {
+            cut(done);
+        }
+    }
+
+    /// Judges what the unit logged while it was brought up: nobody had provoked anything yet.
+    pub fn judge_bring_up(
+        &mut self,
+        suspect: &str,
+        at_most: Duration,
+        done: impl FnMut(&Bench<L>) -> bool,
+    ) -> (bool, Vec<FaultSeen>) {
+        let mut faults = Vec::new();
+        let ready = self.idle(
+            at_most,
+            |entry, at, sample| {
+                let known = Event::from_code(entry.code);
+                if known.is_none_or(|event| event.definition().severity > Severity::Info) {
+                    faults.push(fault_watch::of_event(entry, suspect, at, sample));
+                }
+            },
+            done,
+        );
+        (ready, faults)
+    }
+
+    /// Runs a procedure to its end; `found` are faults of the bring-up.
+    pub fn run(
+        &mut self,
+        procedure: &Arc<Procedure>,
+        options: RunOptions,
+        found: Vec<FaultSeen>,
+        sink: &mut dyn FnMut(SessionEvent),
+    ) {
+        let mut runner = Runner::new(procedure.clone(), options);
+        let mut progress = Progress {
+            procedure,
+            step: None,
+            turn: 0,
+            step_began: self.bench.now(),
+            explained: false,
+            faults: 0,
+        };
+        for fault in found {
+            self.report(fault, &mut progress, sink);
+        }
+        let mut presses = 0;
+        loop {
+            self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));
+            let pressed = self.stop.presses();
+            (presses..pressed).for_each(|_| runner.stop());
+            presses = pressed;
+            let now = self.bench.now();
+            let events = self.bench.rig_mut().take_events();
+            let link_error = self.link_error();
+            let rig = self.bench.rig_mut();
+            let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), rig);
+            for event in runner.take_events() {
+                self.note(&event, &mut progress, sink);
+                sink(SessionEvent::Run(event));
+            }
+            if poll == Poll::Done {
+                break;
+            }
+        }
+        self.finish_window(sink);
+    }
+
+    /// Lets an open window run out on a quiet bench.
+    fn finish_window(&mut self, sink: &mut dyn FnMut(SessionEvent)) {
+        while self.recorder.is_open() && self.stop.presses() == 0 && self.link_error().is_none() {
+            self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));
+            self.bench.rig_mut().take_events();
+        }
+        if let Some(cut) = self.recorder.close(true) {
+            sink(SessionEvent::Trace(Box::new(cut)));
+        }
+    }
+
+    fn note(
+        &mut self,
+        event: &RunEvent,
+        progress: &mut Progress<'_>,
+        sink: &mut dyn FnMut(SessionEvent),
+    ) {
+        let now = self.bench.now();
+        let fault = match event {
+            RunEvent::StepStarted { index, at, .. } => {
+                progress.step = Some(*index);
+                progress.step_began = *at;
+                progress.explained = false;
+                return;
+            }
+            RunEvent::UnsolicitedEvent(entry) => {
+                let suspect = suspect(progress);
+                Some(fault_watch::of_event(entry, suspect, now, &self.sample))
+            }
+            RunEvent::UnsolicitedBrake { at } => {
+                (!progress.explained).then(|| {
+                    fault_watch::of_brake(suspect(progress), *at, &self.sample)
+                })
+            }
+            RunEvent::StepFinished(result) => {
+                let fault = self.fault_of_step(result, progress);
+                if let Some(fault) = fault {
+                    self.report(fault, progress, sink);
+                }
+                progress.turn += 1;
+                return;
+            }
+            _ => None,
+        };
+        if let Some(fault) = fault {
+            progress.explained = true;
+            self.report(fault, progress, sink);
+        }
+    }
+
+    fn fault_of_step(&self, result: &StepResult, progress: &Progress<'_>) -> Option<FaultSeen> {
+        fault_watch::of_step(progress.procedure, result, progress.explained, &self.sample)
+    }
+
+    fn report(
+        &mut self,
+        mut fault: FaultSeen,
+        progress: &mut Progress<'_>,
+        sink: &mut dyn FnMut(SessionEvent),
+    ) {
+        fault.step = progress.step.map(|_| progress.turn);
+        let done = self.recorder.trigger(fault.at, progress.step_began, progress.faults);
+        progress.faults += 1;
+        sink(SessionEvent::Fault(fault));
+        if let Some(cut) = done {
+            sink(SessionEvent::Trace(Box::new(cut)));
+        }
+    }
+}
+
+/// The part the present step suspects.
+fn suspect<'a>(progress: &Progress<'a>) -> &'a str {
+    progress
+        .step
+        .and_then(|index| progress.procedure.steps.get(index))
+        .and_then(|step| step.suspect.as_deref())
+        .unwrap_or(&progress.procedure.suspect)
+}

@@ -1,0 +1,147 @@
+//! The writer: one thread owns the database and takes what is to be recorded, in order.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use fault_db::{
+    FaultRecord, Id, RunEnd, RunRecord, RunWriter, StepRecord, Store, StoreError, TraceData,
+};
+
+use crate::failure::Failure;
+
+/// Entries that may wait for the disk; a bench that produces more waits for the writer.
+const QUEUE: usize = 4096;
+/// Steps reach the file at least this often.
+const FLUSH: Duration = Duration::from_millis(250);
+
+/// Something to record.
+enum Entry {
+    Step(StepRecord),
+    /// A fault, numbered from 0 through the run.
+    Fault(FaultRecord),
+    /// A trace and the numbers of the faults it shows.
+    Trace(Vec<usize>, TraceData),
+    Finish(RunEnd),
+}
+
+/// The sending end.
+pub struct RunStore {
+    entries: SyncSender<Entry>,
+    thread: JoinHandle<(Store, Result<(), StoreError>)>,
+    failed: Arc<AtomicBool>,
+    /// The run's id.
+    pub id: Id,
+}
+
+impl RunStore {
+    /// Begins the run: its row is on the disk when this returns.
+    ///
+    /// # Errors
+    /// The database does not take it.
+    pub fn begin(store: Store, record: RunRecord) -> Result<Self, Failure> {
+        let (entries, receiver) = mpsc::sync_channel(QUEUE);
+        let (begun, beginning) = mpsc::sync_channel(1);
+        let failed = Arc::new(AtomicBool::new(false));
+        let flag = failed.clone();
+        let thread = std::thread::Builder::new()
+            .name("store".into())
+            .spawn(move || {
+                let result = write(&store, &record, &receiver, &begun, &flag);
+                (store, result)
+            })
+            .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
+        match beginning.recv() {
+            Ok(id) => Ok(Self { entries, thread, failed, id }),
+            Err(_) => Err(match thread.join() {
+                Ok((_, Err(error))) => error.into(),
+                _ => Failure::bench("the writer ended before it began"),
+            }),
+        }
+    }
+
+    /// Writing has failed: nothing recorded from now on is kept.
+    pub fn failed(&self) -> bool {
+        self.failed.load(Ordering::Relaxed)
+    }
+
+    /// Records a step.
+    pub fn step(&self, step: StepRecord) {
+        self.send(Entry::Step(step));
+    }
+
+    /// Records a fault at once; faults are numbered from 0 in the order of these calls.
+    pub fn fault(&self, fault: FaultRecord) {
+        self.send(Entry::Fault(fault));
+    }
+
+    /// Records a trace of the faults with these numbers.
+    pub fn trace(&self, faults: Vec<usize>, trace: TraceData) {
+        self.send(Entry::Trace(faults, trace));
+    }
+
+    /// A send fails only after the writer has ended with an error, which `finish` returns.
+    fn send(&self, entry: Entry) {
+        let _ = self.entries.send(entry);
+    }
+
+    /// Ends the run and gives the store back.
+    ///
+    /// # Errors
+    /// The first error of writing.
+    pub fn finish(self, end: RunEnd) -> Result<Store, Failure> {
+        self.send(Entry::Finish(end));
+        drop(self.entries);
+        match self.thread.join() {
+            Ok((store, Ok(()))) => Ok(store),
+            Ok((_, Err(error))) => Err(error.into()),
+            Err(_) => Err(Failure::bench("the writer ended unexpectedly")),
+        }
+    }
+}
+
+fn write(
+    store: &Store,
+    record: &RunRecord,
+    entries: &Receiver<Entry>,
+    begun: &SyncSender<Id>,
+    failed: &AtomicBool,
+) -> Result<(), StoreError> {
+    let mut writer = RunWriter::begin(store, record)?;
+    let _ = begun.send(writer.id());
+    let result = write_entries(&mut writer, entries);
+    if result.is_err() {
+        failed.store(true, Ordering::Relaxed);
+        // The run is being stopped; what still comes is taken off the queue so that nobody waits.
+        entries.iter().for_each(drop);
+    }
+    result
+}
+
+fn write_entries(
+    writer: &mut RunWriter<'_>,
+    entries: &Receiver<Entry>,
+) -> Result<(), StoreError> {
+    let mut occurrences = Vec::new();
+    let mut flushed = Instant::now();
+    loop {
+        match entries.recv_timeout(FLUSH) {
+            Ok(Entry::Step(step)) => writer.step(step)?,
+            Ok(Entry::Fault(fault)) => occurrences.push(writer.fault(&fault)?.occurrence),
+            Ok(Entry::Trace(faults, trace)) => {
+                let shown: Vec<_> =
+                    faults.iter().filter_map(|i| occurrences.get(*i).copied()).collect();
+                writer.trace(&shown, &trace)?;
+            }
+            Ok(Entry::Finish(end)) => return writer.finish(&end),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return writer.flush(),
+        }
+        if flushed.elapsed() >= FLUSH {
+            writer.flush()?;
+            flushed = Instant::now();
+        }
+    }
+}
