@@ -1,9 +1,12 @@
 //! Loading check procedures: the good ones give the plan on file, the bad ones say where and why.
+//!
+//! `UPDATE_GOLDEN=1 cargo test -p btu-rig --test procedure_loader` rewrites what is on file.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use btu_rig::procedure::loader::{Loaded, Scripts, load};
+use proptest::prelude::*;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
 
@@ -31,19 +34,182 @@ fn folder(name: &str) -> Scripts {
     scripts
 }
 
-#[test]
-fn dev() {
-    let loaded = load_all(&folder("good"));
-    for e in &loaded.errors {
-        println!("{e}");
+/// Compares with `expected.txt` beside the scripts.
+fn compare(name: &str, found: &str) {
+    let path = root().join("tests/scripts").join(name).join("expected.txt");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&path, found).unwrap();
     }
-    for p in &loaded.procedures {
-        for l in p.describe() {
-            println!("{l}");
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(
+        found,
+        expected,
+        "UPDATE_GOLDEN=1 rewrites {}",
+        path.display()
+    );
+}
+
+fn lines(lines: impl IntoIterator<Item = String>) -> String {
+    lines.into_iter().map(|line| line + "\n").collect()
+}
+
+#[test]
+fn good_scripts_give_the_plan_on_file() {
+    let loaded = load_all(&folder("good"));
+    assert_eq!(loaded.errors, []);
+    compare(
+        "good",
+        &lines(loaded.procedures.iter().flat_map(|p| p.describe())),
+    );
+}
+
+#[test]
+fn bad_scripts_are_refused_with_place_and_reason() {
+    let scripts = folder("bad");
+    let loaded = load_all(&scripts);
+    assert!(loaded.procedures.is_empty(), "{:?}", loaded.procedures);
+    for path in scripts.keys() {
+        let named = loaded.errors.iter().any(|error| error.file == *path);
+        assert!(named, "{path} has no error");
+    }
+    compare("bad", &lines(loaded.errors.iter().map(ToString::to_string)));
+}
+
+#[test]
+fn errors_of_one_script_do_not_hide_another() {
+    let mut scripts = folder("good");
+    scripts.extend(folder("bad"));
+    let loaded = load_all(&scripts);
+    assert_eq!(
+        loaded.procedures.len(),
+        load_all(&folder("good")).procedures.len()
+    );
+    assert!(loaded.errors.len() > 30);
+}
+
+#[test]
+fn the_hash_is_of_the_text_and_the_same_text_gives_the_same_plan() {
+    let first = load_all(&folder("good"));
+    let mut scripts = folder("good");
+    assert_eq!(first.procedures, load_all(&scripts).procedures);
+    for text in scripts.values_mut() {
+        text.push_str("# a remark\n");
+    }
+    let second = load_all(&scripts);
+    assert_ne!(first.procedures[0].sha256, second.procedures[0].sha256);
+    assert_eq!(first.procedures[0].steps, second.procedures[0].steps);
+    assert_eq!(first.procedures[0].sha256.len(), 64);
+}
+
+#[test]
+fn print_is_kept_and_bounded() {
+    let text = "procedure(title = 'x')\nstep('a')\nfor i in range(5000):\n    print(i)\n";
+    let loaded = load_all(&Scripts::from([("a.star".into(), text.into())]));
+    assert_eq!(loaded.errors, []);
+    assert_eq!(loaded.printed.len(), 1001);
+}
+
+#[test]
+fn nothing_to_load_is_no_error_here() {
+    let loaded = load_all(&Scripts::new());
+    assert!(loaded.procedures.is_empty() && loaded.errors.is_empty());
+}
+
+/// Nesting of every kind, around and far beyond the limit: refused or loaded, never a stack overflow.
+#[test]
+fn deep_nesting_is_refused() {
+    for n in [50, 70, 100, 140, 149, 1000] {
+        let kinds = [
+            "[".repeat(n) + &"]".repeat(n),
+            "-".repeat(n) + "1",
+            "not ".repeat(n) + "1",
+            "1 + ".repeat(n) + "1",
+            "str".to_owned() + &"(str".repeat(n) + &")".repeat(n),
+            "lambda: ".repeat(n) + "1",
+            "1 if 0 else ".repeat(n) + "1",
+            "line".to_owned() + &".name".repeat(n),
+            "1\nif 0:\n    pass\n".to_owned() + &"elif 0:\n    pass\n".repeat(n),
+            "1\n".to_owned()
+                + &(0..n)
+                    .map(|k| " ".repeat(k) + "if 1:\n")
+                    .collect::<String>()
+                + &" ".repeat(n)
+                + "pass\n",
+        ];
+        for deep in kinds {
+            let text = format!("procedure(title = 'x')\nstep('a')\nx = {deep}\n");
+            let loaded = load_all(&Scripts::from([("a.star".into(), text)]));
+            assert_eq!(
+                loaded.errors.len() + loaded.procedures.len(),
+                1,
+                "{:?}",
+                loaded.errors
+            );
+            let deep = "nested too deeply";
+            assert!(
+                n < 1000 || loaded.errors[0].message == deep,
+                "{:?}",
+                loaded.errors
+            );
         }
     }
-    let loaded = load_all(&folder("bad"));
-    for e in &loaded.errors {
-        println!("{e}");
+}
+
+/// Words that bring random text past the parser now and then.
+const WORDS: [&str; 40] = [
+    "step(",
+    "procedure(",
+    "title = ",
+    "'a'",
+    "\"b\"",
+    ")",
+    "(",
+    ",",
+    "[",
+    "]",
+    "\n",
+    "\n    ",
+    "if ",
+    "False",
+    ":",
+    "for i in ",
+    "range(3)",
+    "def f(x):",
+    "return ",
+    "lambda x: ",
+    "kmh(",
+    "ms(",
+    "3",
+    "-1.5",
+    "+",
+    "*",
+    "/",
+    "==",
+    "eb",
+    "speed",
+    "tacho.",
+    "ramp(",
+    "to = ",
+    "do = ",
+    "codes",
+    "unit.",
+    "measured('a')",
+    "load(\"//a.star\", \"b\")",
+    "not ",
+    "x = ",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn no_text_makes_the_loader_panic(words in prop::collection::vec(prop::sample::select(&WORDS[..]), 0..40)) {
+        let text = format!("procedure(title = 'x')\nstep('s')\n{}", words.concat());
+        load_all(&Scripts::from([("a.star".into(), text)]));
+    }
+
+    #[test]
+    fn no_characters_make_the_loader_panic(text in any::<String>()) {
+        load_all(&Scripts::from([("a.star".into(), text)]));
     }
 }

@@ -6,12 +6,37 @@ use protocol::signal::Signal;
 use super::action_run::Scan;
 use super::condition::{Captured, Lack, Truth};
 use super::limit::{Bound, judge};
-use super::plan::{Measure, TimeFrom, What};
+use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::{Measurement, Verdict};
+
+/// Watches for a condition to *become* true: it must have been seen false first. A brake that is
+/// applied already when its time is taken has no reaction time, it must not get one of 0 ms.
+#[derive(Clone, Copy, Debug, Default)]
+struct Edge {
+    was_false: bool,
+}
+
+impl Edge {
+    fn look(&mut self, condition: &Condition, scan: Scan<'_>, lack: &mut Option<Lack>) -> bool {
+        match condition.truth(scan.sample, scan.captured) {
+            Truth::Yes => self.was_false,
+            Truth::No => {
+                self.was_false = true;
+                false
+            }
+            Truth::NoData(missing) => {
+                *lack = Some(missing);
+                false
+            }
+        }
+    }
+}
 
 /// What is known about a measurement so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Taking {
+    from: Edge,
+    to: Edge,
     /// When the time measured began.
     start: Option<Instant>,
     /// First value of a change.
@@ -19,6 +44,8 @@ pub(super) struct Taking {
     value: Option<f64>,
     lack: Option<Lack>,
     done: bool,
+    /// The step need not wait for it any longer.
+    late: bool,
 }
 
 impl Taking {
@@ -35,14 +62,13 @@ impl Taking {
         }
         match &measure.what {
             What::Time { from, to } => self.time(from, to, scan, step_start, actions_end),
-            What::At { signal, when } => match when.truth(scan.sample, scan.captured) {
-                Truth::Yes => {
+            What::At { signal, when } => {
+                if self.to.look(when, scan, &mut self.lack) {
                     self.done = true;
+                    self.lack = None;
                     self.value = self.known(*signal, scan);
                 }
-                Truth::NoData(lack) => self.lack = Some(lack),
-                Truth::No => {}
-            },
+            }
             What::Maximum(signal) => self.extreme(*signal, scan, f64::max),
             What::Minimum(signal) => self.extreme(*signal, scan, f64::min),
             What::Change(signal) => {
@@ -52,15 +78,12 @@ impl Taking {
             }
             What::Value(_) => {}
         }
-        let late = |end| scan.now.since(end) >= measure.within;
-        if measure.is_awaited() && actions_end.is_some_and(late) {
-            self.done = true;
-        }
+        self.late = actions_end.is_some_and(|end| scan.now.since(end) >= measure.within);
     }
 
     /// Whether the step must go on for it.
     pub(super) fn is_open(&self, measure: &Measure) -> bool {
-        measure.is_awaited() && !self.done
+        measure.is_awaited() && !self.done && !self.late
     }
 
     /// Ends the measurement with the step's last scan and judges it.
@@ -83,7 +106,7 @@ impl Taking {
     fn time(
         &mut self,
         from: &TimeFrom,
-        to: &super::plan::Condition,
+        to: &Condition,
         scan: Scan<'_>,
         step_start: Instant,
         actions_end: Option<Instant>,
@@ -93,29 +116,20 @@ impl Taking {
                 TimeFrom::StepStart => Some(step_start),
                 TimeFrom::ActionsEnd => actions_end,
                 TimeFrom::Condition(condition) => {
-                    match condition.truth(scan.sample, scan.captured) {
-                        Truth::Yes => Some(scan.now),
-                        Truth::No => None,
-                        Truth::NoData(lack) => {
-                            self.lack = Some(lack);
-                            None
-                        }
-                    }
+                    let begins = self.from.look(condition, scan, &mut self.lack);
+                    begins.then_some(scan.now)
                 }
             };
         }
-        let Some(start) = self.start else { return };
-        // The scan a step begins in shows the unit before the step's first stimulus.
-        if scan.now == start && !matches!(from, TimeFrom::Condition(_)) {
-            return;
-        }
-        match to.truth(scan.sample, scan.captured) {
-            Truth::Yes => {
+        let reached = self.to.look(to, scan, &mut self.lack);
+        // An end before the beginning is passed over; the next one counts.
+        match self.start {
+            Some(start) if reached => {
                 self.done = true;
                 self.value = Some(scan.now.since(start).as_us() as f64 / 1000.0);
             }
-            Truth::NoData(lack) => self.lack = Some(lack),
-            Truth::No => {}
+            None if reached => self.to = Edge::default(),
+            _ => {}
         }
     }
 
@@ -150,7 +164,12 @@ impl Taking {
             }
             (_, Some(_), _) => format!("{name}: a limit refers to a measurement without a value"),
             (_, None, Some(lack)) => format!("{name}: {lack}"),
-            (_, None, None) => format!("{name}: no value within {}", measure.within),
+            (_, None, None) => match &measure.what {
+                What::Time { to: end, .. } | What::At { when: end, .. } => {
+                    format!("{name}: no value, {end} did not come about in time")
+                }
+                _ => format!("{name}: no value"),
+            },
         }
     }
 }

@@ -46,10 +46,7 @@ pub(super) fn check(
     }
     if checker.too_deep {
         let span = ast.statement().span;
-        return vec![error_at(
-            &ast.file_span(span),
-            format!("nested deeper than {DEEPEST}"),
-        )];
+        return vec![error_at(&ast.file_span(span), "nested too deeply".into())];
     }
     let mut errors = checker.errors;
     errors.extend(undefined_names(ast, names));

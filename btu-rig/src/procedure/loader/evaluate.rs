@@ -14,6 +14,7 @@ use super::context::Context;
 use super::draft::Declaration;
 use super::handle::{Session, error};
 use super::item::Item;
+use super::nesting::too_deep;
 use super::suggest::hint;
 use super::{LoadError, MOST_STEPS, error_from, is_library};
 
@@ -148,13 +149,17 @@ fn parse(path: &str, text: &str) -> Result<AstModule, LoadError> {
         enable_f_strings: true,
         ..Dialect::Standard
     };
+    let refuse = |line, column, message| LoadError {
+        file: path.to_owned(),
+        line,
+        column,
+        message,
+    };
     if text.len() > LONGEST_SCRIPT {
-        return Err(LoadError {
-            file: path.to_owned(),
-            line: 1,
-            column: 1,
-            message: format!("longer than {LONGEST_SCRIPT} bytes"),
-        });
+        return Err(refuse(1, 1, format!("longer than {LONGEST_SCRIPT} bytes")));
+    }
+    if let Some((line, column)) = too_deep(text) {
+        return Err(refuse(line, column, "nested too deeply".into()));
     }
     AstModule::parse(path, text.to_owned(), &dialect).map_err(|e| error_from(path, &e))
 }

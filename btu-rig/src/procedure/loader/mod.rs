@@ -2,13 +2,14 @@
 //!
 //! Layers, bottom up:
 //! * [`quantity`], [`item`]: the values of the script language, free of Starlark;
-//! * [`verb`], [`verbs`]: its words, each a table entry with typed parameters;
+//! * [`verb`], [`want`], [`args`], [`verbs`]: its words, each a table entry with typed parameters;
 //! * [`context`], [`globals`]: unit configuration, line, signals: the names a script knows;
 //! * [`handle`]: those values inside Starlark;
 //! * [`check`]: finds errors without running a script, also where it would never run;
 //! * [`evaluate`]: runs it once, within bounds, with no access to anything but its libraries;
 //! * [`assemble`]: resolves names between steps and computes times.
 
+mod args;
 mod assemble;
 mod check;
 mod context;
@@ -17,10 +18,12 @@ mod evaluate;
 mod globals;
 mod handle;
 mod item;
+mod nesting;
 mod quantity;
 mod suggest;
 mod verb;
 mod verbs;
+mod want;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

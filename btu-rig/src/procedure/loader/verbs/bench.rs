@@ -3,10 +3,12 @@
 use protocol::Speed;
 
 use super::{at_once, with_wait};
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::quantity::Dimension::{Acceleration, Distance, Frequency, Level};
-use crate::procedure::loader::verb::{Args, Verb, Want, needs, takes};
+use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::want::Want;
 use crate::procedure::plan::Action;
 use crate::stimulus::{Stimulus, TachoCondition};
 

@@ -3,9 +3,11 @@
 use protocol::message::ModeSwitch;
 
 use super::at_once;
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::verb::{Args, Verb, Want, needs};
+use crate::procedure::loader::verb::{Verb, needs};
+use crate::procedure::loader::want::Want;
 use crate::stimulus::{Stimulus, TcmsCondition};
 
 macro_rules! plain {

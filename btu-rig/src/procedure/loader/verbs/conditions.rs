@@ -3,10 +3,12 @@
 use protocol::Duration;
 use protocol::signal::{Kind, Signal};
 
+use crate::procedure::loader::args::{Args, event};
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::suggest::hint;
-use crate::procedure::loader::verb::{Args, Verb, Want, event, needs, takes};
+use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::want::Want;
 use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand};
 
 /// Time for something to become true if a script gives none.

@@ -1,9 +1,11 @@
 //! `procedure()` and `step()`.
 
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::draft::{Declaration, ProcedureDraft, StepDraft};
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::verb::{Args, Verb, Want, needs, takes};
+use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::want::Want;
 use crate::procedure::plan::{Connection, Measure, OnFail};
 
 /// More repetitions than this are a slip of the finger.

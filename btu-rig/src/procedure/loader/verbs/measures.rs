@@ -3,9 +3,11 @@
 use protocol::Duration;
 
 use super::conditions::{amount, operand};
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::verb::{Args, Verb, Want, needs, takes};
+use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::want::Want;
 use crate::procedure::plan::{Measure, Operand, TimeFrom, What};
 
 /// Time a measurement waits for its condition if neither `within` nor `high` says.

@@ -4,9 +4,11 @@
 use super::bench::{code_signal, marker, raw_signal, speed};
 use super::track::{Place, STATION, station};
 use super::{at_once, with_wait};
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension::{Acceleration, Frequency, Level, Speed};
-use crate::procedure::loader::verb::{Args, Verb, Want, needs, takes};
+use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::want::Want;
 use crate::stimulus::Stimulus;
 
 macro_rules! request {

@@ -4,8 +4,10 @@ use protocol::line::Section;
 use protocol::message::{DoorSide, RunningMode};
 
 use super::at_once;
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::verb::{Args, Param, Verb, Want, takes};
+use crate::procedure::loader::verb::{Param, Verb, takes};
+use crate::procedure::loader::want::Want;
 use crate::stimulus::{StationData, Stimulus, WaysideCondition};
 
 const NUMBER: Want = Want::Int(0, 65535);

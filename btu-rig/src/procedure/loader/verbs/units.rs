@@ -1,8 +1,10 @@
 //! Units: they make a quantity of a number.
 
+use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::{Dimension, Quantity};
-use crate::procedure::loader::verb::{Args, Param, Verb, Want, needs};
+use crate::procedure::loader::verb::{Param, Verb, needs};
+use crate::procedure::loader::want::Want;
 
 const NUMBER: &[Param] = &[needs("value", Want::Number)];
 

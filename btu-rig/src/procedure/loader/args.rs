@@ -1,0 +1,171 @@
+//! Arguments of a call, bound and checked, as verbs read them.
+
+use protocol::Duration;
+use protocol::event::Event;
+use protocol::signal::Signal;
+
+use super::context::Context;
+use super::item::Item;
+use super::quantity::Quantity;
+use super::suggest::hint;
+use super::verb::Verb;
+use crate::procedure::plan::{Action, Condition};
+
+/// Arguments of a call, bound to the parameters of its verb.
+pub(super) struct Args<'a> {
+    pub verb: &'static Verb,
+    pub values: Vec<Option<Item>>,
+    pub context: &'a Context,
+}
+
+/// Access to bound and checked arguments; a value of another kind than its parameter wants cannot
+/// be there.
+impl Args<'_> {
+    pub(super) fn get(&self, name: &str) -> Option<&Item> {
+        let at = self.verb.params.iter().position(|p| p.name == name)?;
+        self.values[at].as_ref()
+    }
+
+    fn must(&self, name: &str) -> Result<&Item, String> {
+        self.get(name).ok_or_else(|| format!("needs `{name}`"))
+    }
+
+    /// A quantity in its dimension's unit.
+    pub(super) fn amount(&self, name: &str) -> Result<f64, String> {
+        match self.must(name)? {
+            Item::Quantity(q) => Ok(q.value),
+            other => Err(format!("`{name}` cannot be {}", other.found())),
+        }
+    }
+
+    pub(super) fn amount_or(&self, name: &str, default: f64) -> f64 {
+        self.amount(name).unwrap_or(default)
+    }
+
+    pub(super) fn positive(&self, name: &str) -> Result<f64, String> {
+        let value = self.amount(name)?;
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(format!("`{name}` must be above 0"))
+        }
+    }
+
+    pub(super) fn time(&self, name: &str) -> Result<Option<Duration>, String> {
+        if self.get(name).is_none() {
+            return Ok(None);
+        }
+        let ms = self.amount(name)?;
+        if (0.0..=86_400_000.0).contains(&ms) {
+            Ok(Some(Duration::from_secs(ms / 1000.0)))
+        } else {
+            Err(format!("`{name}` must be from 0 to 24 hours"))
+        }
+    }
+
+    pub(super) fn time_or(&self, name: &str, default: Duration) -> Result<Duration, String> {
+        Ok(self.time(name)?.unwrap_or(default))
+    }
+
+    pub(super) fn number(&self, name: &str) -> Result<f64, String> {
+        self.must(name)?
+            .number()
+            .ok_or_else(|| format!("`{name}` must be a number"))
+    }
+
+    pub(super) fn int(&self, name: &str) -> Result<i64, String> {
+        match self.must(name)? {
+            Item::Int(n) => Ok(*n),
+            other => Err(format!("`{name}` cannot be {}", other.found())),
+        }
+    }
+
+    pub(super) fn flag(&self, name: &str, default: bool) -> bool {
+        match self.get(name) {
+            Some(Item::Bool(on)) => *on,
+            _ => default,
+        }
+    }
+
+    pub(super) fn text(&self, name: &str) -> Option<&str> {
+        match self.get(name) {
+            Some(Item::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+
+    pub(super) fn signal(&self, name: &str) -> Result<Signal, String> {
+        match self.must(name)? {
+            Item::Signal(signal) => Ok(*signal),
+            other => Err(format!("`{name}` cannot be {}", other.found())),
+        }
+    }
+
+    pub(super) fn condition(&self, name: &str) -> Result<Condition, String> {
+        match self.must(name)? {
+            Item::Condition(condition) => Ok(condition.clone()),
+            other => Err(format!("`{name}` cannot be {}", other.found())),
+        }
+    }
+
+    /// All items of a possibly nested list, in order.
+    pub(super) fn flat(&self, name: &str) -> Vec<&Item> {
+        let mut items = Vec::new();
+        if let Some(item) = self.get(name) {
+            flatten(item, &mut items);
+        }
+        items
+    }
+
+    pub(super) fn actions(&self, name: &str) -> Vec<Action> {
+        let lists = self.flat(name).into_iter().filter_map(|item| match item {
+            Item::Actions(actions) => Some(actions.clone()),
+            _ => None,
+        });
+        lists.flatten().collect()
+    }
+
+    pub(super) fn events(&self, name: &str) -> Result<Vec<Event>, String> {
+        let texts = self.flat(name).into_iter().filter_map(|item| match item {
+            Item::Text(text) => Some(event(text)),
+            _ => None,
+        });
+        texts.collect()
+    }
+
+    /// Number of a section given by number or as itself.
+    pub(super) fn section(&self, name: &str) -> Option<u16> {
+        let number = match self.get(name)? {
+            Item::Record(record) => match record.get("section")? {
+                Item::Int(n) => *n,
+                _ => return None,
+            },
+            Item::Int(n) => *n,
+            _ => return None,
+        };
+        u16::try_from(number).ok()
+    }
+
+    /// A quantity, number or measured value as given.
+    pub(super) fn quantity(&self, name: &str) -> Option<Quantity> {
+        match self.get(name) {
+            Some(Item::Quantity(q)) => Some(*q),
+            _ => None,
+        }
+    }
+}
+
+/// The event called `name`.
+pub(super) fn event(name: &str) -> Result<Event, String> {
+    Event::from_name(name).ok_or_else(|| {
+        let hint = hint(name, Event::ALL.iter().map(|e| e.definition().name));
+        format!("no event \"{name}\"{hint}")
+    })
+}
+
+fn flatten<'a>(item: &'a Item, out: &mut Vec<&'a Item>) {
+    match item {
+        Item::List(items) => items.iter().for_each(|item| flatten(item, out)),
+        item => out.push(item),
+    }
+}

@@ -1,0 +1,146 @@
+//! What parameters take, and how that is said when they get something else.
+
+use super::context::Context;
+use super::item::Item;
+use super::quantity::Dimension;
+use super::suggest::hint;
+
+/// What a parameter takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Want {
+    Amount(Dimension),
+    Number,
+    /// A whole number from .. to.
+    Int(i64, i64),
+    Bool,
+    Text,
+    Choice(&'static [&'static str]),
+    Signal,
+    /// A signal that is compared, or a whole condition.
+    Subject,
+    Condition,
+    /// Text, number, quantity, True, False or a measured value.
+    Value,
+    /// A code of the table or its name.
+    Code,
+    /// A section of the line or its number.
+    Section,
+    /// An action or a list of them, nested as deep as helper functions make it.
+    Actions,
+    Expectations,
+    Measures,
+    /// An event's name or a list of them.
+    Events,
+    /// A condition, "start" or "actions".
+    TimeFrom,
+    /// One or a list of whole numbers.
+    Ints,
+    /// Any number of conditions.
+    Conditions,
+}
+
+impl Want {
+    pub(super) fn wanted(self) -> String {
+        match self {
+            Self::Amount(dimension) => dimension.wanted().into(),
+            Self::Number => "a number".into(),
+            Self::Int(low, high) => format!("a whole number {low} to {high}"),
+            Self::Bool => "True or False".into(),
+            Self::Text => "a text in quotes".into(),
+            Self::Choice(words) => format!("one of \"{}\"", words.join("\", \"")),
+            Self::Signal | Self::Subject => "a signal such as eb or speed".into(),
+            Self::Condition => "a condition such as is_(eb, \"applied\")".into(),
+            Self::Value => "a value to compare with".into(),
+            Self::Code => "a speed code such as code(\"55\")".into(),
+            Self::Section => "a section of the line or its number".into(),
+            Self::Actions => "actions such as tacho.speed(kmh(40))".into(),
+            Self::Expectations => {
+                "expectations such as becomes(eb, \"applied\", within = s(1))".into()
+            }
+            Self::Measures => "measurements such as value(\"limit\", limit)".into(),
+            Self::Events => "names of events such as \"overspeed_eb\"".into(),
+            Self::TimeFrom => "\"start\", \"actions\" or a condition".into(),
+            Self::Ints => "a list of whole numbers".into(),
+            Self::Conditions => "conditions such as is_(eb, \"applied\")".into(),
+        }
+    }
+
+    /// `Err` says what was found instead.
+    pub(super) fn check(self, item: &Item, context: &Context) -> Result<(), String> {
+        if matches!(item, Item::Unknown) {
+            return Ok(());
+        }
+        let fits = match self {
+            Self::Amount(dimension) => {
+                matches!(item, Item::Quantity(q) if q.dimension == dimension && q.value.is_finite())
+            }
+            Self::Number => item.number().is_some_and(f64::is_finite),
+            Self::Int(low, high) => matches!(item, Item::Int(n) if (low..=high).contains(n)),
+            Self::Bool => matches!(item, Item::Bool(_)),
+            Self::Text => matches!(item, Item::Text(_)),
+            Self::Choice(words) => match item {
+                Item::Text(word) if words.contains(&word.as_str()) => true,
+                Item::Text(word) => {
+                    return Err(format!("{}{}", item.found(), near(word, words)));
+                }
+                _ => false,
+            },
+            Self::Signal => matches!(item, Item::Signal(_)),
+            Self::Subject => matches!(item, Item::Signal(_) | Item::Condition(_)),
+            Self::Condition => matches!(item, Item::Condition(_)),
+            Self::Value => matches!(
+                item,
+                Item::Quantity(_)
+                    | Item::Text(_)
+                    | Item::Bool(_)
+                    | Item::Int(_)
+                    | Item::Float(_)
+                    | Item::Measured(..)
+            ),
+            Self::Code => match item {
+                Item::Text(name) => return context.code(name).map(|_| ()),
+                item => matches!(item, Item::Record(r) if r.kind == "speed code"),
+            },
+            Self::Section => match item {
+                Item::Int(n) => u16::try_from(*n).is_ok_and(|n| context.line.section(n).is_some()),
+                Item::Record(record) => record.kind == "section" && record.get("section").is_some(),
+                _ => false,
+            },
+            Self::TimeFrom => match item {
+                Item::Text(word) => ["start", "actions"].contains(&word.as_str()),
+                other => matches!(other, Item::Condition(_)),
+            },
+            Self::Actions => {
+                return every(item, |i| matches!(i, Item::Actions(_) | Item::None));
+            }
+            Self::Expectations => {
+                return every(item, |i| matches!(i, Item::Expectation(_) | Item::None));
+            }
+            Self::Measures => return every(item, |i| matches!(i, Item::Measure(_) | Item::None)),
+            Self::Events => return every(item, |i| matches!(i, Item::Text(_))),
+            Self::Ints => return every(item, |i| matches!(i, Item::Int(_))),
+            Self::Conditions => return every(item, |i| matches!(i, Item::Condition(_))),
+        };
+        if fits { Ok(()) } else { Err(item.found()) }
+    }
+}
+
+/// Near misses only: the choice itself is listed anyway.
+fn near(word: &str, words: &[&'static str]) -> String {
+    let hint = hint(word, words.iter().copied());
+    if hint.contains("did you mean") {
+        hint
+    } else {
+        String::new()
+    }
+}
+
+/// Whether all items of a nested list fit; `Err` says what the first misfit is.
+fn every(item: &Item, fits: fn(&Item) -> bool) -> Result<(), String> {
+    match item {
+        Item::List(items) => items.iter().try_for_each(|item| every(item, fits)),
+        Item::Unknown => Ok(()),
+        item if fits(item) => Ok(()),
+        item => Err(item.found()),
+    }
+}

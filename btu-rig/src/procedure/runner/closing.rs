@@ -1,0 +1,74 @@
+//! The end of every run: clean-up, then safe outputs.
+
+use std::sync::Arc;
+
+use protocol::signal::Sample;
+use protocol::{Duration, Instant};
+
+use super::{Phase, Runner};
+use crate::procedure::Driver;
+use crate::procedure::action_run::{Progress, Scan};
+use crate::procedure::plan::{TIME_LIMIT_MARGIN, total_worst_case};
+use crate::procedure::report::RunEvent;
+
+/// Time outputs have to become safe.
+pub const SAFE_WITHIN: Duration = Duration::from_ms(2000);
+/// Time clean-up has when the link to the unit is lost.
+pub const CLEANUP_WITHOUT_LINK: Duration = Duration::from_ms(2000);
+
+impl Runner {
+    /// An action of clean-up that does not succeed is reported and the next one tried.
+    pub(super) fn run_clean_up(&mut self, now: Instant, sample: &Sample, driver: &mut dyn Driver) {
+        let procedure = Arc::clone(&self.procedure);
+        let operator = self.operator();
+        let Phase::CleanUp { actions, since } = &mut self.phase else {
+            return;
+        };
+        let mut allowed = total_worst_case(&procedure.cleanup) + TIME_LIMIT_MARGIN;
+        if self.link_lost {
+            allowed = allowed.min(CLEANUP_WITHOUT_LINK);
+        }
+        let scan = Scan {
+            now,
+            sample,
+            captured: &self.captured,
+        };
+        let mut problems = Vec::new();
+        let mut over = loop {
+            match actions.advance(&procedure.cleanup, scan, operator, driver, &mut self.out) {
+                Progress::Waiting => break false,
+                Progress::Done => break true,
+                Progress::Stuck(problem) => {
+                    problems.push(format!("clean-up: {}", problem.message()));
+                    actions.skip();
+                }
+            }
+        };
+        if !over && now.since(*since) >= allowed {
+            problems.push(format!("clean-up took longer than {allowed}"));
+            over = true;
+        }
+        problems.into_iter().for_each(|text| self.fault(text));
+        if over {
+            self.phase = Phase::MakeSafe { since: now };
+        }
+    }
+
+    pub(super) fn make_safe(&mut self, now: Instant, since: Instant, driver: &mut dyn Driver) {
+        driver.make_safe(now);
+        if !driver.safe() {
+            if now.since(since) < SAFE_WITHIN {
+                return;
+            }
+            self.fault(format!(
+                "outputs are not confirmed safe after {SAFE_WITHIN}"
+            ));
+        }
+        self.phase = Phase::Done;
+        self.out.push(RunEvent::ProcedureFinished {
+            verdict: self.verdict,
+            message: self.messages.join("; "),
+            at: now,
+        });
+    }
+}

@@ -1,0 +1,63 @@
+//! What ends a run early: a lost link and the operator's stop.
+
+use protocol::Instant;
+use protocol::signal::Sample;
+
+use super::{Phase, Runner, Stop};
+use crate::procedure::action_run::Problem;
+use crate::procedure::report::Verdict;
+
+impl Runner {
+    pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {
+        self.link_lost = true;
+        let text = format!("link to the unit: {error}");
+        match &mut self.phase {
+            Phase::Steps { live, .. } => {
+                if let Some(step) = live.as_mut() {
+                    step.give_up(Problem::Bench(text.clone()));
+                    self.finish_step(now, sample, false);
+                }
+                self.fault(text.clone());
+                self.skip_rest(now, &format!("not run, {text}"));
+            }
+            Phase::Setup(_) => {
+                self.fault(text.clone());
+                self.phase = Phase::Steps {
+                    next: 0,
+                    live: None,
+                };
+                self.skip_rest(now, &format!("not run, {text}"));
+            }
+            Phase::CleanUp { .. } => self.fault(text),
+            Phase::NotStarted | Phase::MakeSafe { .. } | Phase::Done => {}
+        }
+    }
+
+    pub(super) fn obey_stop(&mut self, now: Instant, sample: &Sample) {
+        if self.stop == Stop::No {
+            return;
+        }
+        match &self.phase {
+            Phase::Setup(_) | Phase::Steps { .. } => {
+                if matches!(self.phase, Phase::Steps { live: Some(_), .. }) {
+                    self.finish_step(now, sample, true);
+                } else if matches!(self.phase, Phase::Setup(_)) {
+                    self.phase = Phase::Steps {
+                        next: 0,
+                        live: None,
+                    };
+                }
+                self.note(Verdict::Aborted, "stopped by the operator".into());
+                self.skip_rest(now, "not run, stopped by the operator");
+            }
+            Phase::CleanUp { .. } if self.stop == Stop::CutShort => {
+                self.note(
+                    Verdict::Aborted,
+                    "clean-up cut short by the operator".into(),
+                );
+                self.phase = Phase::MakeSafe { since: now };
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Runs one procedure: a state machine stepped once per I/O scan.
+//!
+//! Three rules. Safe outputs are the runner's duty: whatever happened, the last thing it does is
+//! [`Driver::make_safe`], until the driver confirms or [`SAFE_WITHIN`] is over. Clean-up always
+//! runs, and never beside a live step: the step is finished first. No data is never `passed`.
+
+mod closing;
+mod interrupt;
+mod schedule;
+mod steps;
+mod unsolicited;
+
+use std::sync::Arc;
+
+use protocol::Instant;
+use protocol::event::{Event, Severity};
+use protocol::signal::Sample;
+
+pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
+pub use schedule::{PromptPolicy, RunOptions};
+use schedule::{Turn, schedule};
+
+use super::action_run::{ActionRun, Operator, Progress, Scan};
+use super::event_set::EventSet;
+use super::plan::{Procedure, Step};
+use super::report::{RunEvent, Verdict};
+use super::step_run::StepRun;
+use super::{Driver, UnitEvent};
+
+/// Whether a runner needs more scans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Poll {
+    /// Yes.
+    Running,
+    /// No: outputs are safe or could not be made so.
+    Done,
+}
+
+#[derive(Debug)]
+enum Phase {
+    NotStarted,
+    Setup(ActionRun),
+    Steps { next: usize, live: Option<StepRun> },
+    CleanUp { actions: ActionRun, since: Instant },
+    MakeSafe { since: Instant },
+    Done,
+}
+
+/// How often the operator has pressed stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
+enum Stop {
+    No,
+    Once,
+    CutShort,
+}
+
+/// Runs one procedure.
+#[derive(Debug)]
+pub struct Runner {
+    procedure: Arc<Procedure>,
+    options: RunOptions,
+    schedule: Vec<Turn>,
+    phase: Phase,
+    captured: Vec<Option<f64>>,
+    provoked: EventSet,
+    brake_applied: Option<bool>,
+    stop: Stop,
+    answer: Option<bool>,
+    link_lost: bool,
+    verdict: Verdict,
+    messages: Vec<String>,
+    out: Vec<RunEvent>,
+}
+
+impl Runner {
+    /// A runner that has not begun.
+    pub fn new(procedure: Arc<Procedure>, options: RunOptions) -> Self {
+        Self {
+            schedule: schedule(&procedure, &options),
+            captured: vec![None; procedure.slots],
+            procedure,
+            options,
+            phase: Phase::NotStarted,
+            provoked: EventSet::default(),
+            brake_applied: None,
+            stop: Stop::No,
+            answer: None,
+            link_lost: false,
+            verdict: Verdict::Skipped,
+            messages: Vec::new(),
+            out: Vec::new(),
+        }
+    }
+
+    /// The procedure it runs.
+    pub fn procedure(&self) -> &Arc<Procedure> {
+        &self.procedure
+    }
+
+    /// Operator's stop. The first ends the present step and goes on to clean-up; the second cuts
+    /// clean-up short. Outputs are made safe in any case.
+    pub fn stop(&mut self) {
+        self.stop = match self.stop {
+            Stop::No => Stop::Once,
+            Stop::Once | Stop::CutShort => Stop::CutShort,
+        };
+    }
+
+    /// Operator's answer to the present prompt.
+    pub fn answer(&mut self, yes: bool) {
+        self.answer = Some(yes);
+    }
+
+    /// Whether `event` is nothing to report in the present state of the run.
+    pub fn allowed(&self, event: Event) -> bool {
+        event.definition().severity <= Severity::Info
+            || !matches!(self.phase, Phase::Steps { .. })
+            || self.provoked.contains(event)
+    }
+
+    /// The stream of events since the last call.
+    pub fn take_events(&mut self) -> Vec<RunEvent> {
+        std::mem::take(&mut self.out)
+    }
+
+    /// One I/O scan: what was seen since the last one comes in, the next stimuli go out.
+    ///
+    /// `link_error` says that the unit cannot be reached any more.
+    pub fn advance(
+        &mut self,
+        now: Instant,
+        sample: &Sample,
+        events: &[UnitEvent],
+        link_error: Option<&str>,
+        driver: &mut dyn Driver,
+    ) -> Poll {
+        self.begin(now);
+        self.take_unit_events(events);
+        self.watch_brake(now, sample);
+        if let Some(error) = link_error.filter(|_| !self.link_lost) {
+            self.lose_link(now, sample, error);
+        }
+        self.obey_stop(now, sample);
+        if matches!(self.phase, Phase::Setup(_)) {
+            self.run_setup(now, sample, driver);
+        }
+        if matches!(self.phase, Phase::Steps { .. }) {
+            self.run_steps(now, sample, driver);
+        }
+        if matches!(self.phase, Phase::CleanUp { .. }) {
+            self.run_clean_up(now, sample, driver);
+        }
+        if let Phase::MakeSafe { since } = self.phase {
+            self.make_safe(now, since, driver);
+        }
+        self.answer = None;
+        match self.phase {
+            Phase::Done => Poll::Done,
+            _ => Poll::Running,
+        }
+    }
+
+    fn begin(&mut self, now: Instant) {
+        if !matches!(self.phase, Phase::NotStarted) {
+            return;
+        }
+        self.out.push(RunEvent::ProcedureStarted {
+            steps: self.schedule.len(),
+            at: now,
+        });
+        if self.schedule.is_empty() {
+            self.fault("no step to run".into());
+            self.phase = Phase::MakeSafe { since: now };
+        } else {
+            self.phase = Phase::Setup(ActionRun::default());
+        }
+    }
+
+    fn run_setup(&mut self, now: Instant, sample: &Sample, driver: &mut dyn Driver) {
+        let procedure = Arc::clone(&self.procedure);
+        let operator = self.operator();
+        let Phase::Setup(actions) = &mut self.phase else {
+            return;
+        };
+        let scan = Scan {
+            now,
+            sample,
+            captured: &self.captured,
+        };
+        let progress = actions.advance(&procedure.setup, scan, operator, driver, &mut self.out);
+        if progress == Progress::Waiting {
+            return;
+        }
+        self.phase = Phase::Steps {
+            next: 0,
+            live: None,
+        };
+        if let Progress::Stuck(problem) = progress {
+            let text = format!("setup: {}", problem.message());
+            self.skip_rest(now, &format!("not run, {text}"));
+            self.fault(text);
+        }
+    }
+
+    fn fault(&mut self, text: String) {
+        self.note(Verdict::Error, text);
+    }
+
+    fn note(&mut self, verdict: Verdict, text: String) {
+        self.verdict = self.verdict.and(verdict);
+        self.messages.push(text);
+    }
+
+    fn suspect(&self, step: &Step) -> String {
+        step.suspect
+            .as_ref()
+            .unwrap_or(&self.procedure.suspect)
+            .clone()
+    }
+
+    fn operator(&self) -> Operator {
+        Operator {
+            policy: self.options.prompts,
+            answer: self.answer,
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! What is run, in which order and how often.
+
+use crate::procedure::plan::{Procedure, Step};
+
+/// What a prompt does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PromptPolicy {
+    /// Nobody is there: a prompt is an error.
+    #[default]
+    Refuse,
+    /// A [`RunEvent::Prompt`] is sent and [`Runner::answer`] awaited.
+    Ask,
+}
+
+/// What to run and how.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Places of the chosen steps; `None` = all.
+    pub chosen: Option<Vec<usize>>,
+    /// How often the chosen steps are run through.
+    pub repeat: u32,
+    /// Skip the rest after the first step that did not pass.
+    pub stop_on_fail: bool,
+    /// What a prompt does.
+    pub prompts: PromptPolicy,
+}
+
+impl Default for RunOptions {
+    fn default() -> Self {
+        Self {
+            chosen: None,
+            repeat: 1,
+            stop_on_fail: false,
+            prompts: PromptPolicy::Refuse,
+        }
+    }
+}
+
+/// One entry of the schedule.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    pub index: usize,
+    number: u32,
+    of: u32,
+}
+
+impl Turn {
+    pub(super) fn name(self, step: &Step) -> String {
+        if self.of == 1 {
+            step.name.clone()
+        } else {
+            format!("{} ({}/{})", step.name, self.number, self.of)
+        }
+    }
+}
+
+/// Rounds of the chosen steps, each with its own repetitions.
+pub(super) fn schedule(procedure: &Procedure, options: &RunOptions) -> Vec<Turn> {
+    let all: Vec<usize> = (0..procedure.steps.len()).collect();
+    let chosen = options.chosen.as_ref().unwrap_or(&all);
+    let mut turns = Vec::new();
+    for round in 0..options.repeat {
+        for &index in chosen.iter().filter(|&&i| i < procedure.steps.len()) {
+            let repeat = procedure.steps[index].repeat;
+            turns.extend((1..=repeat).map(|k| Turn {
+                index,
+                number: round * repeat + k,
+                of: options.repeat * repeat,
+            }));
+        }
+    }
+    turns
+}

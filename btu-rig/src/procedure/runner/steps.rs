@@ -1,0 +1,161 @@
+//! Running the steps of the schedule, one after the other.
+
+use std::sync::Arc;
+
+use protocol::signal::Sample;
+use protocol::{Duration, Instant};
+
+use super::schedule::Turn;
+use super::{Phase, Runner};
+use crate::procedure::Driver;
+use crate::procedure::action_run::{ActionRun, Scan};
+use crate::procedure::condition::Truth;
+use crate::procedure::plan::{OnFail, Step};
+use crate::procedure::report::{RunEvent, StepResult, Verdict};
+use crate::procedure::step_run::StepRun;
+
+/// Steps that need no time are run one after the other in one scan, up to this many.
+const STEPS_PER_SCAN: usize = 32;
+
+impl Runner {
+    pub(super) fn run_steps(&mut self, now: Instant, sample: &Sample, driver: &mut dyn Driver) {
+        let procedure = Arc::clone(&self.procedure);
+        let operator = self.operator();
+        for _ in 0..STEPS_PER_SCAN {
+            let Phase::Steps { next, live } = &mut self.phase else {
+                return;
+            };
+            let Some(turn) = self.schedule.get(*next).copied() else {
+                self.phase = Phase::CleanUp {
+                    actions: ActionRun::default(),
+                    since: now,
+                };
+                return;
+            };
+            let step = &procedure.steps[turn.index];
+            if live.is_none() && !self.start_step(step, turn, now, sample) {
+                continue;
+            }
+            let Phase::Steps {
+                live: Some(live), ..
+            } = &mut self.phase
+            else {
+                return;
+            };
+            let scan = Scan {
+                now,
+                sample,
+                captured: &self.captured,
+            };
+            if !live.advance(step, scan, operator, driver, &mut self.out) {
+                return;
+            }
+            self.finish_step(now, sample, false);
+        }
+    }
+
+    /// Begins the next step; `false` if its condition lets it be skipped or cannot be told.
+    fn start_step(&mut self, step: &Step, turn: Turn, now: Instant, sample: &Sample) -> bool {
+        let truth = step
+            .when
+            .as_ref()
+            .map_or(Truth::Yes, |when| when.truth(sample, &self.captured));
+        match truth {
+            Truth::Yes => {}
+            Truth::No => {
+                self.pass_over(turn, now, Verdict::Skipped, "its condition does not hold");
+                return false;
+            }
+            Truth::NoData(lack) => {
+                self.pass_over(turn, now, Verdict::Error, &format!("its condition: {lack}"));
+                return false;
+            }
+        }
+        self.out.push(RunEvent::StepStarted {
+            index: turn.index,
+            name: turn.name(step),
+            at: now,
+        });
+        self.provoked = self.provoked.union(step.provoked().collect());
+        if let Phase::Steps { live, .. } = &mut self.phase {
+            *live = Some(StepRun::new(step, now));
+        }
+        true
+    }
+
+    /// Ends the live step, reports it and decides whether the next one has its turn.
+    pub(super) fn finish_step(&mut self, now: Instant, sample: &Sample, aborted: bool) {
+        let procedure = Arc::clone(&self.procedure);
+        let Phase::Steps { next, live } = &mut self.phase else {
+            return;
+        };
+        let Some(run) = live.take() else { return };
+        let turn = self.schedule[*next];
+        *next += 1;
+        let step = &procedure.steps[turn.index];
+        let scan = Scan {
+            now,
+            sample,
+            captured: &self.captured,
+        };
+        let started = run.started();
+        let end = run.finish(step, scan, aborted);
+        for (measure, measurement) in step.measures.iter().zip(&end.measurements) {
+            self.captured[measure.slot] = measurement.value;
+            self.out.push(RunEvent::Measured {
+                index: turn.index,
+                measurement: measurement.clone(),
+            });
+        }
+        self.out.push(RunEvent::StepFinished(StepResult {
+            index: turn.index,
+            name: turn.name(step),
+            line: step.line,
+            verdict: end.verdict,
+            message: end.message,
+            suspect: self.suspect(step),
+            started,
+            bench_time: end.bench_time,
+            measurements: end.measurements,
+        }));
+        self.verdict = self.verdict.and(end.verdict);
+        let stops = self.options.stop_on_fail || step.on_fail == OnFail::Stop;
+        if stops && end.verdict != Verdict::Passed {
+            let name = turn.name(step);
+            self.skip_rest(now, &format!("not run, \"{name}\" did not pass"));
+        }
+    }
+
+    /// Reports all steps still to come as skipped and goes on to clean-up.
+    pub(super) fn skip_rest(&mut self, now: Instant, reason: &str) {
+        while let Phase::Steps { next, .. } = &self.phase
+            && let Some(turn) = self.schedule.get(*next).copied()
+        {
+            self.pass_over(turn, now, Verdict::Skipped, reason);
+        }
+        self.phase = Phase::CleanUp {
+            actions: ActionRun::default(),
+            since: now,
+        };
+    }
+
+    /// Reports a step that is not run.
+    fn pass_over(&mut self, turn: Turn, now: Instant, verdict: Verdict, reason: &str) {
+        let step = &self.procedure.steps[turn.index];
+        self.out.push(RunEvent::StepFinished(StepResult {
+            index: turn.index,
+            name: turn.name(step),
+            line: step.line,
+            verdict,
+            message: reason.into(),
+            suspect: self.suspect(step),
+            started: now,
+            bench_time: Duration::ZERO,
+            measurements: Vec::new(),
+        }));
+        self.verdict = self.verdict.and(verdict);
+        if let Phase::Steps { next, .. } = &mut self.phase {
+            *next += 1;
+        }
+    }
+}

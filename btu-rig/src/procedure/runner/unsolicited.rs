@@ -1,0 +1,88 @@
+//! What the unit does without having been asked: events and emergency brakes.
+
+use protocol::Instant;
+use protocol::event::{Event, Severity};
+use protocol::signal::{Sample, Signal};
+
+use super::{Phase, Runner};
+use crate::procedure::UnitEvent;
+use crate::procedure::event_set::EventSet;
+use crate::procedure::plan::Step;
+use crate::procedure::report::RunEvent;
+
+/// Events after which the emergency brake is applied.
+const BRAKING_EVENTS: [Event; 15] = [
+    Event::SelfTestFailed,
+    Event::InternalError,
+    Event::InputsLost,
+    Event::OverspeedEb,
+    Event::ServiceBrakeIneffective,
+    Event::TachoDisagree,
+    Event::TachoDead1,
+    Event::TachoDead2,
+    Event::TachoDirection,
+    Event::TachoNoise1,
+    Event::TachoNoise2,
+    Event::Rollback,
+    Event::EbRelayWelded,
+    Event::EbRelayOpen,
+    Event::DoorOpenMoving,
+];
+
+impl Runner {
+    /// Hands the unit's events to the live step and reports those nobody asked for.
+    ///
+    /// Only while steps run: power-up, making safe and what the last procedure left behind cause
+    /// events of their own.
+    pub(super) fn take_unit_events(&mut self, events: &[UnitEvent]) {
+        let Phase::Steps { live, .. } = &mut self.phase else {
+            return;
+        };
+        for entry in events {
+            let known = Event::from_code(entry.code);
+            if let (Some(step), Some(event)) = (live.as_mut(), known) {
+                step.note_event(event);
+            }
+            // An event that is not in the dictionary cannot have been asked for.
+            let asked = known.is_some_and(|event| {
+                event.definition().severity <= Severity::Info || self.provoked.contains(event)
+            });
+            if !asked {
+                self.out.push(RunEvent::UnsolicitedEvent(*entry));
+                if let Some(step) = live.as_mut() {
+                    step.blame_event(entry);
+                }
+            }
+        }
+    }
+
+    pub(super) fn watch_brake(&mut self, now: Instant, sample: &Sample) {
+        let applied = sample.get(Signal::Eb).map(|value| value != 0.0);
+        let before = self.brake_applied;
+        self.brake_applied = applied.or(before);
+        if (before, applied) != (Some(false), Some(true)) {
+            return;
+        }
+        if let Phase::Steps {
+            live: Some(live),
+            next,
+        } = &mut self.phase
+        {
+            let step = &self.procedure.steps[self.schedule[*next].index];
+            if !asks_for_brake(step) {
+                live.blame_brake();
+                self.out.push(RunEvent::UnsolicitedBrake { at: now });
+            }
+        }
+    }
+}
+
+/// Whether a step looks at the emergency brake or provokes an event that applies it.
+fn asks_for_brake(step: &Step) -> bool {
+    let mut looks = false;
+    step.for_each_signal(&mut |signal| {
+        looks |= matches!(signal, Signal::Eb | Signal::EbLoop | Signal::EbCause);
+    });
+    let provoked: EventSet = step.provoked().collect();
+    looks || provoked.intersects(BRAKING_EVENTS.into_iter().collect())
+}
