@@ -102,6 +102,23 @@ fn the_hash_is_of_the_text_and_the_same_text_gives_the_same_plan() {
 }
 
 #[test]
+fn the_worked_example_of_the_reference_loads() {
+    let reference = std::fs::read_to_string(root().join("../scripts/README.md")).unwrap();
+    let example = reference.split("```python\n").nth(1).unwrap();
+    let example = example.split("```").next().unwrap();
+    let mut scripts = folder("good");
+    scripts.insert("example.star".into(), example.into());
+    let loaded = load_all(&scripts);
+    assert_eq!(loaded.errors, []);
+    let found = loaded
+        .procedures
+        .iter()
+        .find(|p| p.id == "example")
+        .unwrap();
+    assert_eq!(found.steps.len(), 18);
+}
+
+#[test]
 fn print_is_kept_and_bounded() {
     let text = "procedure(title = 'x')\nstep('a')\nfor i in range(5000):\n    print(i)\n";
     let loaded = load_all(&Scripts::from([("a.star".into(), text.into())]));

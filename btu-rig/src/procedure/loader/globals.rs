@@ -63,4 +63,14 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), count);
     }
+
+    #[test]
+    fn the_technicians_reference_has_every_verb() {
+        let reference = include_str!("../../../../scripts/README.md");
+        for verb in verb::all() {
+            let shown = [format!("`{}(", verb.name), format!("`{}`", verb.name)];
+            let found = shown.iter().any(|word| reference.contains(word));
+            assert!(found, "scripts/README.md does not explain {}", verb.name);
+        }
+    }
 }
