@@ -9,7 +9,8 @@ use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link, Received};
 use protocol::message::{
-    Channel, IoOutput, Message, ModeSwitch, Outputs, Refusals, TrainLines, TwcWayside,
+    Channel, IoOutput, Message, ModeSwitch, Outputs, Refusals, SelfTest, TrainLines,
+    TwcWayside,
 };
 use protocol::{Duration, Instant, Speed};
 
@@ -159,13 +160,14 @@ impl Unit {
         }
     }
 
+    /// A frame is lost at `place`; one that arrives damaged is counted like any rejected frame.
     fn loses(&mut self, place: Place) -> bool {
         let lost = self.faults.loses_frame(place);
-        if lost {
-            self.reject_watch.count_lost(match place {
-                Place::TcmsReceiver => Channel::Tcms,
-                _ => Channel::Twc,
-            });
+        let damaged = lost && matches!(self.faults.at(place), Some(Effect::BitErrors { .. }));
+        match place {
+            Place::TcmsReceiver if damaged => self.reject_watch.count_lost(Channel::Tcms),
+            Place::FskReceiver if damaged => self.reject_watch.count_lost(Channel::Twc),
+            _ => {}
         }
         lost
     }
@@ -369,7 +371,9 @@ impl Unit {
         lacking.set(Refusals::TCMS_NOT_READY, !self.tcms.ready());
         lacking.set(Refusals::ATO_NOT_READY, !self.ato_outputs.ready);
         lacking.set(Refusals::TRA_FAILED, !self.tra.ok());
-        lacking.set(Refusals::SELF_TEST, !self.self_tester.failed().is_empty());
+        // The TEST board takes no part in running.
+        let failed = self.self_tester.failed().difference(SelfTest::TEST_BOARD);
+        lacking.set(Refusals::SELF_TEST, !failed.is_empty());
         ModeInputs {
             ready: self.self_tester.finished() && self.inputs.alive,
             cab_active: lines.contains(TrainLines::HCR),

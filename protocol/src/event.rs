@@ -1,6 +1,6 @@
 //! The event dictionary: stable numbers, never reused, with severity and the part under suspicion.
 
-use crate::message::SelfTest;
+use crate::message::{Channel, SelfTest};
 
 /// How bad an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -101,7 +101,7 @@ events! {
     Rollback = 226 "rollback" Major "-" "Moving against the reverser" "후진 검지" "distance, cm";
     EbRelayWelded = 230 "eb_relay_welded" Critical "eb_relay" "EB relay dropped but the brake line stays energised" "EB 계전기 융착" "";
     EbRelayOpen = 231 "eb_relay_open" Critical "eb_relay" "EB relay energised but the brake line stays dead" "EB 계전기 개방" "";
-    DoorOpenMoving = 240 "door_open_moving" Critical "-" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
+    DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
     MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";
     MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "표지 누락" "marker";
@@ -110,7 +110,7 @@ events! {
     TraRestored = 304 "tra_restored" Info "-" "TRA answers again" "TRA 복귀" "";
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
-    TwcStationInvalid = 402 "twc_station_invalid" Minor "-" "Station data do not match the track database" "역 정보 불일치" "station number";
+    TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";
     TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason";
@@ -121,8 +121,16 @@ events! {
 impl Event {
     /// The part under suspicion, given the event's parameter; `-` = none.
     pub fn suspect(self, parameter: i32) -> &'static str {
-        if self != Self::SelfTestFailed {
-            return self.definition().lru;
+        match self {
+            Self::SelfTestFailed => {}
+            // The parameter is the channel that loses frames.
+            Self::FramesRejected if parameter == i32::from(Channel::Twc.code()) => {
+                return "fsk_board";
+            }
+            Self::FramesRejected if parameter != i32::from(Channel::Tcms.code()) => {
+                return "io_board";
+            }
+            _ => return self.definition().lru,
         }
         let failed = SelfTest::from_bits_retain(parameter as u16);
         let parts = [

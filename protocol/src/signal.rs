@@ -95,6 +95,7 @@ signals! {
     WaysideDoorSide "wayside_door_side" "" Kind::Enum(DoorSide::LABELS), 0 ..= 3, Rig, "Door side the wayside sends";
     WaysideMode "wayside_running_mode" "" Kind::Enum(RunningMode::LABELS), 0 ..= 1, Rig, "Running mode the wayside sends";
     Departure "departure" "" Kind::Bit, 0 ..= 1, Rig, "Departure given by the wayside";
+    TcmsHears "tcms_hears" "" Kind::Bit, 0 ..= 1, Rig, "TCMS hears the unit on RS-485";
     Doors "doors" "" DOORS, 0 ..= 1, Rig, "Door train line: proved closed or not";
     Hcr "hcr" "" Kind::Bit, 0 ..= 1, Rig, "Head control relay of this cab";
     MaintenanceKey "maintenance_key" "" Kind::Bit, 0 ..= 1, Rig, "Maintenance key";

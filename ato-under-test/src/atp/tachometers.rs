@@ -90,9 +90,15 @@ impl Tachometers {
         let opposed = self.opposed.update(now, turning && against, span);
         let faulty = differ || opposed;
         if faulty && !self.faulty {
+            // Beside a noisy channel a silent one need not be dead.
+            let believed = [!self.noise[0].reported.value(), !self.noise[1].reported.value()];
             match (one < DEAD_BELOW, two < DEAD_BELOW) {
-                (true, false) => log.push(now, Event::TachoDead1, i32::from(two.to_cms())),
-                (false, true) => log.push(now, Event::TachoDead2, i32::from(one.to_cms())),
+                (true, false) if believed[1] => {
+                    log.push(now, Event::TachoDead1, i32::from(two.to_cms()));
+                }
+                (false, true) if believed[0] => {
+                    log.push(now, Event::TachoDead2, i32::from(one.to_cms()));
+                }
                 _ if opposed => log.push(now, Event::TachoDirection, 0),
                 _ => log.push(now, Event::TachoDisagree, i32::from(difference.to_cms())),
             }

@@ -105,6 +105,8 @@ impl Recorder {
                 }
             }
         }
+        let tcms_hears = self.heard[Source::Tcms as usize].is_some();
+        self.sample.set_bit(Signal::TcmsHears, tcms_hears);
     }
 
     /// Takes the unit's contacts and cab display.

@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
 use ato_under_test::Setup;
-use btu_rig::procedure::{RunEvent, Verdict};
 use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use protocol::config::UnitConfig;
@@ -81,7 +80,7 @@ impl BenchSetup {
         }
         let link = WireLink::open(&self.endpoint)?;
         let bench = Bench::new(self.rig(self.seed), link);
-        let mut session = Session::new(bench, Pace::real(), stop.clone());
+        let mut session = Session::new(bench, Pace::real(), stop.clone(), false);
         let identity = self.bring_up(&mut session)?;
         self.check_identity(&identity)?;
         Ok(Connected::Port(Box::new(session), identity))
@@ -150,7 +149,7 @@ impl BenchSetup {
         };
         let link = SimLink::new(setup, Instant::ZERO + BEFORE);
         let pace = if self.realtime { Pace::real() } else { Pace::Virtual };
-        Session::new(Bench::new(self.rig(seed), link), pace, stop.clone())
+        Session::new(Bench::new(self.rig(seed), link), pace, stop.clone(), true)
     }
 }
 
@@ -224,9 +223,8 @@ fn run_sim_task(
     sender: &SyncSender<SessionEvent>,
 ) {
     let mut session = setup.sim_session(&task.procedure.id, stop);
-    let suspect = task.procedure.suspect.clone();
     let mut quiet_since = None;
-    let (_, faults) = session.judge_bring_up(&suspect, BEFORE + READY_WITHIN, |bench| {
+    let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, |bench| {
         if !started(bench) || !bench.rig().log_up_to_date() {
             return false;
         }
@@ -265,13 +263,4 @@ fn seed_for(seed: u64, procedure: &str) -> u64 {
     procedure.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
     })
-}
-
-/// Whether an event closes a procedure that did not pass.
-pub fn not_passed(event: &SessionEvent) -> bool {
-    matches!(
-        event,
-        SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. })
-            if !matches!(verdict, Verdict::Passed | Verdict::Skipped)
-    )
 }

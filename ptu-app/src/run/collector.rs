@@ -5,7 +5,6 @@ use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
 use fault_db::{FaultRecord, Id, MeasurementRecord, StepRecord};
 use protocol::Duration;
 
-use super::benches::not_passed;
 use super::recorder::Cut;
 use super::session::SessionEvent;
 use super::store_thread::RunStore;
@@ -52,7 +51,9 @@ pub struct Collector<'a> {
     faults: usize,
     faults_before: usize,
     verdict: Verdict,
-    failed: bool,
+    not_passed: bool,
+    step_failed: bool,
+    link_lost: bool,
 }
 
 impl<'a> Collector<'a> {
@@ -75,7 +76,9 @@ impl<'a> Collector<'a> {
             faults: 0,
             faults_before: 0,
             verdict: Verdict::Skipped,
-            failed: false,
+            not_passed: false,
+            step_failed: false,
+            link_lost: false,
         }
     }
 
@@ -93,27 +96,44 @@ impl<'a> Collector<'a> {
 
     /// A check failed and the run is to end with its procedure.
     pub fn must_end(&self) -> bool {
-        self.stop_on_fail && self.failed
+        self.stop_on_fail && self.not_passed
     }
 
     /// Takes one event.
     pub fn take(&mut self, event: SessionEvent) {
         let Some(procedure) = self.procedure.clone() else { return };
         self.listener.hear(&procedure, &event);
-        self.failed |= not_passed(&event);
         match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
-            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
-                self.verdict = self.verdict.and(verdict);
-            }
+            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => self.note(verdict),
             SessionEvent::Run(_) => {}
+            SessionEvent::LinkLost(_) => self.link_lost = true,
             SessionEvent::Fault(fault) => self.fault(fault),
             SessionEvent::Trace(cut) => self.trace(*cut),
             SessionEvent::Ended { bench_time } => self.before += bench_time,
         }
     }
 
+    /// A check that failed is said before one that could not be made: a faulty unit makes both, and
+    /// the first is the finding. A stop and a lost link outrank it.
+    fn note(&mut self, verdict: Verdict) {
+        self.not_passed |= !matches!(verdict, Verdict::Passed | Verdict::Skipped);
+        self.verdict = self.verdict.and(verdict);
+    }
+
+    fn overall(&self) -> Verdict {
+        match self.verdict {
+            Verdict::Aborted => Verdict::Aborted,
+            _ if self.link_lost => Verdict::Error,
+            Verdict::Error if self.step_failed || self.faults > 0 => Verdict::Failed,
+            // Nothing ran: nothing was tested.
+            Verdict::Skipped => Verdict::Error,
+            verdict => verdict,
+        }
+    }
+
     fn step(&mut self, procedure: &Procedure, result: StepResult) {
+        self.step_failed |= result.verdict == Verdict::Failed;
         let index = self.steps;
         self.steps += 1;
         let measurement = |m: btu_rig::procedure::Measurement| MeasurementRecord {
@@ -164,11 +184,7 @@ impl<'a> Collector<'a> {
 
     /// The end of all streams.
     pub fn finish(self, id: Id) -> (RunStore, Outcome) {
-        let verdict = match self.verdict {
-            // Nothing ran: nothing was tested.
-            Verdict::Skipped => Verdict::Error,
-            verdict => verdict,
-        };
+        let verdict = self.overall();
         let exit = match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,
             Verdict::Failed => Exit::Failed,

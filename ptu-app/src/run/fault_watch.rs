@@ -36,8 +36,9 @@ pub struct FaultSeen {
     pub freeze: Vec<fault_db::FreezeSample>,
 }
 
-/// The event entry as a fault; the part under suspicion is `suspect` where the event names none.
-pub fn of_event(entry: &UnitEvent, suspect: &str, at: Instant, sample: &Sample) -> FaultSeen {
+/// The event entry as a fault. An event that names no part leaves it open: the step under way need
+/// not have to do with it.
+pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
     let event = Event::from_code(entry.code);
     let part = event.map_or("-", |event| event.suspect(entry.parameter));
     let (name, severity, text) = match event.map(Event::definition) {
@@ -50,7 +51,7 @@ pub fn of_event(entry: &UnitEvent, suspect: &str, at: Instant, sample: &Sample) 
     FaultSeen {
         code: entry.code,
         name,
-        lru: if part == "-" { part_or_unknown(suspect) } else { part.to_owned() },
+        lru: part_or_unknown(part),
         severity: severity.label(),
         at,
         step: None,
@@ -66,11 +67,11 @@ pub fn of_event(entry: &UnitEvent, suspect: &str, at: Instant, sample: &Sample) 
 }
 
 /// An emergency brake nobody asked for.
-pub fn of_brake(suspect: &str, at: Instant, sample: &Sample) -> FaultSeen {
+pub fn of_brake(at: Instant, sample: &Sample) -> FaultSeen {
     FaultSeen {
         code: EB_UNREQUESTED,
         name: "eb_unrequested".into(),
-        lru: part_or_unknown(suspect),
+        lru: UNKNOWN_PART.into(),
         severity: Severity::Critical.label(),
         at,
         step: None,
@@ -102,5 +103,5 @@ pub fn of_step(
 }
 
 fn part_or_unknown(part: &str) -> String {
-    if part.is_empty() { UNKNOWN_PART } else { part }.to_owned()
+    if matches!(part, "" | "-") { UNKNOWN_PART } else { part }.to_owned()
 }

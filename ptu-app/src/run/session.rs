@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use btu_rig::procedure::{Poll, Procedure, RunEvent, RunOptions, Runner, StepResult};
+use btu_rig::procedure::{Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent};
 use btu_rig::rig::{Bench, UnitLink};
 use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
@@ -22,6 +22,8 @@ pub enum SessionEvent {
     Fault(FaultSeen),
     /// The window around faults is complete.
     Trace(Box<Cut>),
+    /// The unit cannot be reached any more.
+    LinkLost(String),
     /// Nothing more comes.
     Ended {
         /// Bench time this procedure took, bring-up included.
@@ -37,6 +39,7 @@ pub struct Session<L: UnitLink> {
     recorder: Recorder,
     sample: Sample,
     link_error: Option<String>,
+    fresh_unit: bool,
 }
 
 /// What one procedure has come to so far.
@@ -50,8 +53,9 @@ struct Progress<'a> {
 }
 
 impl<L: UnitLink> Session<L> {
-    /// A session on `bench`.
-    pub fn new(bench: Bench<L>, pace: Pace, stop: Stop) -> Self {
+    /// A session on `bench`; `fresh_unit` = it is powered up within the session, so that all it
+    /// logs belongs to it.
+    pub fn new(bench: Bench<L>, pace: Pace, stop: Stop, fresh_unit: bool) -> Self {
         Self {
             bench,
             pace,
@@ -59,6 +63,7 @@ impl<L: UnitLink> Session<L> {
             recorder: Recorder::default(),
             sample: Sample::default(),
             link_error: None,
+            fresh_unit,
         }
     }
 
@@ -77,13 +82,13 @@ impl<L: UnitLink> Session<L> {
     pub fn idle(
         &mut self,
         at_most: Duration,
-        mut seen: impl FnMut(&btu_rig::procedure::UnitEvent, Instant, &Sample),
+        mut seen: impl FnMut(&UnitEvent, Instant, &Sample),
         mut done: impl FnMut(&Bench<L>) -> bool,
     ) -> bool {
         let until = self.bench.now() + at_most;
         while self.bench.now() < until && self.stop.presses() == 0 {
             self.scan(&mut |_| {});
-            for entry in self.bench.rig_mut().take_events() {
+            for entry in self.take_events() {
                 seen(&entry, self.bench.now(), &self.sample);
             }
             if done(&self.bench) {
@@ -96,6 +101,18 @@ impl<L: UnitLink> Session<L> {
     /// Why the unit cannot be reached, if so.
     pub fn link_error(&self) -> Option<String> {
         self.link_error.clone().or_else(|| self.bench.rig().link_error())
+    }
+
+    /// New entries of the unit's log. What it logged before this bench was heard is history.
+    fn take_events(&mut self) -> Vec<UnitEvent> {
+        let rig = self.bench.rig_mut();
+        let mut events = rig.take_events();
+        if rig.unit_restarts() == 0
+            && let Some(first) = rig.events_at_contact().filter(|_| !self.fresh_unit)
+        {
+            events.retain(|entry| entry.index >= first);
+        }
+        events
     }
 
     /// One scan of the bench, recorded; a completed window goes to `cut`.
@@ -116,7 +133,6 @@ impl<L: UnitLink> Session<L> {
     /// Judges what the unit logged while it was brought up: nobody had provoked anything yet.
     pub fn judge_bring_up(
         &mut self,
-        suspect: &str,
         at_most: Duration,
         done: impl FnMut(&Bench<L>) -> bool,
     ) -> (bool, Vec<FaultSeen>) {
@@ -126,7 +142,7 @@ impl<L: UnitLink> Session<L> {
             |entry, at, sample| {
                 let known = Event::from_code(entry.code);
                 if known.is_none_or(|event| event.definition().severity > Severity::Info) {
-                    faults.push(fault_watch::of_event(entry, suspect, at, sample));
+                    faults.push(fault_watch::of_event(entry, at, sample));
                 }
             },
             done,
@@ -155,14 +171,19 @@ impl<L: UnitLink> Session<L> {
             self.report(fault, &mut progress, sink);
         }
         let mut presses = 0;
+        let mut link_lost = false;
         loop {
             self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));
             let pressed = self.stop.presses();
             (presses..pressed).for_each(|_| runner.stop());
             presses = pressed;
             let now = self.bench.now();
-            let events = self.bench.rig_mut().take_events();
+            let events = self.take_events();
             let link_error = self.link_error();
+            if let Some(error) = link_error.as_ref().filter(|_| !link_lost) {
+                link_lost = true;
+                sink(SessionEvent::LinkLost(error.clone()));
+            }
             let rig = self.bench.rig_mut();
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), rig);
             for event in runner.take_events() {
@@ -202,13 +223,10 @@ impl<L: UnitLink> Session<L> {
                 return;
             }
             RunEvent::UnsolicitedEvent(entry) => {
-                let suspect = suspect(progress);
-                Some(fault_watch::of_event(entry, suspect, now, &self.sample))
+                Some(fault_watch::of_event(entry, now, &self.sample))
             }
             RunEvent::UnsolicitedBrake { at } => {
-                (!progress.explained).then(|| {
-                    fault_watch::of_brake(suspect(progress), *at, &self.sample)
-                })
+                (!progress.explained).then(|| fault_watch::of_brake(*at, &self.sample))
             }
             RunEvent::StepFinished(result) => {
                 let fault = self.fault_of_step(result, progress);
@@ -244,13 +262,4 @@ impl<L: UnitLink> Session<L> {
             sink(SessionEvent::Trace(Box::new(cut)));
         }
     }
-}
-
-/// The part the present step suspects.
-fn suspect<'a>(progress: &Progress<'a>) -> &'a str {
-    progress
-        .step
-        .and_then(|index| progress.procedure.steps.get(index))
-        .and_then(|step| step.suspect.as_deref())
-        .unwrap_or(&progress.procedure.suspect)
 }
