@@ -106,16 +106,15 @@ fn the_worked_example_of_the_reference_loads() {
     let reference = std::fs::read_to_string(root().join("../scripts/README.md")).unwrap();
     let example = reference.split("```python\n").nth(1).unwrap();
     let example = example.split("```").next().unwrap();
-    let mut scripts = folder("good");
-    scripts.insert("example.star".into(), example.into());
+    let library = "def at_rest():\n    return []\ndef cab_ready():\n    return []\n";
+    let scripts = Scripts::from([
+        ("_bench.star".into(), library.into()),
+        ("atp/example.star".into(), example.into()),
+    ]);
     let loaded = load_all(&scripts);
     assert_eq!(loaded.errors, []);
-    let found = loaded
-        .procedures
-        .iter()
-        .find(|p| p.id == "example")
-        .unwrap();
-    assert_eq!(found.steps.len(), 18);
+    assert_eq!(loaded.procedures[0].id, "atp/example");
+    assert_eq!(loaded.procedures[0].steps.len(), 18);
 }
 
 #[test]
