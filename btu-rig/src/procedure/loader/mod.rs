@@ -1,13 +1,13 @@
 //! Loads check procedures: Starlark scripts in, typed plans or errors out.
 //!
 //! Layers, bottom up:
-//! * [`quantity`], [`item`]: the values of the script language, free of Starlark;
-//! * [`verb`], [`want`], [`args`], [`verbs`]: its words, each a table entry with typed parameters;
-//! * [`context`], [`globals`]: unit configuration, line, signals: the names a script knows;
-//! * [`handle`]: those values inside Starlark;
-//! * [`check`]: finds errors without running a script, also where it would never run;
-//! * [`evaluate`]: runs it once, within bounds, with no access to anything but its libraries;
-//! * [`assemble`]: resolves names between steps and computes times.
+//! * `quantity`, `item`: the values of the script language, free of Starlark;
+//! * `verb`, `want`, `args`, `verbs`: its words, each a table entry with typed parameters;
+//! * `context`, `globals`: unit configuration, line, signals: the names a script knows;
+//! * `handle`: those values inside Starlark;
+//! * `nesting`, `check`: find errors without running a script, also where it would never run;
+//! * `evaluate`: runs it once, within bounds, with no access to anything but its libraries;
+//! * `assemble`: resolves names between steps and computes times.
 
 mod args;
 mod assemble;

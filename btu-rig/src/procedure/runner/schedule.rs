@@ -8,7 +8,7 @@ pub enum PromptPolicy {
     /// Nobody is there: a prompt is an error.
     #[default]
     Refuse,
-    /// A [`RunEvent::Prompt`] is sent and [`Runner::answer`] awaited.
+    /// A [`RunEvent::Prompt`](crate::procedure::RunEvent::Prompt) is sent and [`Runner::answer`](super::Runner::answer) awaited.
     Ask,
 }
 
