@@ -9,8 +9,7 @@ use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link, Received};
 use protocol::message::{
-    Channel, IoOutput, Message, ModeSwitch, Outputs, Refusals, SelfTest, TrainLines,
-    TwcWayside,
+    Channel, IoOutput, Message, ModeSwitch, Outputs, Refusals, SelfTest, TrainLines, TwcWayside,
 };
 use protocol::{Duration, Instant, Speed};
 

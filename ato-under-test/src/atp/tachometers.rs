@@ -91,7 +91,10 @@ impl Tachometers {
         let faulty = differ || opposed;
         if faulty && !self.faulty {
             // Beside a noisy channel a silent one need not be dead.
-            let believed = [!self.noise[0].reported.value(), !self.noise[1].reported.value()];
+            let believed = [
+                !self.noise[0].reported.value(),
+                !self.noise[1].reported.value(),
+            ];
             match (one < DEAD_BELOW, two < DEAD_BELOW) {
                 (true, false) if believed[1] => {
                     log.push(now, Event::TachoDead1, i32::from(two.to_cms()));

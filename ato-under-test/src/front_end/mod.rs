@@ -187,7 +187,8 @@ impl FrontEnd {
             .take_marker()
             .map(|marker| MarkerPulse { marker, age_us: 0 })
             .or(passed)
-            .filter(|_| !antenna_dead && !tra_dead)
+            // TRA has four inputs; anything else on the wire is no marker.
+            .filter(|pulse| matches!(pulse.marker, 1..=4) && !antenna_dead && !tra_dead)
     }
 }
 

@@ -198,6 +198,11 @@ impl Bench {
             u8::from(self.speeds[0] < 0.0) | u8::from(self.speeds[1] < 0.0) << 1;
     }
 
+    /// The counters jump, as when a rack is restarted.
+    pub fn jump_counts(&mut self, one: u16, two: u16) {
+        self.turned = [f64::from(one), f64::from(two)];
+    }
+
     pub fn marker(&mut self, marker: u8) {
         self.input.marker = marker;
         self.input.marker_edges = self.input.marker_edges.wrapping_add(1);
