@@ -5,9 +5,9 @@
 //! operators, dots and nesting words since the last comma, since all of these may nest.
 
 /// Nesting that a person can still read, many times over.
-const DEEPEST: usize = 150;
+const DEEPEST: usize = 48;
 /// An `elif` nests in the `if` before it.
-const MOST_ELIFS: usize = 150;
+const MOST_ELIFS: usize = 48;
 /// Words that nest what follows them.
 const NESTING_WORDS: [&str; 8] = ["not", "if", "else", "lambda", "and", "or", "in", "for"];
 
@@ -158,7 +158,7 @@ mod tests {
         }
         assert_eq!(
             too_deep(&format!("x\ny = {}", "(".repeat(500))),
-            Some((2, 154))
+            Some((2, 52))
         );
     }
 }
