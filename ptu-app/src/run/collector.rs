@@ -9,6 +9,7 @@ use super::recorder::Cut;
 use super::session::SessionEvent;
 use super::store_thread::RunStore;
 use super::{FaultSeen, Task};
+use crate::clock;
 use crate::failure::Exit;
 
 /// Someone who looks on while a run goes on.
@@ -40,7 +41,6 @@ impl Outcome {
 /// The collector.
 pub struct Collector<'a> {
     store: RunStore,
-    started_at_us: i64,
     listener: &'a mut dyn Listener,
     stop_on_fail: bool,
     procedure: Option<std::sync::Arc<Procedure>>,
@@ -48,7 +48,8 @@ pub struct Collector<'a> {
     before: Duration,
     steps: u32,
     steps_before: u32,
-    faults: usize,
+    /// Bench time and date of each fault of the run.
+    dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
     not_passed: bool,
@@ -57,23 +58,21 @@ pub struct Collector<'a> {
 }
 
 impl<'a> Collector<'a> {
-    /// A collector for a run that began at `started_at_us`.
+    /// A collector that records in `store`.
     pub fn new(
         store: RunStore,
-        started_at_us: i64,
-        listener: &'a mut dyn Listener,
+            listener: &'a mut dyn Listener,
         stop_on_fail: bool,
     ) -> Self {
         Self {
             store,
-            started_at_us,
             listener,
             stop_on_fail,
             procedure: None,
             before: Duration::ZERO,
             steps: 0,
             steps_before: 0,
-            faults: 0,
+            dates: Vec::new(),
             faults_before: 0,
             verdict: Verdict::Skipped,
             not_passed: false,
@@ -86,7 +85,7 @@ impl<'a> Collector<'a> {
     pub fn begin(&mut self, procedure: &std::sync::Arc<Procedure>) {
         self.procedure = Some(procedure.clone());
         self.steps_before = self.steps;
-        self.faults_before = self.faults;
+        self.faults_before = self.dates.len();
     }
 
     /// Nothing is recorded any more: the run is worth nothing and must stop.
@@ -125,7 +124,7 @@ impl<'a> Collector<'a> {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,
             _ if self.link_lost => Verdict::Error,
-            Verdict::Error if self.step_failed || self.faults > 0 => Verdict::Failed,
+            Verdict::Error if self.step_failed || !self.dates.is_empty() => Verdict::Failed,
             // Nothing ran: nothing was tested.
             Verdict::Skipped => Verdict::Error,
             verdict => verdict,
@@ -160,13 +159,15 @@ impl<'a> Collector<'a> {
 
     fn fault(&mut self, fault: FaultSeen) {
         let bench_us = (self.before.as_us() + fault.at.as_us()) as i64;
-        self.faults += 1;
+        // The bench's virtual time runs ahead of the day; a fault is dated when it is found.
+        let at_us = clock::now_us();
+        self.dates.push((bench_us, at_us));
         self.store.fault(FaultRecord {
             code: i64::from(fault.code),
             code_name: fault.name,
             lru: fault.lru,
             severity: fault.severity.into(),
-            at_us: self.started_at_us + bench_us,
+            at_us,
             bench_us,
             step_index: fault.step.map(|turn| self.steps_before + turn as u32),
             message: fault.message,
@@ -177,8 +178,11 @@ impl<'a> Collector<'a> {
     fn trace(&mut self, cut: Cut) {
         let Cut { faults, mut trace } = cut;
         trace.t0_bench_us += self.before.as_us() as i64;
-        trace.t0_us = self.started_at_us + trace.t0_bench_us;
-        let faults = faults.iter().map(|number| self.faults_before + number).collect();
+        let faults: Vec<_> = faults.iter().map(|number| self.faults_before + number).collect();
+        let date = faults.first().and_then(|number| self.dates.get(*number));
+        trace.t0_us = date.map_or_else(clock::now_us, |(bench_us, at_us)| {
+            at_us - (bench_us - trace.t0_bench_us)
+        });
         self.store.trace(faults, trace);
     }
 

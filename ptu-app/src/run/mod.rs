@@ -86,7 +86,7 @@ pub fn run(
             return Err(failure);
         }
     };
-    let mut collector = Collector::new(run_store, started_at_us, listener, plan.stop_on_fail);
+    let mut collector = Collector::new(run_store, listener, plan.stop_on_fail);
     std::thread::scope(|scope| {
         let streams = benches::start(scope, plan, connected, stop);
         collect(plan, streams, &mut collector, stop);
