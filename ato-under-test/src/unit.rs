@@ -85,7 +85,12 @@ impl Unit {
             log,
             maintenance: Maintenance::new(ms(link.tester_timeout_ms), setup.seed),
             board: TestBoard::new(config.metres_per_pulse()),
-            self_tester: SelfTester::new(Instant::ZERO, ms(config.start.self_test_ms)),
+            self_tester: SelfTester::new(
+                Instant::ZERO,
+                ms(config.start.self_test_ms),
+                config,
+                &setup.line,
+            ),
             atp: Atp::new(config),
             twc: Twc::new(ms(link.twc_timeout_ms)),
             locator: Locator::new(config.marker.window_m),
@@ -252,6 +257,7 @@ impl Unit {
             tra_answered: self.inputs.tra_answers,
             modem_heard: !modem_dead,
             test_board_answers: self.board.answers(),
+            brake_line_energised: self.inputs.lines.contains(TrainLines::EB_LOOP),
         };
         if self.self_tester.step(now, seen) {
             self.atp.forget_test_code();

@@ -226,7 +226,11 @@ impl UnitConfig {
             / f64::from(self.tacho.pulses_per_turn)
     }
 
-    fn check(&self) -> Result<(), ConfigError> {
+    /// Checks ranges and that values fit together.
+    ///
+    /// # Errors
+    /// The first thing wrong.
+    pub fn check(&self) -> Result<(), ConfigError> {
         for (key, value, low, high) in self.ranges() {
             within(key, value, low, high)?;
         }

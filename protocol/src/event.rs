@@ -81,7 +81,7 @@ events! {
     Armed = 102 "armed" Info "-" "Armed for maintenance" "정비 시험 허가" "";
     ArmingLapsed = 103 "arming_lapsed" Info "-" "Arming lapsed, test signals taken away" "정비 시험 허가 해제" "refusal code";
     LogCleared = 104 "log_cleared" Info "-" "Event log cleared" "이벤트 기록 삭제" "";
-    InternalError = 105 "internal_error" Critical "atp_cpu" "Broken invariant on board" "내부 논리 오류" "place";
+    InternalError = 105 "internal_error" Critical "atp_cpu" "Broken invariant on board" "내부 논리 오류" "number of the invariant";
     InputsLost = 110 "inputs_lost" Critical "io_board" "I/O inputs fell silent" "입력 신호 두절" "";
     InputsRestored = 111 "inputs_restored" Info "-" "I/O inputs are back" "입력 신호 복귀" "";
     FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 프레임 다수 폐기" "channel number";
@@ -138,7 +138,6 @@ impl Event {
             (SelfTest::TRA, "tra"),
             (SelfTest::TWC_MODEM, "fsk_board"),
             (SelfTest::TEST_BOARD, "test_board"),
-            (SelfTest::IO_BOARD, "io_board"),
             (SelfTest::EB_RELAY, "eb_relay"),
         ];
         parts

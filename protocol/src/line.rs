@@ -78,13 +78,19 @@ impl Line {
     /// The first thing wrong: syntax with line and column, or a section that cannot be.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
         let line: Self = toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
-        if line.sections.is_empty() {
+        line.check()?;
+        Ok(line)
+    }
+
+    /// Checks every section.
+    ///
+    /// # Errors
+    /// The first thing wrong.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        if self.sections.is_empty() {
             return Err(conflict("a line needs at least one section"));
         }
-        for section in &line.sections {
-            section.check()?;
-        }
-        Ok(line)
+        self.sections.iter().try_for_each(Section::check)
     }
 
     /// The section numbered `number`.

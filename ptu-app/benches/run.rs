@@ -50,9 +50,16 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
 fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> Outcome {
     let loaded = load(texts, &setup.config.content, &setup.line.content);
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
-    let task = |procedure| Task { procedure, options: RunOptions::default() };
+    let task = |procedure| Task {
+        procedure,
+        options: RunOptions::default(),
+    };
     let plan = RunPlan {
-        tasks: loaded.procedures.into_iter().map(|p: Arc<Procedure>| task(p)).collect(),
+        tasks: loaded
+            .procedures
+            .into_iter()
+            .map(|p: Arc<Procedure>| task(p))
+            .collect(),
         jobs: 1,
         stop_on_fail: false,
         operator: String::new(),
@@ -61,8 +68,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
     };
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();
-    let (store, outcome) =
-        run::run(&plan, setup.clone(), store, &stop, &mut Nobody).expect("run");
+    let (store, outcome) = run::run(&plan, setup.clone(), store, &stop, &mut Nobody).expect("run");
     store.close().expect("close");
     outcome
 }
@@ -95,7 +101,9 @@ fn empty_steps(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 50)]
 fn faults_list_process(bencher: Bencher<'_, '_>) {
     let (directory, mut setup) = setup();
-    setup.faults = directory.chosen_faults(&["eb_relay.slow".to_owned()]).expect("fault");
+    setup.faults = directory
+        .chosen_faults(&["eb_relay.slow".to_owned()])
+        .expect("fault");
     let texts = directory.procedures().expect("procedures");
     let folder = tempfile::tempdir().expect("folder");
     run(&texts, &setup, folder.path());

@@ -7,7 +7,9 @@ use fault_db::{IdSource, OpenOptions};
 
 /// Microseconds since 1970, UTC.
 pub fn now_us() -> i64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let since = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .unwrap_or_default();
     i64::try_from(since.as_micros()).unwrap_or(i64::MAX)
 }
 
@@ -39,7 +41,9 @@ pub fn rfc3339(at_us: i64) -> String {
 /// Local date and time, for tables.
 pub fn local(at_us: i64) -> String {
     let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
-    at.with_timezone(&Local).format("%Y-%m-%d %H:%M:%S").to_string()
+    at.with_timezone(&Local)
+        .format("%Y-%m-%d %H:%M:%S")
+        .to_string()
 }
 
 /// The point in time a span such as `30d` or `12h` ago, or a date such as `2026-03` or

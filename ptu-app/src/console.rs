@@ -21,7 +21,8 @@ impl Console {
             let bar = ProgressBar::new(steps_of(&plan.tasks) as u64);
             let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
             bar.with_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar()),
             )
         });
         Self { bar }
@@ -52,7 +53,11 @@ impl Listener for Console {
             }
             SessionEvent::Run(RunEvent::Waiting { what, left }) => {
                 if let Some(bar) = &self.bar {
-                    bar.set_message(format!("{}: {what}, {:.0} s left", procedure.id, left.as_secs()));
+                    bar.set_message(format!(
+                        "{}: {what}, {:.0} s left",
+                        procedure.id,
+                        left.as_secs()
+                    ));
                 }
             }
             SessionEvent::Run(RunEvent::StepFinished(result)) => {
@@ -69,12 +74,21 @@ impl Listener for Console {
                     ));
                 }
             }
-            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, message, .. }) => {
-                let more = if message.is_empty() { String::new() } else { format!(": {message}") };
+            SessionEvent::Run(RunEvent::ProcedureFinished {
+                verdict, message, ..
+            }) => {
+                let more = if message.is_empty() {
+                    String::new()
+                } else {
+                    format!(": {message}")
+                };
                 self.say(&format!("{:<7} {}{more}", verdict.label(), procedure.id));
             }
             SessionEvent::Fault(fault) => {
-                self.say(&format!("fault   {} → {}: {}", fault.name, fault.lru, fault.message));
+                self.say(&format!(
+                    "fault   {} → {}: {}",
+                    fault.name, fault.lru, fault.message
+                ));
             }
             _ => {}
         }
@@ -87,7 +101,12 @@ pub fn verdict_table(run: &RunDetail) -> String {
     let failed: Vec<_> = run
         .steps
         .iter()
-        .filter(|step| !matches!(step.verdict, fault_db::Verdict::Passed | fault_db::Verdict::Skipped))
+        .filter(|step| {
+            !matches!(
+                step.verdict,
+                fault_db::Verdict::Passed | fault_db::Verdict::Skipped
+            )
+        })
         .collect();
     if !failed.is_empty() {
         let mut table = Table::new(&["VERDICT", "STEP", "WHY"]);
@@ -120,9 +139,15 @@ fn procedures(run: &RunDetail) -> Table {
     let mut table = Table::new(&["PROCEDURE", "VERDICT", "STEPS", "PASSED", "BENCH TIME"]);
     let mut steps = run.steps.as_slice();
     while let Some(first) = steps.first() {
-        let end = steps.iter().position(|s| s.procedure != first.procedure).unwrap_or(steps.len());
+        let end = steps
+            .iter()
+            .position(|s| s.procedure != first.procedure)
+            .unwrap_or(steps.len());
         let (mine, rest) = steps.split_at(end);
-        let passed = mine.iter().filter(|s| s.verdict == fault_db::Verdict::Passed).count();
+        let passed = mine
+            .iter()
+            .filter(|s| s.verdict == fault_db::Verdict::Passed)
+            .count();
         let time: i64 = mine.iter().map(|step| step.bench_time_us).sum();
         table.row([
             first.procedure.clone(),
@@ -154,6 +179,8 @@ fn summary(run: &RunDetail) -> String {
         run.run.unit_serial,
         run.steps.len(),
         run.faults.len(),
-        run.run.verdict.map_or("interrupted", |verdict| verdict.as_str())
+        run.run
+            .verdict
+            .map_or("interrupted", |verdict| verdict.as_str())
     )
 }

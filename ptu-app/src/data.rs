@@ -36,7 +36,10 @@ impl ScriptsDirectory {
             return if directory.is_dir() {
                 Ok(Self(directory.to_owned()))
             } else {
-                Err(Failure::usage(format!("{} is not a directory", directory.display())))
+                Err(Failure::usage(format!(
+                    "{} is not a directory",
+                    directory.display()
+                )))
             };
         }
         let program = std::env::current_exe().unwrap_or_default();
@@ -46,7 +49,9 @@ impl ScriptsDirectory {
             .find(|directory| directory.join("units").is_dir())
             .map(Self)
             .ok_or_else(|| {
-                Failure::usage("no scripts directory here or above the program; name it with --scripts")
+                Failure::usage(
+                    "no scripts directory here or above the program; name it with --scripts",
+                )
             })
     }
 
@@ -87,7 +92,9 @@ impl ScriptsDirectory {
     /// The file is missing or wrong.
     pub fn faults(&self) -> Result<FaultCatalogue, Failure> {
         let load = |text: &str| FaultCatalogue::from_toml(text);
-        Ok(self.load("units", "faults", "fault catalogue", load)?.content)
+        Ok(self
+            .load("units", "faults", "fault catalogue", load)?
+            .content)
     }
 
     /// The fault modes of these names.
@@ -117,7 +124,10 @@ impl ScriptsDirectory {
     }
 
     fn names(&self, folder: &str) -> Vec<String> {
-        let entries = std::fs::read_dir(self.0.join(folder)).into_iter().flatten().flatten();
+        let entries = std::fs::read_dir(self.0.join(folder))
+            .into_iter()
+            .flatten()
+            .flatten();
         let mut names: Vec<_> = entries
             .filter_map(|entry| entry.file_name().into_string().ok())
             .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
@@ -145,13 +155,20 @@ impl ScriptsDirectory {
         let text = read(&file)?;
         let content =
             parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", file.display())))?;
-        Ok(DataFile { content, crc: checksum(&text), sha256: sha256(&text) })
+        Ok(DataFile {
+            content,
+            crc: checksum(&text),
+            sha256: sha256(&text),
+        })
     }
 }
 
 /// SHA-256 of a text, in hex.
 pub fn sha256(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    Sha256::digest(text.as_bytes())
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }
 
 /// Reads a file, or says which one could not be read.

@@ -44,12 +44,18 @@ pub struct Failure {
 impl Failure {
     /// The command or a script is wrong.
     pub fn usage(message: impl Into<String>) -> Self {
-        Self { exit: Exit::Usage, message: message.into() }
+        Self {
+            exit: Exit::Usage,
+            message: message.into(),
+        }
     }
 
     /// The bench, the link or the database does not work.
     pub fn bench(message: impl Into<String>) -> Self {
-        Self { exit: Exit::Bench, message: message.into() }
+        Self {
+            exit: Exit::Bench,
+            message: message.into(),
+        }
     }
 }
 
@@ -71,7 +77,10 @@ impl From<StoreError> for Failure {
             | StoreError::Transition { .. } => Exit::Usage,
             _ => Exit::Bench,
         };
-        Self { exit, message: error.to_string() }
+        Self {
+            exit,
+            message: error.to_string(),
+        }
     }
 }
 

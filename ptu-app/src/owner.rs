@@ -8,7 +8,9 @@ pub fn this_process() -> String {
 
 /// Whether the process named by [`this_process`] still lives, as far as can be told.
 pub fn is_alive(owner: &str) -> bool {
-    let Some((pid, start)) = owner.split_once(':') else { return false };
+    let Some((pid, start)) = owner.split_once(':') else {
+        return false;
+    };
     let Ok(pid) = pid.parse() else { return false };
     start_of(pid).is_some_and(|found| found == start)
 }

@@ -38,17 +38,22 @@ impl Stop {
     /// no signals) the process ends at once, and the unit's own time-out makes its outputs safe.
     pub fn listen(&self) {
         let stop = self.clone();
-        let _ = std::thread::Builder::new().name("signals".into()).spawn(move || stop.wait());
+        let _ = std::thread::Builder::new()
+            .name("signals".into())
+            .spawn(move || stop.wait());
     }
 
     fn wait(&self) {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_io().build();
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_io()
+            .build();
         let Ok(runtime) = runtime else { return };
         runtime.block_on(async {
             use tokio::signal::unix::{SignalKind, signal};
-            let (Ok(mut interrupt), Ok(mut terminate)) =
-                (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
-            else {
+            let (Ok(mut interrupt), Ok(mut terminate)) = (
+                signal(SignalKind::interrupt()),
+                signal(SignalKind::terminate()),
+            ) else {
                 return;
             };
             loop {

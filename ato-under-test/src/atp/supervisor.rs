@@ -50,6 +50,7 @@ pub struct Atp {
     overspeed: Overspeed,
     fsb_cause: FsbCause,
     inputs_lost: Edge,
+    broken: Edge,
     doors_closed: bool,
 }
 
@@ -69,6 +70,7 @@ impl Atp {
             overspeed: Overspeed::default(),
             fsb_cause: FsbCause::None,
             inputs_lost: Edge::default(),
+            broken: Edge::default(),
             doors_closed: false,
         }
     }
@@ -143,7 +145,12 @@ impl Atp {
             Some(false) => log.push(now, Event::InputsRestored, 0),
             None => {}
         }
+        let broken = self.broken_invariant();
+        if self.broken.rises(broken.is_some()) {
+            log.push(now, Event::InternalError, broken.unwrap_or_default());
+        }
         let causes = [
+            (broken.is_some(), EbCause::Internal),
             (context.started && !context.vital_passed, EbCause::SelfTest),
             (lost, EbCause::InputsLost),
             (self.tachometers.faulty(), EbCause::Tachometer),
@@ -156,6 +163,22 @@ impl Atp {
             .iter()
             .find(|(holds, _)| *holds)
             .map_or(EbCause::None, |(_, cause)| *cause)
+    }
+
+    /// What must hold whatever came in; the number of the first that does not. A processor that
+    /// computes this has failed, and nothing it says can be trusted.
+    fn broken_invariant(&self) -> Option<i32> {
+        let speed = self.tachometers.speed();
+        let holds = [
+            speed.mps().is_finite() && speed >= Speed::ZERO,
+            self.limit.mps().is_finite() && self.limit >= Speed::ZERO,
+            self.tachometers.moved_m().is_finite(),
+            self.doors.enable().is_empty() || self.tachometers.standstill(),
+        ];
+        holds
+            .iter()
+            .position(|holds| !holds)
+            .map(|number| number as i32)
     }
 
     fn service_cause(&self, context: ScanContext) -> FsbCause {

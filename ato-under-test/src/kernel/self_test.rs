@@ -2,8 +2,15 @@
 
 use alloc::vec;
 
+use protocol::config::UnitConfig;
+use protocol::line::Line;
 use protocol::message::SelfTest;
 use protocol::{Duration, Instant};
+
+use crate::timer::Lasting;
+
+/// Time the brake line has to be dead with the relay.
+const RELAY_TIME: Duration = Duration::from_ms(200);
 
 /// What the parts answered during the self-test.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,6 +23,8 @@ pub struct SelfTestInputs {
     pub modem_heard: bool,
     /// The TEST board answers.
     pub test_board_answers: bool,
+    /// The brake line is energised although the EB relay is not.
+    pub brake_line_energised: bool,
 }
 
 /// Runs once after power-up.
@@ -23,16 +32,25 @@ pub struct SelfTestInputs {
 pub struct SelfTester {
     ends: Instant,
     seen: SelfTestInputs,
+    line_energised: Lasting,
+    relay_failed: bool,
+    data: SelfTest,
     failed: SelfTest,
     finished: bool,
 }
 
 impl SelfTester {
-    /// Starts a self-test that takes `span`.
-    pub fn new(now: Instant, span: Duration) -> Self {
+    /// Starts a self-test that takes `span`, with a check of the unit's data.
+    pub fn new(now: Instant, span: Duration, config: &UnitConfig, line: &Line) -> Self {
+        let mut data = SelfTest::empty();
+        data.set(SelfTest::CONFIGURATION, config.check().is_err());
+        data.set(SelfTest::TRACK_DATABASE, line.check().is_err());
         Self {
             ends: now + span,
             seen: SelfTestInputs::default(),
+            line_energised: Lasting::default(),
+            relay_failed: false,
+            data,
             failed: SelfTest::empty(),
             finished: false,
         }
@@ -47,9 +65,14 @@ impl SelfTester {
         self.seen.tra_answered |= inputs.tra_answered;
         self.seen.modem_heard |= inputs.modem_heard;
         self.seen.test_board_answers |= inputs.test_board_answers;
+        self.relay_failed |=
+            self.line_energised
+                .update(now, inputs.brake_line_energised, RELAY_TIME);
         if now < self.ends {
             return false;
         }
+        self.failed = self.data;
+        self.failed.set(SelfTest::EB_RELAY, self.relay_failed);
         self.failed.set(SelfTest::MEMORY, !memory_holds_patterns());
         self.failed
             .set(SelfTest::ATP_RECEIVER, !self.seen.receiver_decoded);
@@ -73,7 +96,10 @@ impl SelfTester {
 
     /// No item failed without which the train cannot be protected.
     pub fn vital_passed(&self) -> bool {
-        let vital = SelfTest::MEMORY | SelfTest::CONFIGURATION | SelfTest::ATP_RECEIVER;
+        let vital = SelfTest::MEMORY
+            | SelfTest::CONFIGURATION
+            | SelfTest::EB_RELAY
+            | SelfTest::ATP_RECEIVER;
         self.finished && !self.failed.intersects(vital)
     }
 }

@@ -39,7 +39,7 @@ wire_bits! {
         CONFIGURATION = 1,
         /// Track database check.
         TRACK_DATABASE = 2,
-        /// EB relay did not drop out or pick up.
+        /// Brake line energised although the EB relay is not.
         EB_RELAY = 3,
         /// ATP receiver did not decode its test code.
         ATP_RECEIVER = 4,
@@ -47,10 +47,8 @@ wire_bits! {
         TRA = 5,
         /// TWC modem loop-back.
         TWC_MODEM = 6,
-        /// I/O board.
-        IO_BOARD = 7,
         /// TEST board.
-        TEST_BOARD = 8,
+        TEST_BOARD = 7,
     }
 }
 

@@ -48,7 +48,11 @@ impl CatalogArguments {
             What::Lines => self.lines()?,
             What::Lrus => self.lrus()?,
         };
-        if self.json { print_json(&entries) } else { print_out(&as_table(&entries)) }
+        if self.json {
+            print_json(&entries)
+        } else {
+            print_out(&as_table(&entries))
+        }
     }
 
     fn faults(&self) -> Result<Vec<Value>, Failure> {
@@ -64,9 +68,7 @@ impl CatalogArguments {
 
     fn lrus(&self) -> Result<Vec<Value>, Failure> {
         let catalogue = self.scripts.find()?.faults()?;
-        let entry = |lru: &protocol::injection::Lru| {
-            json!({ "id": lru.id, "name": lru.name, "name_ko": lru.name_ko })
-        };
+        let entry = |lru: &protocol::injection::Lru| json!({ "id": lru.id, "name": lru.name, "name_ko": lru.name_ko });
         Ok(catalogue.lrus.iter().map(entry).collect())
     }
 

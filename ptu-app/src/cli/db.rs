@@ -82,8 +82,14 @@ impl DbArguments {
                 let store = self.database.open_read_only()?;
                 print_out(&merged(&store.export(&to, clock::open_options())?))
             }
-            Verb::Prune { older_than, dry_run } => {
-                let rule = PruneRule { older_than_us: older_than, dry_run };
+            Verb::Prune {
+                older_than,
+                dry_run,
+            } => {
+                let rule = PruneRule {
+                    older_than_us: older_than,
+                    dry_run,
+                };
                 let counts = self.database.open()?.prune(&rule)?;
                 print_out(&format!(
                     "{} traces ({} bytes){}, {} kept for faults that are not closed, file {} bytes smaller",
@@ -113,7 +119,11 @@ impl Database {
             }
             print_out(&table.render())?;
         }
-        Ok(if report.problems.is_empty() { Exit::Passed } else { Exit::Bench })
+        Ok(if report.problems.is_empty() {
+            Exit::Passed
+        } else {
+            Exit::Bench
+        })
     }
 
     fn query(&self, sql: &str, json: bool) -> Result<Exit, Failure> {
@@ -131,7 +141,11 @@ impl Database {
                 SqlValue::Text(text) => text.clone(),
             }));
         }
-        let more = if answer.truncated { "\n… more rows; add LIMIT" } else { "" };
+        let more = if answer.truncated {
+            "\n… more rows; add LIMIT"
+        } else {
+            ""
+        };
         print_out(&format!("{}{more}", table.render()))
     }
 }

@@ -129,26 +129,52 @@ impl FaultsArguments {
     /// Lists, shows, counts or records.
     pub fn run(self) -> Result<Exit, Failure> {
         let writes = matches!(self.verb, Verb::State { .. } | Verb::Repair { .. });
-        let store =
-            if writes { self.database.open()? } else { self.database.open_read_only()? };
+        let store = if writes {
+            self.database.open()?
+        } else {
+            self.database.open_read_only()?
+        };
         match self.verb {
             Verb::List(arguments) => arguments.list(&store),
             Verb::Show { id, json } => {
                 let fault = store.fault(store.resolve_fault(&id)?)?;
-                if json { print_json(&detail_json(&fault)) } else { print_out(&detail(&fault)) }
+                if json {
+                    print_json(&detail_json(&fault))
+                } else {
+                    print_out(&detail(&fault))
+                }
             }
             Verb::Stats { by, json } => stats(&store, by, json),
-            Verb::Trend { measurement, unit, json } => {
-                trend(&store, &measurement, unit.as_deref(), json)
-            }
-            Verb::State { id, state, who, note } => {
+            Verb::Trend {
+                measurement,
+                unit,
+                json,
+            } => trend(&store, &measurement, unit.as_deref(), json),
+            Verb::State {
+                id,
+                state,
+                who,
+                note,
+            } => {
                 let id = store.resolve_fault(&id)?;
                 let state = store.set_state(id, state, &who, &note, now_us())?;
                 print_out(&format!("fault {} is {}", id.short(), state.as_str()))
             }
-            Verb::Repair { id, part, old, new, note, who } => {
+            Verb::Repair {
+                id,
+                part,
+                old,
+                new,
+                note,
+                who,
+            } => {
                 let id = store.resolve_fault(&id)?;
-                let repair = RepairRecord { part, serial_old: old, serial_new: new, note };
+                let repair = RepairRecord {
+                    part,
+                    serial_old: old,
+                    serial_new: new,
+                    note,
+                };
                 let state = store.record_repair(id, &repair, &who, now_us())?;
                 print_out(&format!("fault {} is {}", id.short(), state.as_str()))
             }
@@ -177,8 +203,17 @@ impl ListArguments {
         if faults.is_empty() {
             return print_out("no faults recorded");
         }
-        let headings =
-            ["FAULT", "LAST SEEN", "UNIT", "CODE", "PART", "SEVERITY", "STATE", "SEEN", "TRACE"];
+        let headings = [
+            "FAULT",
+            "LAST SEEN",
+            "UNIT",
+            "CODE",
+            "PART",
+            "SEVERITY",
+            "STATE",
+            "SEEN",
+            "TRACE",
+        ];
         let mut table = Table::new(&headings);
         for fault in &faults {
             table.row([
@@ -265,7 +300,12 @@ fn detail(detail: &FaultDetail) -> String {
             )
         });
         let note = format!("{}{repair}", event.note);
-        table.row([local(event.at_us), event.kind.clone(), event.who.clone(), note]);
+        table.row([
+            local(event.at_us),
+            event.kind.clone(),
+            event.who.clone(),
+            note,
+        ]);
     }
     text.push_str(&format!("\n{}", table.render()));
     text
@@ -300,8 +340,15 @@ fn stats(store: &Store, by: By, json: bool) -> Result<Exit, Failure> {
         };
         return print_json(&stats.iter().map(entry).collect::<Vec<_>>());
     }
-    let mut table =
-        Table::new(&["KEY", "NAME", "FAULTS", "NOT CLOSED", "SEEN", "UNITS", "LAST SEEN"]);
+    let mut table = Table::new(&[
+        "KEY",
+        "NAME",
+        "FAULTS",
+        "NOT CLOSED",
+        "SEEN",
+        "UNITS",
+        "LAST SEEN",
+    ]);
     for stat in &stats {
         table.row([
             stat.key.clone(),
@@ -327,7 +374,9 @@ fn trend(
         let names = store.measurement_names()?;
         let known = names.iter().map(String::as_str);
         let hint = crate::failure::did_you_mean(measurement, known);
-        return Err(Failure::usage(format!("no measurement \"{measurement}\" recorded{hint}")));
+        return Err(Failure::usage(format!(
+            "no measurement \"{measurement}\" recorded{hint}"
+        )));
     }
     if json {
         let entry = |point: &fault_db::TrendPoint| {

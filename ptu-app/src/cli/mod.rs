@@ -29,7 +29,12 @@ use crate::failure::{Exit, Failure};
 ///   ptu run --inject eb_relay.slow --report result.json
 ///   ptu faults list --state open
 #[derive(Debug, Parser)]
-#[command(name = "ptu", version, verbatim_doc_comment, arg_required_else_help = true)]
+#[command(
+    name = "ptu",
+    version,
+    verbatim_doc_comment,
+    arg_required_else_help = true
+)]
 pub struct Cli {
     #[command(subcommand)]
     verb: Verb,

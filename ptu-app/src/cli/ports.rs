@@ -32,7 +32,10 @@ impl PortsArguments {
         if ports.is_empty() {
             return print_out("no serial ports found; name one with --unit serial:PATH");
         }
-        let lines: Vec<_> = ports.iter().map(|p| format!("{}  {}", p.path, p.kind)).collect();
+        let lines: Vec<_> = ports
+            .iter()
+            .map(|p| format!("{}  {}", p.path, p.kind))
+            .collect();
         print_out(&lines.join("\n"))
     }
 }
@@ -50,5 +53,11 @@ fn found() -> Result<Vec<Port>, Failure> {
         serialport::SerialPortType::PciPort => "pci",
         serialport::SerialPortType::Unknown => "unknown",
     };
-    Ok(ports.iter().map(|port| Port { path: port.port_name.clone(), kind: kind(port) }).collect())
+    Ok(ports
+        .iter()
+        .map(|port| Port {
+            path: port.port_name.clone(),
+            kind: kind(port),
+        })
+        .collect())
 }

@@ -94,8 +94,11 @@ impl RunArguments {
         let setup = self.setup(&directory)?;
         let texts = select::scripts(&directory, &self.procedures)?;
         let scripts_sha256 = sha256(&texts.values().map(String::as_str).collect::<String>());
-        let Loaded { procedures, errors, printed } =
-            load(&texts, &setup.config.content, &setup.line.content);
+        let Loaded {
+            procedures,
+            errors,
+            printed,
+        } = load(&texts, &setup.config.content, &setup.line.content);
         for line in &printed {
             eprintln!("{line}");
         }
@@ -110,8 +113,14 @@ impl RunArguments {
             )));
         }
         if self.check {
-            let steps: usize = procedures.iter().map(|procedure| procedure.steps.len()).sum();
-            return print_out(&format!("{} procedures, {steps} steps, no errors", procedures.len()));
+            let steps: usize = procedures
+                .iter()
+                .map(|procedure| procedure.steps.len())
+                .sum();
+            return print_out(&format!(
+                "{} procedures, {steps} steps, no errors",
+                procedures.len()
+            ));
         }
         let tasks = self.tasks(procedures)?;
         if self.list {
@@ -132,8 +141,14 @@ impl RunArguments {
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
         if self.unit != Endpoint::Sim {
             let misplaced = [
-                (!self.inject.is_empty(), "--inject works on the embedded unit only; inject into a served one with `ato-under-test --inject`"),
-                (self.jobs > 1, "--jobs works on embedded units only; one port is one unit"),
+                (
+                    !self.inject.is_empty(),
+                    "--inject works on the embedded unit only; inject into a served one with `ato-under-test --inject`",
+                ),
+                (
+                    self.jobs > 1,
+                    "--jobs works on embedded units only; one port is one unit",
+                ),
             ];
             if let Some((_, message)) = misplaced.iter().find(|(wrong, _)| *wrong) {
                 return Err(Failure::usage(*message));
@@ -164,7 +179,10 @@ impl RunArguments {
         let task = |procedure: Arc<Procedure>| {
             let chosen = pattern.as_ref().map(|pattern| {
                 let steps = procedure.steps.iter().enumerate();
-                steps.filter(|(_, step)| pattern.matches(&step.name)).map(|(i, _)| i).collect()
+                steps
+                    .filter(|(_, step)| pattern.matches(&step.name))
+                    .map(|(i, _)| i)
+                    .collect()
             });
             let options = RunOptions {
                 chosen,
@@ -220,8 +238,10 @@ fn described(task: &Task) -> Vec<String> {
     let mut procedure = (*task.procedure).clone();
     if let Some(chosen) = &task.options.chosen {
         let steps = std::mem::take(&mut procedure.steps).into_iter().enumerate();
-        procedure.steps =
-            steps.filter(|(index, _)| chosen.contains(index)).map(|(_, step)| step).collect();
+        procedure.steps = steps
+            .filter(|(index, _)| chosen.contains(index))
+            .map(|(_, step)| step)
+            .collect();
     }
     procedure.describe()
 }
@@ -229,7 +249,10 @@ fn described(task: &Task) -> Vec<String> {
 fn listed(task: &Task) -> serde_json::Value {
     let procedure = &task.procedure;
     let chosen = |index: &usize| {
-        task.options.chosen.as_ref().is_none_or(|chosen| chosen.contains(index))
+        task.options
+            .chosen
+            .as_ref()
+            .is_none_or(|chosen| chosen.contains(index))
     };
     let steps: Vec<_> = procedure
         .steps

@@ -55,7 +55,13 @@ impl RunsArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         let store = self.database.open_read_only()?;
         match self.verb {
-            Verb::List { unit, verdict, since, limit, json } => {
+            Verb::List {
+                unit,
+                verdict,
+                since,
+                limit,
+                json,
+            } => {
                 let filter = RunFilter {
                     unit,
                     verdict,
@@ -71,7 +77,11 @@ impl RunsArguments {
             }
             Verb::Show { id, json } => {
                 let run = store.run(store.resolve_run(&id)?, &owner::is_alive)?;
-                if json { print_json(&run_json(&run)) } else { print_out(&verdict_table(&run)) }
+                if json {
+                    print_json(&run_json(&run))
+                } else {
+                    print_out(&verdict_table(&run))
+                }
             }
         }
     }
@@ -81,10 +91,13 @@ fn table(runs: &[fault_db::RunSummary]) -> String {
     if runs.is_empty() {
         return "no runs recorded; `ptu run` makes one".into();
     }
-    let mut table =
-        Table::new(&["RUN", "STARTED", "UNIT", "SOURCE", "STATE", "STEPS", "FAULTS", "INJECTED"]);
+    let mut table = Table::new(&[
+        "RUN", "STARTED", "UNIT", "SOURCE", "STATE", "STEPS", "FAULTS", "INJECTED",
+    ]);
     for run in runs {
-        let state = run.verdict.map_or(run.state.as_str(), |verdict| verdict.as_str());
+        let state = run
+            .verdict
+            .map_or(run.state.as_str(), |verdict| verdict.as_str());
         table.row([
             run.id.short(),
             clock::local(run.started_at_us),

@@ -58,7 +58,11 @@ impl TraceArguments {
         match self.verb {
             Verb::Show { id, signals, json } => {
                 let (id, trace) = read(&store, &id, &signals)?;
-                if json { print_json(&trace_json(id, &trace)) } else { print_out(&plot(id, &trace)) }
+                if json {
+                    print_json(&trace_json(id, &trace))
+                } else {
+                    print_out(&plot(id, &trace))
+                }
             }
             Verb::Export { id, to, signals } => {
                 if to.extension().is_none_or(|ending| ending != "csv") {
@@ -67,7 +71,11 @@ impl TraceArguments {
                 let (id, trace) = read(&store, &id, &signals)?;
                 write_file(&to, csv(&trace).as_bytes())?;
                 let rows = trace.rows();
-                print_out(&format!("trace {}: {rows} rows to {}", id.short(), to.display()))
+                print_out(&format!(
+                    "trace {}: {rows} rows to {}",
+                    id.short(),
+                    to.display()
+                ))
             }
         }
     }
@@ -114,12 +122,20 @@ fn plot(id: Id, trace: &TraceData) -> String {
         seconds(rows.saturating_sub(trigger + 1)),
         if trace.partial { ", cut short" } else { "" }
     );
-    let width = trace.channels.iter().map(|c| c.name.len()).max().unwrap_or(0);
+    let width = trace
+        .channels
+        .iter()
+        .map(|c| c.name.len())
+        .max()
+        .unwrap_or(0);
     let mark = trigger * PLOT_WIDTH / rows.max(1);
     let _ = writeln!(text, "{:width$}  {:mark$}▼", "", "");
     for (channel, column) in trace.channels.iter().zip(&trace.columns) {
         let known = || column.iter().copied().filter(|v| !v.is_nan());
-        let (low, high) = (known().fold(f64::MAX, f64::min), known().fold(f64::MIN, f64::max));
+        let (low, high) = (
+            known().fold(f64::MAX, f64::min),
+            known().fold(f64::MIN, f64::max),
+        );
         let range = if low > high {
             "not known".into()
         } else if low == high {
@@ -127,14 +143,22 @@ fn plot(id: Id, trace: &TraceData) -> String {
         } else {
             format!("{} .. {}", named(channel, low), named(channel, high))
         };
-        let _ = writeln!(text, "{:width$}  {}  {range}", channel.name, bars(column, low, high));
+        let _ = writeln!(
+            text,
+            "{:width$}  {}  {range}",
+            channel.name,
+            bars(column, low, high)
+        );
     }
     text.trim_end().to_owned()
 }
 
 fn bars(column: &[f64], low: f64, high: f64) -> String {
     let part = |i: usize| {
-        let (from, to) = (i * column.len() / PLOT_WIDTH, (i + 1) * column.len() / PLOT_WIDTH);
+        let (from, to) = (
+            i * column.len() / PLOT_WIDTH,
+            (i + 1) * column.len() / PLOT_WIDTH,
+        );
         let values = &column[from..to.max(from + 1).min(column.len())];
         let value = values.iter().copied().fold(f64::NAN, f64::max);
         match value {
@@ -148,12 +172,15 @@ fn bars(column: &[f64], low: f64, high: f64) -> String {
 
 fn named(channel: &Channel, value: f64) -> String {
     match &channel.kind {
-        ChannelKind::Enum { labels } => {
-            labels.get(&(value as i64)).cloned().unwrap_or_else(|| value.to_string())
-        }
+        ChannelKind::Enum { labels } => labels
+            .get(&(value as i64))
+            .cloned()
+            .unwrap_or_else(|| value.to_string()),
         ChannelKind::Bit => value.to_string(),
         ChannelKind::Number { .. } => {
-            format!("{} {}", (value * 1000.0).round() / 1000.0, channel.unit).trim_end().to_owned()
+            format!("{} {}", (value * 1000.0).round() / 1000.0, channel.unit)
+                .trim_end()
+                .to_owned()
         }
     }
 }
@@ -174,7 +201,11 @@ fn csv(trace: &TraceData) -> String {
         let _ = write!(text, "\n{:.3}", time_us as f64 / 1e6);
         for column in &trace.columns {
             let value = column[row];
-            let _ = if value.is_nan() { write!(text, ",") } else { write!(text, ",{value}") };
+            let _ = if value.is_nan() {
+                write!(text, ",")
+            } else {
+                write!(text, ",{value}")
+            };
         }
     }
     text.push('\n');

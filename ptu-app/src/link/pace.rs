@@ -20,7 +20,9 @@ pub enum Pace {
 impl Pace {
     /// Real time, beginning now.
     pub fn real() -> Self {
-        Self::Real { due: rustix::time::clock_gettime(rustix::time::ClockId::Monotonic) }
+        Self::Real {
+            due: rustix::time::clock_gettime(rustix::time::ClockId::Monotonic),
+        }
     }
 
     /// Waits until the next scan is due.

@@ -14,7 +14,11 @@ pub struct SimLink {
 impl SimLink {
     /// A unit made from `setup`, powered at `power_at`.
     pub fn new(setup: Setup, power_at: Instant) -> Self {
-        Self { setup: Some(setup), power_at, unit: None }
+        Self {
+            setup: Some(setup),
+            power_at,
+            unit: None,
+        }
     }
 }
 

@@ -50,15 +50,20 @@ impl std::str::FromStr for Endpoint {
             return Err("a unit is `sim`, `serial:PATH[@BAUD]` or `tcp:HOST:PORT`".into());
         };
         let (path, baud) = match port.rsplit_once('@') {
-            Some((path, baud)) => {
-                (path, baud.parse().map_err(|_| format!("\"{baud}\" is not a baud rate"))?)
-            }
+            Some((path, baud)) => (
+                path,
+                baud.parse()
+                    .map_err(|_| format!("\"{baud}\" is not a baud rate"))?,
+            ),
             None => (port, BAUD),
         };
         if path.is_empty() {
             return Err("serial: needs a port; `ptu ports` lists them".into());
         }
-        Ok(Self::Serial { path: path.to_owned(), baud })
+        Ok(Self::Serial {
+            path: path.to_owned(),
+            baud,
+        })
     }
 }
 
@@ -94,7 +99,10 @@ impl WireLink {
             Endpoint::Serial { path, baud } => open_serial(path, *baud)?,
             Endpoint::Tcp(address) => connect(address)?,
         };
-        Ok(Self { name: endpoint.to_string(), port })
+        Ok(Self {
+            name: endpoint.to_string(),
+            port,
+        })
     }
 }
 
@@ -142,7 +150,10 @@ impl UnitLink for WireLink {
             Port::Serial(port) => exchange(port, to_unit, from_unit),
             Port::Tcp(stream) => exchange(stream, to_unit, from_unit),
         };
-        exchanged.map_err(|reason| LinkFailure { link: self.name.clone(), reason })
+        exchanged.map_err(|reason| LinkFailure {
+            link: self.name.clone(),
+            reason,
+        })
     }
 }
 

@@ -10,11 +10,17 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
     let mut report = Report::new(format!("ptu run {}", run.run.id));
     let mut begun: Option<(String, TestSuite)> = None;
     for step in &run.steps {
-        if begun.as_ref().is_none_or(|(procedure, _)| *procedure != step.procedure) {
+        if begun
+            .as_ref()
+            .is_none_or(|(procedure, _)| *procedure != step.procedure)
+        {
             if let Some((_, suite)) = begun.take() {
                 report.add_test_suite(suite);
             }
-            begun = Some((step.procedure.clone(), TestSuite::new(step.procedure.as_str())));
+            begun = Some((
+                step.procedure.clone(),
+                TestSuite::new(step.procedure.as_str()),
+            ));
         }
         if let Some((_, suite)) = &mut begun {
             suite.add_test_case(case(step));
@@ -37,12 +43,16 @@ fn case(step: &StepDetail) -> TestCase {
     };
     let mut case = TestCase::new(step.name.as_str(), status);
     case.set_classname(step.procedure.as_str());
-    case.set_time(std::time::Duration::from_micros(step.bench_time_us.max(0) as u64));
+    case.set_time(std::time::Duration::from_micros(
+        step.bench_time_us.max(0) as u64
+    ));
     let lines: Vec<_> = step
         .measurements
         .iter()
         .map(|m| {
-            let value = m.value.map_or_else(|| "no value".into(), |value| format!("{value:.3}"));
+            let value = m
+                .value
+                .map_or_else(|| "no value".into(), |value| format!("{value:.3}"));
             format!("{} = {value} {} [{}]", m.name, m.unit, m.verdict.as_str())
         })
         .collect();

@@ -35,7 +35,10 @@ impl std::str::FromStr for Target {
         } else {
             return Err("a report ends in .json or .junit.xml".into());
         };
-        Ok(Self { path: text.into(), format })
+        Ok(Self {
+            path: text.into(),
+            format,
+        })
     }
 }
 
@@ -45,7 +48,10 @@ impl Target {
     /// # Errors
     /// It cannot.
     pub fn check(&self) -> Result<(), Failure> {
-        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = self
+            .path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
         if folder.is_some_and(|folder| !folder.is_dir()) || self.path.is_dir() {
             return Err(Failure::usage(format!(
                 "cannot write the report {}: its folder does not exist, or it is one",

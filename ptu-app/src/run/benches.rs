@@ -92,9 +92,11 @@ impl BenchSetup {
 
     /// Contact, identity, the old log read, and a brake left from before acknowledged.
     fn bring_up(&self, session: &mut Session<WireLink>) -> Result<Identity, Failure> {
-        let ready = session.idle(READY_WITHIN, |_, _, _| {}, |bench| {
-            bench.rig().identity().is_some() && started(bench)
-        });
+        let ready = session.idle(
+            READY_WITHIN,
+            |_, _, _| {},
+            |bench| bench.rig().identity().is_some() && started(bench),
+        );
         if let Some(error) = session.link_error() {
             return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
         }
@@ -108,7 +110,11 @@ impl BenchSetup {
         let now = session.now();
         // A brake latched since the last tester left needs its acknowledgement.
         let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
-        session.idle(BEFORE, |_, _, _| {}, |bench| bench.now().since(Instant::ZERO) > BEFORE);
+        session.idle(
+            BEFORE,
+            |_, _, _| {},
+            |bench| bench.now().since(Instant::ZERO) > BEFORE,
+        );
         Ok(identity)
     }
 
@@ -121,7 +127,12 @@ impl BenchSetup {
             )));
         }
         let checks = [
-            ("unit configuration", identity.config_crc, self.config.crc, "--unit-config"),
+            (
+                "unit configuration",
+                identity.config_crc,
+                self.config.crc,
+                "--unit-config",
+            ),
             ("track database", identity.tdb_crc, self.line.crc, "--line"),
         ];
         for (what, unit, ours, option) in checks {
@@ -148,7 +159,11 @@ impl BenchSetup {
             faults: self.faults.clone(),
         };
         let link = SimLink::new(setup, Instant::ZERO + BEFORE);
-        let pace = if self.realtime { Pace::real() } else { Pace::Virtual };
+        let pace = if self.realtime {
+            Pace::real()
+        } else {
+            Pace::Virtual
+        };
         Session::new(Bench::new(self.rig(seed), link), pace, stop.clone(), true)
     }
 }
@@ -216,12 +231,7 @@ impl Work {
     }
 }
 
-fn run_sim_task(
-    setup: &BenchSetup,
-    task: &Task,
-    stop: &Stop,
-    sender: &SyncSender<SessionEvent>,
-) {
+fn run_sim_task(setup: &BenchSetup, task: &Task, stop: &Stop, sender: &SyncSender<SessionEvent>) {
     let mut session = setup.sim_session(&task.procedure.id, stop);
     let mut quiet_since = None;
     let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, |bench| {
@@ -254,13 +264,18 @@ fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
 
 /// ASCII filled up with zeros.
 fn text(field: &[u8]) -> String {
-    let end = field.iter().position(|byte| *byte == 0).unwrap_or(field.len());
+    let end = field
+        .iter()
+        .position(|byte| *byte == 0)
+        .unwrap_or(field.len());
     String::from_utf8_lossy(&field[..end]).into_owned()
 }
 
 /// A seed for one procedure of a run: the same whatever else is run (FNV-1a over its name).
 fn seed_for(seed: u64, procedure: &str) -> u64 {
-    procedure.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
-    })
+    procedure
+        .bytes()
+        .fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
+        })
 }

@@ -59,11 +59,7 @@ pub struct Collector<'a> {
 
 impl<'a> Collector<'a> {
     /// A collector that records in `store`.
-    pub fn new(
-        store: RunStore,
-            listener: &'a mut dyn Listener,
-        stop_on_fail: bool,
-    ) -> Self {
+    pub fn new(store: RunStore, listener: &'a mut dyn Listener, stop_on_fail: bool) -> Self {
         Self {
             store,
             listener,
@@ -100,7 +96,9 @@ impl<'a> Collector<'a> {
 
     /// Takes one event.
     pub fn take(&mut self, event: SessionEvent) {
-        let Some(procedure) = self.procedure.clone() else { return };
+        let Some(procedure) = self.procedure.clone() else {
+            return;
+        };
         self.listener.hear(&procedure, &event);
         match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
@@ -178,7 +176,10 @@ impl<'a> Collector<'a> {
     fn trace(&mut self, cut: Cut) {
         let Cut { faults, mut trace } = cut;
         trace.t0_bench_us += self.before.as_us() as i64;
-        let faults: Vec<_> = faults.iter().map(|number| self.faults_before + number).collect();
+        let faults: Vec<_> = faults
+            .iter()
+            .map(|number| self.faults_before + number)
+            .collect();
         let date = faults.first().and_then(|number| self.dates.get(*number));
         trace.t0_us = date.map_or_else(clock::now_us, |(bench_us, at_us)| {
             at_us - (bench_us - trace.t0_bench_us)
@@ -195,7 +196,15 @@ impl<'a> Collector<'a> {
             Verdict::Error => Exit::Bench,
             Verdict::Aborted => Exit::Aborted,
         };
-        (self.store, Outcome { id, verdict, bench_time: self.before, exit })
+        (
+            self.store,
+            Outcome {
+                id,
+                verdict,
+                bench_time: self.before,
+                exit,
+            },
+        )
     }
 }
 
@@ -214,7 +223,11 @@ pub fn steps_of(tasks: &[Task]) -> usize {
     let steps = |task: &Task| {
         let all = &task.procedure.steps;
         let turns: u32 = match &task.options.chosen {
-            Some(chosen) => chosen.iter().filter_map(|i| all.get(*i)).map(|s| s.repeat).sum(),
+            Some(chosen) => chosen
+                .iter()
+                .filter_map(|i| all.get(*i))
+                .map(|s| s.repeat)
+                .sum(),
             None => all.iter().map(|step| step.repeat).sum(),
         };
         turns as usize * task.options.repeat as usize

@@ -103,5 +103,10 @@ pub fn of_step(
 }
 
 fn part_or_unknown(part: &str) -> String {
-    if matches!(part, "" | "-") { UNKNOWN_PART } else { part }.to_owned()
+    if matches!(part, "" | "-") {
+        UNKNOWN_PART
+    } else {
+        part
+    }
+    .to_owned()
 }

@@ -73,7 +73,9 @@ pub fn run(
     let began = std::time::Instant::now();
     let started_at_us = clock::now_us();
     let connected = setup.connect(stop);
-    let serial = connected.as_ref().map_or_else(|_| setup.expected_serial(), Connected::serial);
+    let serial = connected
+        .as_ref()
+        .map_or_else(|_| setup.expected_serial(), Connected::serial);
     let record = run_record(plan, &setup, serial, started_at_us);
     let run_store = RunStore::begin(store, record)?;
     let id = run_store.id;
@@ -92,7 +94,11 @@ pub fn run(
         collect(plan, streams, &mut collector, stop);
     });
     let (run_store, mut outcome) = collector.finish(id);
-    let end = run_end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64, began);
+    let end = run_end(
+        outcome.stored_verdict(),
+        outcome.bench_time.as_us() as i64,
+        began,
+    );
     let store = run_store.finish(end)?;
     if stop.presses() > 0 {
         outcome.exit = Exit::Aborted;
@@ -126,12 +132,7 @@ fn stream() -> (mpsc::SyncSender<SessionEvent>, Receiver<SessionEvent>) {
     mpsc::sync_channel(QUEUE)
 }
 
-fn run_record(
-    plan: &RunPlan,
-    setup: &BenchSetup,
-    serial: String,
-    started_at_us: i64,
-) -> RunRecord {
+fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us: i64) -> RunRecord {
     RunRecord {
         unit: UnitRecord {
             serial,

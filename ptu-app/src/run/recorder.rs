@@ -53,8 +53,14 @@ impl Recorder {
         if self.rows.len() == RING_ROWS {
             self.rows.pop_front();
         }
-        self.rows.push_back(Row { at: now, values: *sample.values() });
-        self.open.as_ref().is_some_and(|window| now >= window.until).then(|| self.close(false))?
+        self.rows.push_back(Row {
+            at: now,
+            values: *sample.values(),
+        });
+        self.open
+            .as_ref()
+            .is_some_and(|window| now >= window.until)
+            .then(|| self.close(false))?
     }
 
     /// Fault number `fault` happened now, in a step that began at `step_began`. Inside an open
@@ -71,7 +77,12 @@ impl Recorder {
         let earliest = now.back(LONGEST_BEFORE);
         let from = now.back(BEFORE).min(step_began.max(earliest));
         let until = now + AFTER;
-        self.open = Some(Window { faults: vec![fault], from, trigger: now, until });
+        self.open = Some(Window {
+            faults: vec![fault],
+            from,
+            trigger: now,
+            until,
+        });
         done
     }
 
@@ -83,7 +94,11 @@ impl Recorder {
     /// Ends the open window; `partial` when its time is not over.
     pub fn close(&mut self, partial: bool) -> Option<Cut> {
         let window = self.open.take()?;
-        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.at >= window.from).collect();
+        let rows: Vec<&Row> = self
+            .rows
+            .iter()
+            .filter(|row| row.at >= window.from)
+            .collect();
         let first = rows.first()?.at;
         let trigger_row = rows.iter().position(|row| row.at >= window.trigger);
         let column = |i: usize| rows.iter().map(|row| row.values[i]).collect();
@@ -93,11 +108,16 @@ impl Recorder {
             period_us: CYCLE.as_us() as i64,
             trigger_row: Some(trigger_row.unwrap_or(rows.len() - 1) as u32),
             partial,
-            gaps: rows.iter().any(|row| row.values.iter().any(|value| value.is_nan())),
+            gaps: rows
+                .iter()
+                .any(|row| row.values.iter().any(|value| value.is_nan())),
             channels: Signal::ALL.iter().map(|signal| channel(*signal)).collect(),
             columns: (0..Signal::COUNT).map(column).collect(),
         };
-        Some(Cut { faults: window.faults, trace })
+        Some(Cut {
+            faults: window.faults,
+            trace,
+        })
     }
 }
 
@@ -107,10 +127,16 @@ fn channel(signal: Signal) -> Channel {
         Kind::Number { lsb } => ChannelKind::Number { lsb },
         Kind::Bit => ChannelKind::Bit,
         Kind::Enum(labels) => ChannelKind::Enum {
-            labels: (0..).zip(labels.iter().map(|label| (*label).to_owned())).collect(),
+            labels: (0..)
+                .zip(labels.iter().map(|label| (*label).to_owned()))
+                .collect(),
         },
     };
-    Channel { name: definition.name.into(), unit: definition.unit.into(), kind }
+    Channel {
+        name: definition.name.into(),
+        unit: definition.unit.into(),
+        kind,
+    }
 }
 
 /// Every signal at one moment.
@@ -150,7 +176,11 @@ mod tests {
     fn a_window_has_ten_seconds_before_and_five_after() {
         let mut recorder = Recorder::default();
         run(&mut recorder, 0, 30_000);
-        assert!(recorder.trigger(Instant::from_ms(30_000), Instant::from_ms(29_000), 0).is_none());
+        assert!(
+            recorder
+                .trigger(Instant::from_ms(30_000), Instant::from_ms(29_000), 0)
+                .is_none()
+        );
         let cut = run(&mut recorder, 30_000, 60_000).expect("window");
         assert_eq!(cut.trace.t0_bench_us, 20_000_000);
         assert_eq!(cut.trace.columns[0].len(), 301);

@@ -20,8 +20,11 @@ pub fn scripts(
     if asked.is_empty() {
         return Ok(all);
     }
-    let mut chosen: BTreeMap<_, _> =
-        all.iter().filter(|(path, _)| is_library(path)).map(clone_pair).collect();
+    let mut chosen: BTreeMap<_, _> = all
+        .iter()
+        .filter(|(path, _)| is_library(path))
+        .map(clone_pair)
+        .collect();
     for name in asked {
         let found = matching(directory, &all, name)?;
         if found.is_empty() {
@@ -38,7 +41,9 @@ fn clone_pair((path, text): (&String, &String)) -> (String, String) {
 
 /// Files whose name begins with `_` are libraries.
 fn is_library(path: &str) -> bool {
-    path.rsplit('/').next().is_some_and(|name| name.starts_with('_'))
+    path.rsplit('/')
+        .next()
+        .is_some_and(|name| name.starts_with('_'))
 }
 
 fn matching(
@@ -54,13 +59,20 @@ fn matching(
         !is_library(path)
             && (id == wanted || pattern.matches(id) || id.starts_with(&format!("{wanted}/")))
     };
-    Ok(all.iter().filter(|(path, _)| matches(path)).map(clone_pair).collect())
+    Ok(all
+        .iter()
+        .filter(|(path, _)| matches(path))
+        .map(clone_pair)
+        .collect())
 }
 
 /// The name without the scripts directory before it and `.star` behind it.
 fn under(root: &Path, name: &str) -> String {
     let path = Path::new(name);
-    let path = path.strip_prefix(root).or_else(|_| path.strip_prefix("scripts")).unwrap_or(path);
+    let path = path
+        .strip_prefix(root)
+        .or_else(|_| path.strip_prefix("scripts"))
+        .unwrap_or(path);
     let text = path.to_string_lossy().replace('\\', "/");
     let text = text.trim_start_matches("./").trim_end_matches('/');
     text.strip_suffix(".star").unwrap_or(text).to_owned()
@@ -72,8 +84,11 @@ fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String
     if path.is_file() {
         return Ok((name.to_owned(), data::read(path)?));
     }
-    let known: Vec<_> =
-        all.keys().filter(|p| !is_library(p)).map(|p| p.trim_end_matches(".star")).collect();
+    let known: Vec<_> = all
+        .keys()
+        .filter(|p| !is_library(p))
+        .map(|p| p.trim_end_matches(".star"))
+        .collect();
     Err(Failure::usage(format!(
         "no procedure or file \"{name}\"{}; `ptu run --list` shows all",
         did_you_mean(name, known)

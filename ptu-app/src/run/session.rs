@@ -100,7 +100,9 @@ impl<L: UnitLink> Session<L> {
 
     /// Why the unit cannot be reached, if so.
     pub fn link_error(&self) -> Option<String> {
-        self.link_error.clone().or_else(|| self.bench.rig().link_error())
+        self.link_error
+            .clone()
+            .or_else(|| self.bench.rig().link_error())
     }
 
     /// New entries of the unit's log. What it logged before this bench was heard is history.
@@ -255,7 +257,9 @@ impl<L: UnitLink> Session<L> {
         sink: &mut dyn FnMut(SessionEvent),
     ) {
         fault.step = progress.step.map(|_| progress.turn);
-        let done = self.recorder.trigger(fault.at, progress.step_began, progress.faults);
+        let done = self
+            .recorder
+            .trigger(fault.at, progress.step_began, progress.faults);
         progress.faults += 1;
         sink(SessionEvent::Fault(fault));
         if let Some(cut) = done {

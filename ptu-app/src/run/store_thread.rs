@@ -54,7 +54,12 @@ impl RunStore {
             })
             .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
         match beginning.recv() {
-            Ok(id) => Ok(Self { entries, thread, failed, id }),
+            Ok(id) => Ok(Self {
+                entries,
+                thread,
+                failed,
+                id,
+            }),
             Err(_) => Err(match thread.join() {
                 Ok((_, Err(error))) => error.into(),
                 _ => Failure::bench("the writer ended before it began"),
@@ -120,10 +125,7 @@ fn write(
     result
 }
 
-fn write_entries(
-    writer: &mut RunWriter<'_>,
-    entries: &Receiver<Entry>,
-) -> Result<(), StoreError> {
+fn write_entries(writer: &mut RunWriter<'_>, entries: &Receiver<Entry>) -> Result<(), StoreError> {
     let mut occurrences = Vec::new();
     let mut flushed = Instant::now();
     loop {
@@ -131,8 +133,10 @@ fn write_entries(
             Ok(Entry::Step(step)) => writer.step(step)?,
             Ok(Entry::Fault(fault)) => occurrences.push(writer.fault(&fault)?.occurrence),
             Ok(Entry::Trace(faults, trace)) => {
-                let shown: Vec<_> =
-                    faults.iter().filter_map(|i| occurrences.get(*i).copied()).collect();
+                let shown: Vec<_> = faults
+                    .iter()
+                    .filter_map(|i| occurrences.get(*i).copied())
+                    .collect();
                 writer.trace(&shown, &trace)?;
             }
             Ok(Entry::Finish(end)) => return writer.finish(&end),
