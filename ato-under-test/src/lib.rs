@@ -1,6 +1,6 @@
 //! The on-board ATC unit under test: a real controller, built from published papers.
 //!
-//! It has the parts of an SG-100 kind of unit [S2] and talks to the world through encoded frames
+//! It has the parts of an SG-100 kind of unit (S2) and talks to the world through encoded frames
 //! only:
 //! * [`kernel`]: start-up self-test and event log;
 //! * [`com`]: links, input image, maintenance session;
@@ -18,6 +18,7 @@ extern crate alloc;
 pub mod ato;
 pub mod atp;
 pub mod com;
+mod cycle;
 pub mod front_end;
 pub mod kernel;
 pub mod psm;

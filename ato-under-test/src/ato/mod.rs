@@ -126,7 +126,7 @@ impl<C: SpeedController> Ato<C> {
     }
 }
 
-/// REG: a share of the available effort, -1..=1, in the units TCMS takes [S4].
+/// REG: a share of the available effort, -1..=1, in the units TCMS takes (S4).
 fn regulate(share: f64) -> i16 {
     let scale = if share < 0.0 { 1024.0 } else { 1023.0 };
     libm::round(share.clamp(-1.0, 1.0) * scale) as i16

@@ -11,9 +11,9 @@ use super::train::TrainInputs;
 
 /// Age at which ATO's commands no longer count [default].
 const COMMAND_TIMEOUT: Duration = Duration::from_ms(300);
-/// Powering by notch P1..P4, share of full effort [S3].
+/// Powering by notch P1..P4, share of full effort (S3).
 const POWER_SHARES: [f64; 4] = [0.30, 0.50, 0.75, 1.00];
-/// Braking by notch B1..B7, share of full service [S3].
+/// Braking by notch B1..B7, share of full service (S3).
 const BRAKE_SHARES: [f64; 7] = [0.135, 0.275, 0.42, 0.565, 0.71, 0.855, 1.00];
 
 /// The train control and monitoring system.
@@ -83,7 +83,7 @@ impl Tcms {
     }
 
     /// What the train is told: ATO's effort in automatic run, the master controller otherwise,
-    /// power only with doors closed, cab active and nothing that cuts it [S4].
+    /// power only with doors closed, cab active and nothing that cuts it (S4).
     pub fn train_inputs(&self, now: Instant, desk: &Desk, outputs: Option<Outputs>) -> TrainInputs {
         let contacts = outputs.unwrap_or(Outputs::empty());
         let command = self
@@ -112,7 +112,7 @@ impl Tcms {
     }
 }
 
-/// Share of full effort of ATO's command; P and B both on: B wins and the value is B's [S4].
+/// Share of full effort of ATO's command; P and B both on: B wins and the value is B's (S4).
 fn ato_share(command: &AtcToTcms) -> f64 {
     let effort = f64::from(command.effort);
     if command.bits.contains(AtcToTcmsBits::BRAKE) {

@@ -2,7 +2,7 @@
 //! resistance. A fuller train can take this one's place behind [`Train::step`].
 //!
 //! Efforts are accelerations of the whole inertial mass: load compensation keeps them the same
-//! from empty to full [S3], so the mass matters only for what gravity does.
+//! from empty to full (S3), so the mass matters only for what gravity does.
 
 use super::motion::Piece;
 
@@ -80,7 +80,7 @@ pub struct TrainInputs {
     pub demand: f64,
     /// Full service brake, whatever the demand.
     pub full_service: bool,
-    /// Emergency brake; no power and no electric brake while it is on [S3].
+    /// Emergency brake; no power and no electric brake while it is on (S3).
     pub emergency: bool,
     /// Holding brake.
     pub holding: bool,
