@@ -1,6 +1,7 @@
 //! The console: progress while a run goes on, and its verdict table.
 
 use std::io::IsTerminal;
+use std::time::Duration;
 
 use btu_rig::procedure::{Procedure, RunEvent, Verdict};
 use fault_db::RunDetail;
@@ -8,6 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::Table;
 use crate::run::{Listener, RunPlan, SessionEvent, steps_of};
+
+/// How often the bar's clock moves while nothing happens.
+const TICK: Duration = Duration::from_millis(250);
 
 /// Shows progress on stderr: a bar on a terminal, a line a procedure elsewhere.
 pub struct Console {
@@ -18,7 +22,9 @@ impl Console {
     /// For a run of this plan.
     pub fn new(plan: &RunPlan) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(steps_of(&plan.tasks) as u64);
+            let bar = ProgressBar::new(steps_of(&plan.tasks) as u64)
+                .with_message("bringing the unit up");
+            bar.enable_steady_tick(TICK);
             let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
             bar.with_style(
                 ProgressStyle::with_template(style)
