@@ -19,9 +19,9 @@ use super::suggest::hint;
 use super::{LoadError, MOST_STEPS, error_from, is_library};
 
 /// Function calls and loop rounds a script may use.
-const MOST_TICKS: u64 = 2_000_000;
+const MOST_TICKS: u64 = 500_000;
 /// Memory a script may use, bytes.
-const MOST_HEAP: usize = 128 << 20;
+const MOST_HEAP: usize = 64 << 20;
 /// Depth of calls.
 const DEEPEST_CALLS: usize = 50;
 /// Longest script, bytes.
