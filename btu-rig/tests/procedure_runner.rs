@@ -457,7 +457,7 @@ fn outputs_that_do_not_become_safe_are_an_error() {
         world.fake.never_safe = true
     });
     assert!(outcome.fake.made_safe > 100);
-    let message = "outputs are not confirmed safe after 2.000 s";
+    let message = "outputs are not confirmed safe after 25.000 s";
     assert_eq!(outcome.finished(), (Verdict::Error, message));
 }
 

@@ -22,8 +22,8 @@ impl Console {
     /// For a run of this plan.
     pub fn new(plan: &RunPlan) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(steps_of(&plan.tasks) as u64)
-                .with_message("bringing the unit up");
+            let bar =
+                ProgressBar::new(steps_of(&plan.tasks) as u64).with_message("bringing the unit up");
             bar.enable_steady_tick(TICK);
             let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
             bar.with_style(

@@ -6,13 +6,14 @@ use btu_rig::procedure::loader::{Loaded, load};
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use clap::Args;
+use protocol::injection::FaultCatalogue;
 use protocol::message::Identity;
 use serde_json::json;
 
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
 use crate::data::{ScriptsDirectory, sha256};
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, did_you_mean};
 use crate::link::Endpoint;
 use crate::report::Target;
 use crate::run::{self, BenchSetup, RunPlan, Task, select};
@@ -112,6 +113,7 @@ impl RunArguments {
                 errors.len()
             )));
         }
+        check_suspects(&procedures, &directory.faults()?)?;
         if self.check {
             let steps: usize = procedures
                 .iter()
@@ -230,6 +232,36 @@ impl RunArguments {
         }
         store.close()?;
         Ok(outcome.exit)
+    }
+}
+
+/// Parts that scripts suspect must be parts that can be replaced.
+fn check_suspects(
+    procedures: &[Arc<Procedure>],
+    catalogue: &FaultCatalogue,
+) -> Result<(), Failure> {
+    let known = || catalogue.lrus.iter().map(|lru| lru.id.as_str());
+    let mut errors = Vec::new();
+    for procedure in procedures {
+        let of_steps = procedure
+            .steps
+            .iter()
+            .map(|s| (s.line, s.suspect.as_deref()));
+        let of_procedure = (1, Some(procedure.suspect.as_str()));
+        for (line, suspect) in std::iter::once(of_procedure).chain(of_steps) {
+            if let Some(part) = suspect.filter(|p| !p.is_empty() && !known().any(|k| k == *p)) {
+                errors.push(format!(
+                    "{}:{line}:1: no part \"{part}\" to suspect{}; `ptu catalog lrus` lists them",
+                    procedure.path,
+                    did_you_mean(part, known())
+                ));
+            }
+        }
+    }
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::usage(errors.join("\n")))
     }
 }
 
