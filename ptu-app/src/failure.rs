@@ -74,7 +74,11 @@ impl From<StoreError> for Failure {
             StoreError::NotFound { .. }
             | StoreError::Ambiguous { .. }
             | StoreError::BadId { .. }
-            | StoreError::Transition { .. } => Exit::Usage,
+            | StoreError::Transition { .. }
+            | StoreError::TargetExists { .. }
+            | StoreError::SameFile { .. }
+            | StoreError::QueryRefused { .. }
+            | StoreError::QueryFailed { .. } => Exit::Usage,
             _ => Exit::Bench,
         };
         Self {

@@ -369,13 +369,17 @@ fn trend(
     unit: Option<&str>,
     json: bool,
 ) -> Result<Exit, Failure> {
-    let points = store.trend(measurement, unit)?;
-    if points.is_empty() {
-        let names = store.measurement_names()?;
-        let known = names.iter().map(String::as_str);
-        let hint = crate::failure::did_you_mean(measurement, known);
+    let names = store.measurement_names()?;
+    if !names.iter().any(|name| name == measurement) {
+        let hint = crate::failure::did_you_mean(measurement, names.iter().map(String::as_str));
         return Err(Failure::usage(format!(
-            "no measurement \"{measurement}\" recorded{hint}"
+            "no measurement \"{measurement}\" recorded{hint}; `ptu run --list` shows what is measured"
+        )));
+    }
+    let points = store.trend(measurement, unit)?;
+    if let Some(unit) = unit.filter(|_| points.is_empty()) {
+        return Err(Failure::usage(format!(
+            "no measurement \"{measurement}\" of unit {unit} recorded; `ptu runs list` shows the units"
         )));
     }
     if json {

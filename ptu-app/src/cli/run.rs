@@ -249,7 +249,9 @@ fn check_suspects(
             .map(|s| (s.line, s.suspect.as_deref()));
         let of_procedure = (1, Some(procedure.suspect.as_str()));
         for (line, suspect) in std::iter::once(of_procedure).chain(of_steps) {
-            if let Some(part) = suspect.filter(|p| !p.is_empty() && !known().any(|k| k == *p)) {
+            // "-" is a procedure that suspects none.
+            let named = suspect.filter(|part| !matches!(*part, "" | "-"));
+            if let Some(part) = named.filter(|p| !known().any(|k| k == *p)) {
                 errors.push(format!(
                     "{}:{line}:1: no part \"{part}\" to suspect{}; `ptu catalog lrus` lists them",
                     procedure.path,

@@ -97,6 +97,11 @@ impl BenchSetup {
             |_, _, _| {},
             |bench| bench.rig().identity().is_some() && started(bench),
         );
+        if let Some(error) = session.link_failure() {
+            return Err(Failure::bench(format!(
+                "{error}; check the cable and that the unit is served there"
+            )));
+        }
         if let Some(error) = session.link_error() {
             return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
         }

@@ -78,7 +78,7 @@ impl<L: UnitLink> Session<L> {
     }
 
     /// Scans until `done` or for `at_most`; events of the unit go to `seen`. False when time ran
-    /// out or stop was pressed.
+    /// out, the link broke or stop was pressed.
     pub fn idle(
         &mut self,
         at_most: Duration,
@@ -86,7 +86,7 @@ impl<L: UnitLink> Session<L> {
         mut done: impl FnMut(&Bench<L>) -> bool,
     ) -> bool {
         let until = self.bench.now() + at_most;
-        while self.bench.now() < until && self.stop.presses() == 0 {
+        while self.bench.now() < until && self.stop.presses() == 0 && self.link_error.is_none() {
             self.scan(&mut |_| {});
             for entry in self.take_events() {
                 seen(&entry, self.bench.now(), &self.sample);
@@ -96,6 +96,11 @@ impl<L: UnitLink> Session<L> {
             }
         }
         false
+    }
+
+    /// Why nothing can be sent or received any more, if so.
+    pub fn link_failure(&self) -> Option<&str> {
+        self.link_error.as_deref()
     }
 
     /// Why the unit cannot be reached, if so.
