@@ -24,6 +24,7 @@ pub mod kernel;
 pub mod psm;
 mod random;
 mod report;
+pub mod signals;
 pub mod test_board;
 mod timer;
 pub mod twc;

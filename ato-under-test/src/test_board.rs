@@ -9,7 +9,7 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use crate::front_end::{AntennaSignal, Pulses};
+use crate::signals::{AntennaSignal, Pulses};
 
 /// Greatest level of the code generator, mV.
 const LEVEL_MAX_MV: u16 = 3000;

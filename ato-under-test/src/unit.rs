@@ -14,10 +14,11 @@ use protocol::{Duration, Instant};
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ScanContext};
 use crate::com::{ArmConditions, IoImage, Maintenance, RejectWatch, TcmsLink};
-use crate::front_end::{AntennaSignal, Faults, FrontEnd, Inputs, OutputStage};
+use crate::front_end::{Faults, FrontEnd, OutputStage};
 use crate::kernel::{EventLog, FreezeFrame, SelfTestInputs, SelfTester};
 use crate::psm::{Locator, Movement, Tra};
 use crate::report;
+use crate::signals::{AntennaSignal, Inputs};
 use crate::test_board::TestBoard;
 use crate::twc::{TrainState, Twc};
 

@@ -7,8 +7,8 @@ use btu_rig::procedure::{Procedure, RunEvent, Verdict};
 use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::Table;
 use crate::run::{Listener, RunPlan, SessionEvent, steps_of};
+use crate::table::Table;
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);

@@ -18,3 +18,4 @@ mod owner;
 pub mod report;
 pub mod run;
 pub mod stop;
+mod table;

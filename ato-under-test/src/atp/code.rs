@@ -4,8 +4,8 @@ use protocol::config::{ReceiverConfig, SpeedCode, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use crate::front_end::AntennaSignal;
 use crate::kernel::EventLog;
+use crate::signals::AntennaSignal;
 use crate::timer::Lasting;
 
 /// What the antenna signal means.

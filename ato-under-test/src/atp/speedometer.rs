@@ -7,7 +7,7 @@ use alloc::collections::VecDeque;
 
 use protocol::{Duration, Instant, Speed};
 
-use crate::front_end::Pulses;
+use crate::signals::Pulses;
 
 /// Silence after which the wheel stands.
 const STANDING: Duration = Duration::from_ms(1000);

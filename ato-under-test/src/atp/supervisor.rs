@@ -9,8 +9,8 @@ use super::{
     Overspeed, Supervision, Tachometers,
 };
 use crate::atp::direction::Rollback;
-use crate::front_end::Inputs;
 use crate::kernel::EventLog;
+use crate::signals::Inputs;
 use crate::timer::Edge;
 
 /// What the other parts tell ATP for a scan.

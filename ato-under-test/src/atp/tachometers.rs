@@ -5,8 +5,8 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::atp::speedometer::Speedometer;
-use crate::front_end::Inputs;
 use crate::kernel::EventLog;
+use crate::signals::Inputs;
 use crate::timer::{Edge, Lasting};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.

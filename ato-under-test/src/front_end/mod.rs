@@ -7,7 +7,7 @@ mod outputs;
 mod sensors;
 
 use protocol::injection::{Effect, Place};
-use protocol::message::{IoInput, ModeSwitch, TrainLines};
+use protocol::message::{IoInput, TrainLines};
 use protocol::{Instant, SCAN};
 
 pub use faults::Faults;
@@ -15,63 +15,8 @@ pub use outputs::OutputStage;
 pub use sensors::PulseSensor;
 
 use crate::com::IoImage;
+use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
-
-/// What is in the ATP antenna.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AntennaSignal {
-    /// Carrier, Hz; 0 = none.
-    pub carrier_hz: f64,
-    /// Code rate, Hz; 0 = unmodulated.
-    pub rate_hz: f64,
-    /// Level, mV.
-    pub level_mv: f64,
-}
-
-/// Pulses of one tachometer input in one scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pulses {
-    /// How many came.
-    pub count: u32,
-    /// Time of the last one, on the sender's clock.
-    pub edge_at: Instant,
-    /// Time up to which pulses were counted, on the same clock.
-    pub sampled_at: Instant,
-    /// Phase says backward.
-    pub backward: bool,
-}
-
-/// A marker pulse as TRA hands it on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MarkerPulse {
-    /// 1 to 4 = PSM1 to PSM4.
-    pub marker: u8,
-    /// Age when the inputs were sampled, s × 10⁻⁶.
-    pub age_us: u16,
-}
-
-/// The inputs as the processors see them in one scan.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Inputs {
-    /// The harness is alive.
-    pub alive: bool,
-    /// Signal at the receiver's output filter.
-    pub signal: AntennaSignal,
-    /// Tachometer pulses.
-    pub pulses: [Pulses; 2],
-    /// Tachometer inputs fed by the TEST board.
-    pub test_speed: [bool; 2],
-    /// Marker pulse, if one came.
-    pub marker: Option<MarkerPulse>,
-    /// TRA answers its test pulse.
-    pub tra_answers: bool,
-    /// Train lines.
-    pub lines: TrainLines,
-    /// Mode switch.
-    pub mode_switch: ModeSwitch,
-    /// Master controller notch.
-    pub controller: i8,
-}
 
 /// The input side.
 #[derive(Debug)]

@@ -2,7 +2,8 @@
 
 use protocol::injection::{Effect, Place};
 
-use super::{Faults, Pulses, one_in_scan};
+use super::{Faults, one_in_scan};
+use crate::signals::Pulses;
 
 /// One tachometer input.
 #[derive(Debug, Default)]

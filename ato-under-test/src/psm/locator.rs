@@ -5,8 +5,8 @@ use protocol::line::{Line, Section};
 use protocol::message::TwcWayside;
 use protocol::{Instant, Speed};
 
-use crate::front_end::MarkerPulse;
 use crate::kernel::EventLog;
+use crate::signals::MarkerPulse;
 
 /// How the train moves in this scan.
 #[derive(Clone, Copy, Debug, Default)]

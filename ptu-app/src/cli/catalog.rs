@@ -4,9 +4,9 @@ use clap::{Args, ValueEnum};
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
-use super::table::Table;
 use super::{ScriptsOption, print_json, print_out};
 use crate::failure::{Exit, Failure};
+use crate::table::Table;
 
 /// Show faults, signals, speed codes, lines or parts
 #[derive(Debug, Args)]

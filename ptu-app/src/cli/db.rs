@@ -6,9 +6,9 @@ use clap::{Args, Subcommand};
 use fault_db::{MergeCounts, PruneRule, SqlValue};
 
 use super::{Database, print_json, print_out, since_argument};
-use crate::cli::Table;
 use crate::clock;
 use crate::failure::{Exit, Failure};
+use crate::table::Table;
 
 /// Rows a query prints at most.
 const MAX_ROWS: usize = 10_000;

@@ -5,10 +5,10 @@ use fault_db::{FaultDetail, FaultFilter, FaultState, FreezeSample, RepairRecord,
 use serde_json::{Value, json};
 
 use super::{Database, print_json, print_out, since_argument};
-use crate::cli::Table;
 use crate::clock::{local, now_us, rfc3339};
 use crate::failure::{Exit, Failure};
 use crate::report::fault_json;
+use crate::table::Table;
 
 /// Query and keep the fault history
 #[derive(Debug, Args)]

@@ -6,10 +6,7 @@ mod faults;
 mod ports;
 mod run;
 mod runs;
-mod table;
 mod trace;
-
-pub use table::Table;
 
 use std::path::{Path, PathBuf};
 

@@ -4,12 +4,12 @@ use clap::{Args, Subcommand};
 use fault_db::RunFilter;
 
 use super::{Database, print_json, print_out, since_argument};
-use crate::cli::Table;
 use crate::clock;
 use crate::console::verdict_table;
 use crate::failure::{Exit, Failure};
 use crate::owner;
 use crate::report::{run_json, run_summary_json};
+use crate::table::Table;
 
 /// Show recorded runs
 #[derive(Debug, Args)]
