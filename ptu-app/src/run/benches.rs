@@ -199,6 +199,8 @@ pub fn start<'scope>(
                         break;
                     }
                     let began = session.now();
+                    // What the last procedure's end still makes the unit log is not the next one's.
+                    session.idle(READY_WITHIN, |_, _, _| {}, settled());
                     run_task(&mut session, task, Vec::new(), began, &sender);
                 }
             });
@@ -238,14 +240,7 @@ impl Work {
 
 fn run_sim_task(setup: &BenchSetup, task: &Task, stop: &Stop, sender: &SyncSender<SessionEvent>) {
     let mut session = setup.sim_session(&task.procedure.id, stop);
-    let mut quiet_since = None;
-    let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, |bench| {
-        if !started(bench) || !bench.rig().log_up_to_date() {
-            return false;
-        }
-        let since = *quiet_since.get_or_insert(bench.now());
-        bench.now().since(since) >= SETTLE
-    });
+    let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
     run_task(&mut session, task, faults, Instant::ZERO, sender);
 }
 
@@ -261,6 +256,18 @@ fn run_task<L: UnitLink>(
     session.run(&task.procedure, task.options.clone(), found, &mut sink);
     let bench_time = session.now().since(began);
     sink(SessionEvent::Ended { bench_time });
+}
+
+/// Whether the unit is ready and its log read, [`SETTLE`] after it first was; asked at each scan.
+fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
+    let mut quiet_since = None;
+    move |bench| {
+        if !started(bench) || !bench.rig().log_up_to_date() {
+            return false;
+        }
+        let since = *quiet_since.get_or_insert(bench.now());
+        bench.now().since(since) >= SETTLE
+    }
 }
 
 fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
