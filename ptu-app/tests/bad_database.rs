@@ -1,0 +1,214 @@
+//! Database files that do not serve: the file is named, the next move is said, exit 3, and what was
+//! recorded before stays.
+
+mod common;
+
+use std::path::Path;
+use std::process::Command;
+
+use common::{Place, Said};
+use rusqlite::Connection;
+
+const CHOOSE: &str = "choose another file with --db";
+
+/// `ptu run` and `ptu runs list` on this file.
+fn both(place: &Place, db: &str) -> [Said; 2] {
+    [
+        place.ptu(&["run", "tcms/link", "--db", db]),
+        place.ptu(&["runs", "list", "--db", db]),
+    ]
+}
+
+/// A database with one run in it, changed by `change`; its file name.
+fn changed(place: &Place, change: &str) -> String {
+    let db = place.text_path("changed.db");
+    place.ptu(&["run", "tcms/link", "--db", &db]).exits(0);
+    let connection = Connection::open(&db).expect("a database");
+    connection.execute_batch(change).expect("a change");
+    db
+}
+
+#[test]
+fn a_text_file_is_refused_and_left_as_it_is() {
+    let place = Place::new();
+    for text in ["short\n".to_owned(), "a longer text\n".repeat(1000)] {
+        let db = place.write("notes.txt", &text);
+        for said in both(&place, &db) {
+            said.exits(3)
+                .explains(&["notes.txt is not a database", CHOOSE]);
+        }
+        assert_eq!(place.read("notes.txt"), text);
+    }
+}
+
+#[test]
+fn a_newer_schema_is_refused_and_left_as_it_is() {
+    let place = Place::new();
+    let db = changed(&place, "PRAGMA user_version = 4711");
+    for said in both(&place, &db) {
+        said.exits(3)
+            .explains(&["changed.db", "newer version", "4711", "update the program"]);
+    }
+    let connection = Connection::open(&db).expect("a database");
+    let count = |sql| connection.query_row(sql, [], |row| row.get::<_, i64>(0));
+    assert_eq!(count("PRAGMA user_version"), Ok(4711));
+    assert_eq!(count("SELECT count(*) FROM run"), Ok(1));
+}
+
+#[test]
+fn a_database_of_another_program_is_refused() {
+    let place = Place::new();
+    let db = changed(&place, "PRAGMA application_id = 77");
+    for said in both(&place, &db) {
+        said.exits(3)
+            .explains(&["changed.db", "another program", "0x0000004d", CHOOSE]);
+    }
+    let db = place.text_path("other.db");
+    let other = Connection::open(&db).expect("a database");
+    other
+        .execute_batch("CREATE TABLE recipe (name TEXT)")
+        .expect("a table");
+    for said in both(&place, &db) {
+        said.exits(3)
+            .explains(&["other.db", "another program", CHOOSE]);
+    }
+}
+
+#[test]
+fn a_damaged_file_is_named_and_checked() {
+    let place = Place::new();
+    let db = changed(&place, "PRAGMA wal_checkpoint(TRUNCATE)");
+    let mut bytes = std::fs::read(&db).expect("the file");
+    let middle = bytes.len() / 2;
+    bytes[4096..middle].fill(0x5A);
+    std::fs::write(&db, bytes).expect("a damaged file");
+    place
+        .ptu(&["runs", "list", "--db", &db])
+        .exits(3)
+        .explains(&["changed.db", "db check"]);
+    place.ptu(&["db", "check", "--db", &db]).exits(3);
+}
+
+#[test]
+fn a_file_that_cannot_be_made_or_opened() {
+    let place = Place::new();
+    let folder = place.text_path("folder");
+    std::fs::create_dir(&folder).expect("a folder");
+    for said in both(&place, &folder) {
+        said.exits(3)
+            .explains(&[&folder, "it is a directory", CHOOSE]);
+    }
+    // /proc refuses new files even to root.
+    for db in ["/proc/self/history.db", "/no/such/folder/history.db"] {
+        place
+            .ptu(&["run", "tcms/link", "--db", db])
+            .exits(3)
+            .explains(&[db, "check the path", CHOOSE]);
+        place
+            .ptu(&["runs", "list", "--db", db])
+            .exits(3)
+            .explains(&["there is no database", db, "a first run creates it"]);
+    }
+}
+
+#[test]
+fn locked_by_another_writer() {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    let other = Connection::open(place.path("history.db")).expect("the database");
+    other.execute_batch("BEGIN EXCLUSIVE").expect("a lock");
+    place.ptu(&["run", "tcms/link"]).exits(3).explains(&[
+        "history.db is locked by another program",
+        "close it",
+        "--db",
+    ]);
+    assert_eq!(place.run_ids(), [earlier.clone()], "reading goes on");
+    other.execute_batch("ROLLBACK").expect("an end");
+    place.ptu(&["run", "tcms/link"]).exits(0);
+    assert_eq!(place.run_ids()[1], earlier);
+}
+
+/// A file system of its own, gone with the value.
+struct Mounted<'a>(&'a Path);
+
+impl<'a> Mounted<'a> {
+    /// Mounts memory of this size, where that is permitted.
+    fn new(at: &'a Path, options: &str) -> Option<Self> {
+        std::fs::create_dir_all(at).expect("a folder");
+        let output = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", options, "tmpfs"])
+            .arg(at)
+            .output();
+        match output {
+            Ok(output) if output.status.success() => Some(Self(at)),
+            Ok(output) => {
+                let why = String::from_utf8_lossy(&output.stderr);
+                eprintln!("skipped, mounting is not permitted here: {}", why.trim());
+                None
+            }
+            Err(error) => {
+                eprintln!("skipped, no mount command: {error}");
+                None
+            }
+        }
+    }
+}
+
+impl Drop for Mounted<'_> {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(self.0).status();
+    }
+}
+
+#[test]
+fn a_read_only_disk() {
+    let place = Place::new();
+    let folder = place.path("disk");
+    let Some(disk) = Mounted::new(&folder, "size=8m") else {
+        return;
+    };
+    let db = place.text_path("disk/history.db");
+    place.ptu(&["run", "tcms/link", "--db", &db]).exits(0);
+    let remounted = Command::new("mount")
+        .args(["-o", "remount,ro"])
+        .arg(disk.0)
+        .status();
+    assert!(remounted.expect("mount").success());
+    place
+        .ptu(&["run", "tcms/link", "--db", &db])
+        .exits(3)
+        .explains(&["disk/history.db", "read-only", "writable", "--db"]);
+    let runs = place.json(&["runs", "list", "--json", "--db", &db]);
+    assert_eq!(common::list(&runs).len(), 1, "reading goes on");
+}
+
+/// Goal: a disk that fills up in the middle of a run loses nothing recorded before. Method: what is
+/// left free is enough to begin a run and not enough for its faults and traces.
+#[test]
+fn a_full_disk() {
+    let place = Place::new();
+    let folder = place.path("disk");
+    let Some(_disk) = Mounted::new(&folder, "size=1m") else {
+        return;
+    };
+    let db = place.text_path("disk/history.db");
+    place.ptu(&["run", "tcms/link", "--db", &db]).exits(0);
+    std::fs::write(folder.join("ballast"), vec![1; 512 * 1024]).expect("ballast");
+    place
+        .ptu(&["run", "--inject", "eb_relay.slow", "--db", &db])
+        .exits(3)
+        .explains(&[
+            "no room left",
+            "disk/history.db",
+            "free some space",
+            "is kept",
+        ]);
+    std::fs::remove_file(folder.join("ballast")).expect("room again");
+    let runs = place.json(&["runs", "list", "--json", "--db", &db]);
+    let runs = common::list(&runs);
+    assert_eq!(runs[runs.len() - 1]["verdict"], "passed", "{runs:?}");
+    assert_eq!(runs.len(), 2, "the run that was cut off shows");
+    assert_eq!(runs[0]["state"], "interrupted");
+    place.ptu(&["db", "check", "--db", &db]).exits(0);
+    place.ptu(&["run", "tcms/link", "--db", &db]).exits(0);
+}

@@ -1,0 +1,304 @@
+//! Wrong commands and wrong scripts: what is wrong is named, the next move is said, nothing is
+//! driven, and what was recorded before is still there.
+
+mod common;
+
+use common::{Place, list, text};
+
+const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
+
+/// Each refused with exit 2 and these words, on a database that holds an earlier run.
+#[track_caller]
+fn refused(cases: &[(&[&str], &[&str])]) {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    for (arguments, words) in cases {
+        let said = place.ptu(arguments).exits(2).explains(words);
+        assert_eq!(said.out, "", "{}", said.all());
+    }
+    assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
+}
+
+/// A script that must not load: exit 2 with these words, and nothing driven.
+#[track_caller]
+fn does_not_load(body: &str, words: &[&str]) {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    place.write("wrong.star", &format!("{HEAD}{body}"));
+    for check in [
+        &["run", "wrong.star"][..],
+        &["run", "--check", "wrong.star"],
+    ] {
+        place
+            .ptu(check)
+            .exits(2)
+            .explains(words)
+            .explains(&["wrong.star:", "1 error in the scripts; nothing was driven"]);
+    }
+    assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
+}
+
+#[test]
+fn unknown_names_are_named_and_the_near_one_suggested() {
+    refused(&[
+        (
+            &["run", "--inject", "eb_relay.slwo"],
+            &[
+                "no fault \"eb_relay.slwo\"",
+                "\"eb_relay.slow\"",
+                "`ptu catalog faults`",
+            ],
+        ),
+        (
+            &["run", "--inject", "tra.dead,nothing"],
+            &["no fault \"nothing\"", "`ptu catalog faults`"],
+        ),
+        (
+            &["run", "--line", "lin8"],
+            &["no line \"lin8\"", "\"line8\""],
+        ),
+        (
+            &["run", "--unit-config", "sg1000"],
+            &["no unit configuration \"sg1000\"", "\"sg100\""],
+        ),
+        (
+            &["catalog", "codes", "--unit-config", "sg1000"],
+            &["no unit configuration \"sg1000\"", "\"sg100\""],
+        ),
+        (
+            &["run", "atp/overspeeed"],
+            &[
+                "\"atp/overspeeed\"",
+                "\"atp/overspeed\"",
+                "`ptu run --list`",
+            ],
+        ),
+        (&["run", "atp/[over"], &["\"atp/[over\" is not a glob"]),
+        (
+            &["run", "atp/overspeed", "--step", "code 99*"],
+            &["no step matches \"code 99*\"", "`ptu run --list`"],
+        ),
+        (&["run", "--step", "code [9"], &["--step is not a glob"]),
+        (
+            &["run", "--scripts", "nowhere"],
+            &["nowhere is not a directory"],
+        ),
+    ]);
+}
+
+#[test]
+fn a_wrong_unit_is_refused_before_anything_is_opened() {
+    refused(&[
+        (&["run", "--unit", "usb:3"], &["usb:3", "tcp:HOST:PORT"]),
+        (
+            &["run", "--unit", "tcp:nowhere"],
+            &["\"nowhere\" is not HOST:PORT"],
+        ),
+        (
+            &["run", "--unit", "tcp:host:port"],
+            &["\"host:port\" is not HOST:PORT"],
+        ),
+        (
+            &["run", "--unit", "serial:/dev/ttyS0@fast"],
+            &["\"fast\" is not a baud rate"],
+        ),
+        (&["run", "--unit", "serial:"], &["`ptu ports`"]),
+        (
+            &["run", "--unit", "serial:/dev/null", "--inject", "tra.dead"],
+            &["--inject", "ato-under-test --inject"],
+        ),
+        (
+            &["run", "--unit", "serial:/dev/null", "--jobs", "2"],
+            &["--jobs", "one port is one unit"],
+        ),
+        (
+            &[
+                "run",
+                "--serial-no",
+                "a serial number that is too long for the wire",
+            ],
+            &["--serial-no must be 1 to"],
+        ),
+    ]);
+}
+
+#[test]
+fn a_report_that_cannot_be_written_is_refused_before_the_run() {
+    refused(&[
+        (
+            &["run", "tcms/link", "--report", "out.txt"],
+            &["out.txt", ".json", ".junit.xml"],
+        ),
+        (
+            &["run", "tcms/link", "--report", "nofolder/out.json"],
+            &["nofolder/out.json", "folder"],
+        ),
+    ]);
+}
+
+#[test]
+fn unknown_records_and_wrong_times_are_refused() {
+    refused(&[
+        (&["runs", "show", "abcd1234"], &["no run \"abcd1234\""]),
+        (
+            &["runs", "list", "--verdict", "good"],
+            &["\"good\"", "passed"],
+        ),
+        (
+            &["runs", "list", "--since", "yesterday"],
+            &["yesterday", "30d", "2026-03-21"],
+        ),
+        (&["faults", "show", "abcd1234"], &["no fault \"abcd1234\""]),
+        (&["faults", "show", "latest"], &["no fault"]),
+        (
+            &["faults", "state", "latest", "broken"],
+            &["broken", "acknowledged"],
+        ),
+        (
+            &["faults", "trend", "los_time"],
+            &[
+                "no measurement \"los_time\"",
+                "\"loss_time\"",
+                "`ptu run --list`",
+            ],
+        ),
+        (
+            &["faults", "trend", "loss_time", "--unit", "X-1"],
+            &["\"loss_time\"", "X-1", "`ptu runs list`"],
+        ),
+        (&["trace", "show", "latest"], &["no trace"]),
+        (&["trace", "export", "latest", "--to", "x.txt"], &[".csv"]),
+        (
+            &["db", "query", "DELETE FROM run"],
+            &["only one reading statement", "SELECT"],
+        ),
+        (&["db", "query", "SELEC 1"], &["the query failed", "SELEC"]),
+        (
+            &["db", "backup", "history.db"],
+            &["history.db", "name a file that does not"],
+        ),
+        (
+            &["db", "import", "history.db"],
+            &["history.db", "name another file"],
+        ),
+    ]);
+}
+
+#[test]
+fn a_syntax_error_is_shown_with_its_place() {
+    does_not_load(
+        "step(\"a\", do = wait(s(1))\n",
+        &["wrong.star:3:1:", "Parse error"],
+    );
+}
+
+#[test]
+fn a_misspelt_name_is_found_in_a_branch_never_taken() {
+    does_not_load(
+        "step(\"a\", do = wait(s(1)), expect = becomes(eb, \"applied\"))\n\
+         if False:\n    step(\"b\", expect = becomes(ebb, \"applied\"))\n",
+        &["wrong.star:4:", "`ebb`", "`eb`"],
+    );
+}
+
+#[test]
+fn a_runtime_error_is_shown_with_its_place() {
+    does_not_load("x = [1][3]\n", &["wrong.star:2:5:", "Index `3`"]);
+}
+
+#[test]
+fn wrong_types_units_and_verbs_are_shown_with_what_is_wanted() {
+    does_not_load(
+        "step(\"a\", do = wait(kmh(3)))\n",
+        &["wrong.star:2:", "wants a time such as s(2)", "3 km/h"],
+    );
+    does_not_load(
+        "step(\"a\", do = tacho.speed(to = \"fast\"))\n",
+        &["wrong.star:2:", "wants a speed such as kmh(55)", "\"fast\""],
+    );
+    does_not_load(
+        "step(\"a\", do = tacho.sped(kmh(3)))\n",
+        &["wrong.star:2:", "sped", "speed"],
+    );
+    does_not_load(
+        "step(\"a\", expect = becomes(eb, \"aplied\"))\n",
+        &["wrong.star:2:", "aplied", "applied"],
+    );
+}
+
+#[test]
+fn a_script_that_never_ends_is_stopped() {
+    does_not_load(
+        "def long():\n    for a in range(1000000):\n        for b in range(1000000):\n            pass\nlong()\n",
+        &["wrong.star:"],
+    );
+}
+
+#[test]
+fn a_part_that_is_none_cannot_be_suspected() {
+    let place = Place::new();
+    let script = HEAD.replace("atp_cpu", "atp_cqu") + "step(\"a\", do = wait(s(1)))\n";
+    place.write("wrong.star", &script);
+    place.ptu(&["run", "wrong.star"]).exits(2).explains(&[
+        "wrong.star:1:",
+        "no part \"atp_cqu\"",
+        "\"atp_cpu\"",
+        "`ptu catalog lrus`",
+    ]);
+}
+
+#[test]
+fn check_reports_the_errors_of_all_scripts() {
+    let place = Place::new();
+    place.write("one.star", &format!("{HEAD}step(\"a\", do = wait(s(1))\n"));
+    place.write(
+        "two.star",
+        &format!("{HEAD}step(\"a\", do = wait(kmh(1)))\n"),
+    );
+    place.write(
+        "good.star",
+        &format!("{HEAD}step(\"a\", do = wait(s(1)))\n"),
+    );
+    place
+        .ptu(&["run", "--check", "one.star", "two.star", "good.star"])
+        .exits(2)
+        .explains(&["one.star:3:1:", "two.star:2:", "2 errors in the scripts"]);
+    let said = place.ptu(&["run", "--check"]).exits(0);
+    assert!(said.out.contains("no errors"), "{}", said.all());
+}
+
+/// Goal: a step that outlasts its limit is an error, not a pass and not a hang, the other steps
+/// still run, and so does clean-up. Method: a clean-up that cannot succeed is reported when it ran.
+#[test]
+fn a_step_that_runs_too_long_is_an_error_and_clean_up_runs() {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    place.write(
+        "long.star",
+        "procedure(title = \"Test\", title_ko = \"시험\", cleanup = until(mode, \"yard\", within = s(1)))\n\
+         step(\"too long\", do = wait(s(60)), limit = s(2))\n\
+         step(\"short\", do = wait(s(1)))\n",
+    );
+    let (said, report) = place.run(&["long.star"]);
+    let said = said
+        .exits(3)
+        .explains(&["too long", "time limit of 2.000 s", "clean-up:", "yard"]);
+    let steps = list(&report["steps"]);
+    let verdicts: Vec<_> = steps.iter().map(|s| text(&s["verdict"])).collect();
+    assert_eq!(verdicts, ["error", "passed"], "{}", said.all());
+    assert!(text(&steps[0]["message"]).contains("time limit"));
+    assert_eq!(report["run"]["verdict"], "error");
+    assert!(place.run_ids().contains(&earlier));
+}
+
+#[test]
+fn a_prompt_that_nobody_can_answer_is_an_error() {
+    let place = Place::new();
+    place.write(
+        "prompt.star",
+        &format!("{HEAD}step(\"ask\", do = prompt(\"Is the lamp lit?\"))\n"),
+    );
+    let (said, report) = place.run(&["prompt.star"]);
+    said.exits(3).explains(&["Is the lamp lit?"]);
+    assert_eq!(report["steps"][0]["verdict"], "error");
+}

@@ -1,0 +1,199 @@
+//! What the end-to-end tests share: a place of its own for each test, and the program run in it.
+
+#![allow(dead_code, reason = "each test program uses its own part")]
+
+pub mod served;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder of its own with a database of its own; the user's data are never touched.
+pub struct Place {
+    folder: TempDir,
+}
+
+/// What a program said, and how it ended.
+pub struct Said {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl Place {
+    pub fn new() -> Self {
+        Self {
+            folder: TempDir::with_prefix("ptu-test-").expect("a folder for the test"),
+        }
+    }
+
+    /// A file or folder of this name in the place.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The same as text.
+    pub fn text_path(&self, name: &str) -> String {
+        self.path(name).display().to_string()
+    }
+
+    /// Writes a file and gives its path.
+    pub fn write(&self, name: &str, text: &str) -> String {
+        std::fs::write(self.path(name), text).expect("a file for the test");
+        self.text_path(name)
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).expect("a file the program wrote")
+    }
+
+    pub fn read_json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.read(name)).expect("JSON")
+    }
+
+    /// `ptu` with these arguments, not started yet.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ptu"));
+        command
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .env("PTU_SCRIPTS", scripts())
+            .env("PTU_DB", self.path("history.db"))
+            .env("HOME", self.folder.path())
+            .env("XDG_DATA_HOME", self.folder.path())
+            .env("RUST_BACKTRACE", "1");
+        command
+    }
+
+    pub fn ptu(&self, arguments: &[&str]) -> Said {
+        let output = self.command(arguments).output().expect("ptu starts");
+        Said::from(output)
+    }
+
+    /// The one JSON document a question is answered with.
+    pub fn json(&self, arguments: &[&str]) -> Value {
+        let said = self.ptu(arguments).exits(0);
+        serde_json::from_str(&said.out).expect("one JSON document on stdout")
+    }
+
+    /// Runs procedures and gives exit code and report.
+    pub fn run(&self, arguments: &[&str]) -> (Said, Value) {
+        let all = [&["run", "--report", "report.json"], arguments].concat();
+        let said = self.ptu(&all);
+        assert!(
+            self.path("report.json").is_file(),
+            "no report was written\n{}",
+            said.all()
+        );
+        (said, self.read_json("report.json"))
+    }
+
+    /// Records a short run and gives its id.
+    pub fn recorded_run(&self) -> String {
+        self.ptu(&["run", "tcms/link"]).exits(0);
+        text(&self.json(&["runs", "show", "latest", "--json"])["run"]["id"]).to_owned()
+    }
+
+    /// Ids of all recorded runs, newest first.
+    pub fn run_ids(&self) -> Vec<String> {
+        let runs = self.json(&["runs", "list", "--json"]);
+        list(&runs)
+            .iter()
+            .map(|run| text(&run["id"]).to_owned())
+            .collect()
+    }
+}
+
+impl From<Output> for Said {
+    fn from(output: Output) -> Self {
+        Self {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).expect("UTF-8 on stdout"),
+            err: String::from_utf8(output.stderr).expect("UTF-8 on stderr"),
+        }
+    }
+}
+
+impl Said {
+    /// Everything, for a message.
+    pub fn all(&self) -> String {
+        let Self { code, out, err } = self;
+        format!("exit {code:?}\n--- stdout\n{out}--- stderr\n{err}")
+    }
+
+    /// Holds the program to an exit code, and to never panicking.
+    #[track_caller]
+    pub fn exits(self, code: i32) -> Self {
+        for word in ["panicked", "RUST_BACKTRACE", "stack backtrace"] {
+            assert!(!self.err.contains(word), "{}", self.all());
+        }
+        assert_eq!(self.code, Some(code), "{}", self.all());
+        self
+    }
+
+    /// Holds the program to words on stderr: the thing that is wrong, and the next move.
+    #[track_caller]
+    pub fn explains(self, words: &[&str]) -> Self {
+        for word in words {
+            assert!(
+                self.err.contains(word),
+                "\"{word}\" is not said\n{}",
+                self.all()
+            );
+        }
+        self
+    }
+}
+
+/// The scripts directory of the workspace.
+pub fn scripts() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts")
+}
+
+#[track_caller]
+pub fn list(value: &Value) -> &[Value] {
+    let Some(items) = value.as_array() else {
+        panic!("not a list: {value}")
+    };
+    items
+}
+
+#[track_caller]
+pub fn text(value: &Value) -> &str {
+    let Some(text) = value.as_str() else {
+        panic!("not a text: {value}")
+    };
+    text
+}
+
+#[track_caller]
+pub fn number(value: &Value) -> f64 {
+    let Some(number) = value.as_f64() else {
+        panic!("not a number: {value}")
+    };
+    number
+}
+
+/// Holds an object to keys and the kinds of their values: `text`, `number`, `list`, `bool`, with
+/// `?` behind where it may be null.
+#[track_caller]
+pub fn has_shape(value: &Value, keys: &[(&str, &str)]) {
+    for (key, kind) in keys {
+        let Some(found) = value.get(key) else {
+            panic!("no key \"{key}\" in {value}")
+        };
+        let fits = match kind.trim_end_matches('?') {
+            "text" => found.is_string(),
+            "number" => found.is_number(),
+            "list" => found.is_array(),
+            "bool" => found.is_boolean(),
+            other => panic!("no kind \"{other}\""),
+        };
+        assert!(
+            fits || (kind.ends_with('?') && found.is_null()),
+            "\"{key}\" is no {kind} in {value}"
+        );
+    }
+}

@@ -1,0 +1,298 @@
+//! Every injectable fault: the suite fails where it should, and keeps a fault with a trace around it.
+//!
+//! Method: the table says for each fault mode which step must fail, and which modes no stored fault
+//! names the broken part of. A mode that is not in the table fails the test, so that nobody adds one
+//! without saying what finds it.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+use common::{Place, has_shape, list, number, text};
+use glob::Pattern;
+use serde_json::Value;
+
+/// Trace rows are this far apart.
+const PERIOD_MS: f64 = 50.0;
+const BEFORE_S: f64 = 10.0;
+const AFTER_S: f64 = 5.0;
+/// Suites run side by side.
+const WORKERS: usize = 2;
+
+/// Fault mode → procedure and words in the name of a step that must fail.
+const FOUND_BY: [(&str, &str, &str); 27] = [
+    ("atp_receiver.dead", "atp/power_up", "start-up self-test"),
+    ("atp_receiver.detuned", "atp/power_up", "start-up self-test"),
+    ("atp_receiver.stuck", "atp/overspeed", "code 0 stops"),
+    ("atp_antenna.weak", "atp/power_up", "start-up self-test"),
+    (
+        "speed_sensor_[12].dead",
+        "atp/speed_input",
+        "on both inputs",
+    ),
+    (
+        "speed_sensor_1.missing_teeth",
+        "atp/speed_input",
+        "on both inputs",
+    ),
+    ("speed_sensor_2.noisy", "atp/power_up", "stays healthy"),
+    ("eb_relay.welded", "atp/overspeed", "alarm, FSB, EB"),
+    (
+        "eb_relay.open",
+        "atp/power_up",
+        "brake released in a manned cab",
+    ),
+    ("eb_relay.slow", "atp/overspeed", "alarm, FSB, EB"),
+    ("fsb_output.dead", "atp/overspeed", "FSB comes before EB"),
+    (
+        "io_board.door_stuck_closed",
+        "door/interlocks",
+        "a door that opens while moving",
+    ),
+    (
+        "io_board.door_stuck_open",
+        "door/interlocks",
+        "closed doors free it",
+    ),
+    (
+        "io_board.door_enable_dead",
+        "door/interlocks",
+        "the right side is enabled",
+    ),
+    ("marker_antenna.dead", "ato/markers", "PSM1 is detected"),
+    ("tra.dead", "ato/markers", "TRA answers"),
+    (
+        "fsk_board.receiver_dead",
+        "twc/exchange",
+        "received and answered",
+    ),
+    (
+        "fsk_board.receiver_errors",
+        "twc/exchange",
+        "received and answered",
+    ),
+    (
+        "fsk_board.transmitter_dead",
+        "twc/exchange",
+        "received and answered",
+    ),
+    (
+        "twc_cpu.wrong_station",
+        "twc/exchange",
+        "received and answered",
+    ),
+    ("rs485_link.receiver_dead", "tcms/link", "both directions"),
+    ("rs485_link.receiver_errors", "tcms/link", "both directions"),
+    (
+        "rs485_link.transmitter_dead",
+        "tcms/link",
+        "both directions",
+    ),
+    ("ato_cpu.dead", "ato/automatic_mode", "ATP sets Automatic"),
+    (
+        "ato_cpu.full_effort",
+        "ato/automatic_mode",
+        "limit less 5 km/h",
+    ),
+    ("test_board.dead", "atp/power_up", "start-up self-test"),
+    ("test_board.dead", "twc/ptu_exchange", "its end is noticed"),
+];
+
+/// Modes that no stored fault names the part of, and why.
+const PART_NOT_NAMED: [(&str, &str); 2] = [
+    (
+        "atp_receiver.stuck",
+        "sets in 20 s after power-up, when the receiver's own check is over; what shows is brakes",
+    ),
+    (
+        "atp_antenna.weak",
+        "the self-test's signal enters before the receiver, which cannot tell itself from its antenna",
+    ),
+];
+
+struct Mode {
+    id: String,
+    lru: String,
+}
+
+#[test]
+fn every_injectable_fault_is_found_and_kept_with_its_trace() {
+    let catalogue = Place::new();
+    let signals = names_of_signals(&catalogue);
+    let modes = modes(&catalogue);
+    assert!(modes.len() >= 12, "{} fault modes", modes.len());
+    let waiting = Mutex::new(modes.iter());
+    let problems = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..WORKERS {
+            scope.spawn(|| {
+                while let Some(mode) = next(&waiting) {
+                    let found = check(mode, &signals);
+                    problems.lock().expect("problems").extend(found);
+                }
+            });
+        }
+    });
+    let problems = problems.into_inner().expect("problems");
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn the_table_names_no_fault_that_is_gone() {
+    let modes = modes(&Place::new());
+    let named = FOUND_BY.iter().map(|(glob, ..)| *glob);
+    for glob in named.chain(PART_NOT_NAMED.iter().map(|(glob, _)| *glob)) {
+        let matches = |mode: &Mode| fits(glob, &mode.id);
+        assert!(modes.iter().any(matches), "no fault mode {glob}");
+    }
+}
+
+#[test]
+fn two_faults_at_once_are_both_seen() {
+    let place = Place::new();
+    let (said, report) = place.run(&["--inject", "tra.dead,rs485_link.transmitter_dead"]);
+    said.exits(1);
+    assert_eq!(
+        report["run"]["injected"],
+        "tra.dead,rs485_link.transmitter_dead"
+    );
+    let parts: BTreeSet<_> = list(&report["faults"])
+        .iter()
+        .map(|fault| text(&fault["lru"]))
+        .collect();
+    assert!(
+        parts.contains("tra") && parts.contains("rs485_link"),
+        "{parts:?}"
+    );
+}
+
+fn next<'a>(waiting: &Mutex<std::slice::Iter<'a, Mode>>) -> Option<&'a Mode> {
+    waiting.lock().expect("modes").next()
+}
+
+fn modes(place: &Place) -> Vec<Mode> {
+    let catalogue = place.json(&["catalog", "faults", "--json"]);
+    let mode = |entry: &Value| {
+        has_shape(
+            entry,
+            &[
+                ("id", "text"),
+                ("lru", "text"),
+                ("mode", "text"),
+                ("severity", "text"),
+                ("weight", "number"),
+                ("unsafe", "bool"),
+            ],
+        );
+        Mode {
+            id: text(&entry["id"]).to_owned(),
+            lru: text(&entry["lru"]).to_owned(),
+        }
+    };
+    list(&catalogue).iter().map(mode).collect()
+}
+
+fn names_of_signals(place: &Place) -> BTreeSet<String> {
+    let signals = place.json(&["catalog", "signals", "--json"]);
+    list(&signals)
+        .iter()
+        .map(|signal| text(&signal["name"]).to_owned())
+        .collect()
+}
+
+fn fits(glob: &str, id: &str) -> bool {
+    Pattern::new(glob).expect("a glob").matches(id)
+}
+
+/// Runs the suite on a unit with this fault; what is wrong with the outcome.
+fn check(mode: &Mode, signals: &BTreeSet<String>) -> Vec<String> {
+    let place = Place::new();
+    let (said, report) = place.run(&["--inject", &mode.id]);
+    let mut problems = Vec::new();
+    if said.code != Some(1) || said.err.contains("panicked") {
+        problems.push(said.all());
+    }
+    problems.extend(check_steps(mode, &report));
+    problems.extend(check_parts(mode, &report));
+    problems.extend(check_traces(&place, &report, signals));
+    let named = |problem| format!("{}: {problem}", mode.id);
+    problems.into_iter().map(named).collect()
+}
+
+fn check_steps(mode: &Mode, report: &Value) -> Vec<String> {
+    let expected: Vec<_> = FOUND_BY
+        .iter()
+        .filter(|(glob, ..)| fits(glob, &mode.id))
+        .collect();
+    if expected.is_empty() {
+        return vec!["not in the table: say which step finds it".into()];
+    }
+    let fails = |procedure: &str, words: &str| {
+        list(&report["steps"]).iter().any(|step| {
+            step["verdict"] == "failed"
+                && step["procedure"] == procedure
+                && text(&step["name"]).contains(words)
+        })
+    };
+    expected
+        .into_iter()
+        .filter(|(_, procedure, words)| !fails(procedure, words))
+        .map(|(_, procedure, words)| format!("{procedure}: no step \"…{words}…\" failed"))
+        .collect()
+}
+
+fn check_parts(mode: &Mode, report: &Value) -> Option<String> {
+    let faults = list(&report["faults"]);
+    let named = faults.iter().any(|fault| fault["lru"] == *mode.lru);
+    let excused = PART_NOT_NAMED.iter().find(|(id, _)| *id == mode.id);
+    match (named, excused) {
+        _ if faults.is_empty() => Some("no fault stored".into()),
+        (false, None) => Some(format!("no stored fault names {}", mode.lru)),
+        (true, Some((_, reason))) => Some(format!(
+            "names its part now; strike out of the table: {reason}"
+        )),
+        _ => None,
+    }
+}
+
+/// Every stored fault has a trace, and at least one trace has its whole window.
+fn check_traces(place: &Place, report: &Value, signals: &BTreeSet<String>) -> Vec<String> {
+    let mut problems = Vec::new();
+    let mut whole = 0;
+    for fault in list(&report["faults"]) {
+        let Some(id) = fault["trace_id"].as_str() else {
+            problems.push(format!("a fault without a trace: {fault}"));
+            continue;
+        };
+        let trace = place.json(&["trace", "show", id, "--json"]);
+        let (window, all) = window(&trace);
+        if window.0 < BEFORE_S {
+            problems.push(format!("trace {id}: {} s before the trigger", window.0));
+        }
+        if window.1 < AFTER_S && trace["partial"] != true {
+            problems.push(format!("trace {id}: {} s after the trigger", window.1));
+        }
+        if number(&trace["period_ms"]) != PERIOD_MS || all != *signals {
+            problems.push(format!("trace {id}: not all signals every {PERIOD_MS} ms"));
+        }
+        whole += u32::from(window.0 >= BEFORE_S && window.1 >= AFTER_S);
+    }
+    if whole == 0 {
+        problems.push("no trace with its whole window".into());
+    }
+    problems
+}
+
+/// Seconds before and after the trigger, and the signals that are there for all of that time.
+fn window(trace: &Value) -> ((f64, f64), BTreeSet<String>) {
+    let rows = number(&trace["rows"]);
+    let trigger = number(&trace["trigger_row"]);
+    let seconds = |rows: f64| rows * number(&trace["period_ms"]) / 1000.0;
+    let complete = list(&trace["channels"])
+        .iter()
+        .filter(|channel| list(&channel["samples"]).len() == rows as usize)
+        .map(|channel| text(&channel["name"]).to_owned())
+        .collect();
+    ((seconds(trigger), seconds(rows - 1.0 - trigger)), complete)
+}
