@@ -1,1 +1,202 @@
-//! A served unit, and a client of its own that looks at the wire.
+//! A unit served on a port in real time, `ptu` working on it, and a client that looks at the wire.
+//!
+//! Real time on a busy machine: unit and tester ask for a higher priority. Where that is refused
+//! they run as they are.
+
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use protocol::link::{End, Link};
+use protocol::message::{KeepAlive, Message};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+use serialport::SerialPort;
+
+use super::{Place, Said, list, scripts};
+
+/// How much more the system should care for who must keep time.
+const URGENT: [&str; 2] = ["-n", "-15"];
+/// Longest time anything here takes to come about.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// A served unit; ends with the value.
+pub struct Unit {
+    child: Child,
+    /// What `--unit` takes.
+    pub address: String,
+    /// Port or socket address alone.
+    pub port: String,
+}
+
+impl Unit {
+    /// On a new pseudo-terminal.
+    pub fn on_pty(arguments: &[&str]) -> Self {
+        Self::serve(&[&["--pty"], arguments].concat(), "serial:")
+    }
+
+    /// On a free TCP port.
+    pub fn on_tcp(arguments: &[&str]) -> Self {
+        Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")
+    }
+
+    fn serve(arguments: &[&str], scheme: &str) -> Self {
+        // Another package's program stands beside ours, if it was built.
+        let program = Path::new(env!("CARGO_BIN_EXE_ptu")).with_file_name("ato-under-test");
+        assert!(
+            program.is_file(),
+            "{} is not built; run `cargo test --workspace`",
+            program.display()
+        );
+        let mut child = Command::new("nice")
+            .args(URGENT)
+            .arg(program)
+            .args(arguments)
+            .env("PTU_SCRIPTS", scripts())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the unit starts");
+        let mut port = String::new();
+        BufReader::new(child.stdout.take().expect("its stdout"))
+            .read_line(&mut port)
+            .expect("its port");
+        let port = port.trim().to_owned();
+        assert!(!port.is_empty(), "the unit ended without a port");
+        let address = format!("{scheme}{port}");
+        Self {
+            child,
+            address,
+            port,
+        }
+    }
+
+    /// Kills it, as a power cut would.
+    pub fn kill(&mut self) {
+        self.child.kill().expect("the unit is killed");
+        self.child.wait().expect("the unit is gone");
+    }
+}
+
+impl Drop for Unit {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A `ptu run` under way on a served unit.
+pub struct Running<'a> {
+    child: Child,
+    place: &'a Place,
+}
+
+impl<'a> Running<'a> {
+    /// Starts `ptu run` on this unit.
+    pub fn start(place: &'a Place, unit: &Unit, arguments: &[&str]) -> Self {
+        let ptu = place.command(&[]);
+        let child = Command::new("nice")
+            .args(URGENT)
+            .arg(ptu.get_program())
+            .args(["run", "--unit", &unit.address])
+            .args(arguments)
+            .current_dir(place.path(""))
+            .envs(ptu.get_envs().filter_map(|(k, v)| Some((k, v?))))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("ptu starts");
+        Self { child, place }
+    }
+
+    /// Waits until so many steps are recorded, and gives them.
+    pub fn recorded_steps(&mut self, count: usize) -> Vec<Value> {
+        let began = Instant::now();
+        while began.elapsed() < PATIENCE {
+            let ended = self.child.try_wait().expect("ptu's state");
+            assert!(ended.is_none(), "ptu ended before {count} steps: {ended:?}");
+            let shown = self.place.ptu(&["runs", "show", "latest", "--json"]);
+            let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
+            if run["steps"].as_array().is_some_and(|s| s.len() >= count) {
+                return list(&run["steps"]).to_vec();
+            }
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        panic!("not {count} steps within {PATIENCE:?}");
+    }
+
+    /// Ctrl-C.
+    pub fn interrupt(&self) {
+        kill_process(Pid::from_child(&self.child), Signal::INT).expect("a signal");
+    }
+
+    /// SIGKILL: no chance to say anything.
+    pub fn kill(mut self) {
+        self.child.kill().expect("ptu is killed");
+        self.child.wait().expect("ptu is gone");
+    }
+
+    /// Waits for its end.
+    pub fn finish(self) -> Said {
+        Said::from(self.child.wait_with_output().expect("ptu's output"))
+    }
+}
+
+/// A client that looks at what the unit sends. What it sends itself is refused until its
+/// predecessor has been silent for a second.
+pub struct Observer {
+    port: Box<dyn SerialPort>,
+    link: Link,
+    began: Instant,
+    keep_alive_due: Instant,
+}
+
+impl Observer {
+    pub fn on(unit: &Unit) -> Self {
+        let port = serialport::new(&unit.port, 115_200)
+            .timeout(Duration::from_millis(5))
+            .exclusive(false)
+            .open()
+            .expect("the unit's port");
+        let now = Instant::now();
+        Self {
+            port,
+            link: Link::new(End::Bench),
+            began: now,
+            keep_alive_due: now,
+        }
+    }
+
+    /// What arrives within the next few milliseconds.
+    pub fn hear(&mut self) -> Vec<Message> {
+        let now = protocol::Instant::from_ms(self.began.elapsed().as_millis() as u64);
+        if Instant::now() >= self.keep_alive_due {
+            self.keep_alive_due += Duration::from_millis(100);
+            let mut frame = Vec::new();
+            self.link
+                .send(now, &KeepAlive { session: 0 }.into(), &mut frame);
+            self.port.write_all(&frame).expect("the port takes a frame");
+        }
+        let mut chunk = [0; 4096];
+        match self.port.read(&mut chunk) {
+            Ok(count) => self.link.push(&chunk[..count]),
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => {}
+            Err(error) => panic!("reading the port: {error}"),
+        }
+        std::iter::from_fn(|| self.link.poll(now))
+            .map(|heard| heard.message)
+            .collect()
+    }
+
+    /// Listens until `seen` is satisfied; gives up after this time.
+    pub fn wait(&mut self, within: Duration, what: &str, mut seen: impl FnMut(&Message) -> bool) {
+        let began = Instant::now();
+        while began.elapsed() < within {
+            if self.hear().iter().any(&mut seen) {
+                return;
+            }
+        }
+        panic!("{what} was not seen within {within:?}");
+    }
+}

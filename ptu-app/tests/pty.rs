@@ -1,0 +1,231 @@
+//! A real port in real time: the suite passes, and whoever dies or is stopped leaves the unit safe
+//! and the record closed.
+//!
+//! The first test takes about nine minutes, all others together less; they run beside it.
+
+mod common;
+
+use std::time::{Duration, Instant};
+
+use common::served::{Observer, Running, Unit};
+use common::{Place, list, number, text};
+use protocol::message::{Message, Outputs, StatusBits};
+
+/// A killed tester's unit is safe again within this time.
+const SAFE_WITHIN: Duration = Duration::from_millis(1000);
+/// What the observer and a busy machine may add.
+const SLACK: Duration = Duration::from_millis(200);
+/// A stopped run makes its outputs safe and ends within this time.
+const ENDS_WITHIN: Duration = Duration::from_secs(45);
+
+fn eb_applied(message: &Message) -> bool {
+    matches!(message, Message::IoOutput(out) if !out.outputs.contains(Outputs::EB_RELAY))
+}
+
+/// No session holds the unit and no test signal is made.
+fn released(message: &Message) -> bool {
+    matches!(message, Message::Status(status)
+        if !status.bits.contains(StatusBits::ARMED) && status.test_signals.is_empty())
+}
+
+/// A short run on the unit passes.
+#[track_caller]
+fn passes(place: &Place, unit: &Unit, procedure: &str) {
+    Running::start(place, unit, &[procedure]).finish().exits(0);
+}
+
+/// Listed first so that it begins first: nothing else takes as long.
+#[test]
+fn a_whole_acceptance_suite_over_a_pseudo_terminal_passes() {
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let planned: usize = list(&place.json(&["run", "--list", "--json"]))
+        .iter()
+        .map(|procedure| list(&procedure["steps"]).len())
+        .sum();
+    Running::start(&place, &unit, &["--report", "report.json"])
+        .finish()
+        .exits(0);
+    let report = place.read_json("report.json");
+    assert_eq!(report["run"]["verdict"], "passed");
+    assert_eq!(report["run"]["unit_serial"], "SIM-0001");
+    assert!(text(&report["run"]["source"]).starts_with("serial:"));
+    assert_eq!(list(&report["steps"]).len(), planned);
+    assert!(list(&report["faults"]).is_empty());
+}
+
+/// Goal: train lines and pulses that stop mean braking. Method: killed after the step before, early
+/// in the ramp, so that the brake is not applied yet.
+#[test]
+fn killed_in_an_overspeed_step_the_unit_brakes_within_a_second() {
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let mut run = Running::start(&place, &unit, &["atp/overspeed", "--step", "code 25*"]);
+    run.recorded_steps(1);
+    run.kill();
+    let killed = Instant::now();
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "a brake still released", |message| {
+        matches!(message, Message::IoOutput(out) if out.outputs.contains(Outputs::EB_RELAY))
+    });
+    observer.wait(SAFE_WITHIN + SLACK, "the emergency brake", eb_applied);
+    assert!(
+        killed.elapsed() < SAFE_WITHIN + SLACK,
+        "{:?}",
+        killed.elapsed()
+    );
+    drop(observer);
+
+    let killed_run = &place.json(&["runs", "list", "--json"])[0];
+    assert_eq!(killed_run["state"], "interrupted");
+    assert!(killed_run["verdict"].is_null(), "{killed_run}");
+    assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
+    passes(&place, &unit, "tcms/link");
+    let states: Vec<_> = list(&place.json(&["runs", "list", "--json"]))
+        .iter()
+        .map(|run| text(&run["state"]).to_owned())
+        .collect();
+    assert_eq!(states, ["finished", "interrupted"]);
+}
+
+/// Goal: no test signal outlives its tester. Method: the step is run twice and killed the second
+/// time, after most of the time it took the first time.
+#[test]
+fn killed_in_an_overspeed_step_of_the_test_board_the_test_signals_go_within_a_second() {
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let mut run = Running::start(
+        &place,
+        &unit,
+        &["atp/ptu_overspeed", "--step", "code 25*", "--repeat", "2"],
+    );
+    let steps = run.recorded_steps(2);
+    assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
+    std::thread::sleep(Duration::from_secs_f64(
+        0.7 * number(&steps[0]["bench_time_s"]),
+    ));
+    run.kill();
+    let killed = Instant::now();
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "an armed unit with test signals", |message| {
+        matches!(message, Message::Status(status)
+            if status.bits.contains(StatusBits::ARMED) && !status.test_signals.is_empty())
+    });
+    let (mut brakes, mut free) = (None, None);
+    while killed.elapsed() < 2 * SAFE_WITHIN && (brakes.is_none() || free.is_none()) {
+        for message in observer.hear() {
+            if eb_applied(&message) {
+                brakes.get_or_insert(killed.elapsed());
+            }
+            if released(&message) {
+                free.get_or_insert(killed.elapsed());
+            }
+        }
+    }
+    for (what, after) in [("emergency brake", brakes), ("test signals gone", free)] {
+        let in_time = after.is_some_and(|after| after < SAFE_WITHIN + SLACK);
+        assert!(in_time, "{what} after {after:?}");
+    }
+    drop(observer);
+    assert_eq!(
+        place.json(&["runs", "list", "--json"])[0]["state"],
+        "interrupted"
+    );
+    passes(&place, &unit, "twc/ptu_exchange");
+}
+
+/// Method: a clean-up that cannot succeed is reported when it ran.
+#[test]
+fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let script = place.write(
+        "long.star",
+        "load(\"//_ptu.star\", \"train_as_found\", \"train_in_depot\")\n\
+         procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_in_depot(),\n\
+         \x20   cleanup = [until(mode, \"yard\", within = s(1)), train_as_found()])\n\
+         step(\"first\", do = [ptu.code(\"25\"), wait(s(1))], expect = becomes(armed, True))\n\
+         step(\"long\", do = wait(s(60)))\n\
+         step(\"never\", do = wait(s(1)))\n",
+    );
+    let mut run = Running::start(&place, &unit, &[&script, "--report", "report.json"]);
+    run.recorded_steps(1);
+    std::thread::sleep(Duration::from_millis(500));
+    run.interrupt();
+    let stopped = Instant::now();
+    let said = run.finish();
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "a status", |message| {
+        if let Message::Status(status) = message {
+            assert!(released(message), "{status:?}");
+        }
+        matches!(message, Message::Status(_))
+    });
+    assert!(stopped.elapsed() < ENDS_WITHIN, "{:?}", stopped.elapsed());
+    let said = said
+        .exits(130)
+        .explains(&["stopped by the operator", "clean-up:", "yard"]);
+    let report = place.read_json("report.json");
+    assert_eq!(report["run"]["verdict"], "aborted", "{}", said.all());
+    assert_eq!(report["run"]["state"], "finished");
+    let verdicts: Vec<_> = list(&report["steps"])
+        .iter()
+        .map(|step| text(&step["verdict"]))
+        .collect();
+    assert_eq!(verdicts, ["passed", "aborted", "skipped"]);
+}
+
+#[test]
+fn a_unit_that_dies_in_a_run_is_an_error_and_the_record_is_closed() {
+    let mut unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let mut run = Running::start(
+        &place,
+        &unit,
+        &["atp/limit_speed", "--report", "report.json"],
+    );
+    run.recorded_steps(2);
+    unit.kill();
+    let died = Instant::now();
+    run.finish()
+        .exits(3)
+        .explains(&[&unit.port, "link to the unit"]);
+    assert!(died.elapsed() < ENDS_WITHIN, "{:?}", died.elapsed());
+    let report = place.read_json("report.json");
+    assert_eq!(report["run"]["verdict"], "error");
+    assert_eq!(report["run"]["state"], "finished");
+    let steps = list(&report["steps"]);
+    assert_eq!(steps[0]["verdict"], "passed");
+    assert!(steps.iter().any(|step| step["verdict"] == "error"));
+    assert!(steps.iter().all(|step| step["verdict"] != "failed"));
+}
+
+#[test]
+fn over_tcp_a_procedure_passes_and_the_next_tester_is_let_in() {
+    let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
+    let place = Place::new();
+    passes(&place, &unit, "tcms/link");
+    let run = &place.json(&["runs", "list", "--json"])[0];
+    assert_eq!(run["unit_serial"], "TCP-7");
+    assert_eq!(run["source"], unit.address);
+    let other = ["tcms/link", "--serial-no", "TCP-8"];
+    Running::start(&place, &unit, &other)
+        .finish()
+        .exits(3)
+        .explains(&["TCP-7", "TCP-8", "--serial-no"]);
+}
+
+#[test]
+fn a_served_unit_with_a_slow_relay_fails() {
+    let unit = Unit::on_pty(&["--inject", "eb_relay.slow"]);
+    let place = Place::new();
+    let arguments = ["atp/power_up", "--report", "report.json"];
+    Running::start(&place, &unit, &arguments).finish().exits(1);
+    let report = place.read_json("report.json");
+    let failed = |step: &&serde_json::Value| step["verdict"] == "failed";
+    assert!(list(&report["steps"]).iter().any(|step| failed(&step)));
+    let fault = &list(&report["faults"])[0];
+    assert_eq!(fault["lru"], "eb_relay");
+    let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
+    assert!(number(&trace["trigger_row"]) >= 200.0, "ten seconds before");
+}
