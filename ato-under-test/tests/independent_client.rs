@@ -1,0 +1,69 @@
+//! A client written from `protocol/WIRE.md` alone, in another language, talks to the served unit:
+//! if the text and the unit ever differ, this fails.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+struct Served(Child);
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A unit on a pseudo-terminal, and the terminal's name.
+fn serve() -> (Served, String) {
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_ato-under-test"))
+        .arg("--pty")
+        .arg("--scripts")
+        .arg(scripts)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("ato-under-test starts");
+    let mut name = String::new();
+    let out = child.stdout.take().expect("stdout");
+    BufReader::new(out)
+        .read_line(&mut name)
+        .expect("the port's name");
+    (Served(child), name.trim().to_owned())
+}
+
+fn client(arguments: &[&str]) -> Output {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/tests/client.py");
+    Command::new("python3")
+        .arg(script)
+        .args(arguments)
+        .output()
+        .expect("python3, which scripts/test installs")
+}
+
+#[test]
+fn it_arms_the_unit_sets_a_code_and_reads_back_the_limit() {
+    let (_unit, port) = serve();
+    let output = client(&[&port]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        text.contains("1528"),
+        "the limit of 55 km/h in cm/s: {text}"
+    );
+}
+
+#[test]
+fn without_the_maintenance_key_it_is_refused() {
+    let (_unit, port) = serve();
+    let output = client(&[&port, "--no-key"]);
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("key_off"), "{said}");
+}

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Arms an on-board ATC unit over a pseudo terminal, feeds a speed code into its test coil and
+checks the limit. Written from WIRE.md alone, to show that the text is enough."""
+import argparse, collections, contextlib, os, random, re, select, struct, sys, time, tty, zlib
+
+UNIT, PTU, IO, TCMS = 0x20, 1, 2, 3
+PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40}                             # channel: address
+DOORS_CLOSED, HCR, MAINTENANCE_KEY, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x20, 0x40
+EB_RELAY, CODE_VALID, ARMED, UP, MANUAL = 0x001, 0x080, 0x001, 0x180, 2  # UP: STARTED and INPUTS_OK
+ANSWERS = dict(enumerate("accepted not_armed out_of_range board_failed".split()))
+REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up".split()))
+FROM_UNIT = {                               # the fields that are used here; x = a byte passed over
+    (PTU, 0x81): ("Identity", ">16s24x3s4xH", "serial software self_test"),
+    (PTU, 0x82): ("ArmChallenge", ">II", "session challenge"),
+    (PTU, 0x83): ("ArmState", ">IBB", "session armed refusal"),
+    (PTU, 0x84): ("StimulusAnswer", ">HB", "request_seq answer"),
+    (PTU, 0x90): ("Status", ">H3xB34x", "bits code_index"),
+    (IO, 0x81): ("IoOutput", ">HH4x", "outputs limit_cms"),
+    (TCMS, 0x81): ("AtcToTcms", ">9x", "")}
+
+class Client:
+    def __init__(self, path, lines):
+        self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        tty.setraw(self.fd)
+        self.lines, self.session = lines, 0                             # session 0 only listens
+        self.next_seq, self.due = {PTU: 0, IO: 0}, {PTU: 0.0, IO: 0.0}
+        self.last, self.heard = {}, {}      # channel: (sequence, time); name: its newest message
+        self.bytes, self.refused = b"", 0   # bytes since the last flag; number of frames
+
+    def send(self, channel, layout, *fields):
+        seq, self.next_seq[channel] = self.next_seq[channel], (self.next_seq[channel] + 1) & 0xFFFF
+        stamp = int(time.monotonic() * 1000) & 0xFFFFFFFF
+        body = struct.pack(">BBBBHI" + layout, 1, channel, PARTNER[channel], UNIT, seq, stamp, *fields)
+        body += struct.pack("<I", zlib.crc32(body))
+        body = body.replace(b"\x7d", b"\x7d\x5d").replace(b"\x7e", b"\x7d\x5e")
+        with contextlib.suppress(BlockingIOError):                      # nobody reads: a lost frame
+            os.write(self.fd, b"\x7e" + body + b"\x7e")
+        return seq
+
+    def keep_sending(self):
+        now = time.monotonic()
+        if now >= self.due[IO]:             # nothing in the antenna, no pulse, no marker
+            self.due[IO] = now + 0.020
+            released = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & EB_RELAY
+            self.send(IO, "B7H3B2HBb", 0x01, 0, 0, 0, 0, 0xFFFF, 0, 0xFFFF, 0, 0, 0, 0xFFFF,
+                      self.lines | (EB_LOOP if released else 0), MANUAL, 0)
+        if now >= self.due[PTU]:
+            self.due[PTU] = now + 0.400
+            self.send(PTU, "BI", 0x05, self.session)
+
+    def receive(self):
+        if select.select([self.fd], [], [], 0.005)[0]:
+            *frames, self.bytes = (self.bytes + os.read(self.fd, 4096)).split(b"\x7e")
+            for stuffed in filter(None, frames):
+                self.refused += not self.accept(stuffed)
+
+    def accept(self, stuffed):
+        """Takes what stood between two flags, unless it must be refused."""
+        body = stuffed.replace(b"\x7d\x5e", b"\x7e").replace(b"\x7d\x5d", b"\x7d")
+        if re.search(rb"\x7d(?![\x5d\x5e])", stuffed) or not 14 < len(body) <= 254:
+            return False                    # escape, too_long, too_short
+        if zlib.crc32(body[:-4]) != int.from_bytes(body[-4:], "little"):
+            return False                    # checksum
+        version, channel, source, target, seq, _, code = struct.unpack(">BBBBHIB", body[:11])
+        name, layout, fields = FROM_UNIT.get((channel, code), ("", "255x", ""))
+        if (version, source, target, struct.calcsize(layout)) != (1, UNIT, PARTNER.get(channel), len(body) - 15):
+            return False                    # version, channel, address, layout
+        last, at = self.last.get(channel, (0, 0.0))
+        if time.monotonic() < at + 1 and not 1 <= (seq - last) & 0xFFFF <= 1000:
+            return False                    # sequence
+        self.last[channel] = seq, time.monotonic()
+        self.heard[name] = collections.namedtuple(name, fields)(*struct.unpack(layout, body[11:-4]))
+        return True
+
+    def wait(self, what, name, fits=lambda message: True):
+        """Keeps the line going until a message of this name was heard that fits."""
+        end = time.monotonic() + 10
+        while name not in self.heard or not fits(self.heard[name]):
+            state = self.heard.get("ArmState")
+            if state and not state.armed:
+                sys.exit(f"failed: not armed: {REFUSALS.get(state.refusal, state.refusal)}")
+            if time.monotonic() > end:
+                sys.exit(f"failed: no {what} within 10 s")
+            self.keep_sending()
+            self.receive()
+        return self.heard[name]
+
+    def ask(self, answer, layout, *fields):
+        """Sends a request of the tester; gives its sequence number and the answer."""
+        self.heard.pop(answer, None)
+        return self.send(PTU, layout, *fields), self.wait(answer, answer)
+
+def run(client, carrier, rate, level, limit):
+    quiet = time.monotonic() + 1.1          # after 1 s of silence every channel begins anew
+    while time.monotonic() < quiet:
+        client.receive()
+    client.heard.clear()
+    client.wait("end of start-up", "Status", lambda status: status.bits & UP == UP)
+    _, unit = client.ask("Identity", "B", 0x01)
+    print(f"start-up is done: unit {unit.serial.decode('ascii', 'replace').strip(chr(0))}, "
+          f"software {'.'.join(map(str, unit.software))}, failed self-tests 0x{unit.self_test:04x}")
+    client.session = session = random.randrange(1, 1 << 32)
+    _, asked = client.ask("ArmChallenge", "BI", 0x02, session)
+    client.ask("ArmState", "BII", 0x03, session, asked.challenge ^ 0xFFFFFFFF ^ session)
+    client.wait("Status with ARMED", "Status", lambda status: status.bits & ARMED)
+    print(f"armed; limit without a code {client.wait('IoOutput', 'IoOutput').limit_cms} cm/s")
+    seq, given = client.ask("StimulusAnswer", "BI3H", 0x10, session, carrier, rate, level)
+    if (given.request_seq, given.answer) != (seq, 0):
+        sys.exit(f"failed: TestCode {seq}: {ANSWERS.get(given.answer, given.answer)}, {given}")
+    print(f"TestCode accepted: carrier {carrier} Hz, code rate {rate / 100:.2f} Hz, level {level} mV")
+    client.wait(f"limit of {limit} cm/s", "IoOutput",
+                lambda output: output.outputs & CODE_VALID and output.limit_cms == limit)
+    status = client.wait("code in Status", "Status", lambda status: status.code_index != 255)
+    print(f"limit {limit} cm/s = {limit * 0.036:.0f} km/h, code {status.code_index} of the table")
+    _, state = client.ask("ArmState", "BI", 0x04, session)
+    if state.armed or REFUSALS.get(state.refusal) != "disarmed":
+        sys.exit(f"failed: Disarm answered by {state}")
+    print(f"disarmed; frames refused here: {client.refused}")
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("pty")
+    parser.add_argument("--code", nargs=4, type=int, default=[3000, 1500, 500, 1528],
+                        metavar=("HZ", "CHZ", "MV", "CM/S"), help="carrier, rate, level, expected limit")
+    parser.add_argument("--no-key", dest="key", action="store_const", const=0, default=MAINTENANCE_KEY)
+    options = parser.parse_args()
+    try:
+        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | options.key), *options.code)
+    except (OSError, struct.error) as error:
+        sys.exit(f"failed: {error}")
