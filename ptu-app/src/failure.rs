@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fault_db::StoreError;
+use fault_db::{StoreError, TraceError};
 
 /// Exit codes of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +78,11 @@ impl From<StoreError> for Failure {
             | StoreError::TargetExists { .. }
             | StoreError::SameFile { .. }
             | StoreError::QueryRefused { .. }
-            | StoreError::QueryFailed { .. } => Exit::Usage,
+            | StoreError::QueryFailed { .. }
+            | StoreError::Trace {
+                source: TraceError::UnknownChannel { .. },
+                ..
+            } => Exit::Usage,
             _ => Exit::Bench,
         };
         Self {

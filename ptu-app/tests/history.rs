@@ -1,0 +1,459 @@
+//! The history: what runs and faults left behind is listed, shown, counted, kept and carried along.
+
+mod common;
+
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use common::{Place, has_shape, list, number, text};
+
+/// Far above what a small database takes; the bench measures that.
+const LISTS_WITHIN: Duration = Duration::from_millis(200);
+
+const FAULT: [(&str, &str); 10] = [
+    ("id", "text"),
+    ("code", "number"),
+    ("name", "text"),
+    ("lru", "text"),
+    ("severity", "text"),
+    ("first_at", "text"),
+    ("last_at", "text"),
+    ("occurrences", "number"),
+    ("state", "text"),
+    ("trace_id", "text?"),
+];
+
+/// A good and a bad unit tested one after the other, for tests that only look.
+fn history() -> &'static Place {
+    static HISTORY: OnceLock<Place> = OnceLock::new();
+    HISTORY.get_or_init(|| {
+        let place = Place::new();
+        place.ptu(&["run", "--serial-no", "GOOD-1"]).exits(0);
+        record_bad_unit(&place);
+        place
+    })
+}
+
+/// A unit with a slow relay, tested by someone.
+fn record_bad_unit(place: &Place) {
+    let who = ["--serial-no", "BAD-1", "--operator", "Kim"];
+    let arguments = [
+        &["run", "atp/overspeed", "--inject", "eb_relay.slow"],
+        &who[..],
+    ]
+    .concat();
+    place.ptu(&arguments).exits(1);
+}
+
+/// The fault of the relay in this database.
+fn relay_fault(place: &Place) -> serde_json::Value {
+    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    assert_eq!(list(&faults).len(), 1, "{faults}");
+    faults[0].clone()
+}
+
+#[test]
+fn runs_are_listed_newest_first_and_filtered() {
+    let place = history();
+    let runs = place.json(&["runs", "list", "--json"]);
+    let units: Vec<_> = list(&runs)
+        .iter()
+        .map(|r| text(&r["unit_serial"]))
+        .collect();
+    assert_eq!(units, ["BAD-1", "GOOD-1"]);
+    assert_eq!(runs[0]["operator"], "Kim");
+    assert_eq!(runs[0]["injected"], "eb_relay.slow");
+    assert_eq!(runs[0]["verdict"], "failed");
+    for run in list(&runs) {
+        has_shape(
+            run,
+            &[
+                ("id", "text"),
+                ("verdict", "text?"),
+                ("unit_serial", "text"),
+                ("line", "text"),
+                ("seed", "number"),
+                ("started_at", "text"),
+                ("bench_time_s", "number?"),
+                ("wall_time_s", "number?"),
+            ],
+        );
+    }
+    for (filter, count) in [
+        (["--unit", "GOOD-1"], 1),
+        (["--verdict", "failed"], 1),
+        (["--since", "1d"], 2),
+        (["--limit", "1"], 1),
+        (["--unit", "NONE"], 0),
+    ] {
+        let found = place.json(&[&["runs", "list", "--json"], &filter[..]].concat());
+        assert_eq!(list(&found).len(), count, "{filter:?}");
+    }
+    let table = place.ptu(&["runs", "list"]).exits(0).out;
+    assert!(
+        table.contains("GOOD-1") && table.contains("failed"),
+        "{table}"
+    );
+}
+
+#[test]
+fn faults_are_listed_and_filtered() {
+    let place = history();
+    let faults = place.json(&["faults", "list", "--json"]);
+    assert!(!list(&faults).is_empty());
+    for fault in list(&faults) {
+        has_shape(fault, &FAULT);
+        assert_eq!(fault["unit_serial"], "BAD-1");
+        assert_eq!(fault["state"], "open");
+    }
+    let all = list(&faults).len();
+    for (filter, count) in [
+        (["--unit", "BAD-1"], all),
+        (["--unit", "GOOD-1"], 0),
+        (["--code", "check_failed"], all),
+        (["--code", "9000"], all),
+        (["--lru", "eb_relay"], 1),
+        (["--severity", "minor"], 0),
+        (["--state", "open"], all),
+        (["--state", "closed"], 0),
+        (["--run", "latest"], all),
+        (["--since", "12h"], all),
+        (["--limit", "1"], 1),
+    ] {
+        let found = place.json(&[&["faults", "list", "--json"], &filter[..]].concat());
+        assert_eq!(list(&found).len(), count, "{filter:?}");
+    }
+    let table = place.ptu(&["faults", "list"]).exits(0).out;
+    assert!(
+        table.contains("eb_relay") && table.contains("check_failed"),
+        "{table}"
+    );
+}
+
+#[test]
+fn a_fault_is_shown_with_its_occurrences_and_freeze_frame() {
+    let place = history();
+    let listed = relay_fault(place);
+    let id = text(&listed["id"]);
+    let fault = place.json(&["faults", "show", id, "--json"]);
+    has_shape(&fault, &FAULT);
+    let seen = list(&fault["occurrence_list"]);
+    assert_eq!(seen.len() as f64, number(&listed["occurrences"]));
+    let signals = place.json(&["catalog", "signals", "--json"]);
+    for occurrence in seen {
+        has_shape(
+            occurrence,
+            &[
+                ("run_id", "text"),
+                ("at", "text"),
+                ("message", "text"),
+                ("trace_id", "text"),
+            ],
+        );
+        assert!(
+            text(&occurrence["message"]).contains("eb_reaction"),
+            "{occurrence}"
+        );
+        assert_eq!(
+            list(&occurrence["freeze_frame"]).len(),
+            list(&signals).len()
+        );
+    }
+    let shown = place
+        .ptu(&["faults", "show", &id[id.len() - 8..]])
+        .exits(0)
+        .out;
+    assert!(
+        shown.contains("eb_reaction") && shown.contains("freeze frame"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn faults_are_counted_by_code_and_by_part() {
+    let place = history();
+    let faults = place.json(&["faults", "list", "--json"]);
+    for (by, key) in [("lru", "eb_relay"), ("code", "9000")] {
+        let stats = place.json(&["faults", "stats", "--by", by, "--json"]);
+        for stat in list(&stats) {
+            has_shape(
+                stat,
+                &[
+                    ("key", "text"),
+                    ("faults", "number"),
+                    ("not_closed", "number"),
+                    ("occurrences", "number"),
+                    ("units", "number"),
+                    ("last_at", "text"),
+                ],
+            );
+        }
+        assert!(
+            list(&stats).iter().any(|stat| stat["key"] == key),
+            "{stats}"
+        );
+        let sum = |key: &str| list(&stats).iter().map(|s| number(&s[key])).sum::<f64>();
+        assert_eq!(sum("faults") as usize, list(&faults).len());
+        let seen: f64 = list(&faults)
+            .iter()
+            .map(|f| number(&f["occurrences"]))
+            .sum();
+        assert_eq!(sum("occurrences"), seen);
+        place.ptu(&["faults", "stats", "--by", by]).exits(0);
+    }
+}
+
+/// Goal: the drift of a measurement from unit to unit shows: the slow relay adds its 400 ms.
+#[test]
+fn a_measurement_is_shown_over_time() {
+    let place = history();
+    let mean = |unit: &str| {
+        let trend = place.json(&["faults", "trend", "eb_reaction", "--unit", unit, "--json"]);
+        let overspeed: Vec<_> = list(&trend)
+            .iter()
+            .filter(|p| number(&p["high"]) == 350.0)
+            .collect();
+        for point in &overspeed {
+            has_shape(
+                point,
+                &[
+                    ("at", "text"),
+                    ("run_id", "text"),
+                    ("unit_serial", "text"),
+                    ("value", "number"),
+                    ("unit", "text"),
+                    ("verdict", "text"),
+                ],
+            );
+        }
+        let sum: f64 = overspeed.iter().map(|point| number(&point["value"])).sum();
+        sum / overspeed.len() as f64
+    };
+    let slower = mean("BAD-1") - mean("GOOD-1");
+    assert!((350.0..=450.0).contains(&slower), "{slower} ms slower");
+    place.ptu(&["faults", "trend", "eb_reaction"]).exits(0);
+}
+
+/// Goal: nobody waits for a list. From process start, on a small database, debug build included.
+#[test]
+fn faults_are_listed_at_once() {
+    let place = history();
+    let began = Instant::now();
+    place.ptu(&["faults", "list"]).exits(0);
+    assert!(began.elapsed() < LISTS_WITHIN, "{:?}", began.elapsed());
+}
+
+#[test]
+fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = relay_fault(&place);
+    let id = text(&fault["id"]);
+    let state = || text(&relay_fault(&place)["state"]).to_owned();
+    place
+        .ptu(&["faults", "state", id, "acknowledged", "--who", "Lee"])
+        .exits(0);
+    assert_eq!(state(), "acknowledged");
+    let repair = ["--part", "eb_relay", "--old", "SN-1", "--new", "SN-2"];
+    let arguments = [
+        &["faults", "repair", id],
+        &repair[..],
+        &["--who", "Lee", "--note", "worn"],
+    ];
+    place.ptu(&arguments.concat()).exits(0);
+    assert_eq!(state(), "repaired");
+    for next in ["verified", "closed"] {
+        place.ptu(&["faults", "state", id, next]).exits(0);
+        assert_eq!(state(), next);
+    }
+    let closed = place.json(&["faults", "list", "--state", "closed", "--json"]);
+    assert_eq!(list(&closed).len(), 1);
+    let shown = place.json(&["faults", "show", id, "--json"]);
+    let repairs: Vec<_> = list(&shown["events"])
+        .iter()
+        .filter(|event| event["repair"].is_object())
+        .collect();
+    assert_eq!(repairs.len(), 1, "{shown}");
+    assert_eq!(repairs[0]["who"], "Lee");
+    assert_eq!(repairs[0]["repair"]["serial_new"], "SN-2");
+    record_bad_unit(&place);
+    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    let states: Vec<_> = list(&faults).iter().map(|f| text(&f["state"])).collect();
+    assert_eq!(states, ["open", "closed"]);
+    assert_ne!(faults[0]["id"], *id);
+}
+
+#[test]
+fn a_trace_is_shown_and_exported() {
+    let place = history();
+    let trace = place.json(&["trace", "show", "latest", "--json"]);
+    has_shape(
+        &trace,
+        &[
+            ("id", "text"),
+            ("period_ms", "number"),
+            ("rows", "number"),
+            ("trigger_row", "number"),
+            ("partial", "bool"),
+            ("channels", "list"),
+        ],
+    );
+    let two = place.json(&["trace", "show", "latest", "--signals", "speed,eb", "--json"]);
+    let names: Vec<_> = list(&two["channels"])
+        .iter()
+        .map(|c| text(&c["name"]))
+        .collect();
+    assert_eq!(names, ["speed", "eb"]);
+    let plot = place.ptu(&["trace", "show", "latest"]).exits(0).out;
+    assert!(
+        plot.contains("before the trigger") && plot.contains('▼'),
+        "{plot}"
+    );
+
+    place
+        .ptu(&["trace", "export", "latest", "--to", "trace.csv"])
+        .exits(0);
+    let csv = place.read("trace.csv");
+    let mut lines = csv.lines();
+    let headings: Vec<_> = lines.next().expect("headings").split(',').collect();
+    assert_eq!(headings[0], "time_s");
+    assert_eq!(headings.len(), list(&trace["channels"]).len() + 1);
+    assert!(headings.contains(&"limit_kmh"), "{headings:?}");
+    let times: Vec<f64> = lines
+        .map(|line| {
+            line.split(',')
+                .next()
+                .and_then(|t| t.parse().ok())
+                .expect("a time")
+        })
+        .collect();
+    assert_eq!(times.len() as f64, number(&trace["rows"]));
+    assert_eq!(times[number(&trace["trigger_row"]) as usize], 0.0);
+    place
+        .ptu(&["trace", "show", "latest", "--signals", "speeed"])
+        .exits(2)
+        .explains(&["speeed"]);
+}
+
+#[test]
+fn the_database_is_checked_copied_merged_and_asked() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let check = place.json(&["db", "check", "--json"]);
+    assert!(list(&check["problems"]).is_empty(), "{check}");
+    assert!(number(&check["traces"]) > 0.0);
+
+    let report = place.json(&["runs", "show", "latest", "--json"]);
+    place.ptu(&["db", "backup", "copy.db"]).exits(0);
+    let copy = ["runs", "show", "latest", "--json", "--db", "copy.db"];
+    assert_eq!(place.json(&copy), report);
+    place
+        .ptu(&["db", "backup", "copy.db"])
+        .exits(2)
+        .explains(&["copy.db exists already"]);
+
+    let said = place.ptu(&["db", "export", "depot.db"]).exits(0);
+    assert!(said.out.contains("added 1 runs"), "{}", said.all());
+    let depot = ["runs", "show", "latest", "--json", "--db", "depot.db"];
+    assert_eq!(place.json(&depot), report);
+    let said = place
+        .ptu(&["db", "import", "copy.db", "--db", "depot.db"])
+        .exits(0);
+    assert!(said.out.contains("added 0 runs"), "{}", said.all());
+    place
+        .ptu(&["run", "tcms/link", "--db", "depot.db"])
+        .exits(0);
+    let said = place.ptu(&["db", "import", "depot.db"]).exits(0);
+    assert!(said.out.contains("added 1 runs"), "{}", said.all());
+    assert_eq!(place.run_ids().len(), 2);
+
+    let sql = "SELECT verdict, count(*) AS n FROM run GROUP BY 1 ORDER BY 1";
+    let answer = place.json(&["db", "query", sql, "--json"]);
+    assert_eq!(answer["columns"], serde_json::json!(["verdict", "n"]));
+    assert_eq!(
+        answer["rows"],
+        serde_json::json!([["failed", 1], ["passed", 1]])
+    );
+}
+
+#[test]
+fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let traces = || number(&place.json(&["db", "check", "--json"])["traces"]);
+    let all = traces();
+    assert!(all > 0.0);
+    // Nothing is older than a day; everything is older than tomorrow, but every fault is open.
+    for older_than in ["1d", "2999-01"] {
+        place
+            .ptu(&["db", "prune", "--older-than", older_than])
+            .exits(0);
+        assert_eq!(traces(), all);
+    }
+    for fault in list(&place.json(&["faults", "list", "--json"])) {
+        let id = text(&fault["id"]);
+        let repair = ["--part", text(&fault["lru"])];
+        place
+            .ptu(&[&["faults", "repair", id], &repair[..]].concat())
+            .exits(0);
+        for state in ["verified", "closed"] {
+            place.ptu(&["faults", "state", id, state]).exits(0);
+        }
+    }
+    let dry = place
+        .ptu(&["db", "prune", "--older-than", "2999-01", "--dry-run"])
+        .exits(0);
+    assert!(dry.out.contains("would go"), "{}", dry.all());
+    assert_eq!(traces(), all);
+    place
+        .ptu(&["db", "prune", "--older-than", "2999-01"])
+        .exits(0);
+    assert_eq!(traces(), 0.0);
+    assert_eq!(place.run_ids().len(), 1, "runs stay");
+    assert!(
+        !list(&place.json(&["faults", "list", "--json"])).is_empty(),
+        "faults stay"
+    );
+}
+
+#[test]
+fn what_there_is_to_name_is_catalogued() {
+    let place = Place::new();
+    for (what, keys) in [
+        ("faults", &["id", "lru", "mode", "severity"][..]),
+        ("signals", &["name", "unit", "kind", "from", "about"]),
+        ("codes", &["name"]),
+        ("lines", &["line"]),
+        ("lrus", &["id", "name", "name_ko"]),
+    ] {
+        let entries = place.json(&["catalog", what, "--json"]);
+        assert!(!list(&entries).is_empty(), "{what}");
+        for entry in list(&entries) {
+            let shape: Vec<_> = keys.iter().map(|key| (*key, "text")).collect();
+            has_shape(entry, &shape);
+        }
+        let rows = place.ptu(&["catalog", what]).exits(0).out.lines().count();
+        assert_eq!(rows, list(&entries).len() + 1, "{what}");
+    }
+}
+
+/// Goal: a first-time user is told what to do, not shown an error's innards.
+#[test]
+fn without_any_history_the_next_move_is_said() {
+    let place = Place::new();
+    for question in [
+        &["runs", "list"][..],
+        &["faults", "list"],
+        &["trace", "show", "latest"],
+    ] {
+        place
+            .ptu(question)
+            .exits(3)
+            .explains(&["history.db", "a first run creates it"]);
+    }
+    place
+        .ptu(&[])
+        .exits(2)
+        .explains(&["Usage: ptu", "run ", "faults "]);
+    place.ptu(&["runn"]).exits(2).explains(&["runn", "'run'"]);
+}
