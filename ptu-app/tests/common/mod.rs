@@ -147,6 +147,24 @@ impl Said {
     }
 }
 
+/// A unit with a slow relay, tested by someone.
+pub fn record_bad_unit(place: &Place) {
+    let who = ["--serial-no", "BAD-1", "--operator", "Kim"];
+    let arguments = [
+        &["run", "atp/overspeed", "--inject", "eb_relay.slow"],
+        &who[..],
+    ]
+    .concat();
+    place.ptu(&arguments).exits(1);
+}
+
+/// The fault of the relay in this database.
+pub fn relay_fault(place: &Place) -> Value {
+    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    assert_eq!(list(&faults).len(), 1, "{faults}");
+    faults[0].clone()
+}
+
 /// The scripts directory of the workspace.
 pub fn scripts() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts")

@@ -1,0 +1,126 @@
+//! What changes the history: the life of a fault, and the care of the database.
+
+mod common;
+
+use common::{Place, list, number, record_bad_unit, relay_fault, text};
+
+#[test]
+fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = relay_fault(&place);
+    let id = text(&fault["id"]);
+    let state = || text(&relay_fault(&place)["state"]).to_owned();
+    place
+        .ptu(&["faults", "state", id, "acknowledged", "--who", "Lee"])
+        .exits(0);
+    assert_eq!(state(), "acknowledged");
+    let repair = ["--part", "eb_relay", "--old", "SN-1", "--new", "SN-2"];
+    let arguments = [
+        &["faults", "repair", id],
+        &repair[..],
+        &["--who", "Lee", "--note", "worn"],
+    ];
+    place.ptu(&arguments.concat()).exits(0);
+    assert_eq!(state(), "repaired");
+    for next in ["verified", "closed"] {
+        place.ptu(&["faults", "state", id, next]).exits(0);
+        assert_eq!(state(), next);
+    }
+    let closed = place.json(&["faults", "list", "--state", "closed", "--json"]);
+    assert_eq!(list(&closed).len(), 1);
+    let shown = place.json(&["faults", "show", id, "--json"]);
+    let repairs: Vec<_> = list(&shown["events"])
+        .iter()
+        .filter(|event| event["repair"].is_object())
+        .collect();
+    assert_eq!(repairs.len(), 1, "{shown}");
+    assert_eq!(repairs[0]["who"], "Lee");
+    assert_eq!(repairs[0]["repair"]["serial_new"], "SN-2");
+    record_bad_unit(&place);
+    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    let states: Vec<_> = list(&faults).iter().map(|f| text(&f["state"])).collect();
+    assert_eq!(states, ["open", "closed"]);
+    assert_ne!(faults[0]["id"], *id);
+}
+
+#[test]
+fn the_database_is_checked_copied_merged_and_asked() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let check = place.json(&["db", "check", "--json"]);
+    assert!(list(&check["problems"]).is_empty(), "{check}");
+    assert!(number(&check["traces"]) > 0.0);
+
+    let report = place.json(&["runs", "show", "latest", "--json"]);
+    place.ptu(&["db", "backup", "copy.db"]).exits(0);
+    let copy = ["runs", "show", "latest", "--json", "--db", "copy.db"];
+    assert_eq!(place.json(&copy), report);
+    place
+        .ptu(&["db", "backup", "copy.db"])
+        .exits(2)
+        .explains(&["copy.db exists already"]);
+
+    let said = place.ptu(&["db", "export", "depot.db"]).exits(0);
+    assert!(said.out.contains("added 1 runs"), "{}", said.all());
+    let depot = ["runs", "show", "latest", "--json", "--db", "depot.db"];
+    assert_eq!(place.json(&depot), report);
+    let said = place
+        .ptu(&["db", "import", "copy.db", "--db", "depot.db"])
+        .exits(0);
+    assert!(said.out.contains("added 0 runs"), "{}", said.all());
+    place
+        .ptu(&["run", "tcms/link", "--db", "depot.db"])
+        .exits(0);
+    let said = place.ptu(&["db", "import", "depot.db"]).exits(0);
+    assert!(said.out.contains("added 1 runs"), "{}", said.all());
+    assert_eq!(place.run_ids().len(), 2);
+
+    let sql = "SELECT verdict, count(*) AS n FROM run GROUP BY 1 ORDER BY 1";
+    let answer = place.json(&["db", "query", sql, "--json"]);
+    assert_eq!(answer["columns"], serde_json::json!(["verdict", "n"]));
+    assert_eq!(
+        answer["rows"],
+        serde_json::json!([["failed", 1], ["passed", 1]])
+    );
+}
+
+#[test]
+fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let traces = || number(&place.json(&["db", "check", "--json"])["traces"]);
+    let all = traces();
+    assert!(all > 0.0);
+    // Nothing is older than a day; everything is older than tomorrow, but every fault is open.
+    for older_than in ["1d", "2999-01"] {
+        place
+            .ptu(&["db", "prune", "--older-than", older_than])
+            .exits(0);
+        assert_eq!(traces(), all);
+    }
+    for fault in list(&place.json(&["faults", "list", "--json"])) {
+        let id = text(&fault["id"]);
+        let repair = ["--part", text(&fault["lru"])];
+        place
+            .ptu(&[&["faults", "repair", id], &repair[..]].concat())
+            .exits(0);
+        for state in ["verified", "closed"] {
+            place.ptu(&["faults", "state", id, state]).exits(0);
+        }
+    }
+    let dry = place
+        .ptu(&["db", "prune", "--older-than", "2999-01", "--dry-run"])
+        .exits(0);
+    assert!(dry.out.contains("would go"), "{}", dry.all());
+    assert_eq!(traces(), all);
+    place
+        .ptu(&["db", "prune", "--older-than", "2999-01"])
+        .exits(0);
+    assert_eq!(traces(), 0.0);
+    assert_eq!(place.run_ids().len(), 1, "runs stay");
+    assert!(
+        !list(&place.json(&["faults", "list", "--json"])).is_empty(),
+        "faults stay"
+    );
+}
