@@ -4,7 +4,7 @@
 mod common;
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use common::{Place, Said};
 use rusqlite::Connection;
@@ -130,6 +130,29 @@ fn locked_by_another_writer() {
     other.execute_batch("ROLLBACK").expect("an end");
     place.ptu(&["run", "tcms/link"]).exits(0);
     assert_eq!(place.run_ids()[1], earlier);
+}
+
+/// Writers take turns: neither run is refused, and neither loses anything.
+#[test]
+fn two_runs_at_once_are_both_recorded() {
+    let place = Place::new();
+    place.recorded_run();
+    let arguments = ["run", "--inject", "rs485_link.receiver_errors"];
+    let runs = [(); 2].map(|()| {
+        let mut command = place.command(&arguments);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().expect("ptu starts")
+    });
+    for run in runs {
+        Said::from(run.wait_with_output().expect("its output")).exits(1);
+    }
+    let runs = place.json(&["runs", "list", "--json"]);
+    assert_eq!(common::list(&runs).len(), 3);
+    assert_eq!(runs[0]["state"], "finished");
+    for key in ["verdict", "step_count", "steps_not_passed", "fault_count"] {
+        assert_eq!(runs[0][key], runs[1][key], "{key}");
+    }
+    place.ptu(&["db", "check"]).exits(0);
 }
 
 /// A file system of its own, gone with the value.

@@ -229,3 +229,14 @@ fn a_served_unit_with_a_slow_relay_fails() {
     let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
     assert!(number(&trace["trigger_row"]) >= 200.0, "ten seconds before");
 }
+
+#[test]
+fn the_embedded_unit_can_be_run_at_the_wall_clocks_pace() {
+    let (said, report) = Place::new().run(&["tcms/link", "--realtime"]);
+    said.exits(0);
+    let (bench, wall) = (
+        &report["run"]["bench_time_s"],
+        &report["run"]["wall_time_s"],
+    );
+    assert!(number(wall) >= number(bench), "{wall} s for {bench} s");
+}
