@@ -83,8 +83,18 @@ impl Store {
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
             | OpenFlags::SQLITE_OPEN_CREATE
             | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let mut conn = connect(path, path, flags, options.busy_timeout_ms)?;
-        let version = identify(&conn, path)?;
+        let looked = connect(path, path, flags, options.busy_timeout_ms)
+            .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
+        let (mut conn, version) = match looked {
+            // On a write-protected disk SQLite fails before it can say why; what can be read but not
+            // opened for writing is read-only.
+            Err(StoreError::CannotOpen { .. }) if Self::open_read_only(path).is_ok() => {
+                return Err(StoreError::ReadOnly {
+                    path: path.to_path_buf(),
+                });
+            }
+            other => other?,
+        };
         let failed = |error| StoreError::from_sqlite(path, "opening", error);
         // SQLite opens a write-protected file for reading without a word.
         if conn.is_readonly("main").map_err(failed)? {

@@ -101,7 +101,10 @@ impl Recorder {
             .collect();
         let first = rows.first()?.at;
         let trigger_row = rows.iter().position(|row| row.at >= window.trigger);
-        let column = |i: usize| rows.iter().map(|row| row.values[i]).collect();
+        let column = |signal: &Signal| {
+            let values = rows.iter().map(|row| row.values[signal.index()]);
+            values.map(|value| in_steps(*signal, value)).collect()
+        };
         let trace = TraceData {
             t0_bench_us: first.as_us() as i64,
             t0_us: 0,
@@ -112,12 +115,23 @@ impl Recorder {
                 .iter()
                 .any(|row| row.values.iter().any(|value| value.is_nan())),
             channels: Signal::ALL.iter().map(|signal| channel(*signal)).collect(),
-            columns: (0..Signal::COUNT).map(column).collect(),
+            columns: Signal::ALL.iter().map(column).collect(),
         };
         Some(Cut {
             faults: window.faults,
             trace,
         })
+    }
+}
+
+/// The value in whole steps of its signal: arithmetic leaves crumbs below the step that mean nothing
+/// and would be kept at the price of a floating-point column.
+fn in_steps(signal: Signal, value: f64) -> f64 {
+    match signal.definition().kind {
+        // Hundredths are divided, so that 0.3 is written as 0.3.
+        Kind::Number { lsb: 0.01 } => (value * 100.0).round() / 100.0,
+        Kind::Number { lsb } => (value / lsb).round() * lsb,
+        Kind::Enum(_) | Kind::Bit => value,
     }
 }
 
