@@ -291,3 +291,65 @@ fn seed_for(seed: u64, procedure: &str) -> u64 {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
         })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use btu_rig::procedure::loader::load;
+    use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
+
+    use super::*;
+    use crate::data::ScriptsDirectory;
+
+    /// Goal: procedures do not lean on a fresh unit, so that a unit on a port passes them all in a
+    /// row. Method: all of them, forward and backward, on one embedded unit in virtual time.
+    #[test]
+    fn procedures_pass_in_any_order_on_a_unit_that_is_never_powered_off() {
+        let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+        let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
+        let setup = BenchSetup {
+            endpoint: Endpoint::Sim,
+            config: directory.unit_config("sg100").expect("configuration"),
+            line: directory.line("line8").expect("line"),
+            faults: Vec::new(),
+            seed: 1,
+            serial: None,
+            realtime: false,
+        };
+        let texts = directory.procedures().expect("procedures");
+        let loaded = load(&texts, &setup.config.content, &setup.line.content);
+        let stop = Stop::default();
+        let mut session = setup.sim_session("all in a row", &stop);
+        session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+        let backward = loaded.procedures.iter().rev();
+        for procedure in loaded.procedures.iter().chain(backward) {
+            session.idle(READY_WITHIN, |_, _, _| {}, settled());
+            let mut said = Vec::new();
+            let mut verdict = None;
+            let mut sink = |event| match event {
+                SessionEvent::Run(RunEvent::StepFinished(result)) => {
+                    if result.verdict != Verdict::Passed {
+                        said.push(format!("{}: {}", result.name, result.message));
+                    }
+                }
+                SessionEvent::Run(RunEvent::ProcedureFinished {
+                    verdict: v,
+                    message,
+                    ..
+                }) => {
+                    verdict = Some(v);
+                    said.push(message);
+                }
+                _ => {}
+            };
+            session.run(procedure, RunOptions::default(), Vec::new(), &mut sink);
+            assert_eq!(
+                verdict,
+                Some(Verdict::Passed),
+                "{}: {said:#?}",
+                procedure.id
+            );
+        }
+    }
+}
