@@ -107,6 +107,24 @@ fn a_step_down_of_the_limit_gets_its_grace() {
 }
 
 #[test]
+fn code_0_stops_a_train_by_the_service_brake_alone() {
+    let mut bench = Bench::new(&[]);
+    bench.code("75");
+    bench.run(0.6);
+    bench.speed_kmh(70.0);
+    bench.code("0");
+    assert!(bench.until(2.0, |b| b.has(Outputs::FSB)).is_some());
+    let step = 0.97 / 100.0;
+    while bench.speeds[0] > 0.0 {
+        bench.speeds = bench.speeds.map(|speed| (speed - step).max(0.0));
+        bench.scan();
+        assert!(!bench.braking(), "at {} cm/s", bench.output.speed_cms);
+    }
+    bench.run(3.0);
+    assert!(bench.has(Outputs::STANDSTILL) && !bench.braking());
+}
+
+#[test]
 fn one_dead_tachometer_brakes_and_is_named() {
     let mut bench = Bench::new(&[]);
     bench.code("55");

@@ -5,12 +5,15 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
+use rusqlite::{Connection, ErrorCode, OpenFlags, Transaction, TransactionBehavior};
 
 use crate::error::StoreError;
 use crate::id::{Id, IdSource};
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
 use crate::trace::{Channel, TraceCodec, TraceError};
+
+/// Programs that create one file at the same time may get in each other's way this often.
+const WAL_TRIES: u32 = 200;
 
 /// How far a commit goes before it returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -303,7 +306,7 @@ fn set_up(
         // Takes effect only before the first table.
         conn.execute_batch("PRAGMA auto_vacuum = INCREMENTAL")?;
     }
-    conn.query_row("PRAGMA journal_mode = WAL", [], |_| Ok(()))?;
+    enter_wal(conn)?;
     conn.execute_batch(match options.synchronous {
         Synchronous::Full => "PRAGMA synchronous = FULL",
         Synchronous::Normal => "PRAGMA synchronous = NORMAL",
@@ -317,6 +320,21 @@ fn set_up(
         conn.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
     }
     Ok(())
+}
+
+/// Turns write-ahead logging on. SQLite does not wait for others while it changes a new file over;
+/// waiting for a write lock in between does, as long as the busy timeout allows.
+fn enter_wal(conn: &Connection) -> Result<(), rusqlite::Error> {
+    let turn_on = || conn.query_row("PRAGMA journal_mode = WAL", [], |_| Ok(()));
+    for _ in 1..WAL_TRIES {
+        match turn_on() {
+            Err(error) if error.sqlite_error_code() == Some(ErrorCode::DatabaseBusy) => {
+                conn.execute_batch("BEGIN IMMEDIATE; COMMIT")?;
+            }
+            done => return done,
+        }
+    }
+    turn_on()
 }
 
 fn has_write_ahead_log(path: &Path) -> bool {

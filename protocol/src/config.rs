@@ -110,8 +110,8 @@ pub struct OverspeedConfig {
     pub brake_proof_ms: u32,
     /// Deceleration that proves it, m/s².
     pub brake_proof_mps2: f64,
-    /// After a step down of the limit: no emergency brake for this time, ms, while the service
-    /// brake is being proved (S2 runs 55 → 45 at 50 km/h, the grace is not printed).
+    /// After a step down of the limit: no emergency brake for this time, ms, nor after it while the
+    /// service brake is proved (S2 runs 55 → 45 at 50 km/h, the grace is not printed).
     pub step_down_grace_ms: u32,
     /// Time the brake line has to follow the EB relay, ms.
     pub eb_feedback_ms: u32,

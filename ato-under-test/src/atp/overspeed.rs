@@ -36,6 +36,7 @@ pub struct Supervision {
     alarm: bool,
     service: bool,
     service_since: Instant,
+    stepped_down: bool,
     grace_until: Instant,
     alarmed: Edge,
     braked: Edge,
@@ -54,6 +55,7 @@ impl Supervision {
             alarm: false,
             service: false,
             service_since: Instant::ZERO,
+            stepped_down: false,
             grace_until: Instant::ZERO,
             alarmed: Edge::default(),
             braked: Edge::default(),
@@ -84,11 +86,13 @@ impl Supervision {
             log.push(now, Event::OverspeedFsb, excess);
         }
         let proof = Duration::from_ms(u64::from(margins.brake_proof_ms));
-        let unproved = decel_mps2 < margins.brake_proof_mps2;
+        let proved = decel_mps2 >= margins.brake_proof_mps2;
+        // Close to the limit, and to standstill, a deceleration is no longer to be measured.
+        let well_over = speed.kmh() > limit.kmh() + margins.alarm_margin_kmh;
         let ineffective =
-            self.service && unproved && now.since(self.service_since) >= proof && speed > limit;
+            self.service && !proved && now.since(self.service_since) >= proof && well_over;
         let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
-        let in_grace = now < self.grace_until && !ineffective;
+        let in_grace = self.stepped_down && !ineffective && (proved || now < self.grace_until);
         let beyond = speed.kmh() > limit.kmh() + margins.eb_margin_kmh && !in_grace;
         let emergency = self.above_emergency.update(now, beyond, delay);
         Overspeed {
@@ -106,7 +110,8 @@ impl Supervision {
     }
 
     /// At a step down the train may be over the new limit at once: the service brake gets its
-    /// chance before the emergency brake [S2 §3.3].
+    /// chance before the emergency brake, for the grace time and then as long as it is proved to
+    /// slow the train [S2 §3.3].
     fn watch_step_down(
         &mut self,
         now: Instant,
@@ -115,9 +120,10 @@ impl Supervision {
         margins: &OverspeedConfig,
     ) {
         if limit < self.limit && speed > limit {
+            self.stepped_down = true;
             self.grace_until = now + Duration::from_ms(u64::from(margins.step_down_grace_ms));
         } else if speed <= limit {
-            self.grace_until = Instant::ZERO;
+            self.stepped_down = false;
         }
         self.limit = limit;
     }

@@ -14,6 +14,10 @@ use rustix::time::{ClockId, Timespec};
 pub use data::UsageError;
 use wire::Wire;
 
+const NANOS_PER_SECOND: i64 = 1_000_000_000;
+/// Time between scans that are made up.
+const MAKE_UP_NANOS: i64 = 1_000_000;
+
 /// An on-board ATC unit (ATP + ATO + TWC) to be tested over a wire.
 ///
 /// Examples:
@@ -81,18 +85,31 @@ fn run(mut unit: Unit, wire: &mut Wire) -> Result<()> {
     }
 }
 
+/// Sleeps to the next scan. Late scans are made up no faster than one a millisecond, so that the
+/// other end can follow scan by scan.
 fn sleep_until(due: &mut Timespec) -> Result<()> {
-    due.tv_nsec += SCAN.as_us() as i64 * 1000;
-    if due.tv_nsec >= 1_000_000_000 {
-        due.tv_nsec -= 1_000_000_000;
-        due.tv_sec += 1;
-    }
+    *due = later(*due, SCAN.as_us() as i64 * 1000);
+    let soonest = later(
+        rustix::time::clock_gettime(ClockId::Monotonic),
+        MAKE_UP_NANOS,
+    );
+    let late = (due.tv_sec, due.tv_nsec) < (soonest.tv_sec, soonest.tv_nsec);
+    let wake = if late { soonest } else { *due };
     while let Err(error) =
-        rustix::thread::clock_nanosleep_absolute(rustix::thread::ClockId::Monotonic, due)
+        rustix::thread::clock_nanosleep_absolute(rustix::thread::ClockId::Monotonic, &wake)
     {
         if error != rustix::io::Errno::INTR {
             return Err(error).context("waiting for the next scan");
         }
     }
     Ok(())
+}
+
+fn later(mut at: Timespec, nanos: i64) -> Timespec {
+    at.tv_nsec += nanos;
+    if at.tv_nsec >= NANOS_PER_SECOND {
+        at.tv_nsec -= NANOS_PER_SECOND;
+        at.tv_sec += 1;
+    }
+    at
 }

@@ -39,7 +39,7 @@ pub struct FaultStat {
 /// A measurement taken once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrendPoint {
-    /// When: the run's start and the bench time since.
+    /// When: the run's start. Within a run, points come in the order of its steps.
     pub at_us: i64,
     /// The run.
     pub run_id: Id,
@@ -97,10 +97,9 @@ impl Store {
         let list = || -> rusqlite::Result<Vec<_>> {
             self.conn
                 .prepare_cached(
-                    "SELECT r.started_at_us + s.started_bench_us, r.id, u.serial, m.value, m.unit,
+                    "SELECT r.started_at_us, r.id, u.serial, m.value, m.unit,
                         m.low, m.high, m.verdict
                      FROM measurement m JOIN run r ON r.seq = m.run JOIN unit u ON u.seq = r.unit
-                     JOIN step s ON s.run = m.run AND s.step_index = m.step_index
                      WHERE m.name = ?1 AND (?2 IS NULL OR u.serial = ?2)
                      ORDER BY 1, m.run, m.step_index, m.ordinal",
                 )?

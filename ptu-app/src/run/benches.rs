@@ -328,10 +328,10 @@ mod tests {
             let mut said = Vec::new();
             let mut verdict = None;
             let mut sink = |event| match event {
-                SessionEvent::Run(RunEvent::StepFinished(result)) => {
-                    if result.verdict != Verdict::Passed {
-                        said.push(format!("{}: {}", result.name, result.message));
-                    }
+                SessionEvent::Run(RunEvent::StepFinished(result))
+                    if result.verdict != Verdict::Passed =>
+                {
+                    said.push(format!("{}: {}", result.name, result.message));
                 }
                 SessionEvent::Run(RunEvent::ProcedureFinished {
                     verdict: v,
