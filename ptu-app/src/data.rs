@@ -180,6 +180,15 @@ pub fn read(file: &Path) -> Result<String, Failure> {
         .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))
 }
 
+/// Writes a file, or says which one could not be written.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(file, text)
+        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
+}
+
 fn collect(root: &Path, folder: &Path, into: &mut BTreeMap<String, String>) -> Result<(), Failure> {
     let cannot = |e| Failure::usage(format!("cannot read {}: {e}", folder.display()));
     for entry in std::fs::read_dir(folder).map_err(cannot)? {

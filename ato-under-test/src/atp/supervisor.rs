@@ -1,6 +1,7 @@
 //! One scan of ATP, in order: code, speed, limit, overspeed, doors, direction, brakes.
 
 use protocol::config::UnitConfig;
+use protocol::event::Event;
 use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Duration, Instant, Speed};
 
@@ -138,7 +139,6 @@ impl Atp {
         (door_open, rollback): (bool, bool),
         log: &mut EventLog,
     ) -> EbCause {
-        use protocol::event::Event;
         let lost = context.ever_alive && !inputs.alive;
         match self.inputs_lost.changes(lost) {
             Some(true) => log.push(now, Event::InputsLost, 0),

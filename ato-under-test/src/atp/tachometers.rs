@@ -28,7 +28,6 @@ pub struct Tachometers {
     slow: Lasting,
     standstill: bool,
     moved_m: f64,
-    moved_backward: bool,
 }
 
 #[derive(Debug, Default)]
@@ -53,7 +52,6 @@ impl Tachometers {
             slow: Lasting::default(),
             standstill: false,
             moved_m: 0.0,
-            moved_backward: false,
         }
     }
 
@@ -114,7 +112,6 @@ impl Tachometers {
         let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
         let pulses = &inputs.pulses[usize::from(first_dead)];
         let way = f64::from(pulses.count) * config.metres_per_pulse();
-        self.moved_backward = pulses.backward;
         self.moved_m = if pulses.backward { -way } else { way };
     }
 

@@ -8,7 +8,7 @@ mod run;
 mod runs;
 mod trace;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use fault_db::Store;
@@ -140,12 +140,6 @@ fn print_out(text: &str) -> Result<Exit, Failure> {
         }
         _ => Ok(Exit::Passed),
     }
-}
-
-/// Writes a file, or says which one could not be written.
-fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, content)
-        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", path.display())))
 }
 
 /// A point in time such as `30d`, `12h`, `2026-03` or `2026-03-21`.

@@ -128,14 +128,12 @@ impl RunArguments {
         if self.list {
             return self.show(&tasks);
         }
-        let unit_config_sha256 = setup.config.sha256.clone();
         let plan = RunPlan {
             tasks,
             jobs: self.jobs as usize,
             stop_on_fail: self.stop_on_fail,
             operator: self.operator.clone(),
             scripts_sha256,
-            unit_config_sha256,
         };
         self.execute(&plan, setup)
     }

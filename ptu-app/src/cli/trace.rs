@@ -7,8 +7,9 @@ use clap::{Args, Subcommand};
 use fault_db::{Channel, ChannelKind, Id, Store, TraceData};
 use serde_json::json;
 
-use super::{Database, print_json, print_out, write_file};
+use super::{Database, print_json, print_out};
 use crate::clock::{local, rfc3339};
+use crate::data;
 use crate::failure::{Exit, Failure};
 
 /// Characters of a plotted line.
@@ -69,7 +70,7 @@ impl TraceArguments {
                     return Err(Failure::usage("the file to export to must end in .csv"));
                 }
                 let (id, trace) = read(&store, &id, &signals)?;
-                write_file(&to, csv(&trace).as_bytes())?;
+                data::write(&to, &csv(&trace))?;
                 let rows = trace.rows();
                 print_out(&format!(
                     "trace {}: {rows} rows to {}",

@@ -3,12 +3,13 @@
 mod json;
 mod junit;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use fault_db::RunDetail;
 
 pub use json::{fault_json, run_json, run_summary_json};
 
+use crate::data;
 use crate::failure::Failure;
 
 /// A report to write.
@@ -71,11 +72,6 @@ impl Target {
                 .map_err(|error| Failure::bench(format!("cannot make the report: {error}")))?,
             Format::Junit => junit::junit(run)?,
         };
-        write(&self.path, &text)
+        data::write(&self.path, &text)
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text)
-        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", path.display())))
 }

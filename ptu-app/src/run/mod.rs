@@ -55,8 +55,6 @@ pub struct RunPlan {
     pub operator: String,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,
-    /// SHA-256 of the unit configuration.
-    pub unit_config_sha256: String,
 }
 
 /// Runs the plan and records it; the store comes back for the report.
@@ -147,7 +145,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         started_at_us,
         app_version: env!("CARGO_PKG_VERSION").into(),
         scripts_sha256: plan.scripts_sha256.clone(),
-        unit_config_sha256: plan.unit_config_sha256.clone(),
+        unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
         owner: crate::owner::this_process(),
         scripts: plan
