@@ -94,10 +94,12 @@ impl Unit {
                 .filter(|data| data.fixed_speed_kmh != u8::MAX)
                 .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),
             running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
-            to_stop_m: self.locator.to_stop_m(),
+            section: self.locator.section(),
+            position_m: self.locator.position_m(),
             speed: self.atp.tachometers().speed(),
             standstill: self.atp.tachometers().standstill(),
             power_cut: self.atp.power_cut(),
+            load_kg: self.tcms.load_kg(),
             healthy: self.self_tester.finished()
                 && !matches!(self.faults.at(Place::AtoCpu), Some(Effect::Dead)),
         };

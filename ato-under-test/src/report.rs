@@ -55,6 +55,8 @@ pub fn status(unit: &Unit) -> Message {
         test_code_rate_chz: libm::round(board_code.rate_hz * 100.0) as u16,
         test_level_mv: libm::round(board_code.level_mv) as u16,
         test_speed_cms: unit.board.speed().unwrap_or_default().to_cms(),
+        ato_state: unit.ato.state(),
+        wheel_correction_10ppm: libm::round(unit.locator.wheel_correction() * 1e5) as i16,
     }
     .into()
 }

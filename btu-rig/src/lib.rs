@@ -1,5 +1,6 @@
 //! Everything around the unit under test.
 //!
+//! * [`conditions`]: how train and track differ from what the unit is told;
 //! * [`stimulus`]: what a procedure may do to the unit, as typed values;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
 //!   the unit only through frames;
@@ -8,6 +9,7 @@
 //!
 //! No clock, no thread, no port: the edge steps everything.
 
+pub mod conditions;
 pub mod procedure;
 pub mod rig;
 pub mod stimulus;

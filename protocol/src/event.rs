@@ -108,12 +108,18 @@ events! {
     MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "표지 위치 오차" "difference, cm";
     TraFailed = 303 "tra_failed" Major "tra" "TRA did not answer its test" "TRA 시험 실패" "";
     TraRestored = 304 "tra_restored" Info "-" "TRA answers again" "TRA 복귀" "";
+    WheelDiameter = 305 "wheel_diameter" Major "-" "Way by wheels and way between markers differ" "차륜 직경 오차" "difference, 0.01 %";
+    PositionUnsure = 306 "position_unsure" Minor "marker_antenna" "No marker where one must be: position unsure" "위치 불확실" "PSM that did not come";
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";
     TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason";
+    AtoNotFollowing = 601 "ato_not_following" Major "ato_cpu" "Speed does not follow ATO's target" "목표속도 추종 불량" "error, cm/s";
+    StopOverrun = 602 "stop_overrun" Major "ato_cpu" "Passed the stop point" "정위치 초과" "distance, cm";
+    StopShort = 603 "stop_short" Minor "ato_cpu" "Stopped short of the stop point" "정위치 미달" "distance, cm";
+    AtoInputAbsurd = 604 "ato_input_absurd" Major "-" "ATO was given what no train can do" "ATO 입력 이상" "inputs as bits";
     ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
 }

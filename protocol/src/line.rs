@@ -27,6 +27,17 @@ pub struct Curve {
     pub radius_m: f64,
 }
 
+/// A speed code that the wayside sends from a position on. It is data of the bench: a unit reads
+/// codes from its antenna only.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CodeFrom {
+    /// Where it begins, m from the section's start.
+    pub at_m: f64,
+    /// Name of the code in the unit's code table.
+    pub code: String,
+}
+
 /// One section, from a departure to an arrival station.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -59,6 +70,9 @@ pub struct Section {
     /// Curves in order.
     #[serde(default)]
     pub curves: Vec<Curve>,
+    /// Speed codes along the section, in order.
+    #[serde(default)]
+    pub speed_codes: Vec<CodeFrom>,
 }
 
 /// The track database of a line.

@@ -1,6 +1,6 @@
 //! The catalogue of recorded signals: each has one definition of name, unit, kind and range.
 
-use crate::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode};
+use crate::message::{AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode};
 
 /// What a signal's number means.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +71,8 @@ macro_rules! signals {
 
 /// 0.01 steps.
 const CENTI: Kind = Kind::Number { lsb: 0.01 };
+/// 0.001 steps.
+const MILLI: Kind = Kind::Number { lsb: 0.001 };
 const UNITY: Kind = Kind::Number { lsb: 1.0 };
 /// Speeds in km/h come from whole cm/s.
 const CMS_KMH: Kind = Kind::Number { lsb: 0.036 };
@@ -86,6 +88,9 @@ signals! {
     LevelMv "level_mv" "mV" UNITY, 0 ..= 65535, Rig, "Signal level in the ATP antenna";
     TrainSpeed "train_speed" "km/h" CMS_KMH, 0 ..= 200, Rig, "True speed the tachometer generators follow";
     TrainPosition "train_position" "m" CENTI, -100000 ..= 100000, Rig, "True distance run";
+    TrainAccel "train_accel" "m/s²" MILLI, -20 ..= 20, Rig, "True acceleration of the train, mean of 50 ms";
+    TrainJerk "train_jerk" "m/s³" CENTI, -200 ..= 200, Rig, "Change of the true acceleration in 200 ms, by time";
+    ToStop "to_stop" "m" MILLI, -100000 ..= 100000, Rig, "True distance to the stop point of the section laid along the way";
     Tacho1 "tacho1" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 1";
     Tacho2 "tacho2" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 2";
     MarkerCoil "marker_coil" "" MARKERS, 0 ..= 4, Rig, "Marker whose coil was entered last";
@@ -128,6 +133,8 @@ signals! {
     Power "power" "" Kind::Bit, 0 ..= 1, Unit, "Powering command to TCMS";
     Brake "brake" "" Kind::Bit, 0 ..= 1, Unit, "Braking command to TCMS";
     Position "position" "m" CENTI, -100000 ..= 100000, Unit, "Position in the section as the unit sees it";
+    AtoState "ato_state" "" Kind::Enum(AtoState::LABELS), 0 ..= 3, Unit, "Operating state of ATO";
+    WheelCorrection "wheel_correction" "%" MILLI, -33 ..= 33, Unit, "What ATO adds to the way its wheels tell, found between markers";
     Armed "armed" "" Kind::Bit, 0 ..= 1, Unit, "Armed for stimuli";
     TwcOk "twc_ok" "" Kind::Bit, 0 ..= 1, Unit, "TWC communication up";
     TcmsOk "tcms_ok" "" Kind::Bit, 0 ..= 1, Unit, "TCMS communication up";

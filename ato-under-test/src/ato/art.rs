@@ -1,17 +1,6 @@
-//! ART: the operating state and the conditions of its changes [S0 §3.3].
+//! ART: the conditions under which the operating state changes [S0 §3.3].
 
-/// Operating states.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AtoState {
-    /// Being checked; cannot drive.
-    Inspection,
-    /// Standing, waiting for Automatic Run.
-    Stop,
-    /// Departing.
-    Start,
-    /// Between stations.
-    Run,
-}
+use protocol::message::AtoState;
 
 /// What the state depends on.
 #[derive(Clone, Copy, Debug)]
@@ -26,17 +15,15 @@ pub struct ArtInputs {
     pub arrived: bool,
 }
 
-impl AtoState {
-    /// The next state.
-    pub fn next(self, inputs: ArtInputs) -> Self {
-        match self {
-            _ if !inputs.healthy => Self::Inspection,
-            _ if !inputs.run => Self::Stop,
-            Self::Inspection | Self::Stop if !inputs.arrived => Self::Start,
-            Self::Start if !inputs.standstill => Self::Run,
-            Self::Run if inputs.standstill && inputs.arrived => Self::Stop,
-            state => state,
-        }
+/// The next state.
+pub fn next(state: AtoState, inputs: ArtInputs) -> AtoState {
+    match state {
+        _ if !inputs.healthy => AtoState::Inspection,
+        _ if !inputs.run => AtoState::Stop,
+        AtoState::Inspection | AtoState::Stop if !inputs.arrived => AtoState::Start,
+        AtoState::Start if !inputs.standstill => AtoState::Run,
+        AtoState::Run if inputs.standstill && inputs.arrived => AtoState::Stop,
+        state => state,
     }
 }
 
@@ -52,6 +39,10 @@ mod tests {
             standstill,
             arrived,
         };
+        let unhealthy = ArtInputs {
+            healthy: false,
+            ..at(true, true, true)
+        };
         let steps = [
             (at(false, true, false), AtoState::Stop),
             (at(true, true, false), AtoState::Start),
@@ -59,17 +50,11 @@ mod tests {
             (at(true, true, false), AtoState::Run),
             (at(true, true, true), AtoState::Stop),
             (at(true, true, true), AtoState::Stop),
-            (
-                ArtInputs {
-                    healthy: false,
-                    ..at(true, true, true)
-                },
-                AtoState::Inspection,
-            ),
+            (unhealthy, AtoState::Inspection),
         ];
         let mut state = AtoState::Inspection;
         for (inputs, expected) in steps {
-            state = state.next(inputs);
+            state = next(state, inputs);
             assert_eq!(state, expected, "{inputs:?}");
         }
     }

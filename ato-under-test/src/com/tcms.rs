@@ -55,6 +55,11 @@ impl TcmsLink {
         before.map(|_| self.alive)
     }
 
+    /// Passenger load last reported, kg.
+    pub fn load_kg(&self) -> f64 {
+        f64::from(self.last.load_100kg) * 100.0
+    }
+
     /// TCMS permits automatic operation.
     pub fn ready(&self) -> bool {
         self.alive

@@ -148,6 +148,11 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m)
     }
 
+    /// What is added to the way the wheels tell, as a share.
+    pub fn wheel_correction(&self) -> f64 {
+        0.0
+    }
+
     /// Section the train is in.
     pub fn section(&self) -> Option<&Section> {
         self.section.as_ref()

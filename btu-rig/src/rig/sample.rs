@@ -171,6 +171,11 @@ impl Recorder {
             (Signal::Speed1, kmh(status.speed1_cms)),
             (Signal::Speed2, kmh(status.speed2_cms)),
             (Signal::Position, f64::from(status.position_cm) / 100.0),
+            (Signal::AtoState, f64::from(status.ato_state.code())),
+            (
+                Signal::WheelCorrection,
+                f64::from(status.wheel_correction_10ppm) / 1000.0,
+            ),
             (Signal::Events, f64::from(status.events)),
             (Signal::RejectedFrames, f64::from(status.rejected_frames)),
             (Signal::TwcReceived, f64::from(status.twc_received)),

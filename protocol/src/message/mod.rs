@@ -23,7 +23,8 @@ pub use ptu::{
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
 pub use words::{
-    Answer, ArmRefusal, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Refusals, RunningMode,
+    Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Refusals,
+    RunningMode,
 };
 
 /// The four channels of the wire.
@@ -217,6 +218,7 @@ pub const ENUMS: &[WordSpec] = &[
     FsbCause::SPEC,
     Answer::SPEC,
     ArmRefusal::SPEC,
+    AtoState::SPEC,
 ];
 
 /// Every set of bits that is a field's type.

@@ -4,7 +4,9 @@
 //! board only while the unit is armed for that session.
 
 use super::layout::{layout, wire_bits};
-use super::words::{Answer, ArmRefusal, DoorSide, EbCause, FsbCause, Mode, Refusals, RunningMode};
+use super::words::{
+    Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, Refusals, RunningMode,
+};
 
 wire_bits! {
     /// States in `Status`.
@@ -278,6 +280,10 @@ layout! {
         test_level_mv: u16,
         /// Speed read back from the TEST board, cm/s.
         test_speed_cms: u16,
+        /// Operating state of ATO.
+        ato_state: AtoState,
+        /// What ATO adds to the way its wheels tell, found between markers, 10 ppm.
+        wheel_correction_10ppm: i16,
     }
 }
 layout! {

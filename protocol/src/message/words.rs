@@ -21,6 +21,20 @@ wire_enum! {
 }
 
 wire_enum! {
+    /// Operating state of ATO [S0 §3.3].
+    AtoState {
+        /// Being checked; cannot drive.
+        Inspection = 0 "inspection",
+        /// Standing, waiting for Automatic Run.
+        Stop = 1 "stop",
+        /// Departing.
+        Start = 2 "start",
+        /// Between stations.
+        Run = 3 "run",
+    }
+}
+
+wire_enum! {
     /// Position of the cab's mode switch.
     ModeSwitch {
         /// Off.

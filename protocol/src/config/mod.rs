@@ -9,6 +9,13 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+mod ato;
+
+pub use ato::{
+    AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit, PiConfig,
+    ProfileConfig, PssConfig, ServoConfig,
+};
+
 /// Why a configuration or line file is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ConfigError {
@@ -157,22 +164,6 @@ pub struct MarkerConfig {
     pub tra_test_ms: u32,
 }
 
-/// ATO.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AtoConfig {
-    /// Target below the limit, km/h [S2 §3.3: 5].
-    pub below_limit_kmh: f64,
-    /// Further lowering in normal running mode, km/h [S0 §3.1.1].
-    pub normal_lowering_kmh: f64,
-    /// Speed error that asks for full effort, km/h.
-    pub full_effort_error_kmh: f64,
-    /// Effort at which the speed is held without error, share of full effort per second of error.
-    pub integral_per_s: f64,
-    /// Brake rate of the station stop, m/s² [S2 §3.2: B_r].
-    pub stop_rate_mps2: f64,
-}
-
 /// Start-up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -246,11 +237,12 @@ impl UnitConfig {
         if self.receiver.level_min_mv >= self.receiver.level_max_mv {
             return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
         }
+        self.ato.check()?;
         self.check_codes()
     }
 
     /// Key, value and allowed range of every bounded number.
-    fn ranges(&self) -> [(&'static str, f64, f64, f64); 22] {
+    fn ranges(&self) -> [(&'static str, f64, f64, f64); 20] {
         let (r, t, o, l) = (&self.receiver, &self.tacho, &self.overspeed, &self.link);
         [
             (
@@ -298,8 +290,6 @@ impl UnitConfig {
                 200.0,
                 1000.0,
             ),
-            ("ato.below_limit_kmh", self.ato.below_limit_kmh, 0.0, 20.0),
-            ("ato.stop_rate_mps2", self.ato.stop_rate_mps2, 0.1, 1.2),
         ]
     }
 

@@ -1,0 +1,26 @@
+//! Fuzzy.
+
+use protocol::config::AtoConfig;
+
+use super::{Demand, Pss, Situation, SpeedController};
+
+/// The controller.
+#[derive(Debug)]
+pub struct Fuzzy(Pss);
+
+impl Fuzzy {
+    /// A controller with the configuration's gains.
+    pub fn new(config: &AtoConfig) -> Self {
+        Self(Pss::new(config))
+    }
+}
+
+impl SpeedController for Fuzzy {
+    fn step(&mut self, situation: &Situation) -> Demand {
+        self.0.step(situation)
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+}

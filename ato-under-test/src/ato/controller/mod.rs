@@ -1,0 +1,67 @@
+//! SPR: the speed controllers behind one seam [S0 §3.1, S1, S2 §3.2].
+//!
+//! Each makes its own target speed from the cruising target and the way to the stop point, and a
+//! force that brings the train there. What gravity and resistance by the track database cost is
+//! added outside ([`super::feed_forward`]); REG limits the sum and tells the controller what was
+//! granted.
+
+mod fuzzy;
+mod pi;
+mod pss;
+mod servo;
+
+use alloc::boxed::Box;
+use core::fmt::Debug;
+
+use protocol::config::{AtoConfig, ControllerKind};
+
+pub use fuzzy::Fuzzy;
+pub use pi::Pi;
+pub use pss::Pss;
+pub use servo::Servo;
+
+/// What a controller is given each 50 ms cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Situation {
+    /// Speed to run at: the most restrictive of limit and order, m/s.
+    pub cruise_mps: f64,
+    /// Speed at which the coming effort will meet the train, m/s.
+    pub speed_mps: f64,
+    /// Acceleration then, m/s².
+    pub accel_mps2: f64,
+    /// Way to the stop point then, m; `None` = not known.
+    pub to_stop_m: Option<f64>,
+    /// Way from each marker to the stop point, m.
+    pub markers_to_stop_m: [f64; 4],
+    /// Mass to be accelerated, kg.
+    pub mass_kg: f64,
+    /// Force granted for the last demand, N, feed-forward taken off again.
+    pub granted_n: f64,
+}
+
+/// What a controller asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// Target speed now, m/s.
+    pub target_mps: f64,
+    /// Force on the train, powering positive, N.
+    pub force_n: f64,
+}
+
+/// Turns a situation into a demand.
+pub trait SpeedController: Debug + Send {
+    /// One cycle.
+    fn step(&mut self, situation: &Situation) -> Demand;
+    /// The train stands and is not driven: begin anew.
+    fn reset(&mut self);
+}
+
+/// The controller a configuration chooses.
+pub fn controller(config: &AtoConfig) -> Box<dyn SpeedController> {
+    match config.controller {
+        ControllerKind::Servo => Box::new(Servo::new(config)),
+        ControllerKind::Pi => Box::new(Pi::new(config)),
+        ControllerKind::Fuzzy => Box::new(Fuzzy::new(config)),
+        ControllerKind::Pss => Box::new(Pss::new(config)),
+    }
+}

@@ -1,0 +1,26 @@
+//! Pi.
+
+use protocol::config::AtoConfig;
+
+use super::{Demand, Pss, Situation, SpeedController};
+
+/// The controller.
+#[derive(Debug)]
+pub struct Pi(Pss);
+
+impl Pi {
+    /// A controller with the configuration's gains.
+    pub fn new(config: &AtoConfig) -> Self {
+        Self(Pss::new(config))
+    }
+}
+
+impl SpeedController for Pi {
+    fn step(&mut self, situation: &Situation) -> Demand {
+        self.0.step(situation)
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+}

@@ -1,0 +1,59 @@
+//! Speed to run at: the most restrictive of limit and fixed speed, lowered by running mode
+//! [S0 §3.1.1, S2 §3.2].
+
+use protocol::Speed;
+use protocol::config::AtoConfig;
+use protocol::message::RunningMode;
+
+/// What the cruising speed depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct CruiseInputs {
+    /// Limit from ATP.
+    pub limit: Speed,
+    /// Fixed speed ordered by the wayside.
+    pub fixed_speed: Option<Speed>,
+    /// Running mode.
+    pub running_mode: RunningMode,
+}
+
+/// The cruising speed in force.
+pub fn cruise(inputs: CruiseInputs, config: &AtoConfig) -> Speed {
+    let lowering = match inputs.running_mode {
+        RunningMode::Recovery => 0.0,
+        RunningMode::Normal | RunningMode::Unknown(_) => config.normal_lowering_kmh,
+    };
+    let below = Speed::from_kmh(config.below_limit_kmh + lowering);
+    let allowed = (inputs.limit - below).max(Speed::ZERO);
+    inputs
+        .fixed_speed
+        .map_or(allowed, |fixed| allowed.min(fixed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::config;
+    use super::*;
+
+    /// Limit, order, running mode and the speed to run at, km/h; lowering 5 and 3 km/h.
+    #[test]
+    fn the_most_restrictive_counts() {
+        use RunningMode::{Normal, Recovery};
+        let mut config = config();
+        config.normal_lowering_kmh = 3.0;
+        for (limit, fixed, running_mode, expected) in [
+            (65.0, None, Recovery, 60.0),
+            (65.0, None, Normal, 57.0),
+            (65.0, Some(40.0), Recovery, 40.0),
+            (45.0, Some(60.0), Recovery, 40.0),
+            (0.0, Some(60.0), Recovery, 0.0),
+        ] {
+            let inputs = CruiseInputs {
+                limit: Speed::from_kmh(limit),
+                fixed_speed: fixed.map(Speed::from_kmh),
+                running_mode,
+            };
+            let got = cruise(inputs, &config).kmh();
+            assert!((got - expected).abs() < 1e-9, "{inputs:?}: {got}");
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Force that the track costs: gradients and curves of the track database under the train's length,
+//! and its running resistance.
+//!
+//! The printed laws have none of it: their integrators find it out after the fact, which a change of
+//! gradient within the last metres does not leave time for.
+
+use protocol::config::AtoTrainConfig;
+use protocol::line::Section;
+
+/// One kilogram-force per tonne, N/kg.
+const KGF_PER_T: f64 = 9.80665e-3;
+/// Places along the train at which the track is looked at.
+const PLACES: u32 = 8;
+
+/// Force that keeps the speed with the head at `position_m`, N; `weight_kg` is the mass that weighs.
+pub fn holding_force_n(
+    section: Option<&Section>,
+    position_m: f64,
+    weight_kg: f64,
+    train: &AtoTrainConfig,
+) -> f64 {
+    let track_kgf_t = section.map_or(0.0, |section| {
+        let sum: f64 = (0..PLACES)
+            .map(|i| {
+                let back_m = train.length_m * (f64::from(i) + 0.5) / f64::from(PLACES);
+                at(section, position_m - back_m, train)
+            })
+            .sum();
+        sum / f64::from(PLACES)
+    });
+    (track_kgf_t + train.rolling_kgf_t) * KGF_PER_T * weight_kg
+}
+
+/// Resistance of the track at one place, kgf/t; 1 ‰ is 1 kgf/t.
+fn at(section: &Section, position_m: f64, train: &AtoTrainConfig) -> f64 {
+    let gradient = section.gradients.iter().rev();
+    let permille = gradient
+        .skip_while(|g| g.at_m > position_m)
+        .map(|g| g.permille)
+        .next();
+    let curve = section.curves.iter().rev();
+    let radius_m = curve
+        .skip_while(|c| c.at_m > position_m)
+        .map(|c| c.radius_m)
+        .next();
+    let curve = radius_m
+        .filter(|&r| r > 0.0)
+        .map_or(0.0, |r| train.curve_kgf_m_t / r);
+    permille.unwrap_or(0.0) + curve
+}

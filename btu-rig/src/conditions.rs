@@ -1,0 +1,49 @@
+//! How the train and track of one run differ from what the unit is told.
+
+/// A force that works against the train besides its resistance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Disturbance {
+    /// None.
+    #[default]
+    None,
+    /// `f_d·v` with `f_d = amplitude·sin(2π·hz·t)` [S1: 2e4 N·s/m at 1 Hz].
+    Sine {
+        /// Amplitude, N·s/m.
+        amplitude_n_s_per_m: f64,
+        /// Frequency, Hz.
+        hz: f64,
+    },
+}
+
+/// Differences from the nominal train and track. The default has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// Added to every gradient of the track, ‰, uphill positive.
+    pub gradient_offset_permille: f64,
+    /// Wheel–rail adhesion coefficient at standstill; dry steel about 0.2, wet about 0.1.
+    pub adhesion: f64,
+    /// Factor on dead times and time constants of traction and brakes.
+    pub delay_factor: f64,
+    /// Factor on the braking effort the train gives for a demand.
+    pub brake_factor: f64,
+    /// True wheel diameter over the configured one.
+    pub wheel_factor: f64,
+    /// Where each marker really lies, relative to the track database, m.
+    pub marker_offsets_m: [f64; 4],
+    /// Disturbing force.
+    pub disturbance: Disturbance,
+}
+
+impl Default for Conditions {
+    fn default() -> Self {
+        Self {
+            gradient_offset_permille: 0.0,
+            adhesion: 0.2,
+            delay_factor: 1.0,
+            brake_factor: 1.0,
+            wheel_factor: 1.0,
+            marker_offsets_m: [0.0; 4],
+            disturbance: Disturbance::None,
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! ATO's part of the unit configuration: controller, profiles, what it knows of its train.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::{ConfigError, conflict, within};
+
+/// The speed controllers that can be chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ControllerKind {
+    /// S-curve profile and servo tracking controller [S0 §3.1].
+    Servo,
+    /// Jerk-limited profile and proportional-integral controller [S1].
+    Pi,
+    /// Jerk-limited profile and Mamdani fuzzy controller [S1].
+    Fuzzy,
+    /// Limit less a margin until the station stop's own curve is lower [S2 §3.2].
+    Pss,
+}
+
+impl ControllerKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Servo, Self::Pi, Self::Fuzzy, Self::Pss];
+
+    /// Name in files, commands and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Servo => "servo",
+            Self::Pi => "pi",
+            Self::Fuzzy => "fuzzy",
+            Self::Pss => "pss",
+        }
+    }
+
+    /// The controller called `name`.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// What the unit knows of the train it drives: REG turns force into a share of what is there, the
+/// controllers scale their gains by mass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AtoTrainConfig {
+    /// Empty mass, kg [S3].
+    pub empty_kg: f64,
+    /// Rotating parts as mass, kg [S3].
+    pub rotating_kg: f64,
+    /// Length, m.
+    pub length_m: f64,
+    /// Acceleration at full powering effort up to the base speed, km/h/s [S1, S3: 3.0].
+    pub power_kmh_per_s: f64,
+    /// Speed up to which it is there, km/h; constant power beyond [S1, S3: 40].
+    pub base_speed_kmh: f64,
+    /// Deceleration at full braking effort, km/h/s [S3: 3.5].
+    pub brake_kmh_per_s: f64,
+    /// Greatest change of effort, m/s³ of the acceleration it stands for [S1: 0.8].
+    pub jerk_mps3: f64,
+    /// Time from a command until the effort begins to follow it, ms.
+    pub dead_time_ms: f64,
+    /// Time constant with which it follows, ms.
+    pub lag_ms: f64,
+    /// Speed-proportional resistance, 1/s [S0: r = 0.001].
+    pub drag_per_s: f64,
+    /// Constant running resistance, kgf/t.
+    pub rolling_kgf_t: f64,
+    /// Curve resistance times radius, kgf·m/t [700/R].
+    pub curve_kgf_m_t: f64,
+}
+
+/// Servo tracking controller and its profile [S0 §3.1].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ServoConfig {
+    /// Chosen closed-loop poles in the z-plane, real and imaginary part [S0].
+    pub poles: [[f64; 2]; 4],
+    /// Lengthening of the S-curve per change of speed, s/(m/s) [S0 eq. 1: 5/6 printed].
+    pub s_curve_s_per_mps: f64,
+    /// Time of the S-curve for no change of speed, s [S0 eq. 1: 11].
+    pub s_curve_s: f64,
+    /// Speed held from PSM1 on, km/h [S0: 40].
+    pub psm1_kmh: f64,
+    /// Speed reached at PSM4, m/s [S0 eq. 2: 1.5].
+    pub psm4_mps: f64,
+    /// Pull toward the profile's own position, 1/s.
+    pub position_gain_per_s: f64,
+}
+
+/// Jerk-limited profile [S1].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProfileConfig {
+    /// Acceleration limit, m/s² [S1: a_L].
+    pub accel_mps2: f64,
+    /// Deceleration limit, m/s².
+    pub decel_mps2: f64,
+    /// Jerk limit, m/s³ [S1: J = 0.8].
+    pub jerk_mps3: f64,
+}
+
+/// Proportional-integral controller [S1].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PiConfig {
+    /// Proportional gain, N per unit of speed [S1: 300 000].
+    pub proportional_n: f64,
+    /// Integral gain, N/s per unit of speed [S1: 2 000].
+    pub integral_n_per_s: f64,
+    /// The unit of speed the gains are for, which S1 does not print: `mps` or `kmh`.
+    pub speed_unit: GainUnit,
+    /// Mass the gains are for, kg [S1: 432 000]; they scale with the load.
+    pub mass_kg: f64,
+}
+
+/// Unit of speed of a gain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GainUnit {
+    /// m/s.
+    Mps,
+    /// km/h.
+    Kmh,
+}
+
+/// Mamdani controller [S1]. Places of the isosceles sets are not printed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FuzzyConfig {
+    /// Error at which `ns`/`ps` peak, m/s.
+    pub small_error_mps: f64,
+    /// Error at which `nb`/`pb` peak, m/s.
+    pub big_error_mps: f64,
+    /// Change of error per second at which `negative`/`positive` peak, m/s².
+    pub change_mps2: f64,
+    /// Output at which `nh`/`ph` peak, share of the greatest force.
+    pub high_share: f64,
+    /// Output at which `nvh`/`pvh` peak, share of the greatest force.
+    pub very_high_share: f64,
+    /// Force that a share of 1 stands for at `mass_kg`, N [S1: 400 kN].
+    pub force_n: f64,
+    /// Mass it is for, kg [S1: 432 000]; it scales with the load.
+    pub mass_kg: f64,
+}
+
+/// Station stop curve [S2 §3.2] and the loop that follows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PssConfig {
+    /// Brake rate, m/s² [S2: B_r].
+    pub brake_rate_mps2: f64,
+    /// Distance at which the square root reaches zero, m [S2: E_off].
+    pub offset_m: f64,
+    /// Slope of the linear end, 1/s [S2: S_l].
+    pub slope_per_s: f64,
+    /// Speed error that asks for full effort, km/h.
+    pub full_effort_error_kmh: f64,
+    /// Share of the error taken away per second by the integral part.
+    pub integral_per_s: f64,
+}
+
+/// When ATO doubts itself or its inputs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AtoWatchConfig {
+    /// Speed error that is not following, km/h.
+    pub following_kmh: f64,
+    /// How long it must last, ms.
+    pub following_ms: u32,
+    /// Way past the stop point that is an overrun, m.
+    pub overrun_m: f64,
+    /// Difference between way by wheels and way between markers that is a fault, share.
+    pub wheel_error: f64,
+}
+
+/// ATO.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AtoConfig {
+    /// The speed controller in use.
+    pub controller: ControllerKind,
+    /// Target below the limit, km/h [S2 §3.3: 5].
+    pub below_limit_kmh: f64,
+    /// Further lowering in normal running mode, km/h [S0 §3.1.1].
+    pub normal_lowering_kmh: f64,
+    /// Distance before the stop point at which a train that stands has arrived, m.
+    pub arrived_m: f64,
+    /// Acceleration and deceleration ATO asks for at most, km/h/s [S0 §4: 3.0 and 3.5].
+    pub accel_kmh_per_s: f64,
+    /// See `accel_kmh_per_s`.
+    pub decel_kmh_per_s: f64,
+    /// What the unit knows of its train.
+    pub train: AtoTrainConfig,
+    /// Servo.
+    pub servo: ServoConfig,
+    /// Jerk-limited profile of `pi` and `fuzzy`.
+    pub profile: ProfileConfig,
+    /// PI.
+    pub pi: PiConfig,
+    /// Fuzzy.
+    pub fuzzy: FuzzyConfig,
+    /// Station stop by distance, also of `pi` and `fuzzy`.
+    pub pss: PssConfig,
+    /// When ATO doubts.
+    pub watch: AtoWatchConfig,
+}
+
+impl AtoConfig {
+    /// Checks ranges and that values fit together.
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
+        for (key, value, low, high) in self.ranges() {
+            within(key, value, low, high)?;
+        }
+        for [re, im] in self.servo.poles {
+            let size = libm::hypot(re, im);
+            if !(size < 1.0) {
+                return Err(ConfigError::Conflict(alloc::format!(
+                    "ato.servo.poles: {re} {im:+}i has size {size}, a stable pole lies inside the unit circle"
+                )));
+            }
+            let paired = self.servo.poles.iter().any(|p| *p == [re, -im]);
+            if !paired {
+                return Err(ConfigError::Conflict(alloc::format!(
+                    "ato.servo.poles: {re} {im:+}i needs its conjugate {re} {:+}i",
+                    -im
+                )));
+            }
+        }
+        if self.fuzzy.small_error_mps >= self.fuzzy.big_error_mps {
+            return Err(conflict(
+                "ato.fuzzy.small_error_mps must be below big_error_mps",
+            ));
+        }
+        Ok(())
+    }
+
+    fn ranges(&self) -> Vec<(&'static str, f64, f64, f64)> {
+        let (t, s, p) = (&self.train, &self.servo, &self.profile);
+        let (pi, f, pss, w) = (&self.pi, &self.fuzzy, &self.pss, &self.watch);
+        Vec::from([
+            ("ato.below_limit_kmh", self.below_limit_kmh, 0.0, 20.0),
+            (
+                "ato.normal_lowering_kmh",
+                self.normal_lowering_kmh,
+                0.0,
+                20.0,
+            ),
+            ("ato.arrived_m", self.arrived_m, 0.1, 5.0),
+            ("ato.accel_kmh_per_s", self.accel_kmh_per_s, 0.5, 5.0),
+            ("ato.decel_kmh_per_s", self.decel_kmh_per_s, 0.5, 5.0),
+            ("ato.train.empty_kg", t.empty_kg, 1e3, 1e7),
+            ("ato.train.rotating_kg", t.rotating_kg, 0.0, 1e6),
+            ("ato.train.length_m", t.length_m, 5.0, 500.0),
+            ("ato.train.power_kmh_per_s", t.power_kmh_per_s, 0.5, 6.0),
+            ("ato.train.base_speed_kmh", t.base_speed_kmh, 5.0, 130.0),
+            ("ato.train.brake_kmh_per_s", t.brake_kmh_per_s, 0.5, 6.0),
+            ("ato.train.jerk_mps3", t.jerk_mps3, 0.1, 100.0),
+            ("ato.train.dead_time_ms", t.dead_time_ms, 0.0, 1000.0),
+            ("ato.train.lag_ms", t.lag_ms, 0.0, 2000.0),
+            ("ato.train.drag_per_s", t.drag_per_s, 0.0, 0.1),
+            ("ato.train.rolling_kgf_t", t.rolling_kgf_t, 0.0, 20.0),
+            ("ato.train.curve_kgf_m_t", t.curve_kgf_m_t, 0.0, 2000.0),
+            (
+                "ato.servo.s_curve_s_per_mps",
+                s.s_curve_s_per_mps,
+                0.0,
+                10.0,
+            ),
+            ("ato.servo.s_curve_s", s.s_curve_s, 0.5, 60.0),
+            ("ato.servo.psm1_kmh", s.psm1_kmh, 10.0, 80.0),
+            ("ato.servo.psm4_mps", s.psm4_mps, 0.3, 5.0),
+            (
+                "ato.servo.position_gain_per_s",
+                s.position_gain_per_s,
+                0.0,
+                2.0,
+            ),
+            ("ato.profile.accel_mps2", p.accel_mps2, 0.1, 2.0),
+            ("ato.profile.decel_mps2", p.decel_mps2, 0.1, 2.0),
+            ("ato.profile.jerk_mps3", p.jerk_mps3, 0.1, 5.0),
+            ("ato.pi.proportional_n", pi.proportional_n, 0.0, 1e8),
+            ("ato.pi.integral_n_per_s", pi.integral_n_per_s, 0.0, 1e8),
+            ("ato.pi.mass_kg", pi.mass_kg, 1e3, 1e7),
+            ("ato.fuzzy.small_error_mps", f.small_error_mps, 1e-3, 10.0),
+            ("ato.fuzzy.big_error_mps", f.big_error_mps, 1e-3, 20.0),
+            ("ato.fuzzy.change_mps2", f.change_mps2, 1e-3, 20.0),
+            ("ato.fuzzy.high_share", f.high_share, 0.01, 1.0),
+            ("ato.fuzzy.very_high_share", f.very_high_share, 0.01, 3.0),
+            ("ato.fuzzy.force_n", f.force_n, 1e3, 1e7),
+            ("ato.fuzzy.mass_kg", f.mass_kg, 1e3, 1e7),
+            ("ato.pss.brake_rate_mps2", pss.brake_rate_mps2, 0.1, 1.2),
+            ("ato.pss.offset_m", pss.offset_m, 0.0, 5.0),
+            ("ato.pss.slope_per_s", pss.slope_per_s, 0.1, 10.0),
+            (
+                "ato.pss.full_effort_error_kmh",
+                pss.full_effort_error_kmh,
+                0.1,
+                50.0,
+            ),
+            ("ato.pss.integral_per_s", pss.integral_per_s, 0.0, 5.0),
+            ("ato.watch.following_kmh", w.following_kmh, 0.5, 50.0),
+            ("ato.watch.overrun_m", w.overrun_m, 0.1, 20.0),
+            ("ato.watch.wheel_error", w.wheel_error, 0.001, 0.2),
+        ])
+    }
+}
