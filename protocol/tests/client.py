@@ -14,7 +14,7 @@ FROM_UNIT = {                               # the fields that are used here; x =
     (PTU, 0x82): ("ArmChallenge", ">II", "session challenge"),
     (PTU, 0x83): ("ArmState", ">IBB", "session armed refusal"),
     (PTU, 0x84): ("StimulusAnswer", ">HB", "request_seq answer"),
-    (PTU, 0x90): ("Status", ">H3xB34x", "bits code_index"),
+    (PTU, 0x90): ("Status", ">H3xB37x", "bits code_index"),
     (IO, 0x81): ("IoOutput", ">HH4x", "outputs limit_cms"),
     (TCMS, 0x81): ("AtcToTcms", ">9x", "")}
 
