@@ -122,7 +122,8 @@ mod tests {
     fn markers_pulse_at_their_places() {
         let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
         let (mut wheel, mut markers) = (Wheel::default(), Markers::default());
-        markers.lay(&line.sections[0], 0.0);
+        let section = line.section(61).unwrap();
+        markers.lay(section, 0.0);
         wheel.travel(850.03, Speed::from_kmh(60.0), 0.8).unwrap();
         let mut seen = Vec::new();
         while !wheel.settled() {
@@ -135,9 +136,7 @@ mod tests {
             }
         }
         assert_eq!(seen.len(), 4);
-        for ((psm, at), (expected, place)) in
-            seen.into_iter().zip((1..).zip(line.sections[0].markers_m))
-        {
+        for ((psm, at), (expected, place)) in seen.into_iter().zip((1..).zip(section.markers_m)) {
             assert_eq!(psm, expected);
             assert!((at - place).abs() < 1e-3, "PSM{psm}: {at}");
         }

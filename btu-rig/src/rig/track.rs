@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn gradients_lie_where_the_section_has_them() {
         let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
-        let track = Track::new(line.sections[0].clone(), 1000.0);
+        let track = Track::new(line.section(61).unwrap().clone(), 1000.0);
         let at = [0.0, 1199.9, 1200.0, 1500.0, 1900.0];
         assert_eq!(
             at.map(|m| track.gradient_permille(m)),

@@ -107,7 +107,7 @@ fn what_cannot_be_is_refused_in_words() {
         ),
         (
             Stimulus::MarkersAlong { section: Some(99) },
-            "no section 99; it has 61",
+            "no section 99; it has 54, 55",
         ),
         (Stimulus::Controller { notch: 5 }, "controller notch 5"),
         (Stimulus::Marker { psm: 0 }, "marker 0"),
