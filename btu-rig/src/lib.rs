@@ -4,12 +4,14 @@
 //! * [`stimulus`]: what a procedure may do to the unit, as typed values;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
 //!   the unit only through frames;
+//! * [`drive`]: a station-to-station automatic run with its figures;
 //! * [`procedure`]: check procedures built by Starlark at load, checked, and run by a polled state
 //!   machine.
 //!
 //! No clock, no thread, no port: the edge steps everything.
 
 pub mod conditions;
+pub mod drive;
 pub mod procedure;
 pub mod rig;
 pub mod stimulus;

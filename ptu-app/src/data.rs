@@ -136,12 +136,16 @@ impl ScriptsDirectory {
         names
     }
 
-    fn load<T, E: Display>(
+    /// The file `FOLDER/NAME.toml` as `parse` reads it; `what` it is called.
+    ///
+    /// # Errors
+    /// There is none of that name, or it is wrong.
+    pub(crate) fn load<T, E: Display>(
         &self,
         folder: &str,
         name: &str,
         what: &str,
-        parse: impl Fn(&str) -> Result<T, E>,
+        parse: impl FnOnce(&str) -> Result<T, E>,
     ) -> Result<DataFile<T>, Failure> {
         let file = self.0.join(folder).join(format!("{name}.toml"));
         if !file.is_file() {

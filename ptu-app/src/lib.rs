@@ -2,6 +2,7 @@
 //!
 //! * [`cli`]: one file per verb;
 //! * [`run`]: procedures on benches, one stream of events, recording;
+//! * [`drive`]: station-to-station automatic runs, one or thousands;
 //! * [`link`]: the embedded unit and units on ports;
 //! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
 //! * [`data`]: the scripts directory.
@@ -12,6 +13,7 @@ pub mod cli;
 pub mod clock;
 mod console;
 pub mod data;
+pub mod drive;
 pub mod failure;
 pub mod link;
 mod owner;

@@ -2,6 +2,7 @@
 
 mod catalog;
 mod db;
+mod drive;
 mod faults;
 mod ports;
 mod run;
@@ -41,6 +42,8 @@ pub struct Cli {
 enum Verb {
     /// Run check procedures
     Run(Box<run::RunArguments>),
+    /// Drive from station to station and measure the stop
+    Drive(Box<drive::DriveArguments>),
     /// Show faults, signals, speed codes, lines or parts
     Catalog(catalog::CatalogArguments),
     /// Show recorded runs
@@ -63,6 +66,7 @@ impl Cli {
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
             Verb::Run(arguments) => arguments.run(),
+            Verb::Drive(arguments) => arguments.run(),
             Verb::Catalog(arguments) => arguments.run(),
             Verb::Runs(arguments) => arguments.run(),
             Verb::Faults(arguments) => arguments.run(),

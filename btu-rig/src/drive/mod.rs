@@ -1,0 +1,326 @@
+//! A station-to-station automatic run: what a depot does with a whole train, done with a unit and
+//! the rig. Sans-IO: stepped once a scan after [`crate::rig::Bench::tick`], it gives the unit what
+//! a wayside and a cab would, watches the train, and ends with an [`Outcome`].
+//!
+//! It knows of the unit what frames say. Truth (position, speed, acceleration) is the rig's own.
+//!
+//! * [`plan`]: what is run;
+//! * [`row`]: what is recorded each cycle;
+//! * [`metrics`]: figures of a run, from its rows;
+//! * [`landmarks`]: what happened where, from its rows and the unit's log.
+
+pub mod landmarks;
+pub mod metrics;
+mod plan;
+mod recording;
+mod row;
+
+use protocol::message::{EbCause, Mode, ModeSwitch};
+use protocol::signal::Signal;
+use protocol::{CYCLE, Duration, Instant};
+use thiserror::Error;
+
+use crate::procedure::Refusal;
+use crate::rig::Rig;
+use crate::stimulus::Stimulus;
+
+pub use landmarks::Landmark;
+pub use metrics::Metrics;
+pub use plan::{DrivePlan, PlanError};
+pub use row::Row;
+
+use recording::Recording;
+
+/// Time a unit may take from power-up until ATP sets Automatic.
+const READY_WITHIN: Duration = Duration::from_ms(10_000);
+/// Time from the start button until ATP sets Automatic Run.
+const RUN_WITHIN: Duration = Duration::from_ms(2_000);
+/// Time from Automatic Run until the train moves.
+const LEAVE_WITHIN: Duration = Duration::from_ms(20_000);
+/// Standing for so long with no powering asked for, the run is over.
+const STANDS: Duration = Duration::from_ms(1_000);
+/// Standing for so long it is over, whatever is asked for.
+const STANDS_AT_MOST: Duration = Duration::from_ms(10_000);
+/// A run takes no longer than this and the section at the speed below.
+const RUN_BASE: Duration = Duration::from_ms(60_000);
+/// Slowest believable mean speed of a run, m/s.
+const SLOWEST_MPS: f64 = 4.0;
+/// Way after which the train has left the departure station's loop, m.
+const LOOP_LEFT_M: f64 = 50.0;
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Ending {
+    /// The train stands and powers no more.
+    #[error("stopped")]
+    Stopped,
+    /// The rig cannot do what the plan asks for.
+    #[error("the bench refused: {0}")]
+    Refused(String),
+    /// ATP did not set Automatic.
+    #[error("never ready: ATP did not set Automatic{}", lacking(*.refusals))]
+    NeverReady {
+        /// Preconditions that do not hold, if the unit said.
+        refusals: Option<u16>,
+    },
+    /// ATP did not set Automatic Run after the start button.
+    #[error("never started: ATP did not set Automatic Run{}", lacking(*.refusals))]
+    NeverStarted {
+        /// Preconditions that do not hold, if the unit said.
+        refusals: Option<u16>,
+    },
+    /// The train never moved.
+    #[error("never left: no motion in Automatic Run")]
+    NeverLeft,
+    /// The unit applied the emergency brake; the train stands.
+    #[error("emergency brake{}", because(*.cause))]
+    EmergencyBrake {
+        /// Why, if the unit said.
+        cause: Option<EbCause>,
+    },
+    /// ATP took the train out of Automatic Run while it moved.
+    #[error("left Automatic Run while moving")]
+    LeftAutomatic,
+    /// The run took too long.
+    #[error("time limit: still under way")]
+    TimeLimit,
+    /// The unit cannot be reached any more.
+    #[error("link lost: {0}")]
+    LinkLost(String),
+}
+
+fn lacking(refusals: Option<u16>) -> String {
+    refusals.map_or_else(String::new, |bits| format!(" (refusals {bits:#06x})"))
+}
+
+fn because(cause: Option<EbCause>) -> String {
+    cause.map_or_else(String::new, |cause| format!(": {}", cause.label()))
+}
+
+/// What a run came to.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// One row a cycle from the start button on. Time 0 is when the train began to move.
+    pub rows: Vec<Row>,
+    /// What happened on the way.
+    pub landmarks: Vec<Landmark>,
+    /// Figures; `None` when the train never moved.
+    pub metrics: Option<Metrics>,
+}
+
+/// Where the run is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Nothing done yet.
+    Begin,
+    /// The cab is ready; ATP is to set Automatic.
+    Preparing { since: Instant },
+    /// Start was pressed; ATP is to set Automatic Run.
+    Starting { since: Instant },
+    /// Automatic Run; the train is to move.
+    Leaving { since: Instant },
+    /// It moves, or stands after having moved.
+    Running {
+        since: Instant,
+        stands: Option<Instant>,
+    },
+    /// Over.
+    Over,
+}
+
+/// A run under way.
+#[derive(Debug)]
+pub struct Drive {
+    plan: DrivePlan,
+    phase: Phase,
+    next_code: usize,
+    handed_over: bool,
+    braked: Option<Option<EbCause>>,
+    recording: Recording,
+}
+
+impl Drive {
+    /// A run that begins with the next step, on a rig whose train stands.
+    pub fn new(plan: DrivePlan) -> Self {
+        Self {
+            plan,
+            phase: Phase::Begin,
+            next_code: 0,
+            handed_over: false,
+            braked: None,
+            recording: Recording::default(),
+        }
+    }
+
+    /// One scan; the outcome once it is over.
+    pub fn step(&mut self, now: Instant, rig: &mut Rig) -> Option<Outcome> {
+        if self.phase == Phase::Begin {
+            if let Err(Refusal(text)) = self.prepare(now, rig) {
+                return Some(self.end(Ending::Refused(text)));
+            }
+            self.phase = Phase::Preparing { since: now };
+        }
+        self.recording.hear_events(now, rig.take_events());
+        let x_m = self.position_m(rig);
+        if now.as_us().is_multiple_of(CYCLE.as_us()) {
+            self.recording.record(now, x_m, rig);
+        }
+        let ending = match self.give_wayside(now, x_m, rig) {
+            Err(Refusal(text)) => Some(Ending::Refused(text)),
+            Ok(()) => self.advance(now, rig),
+        };
+        ending.map(|ending| self.end(ending))
+    }
+
+    /// Ends a run that cannot go on.
+    pub fn abandon(&mut self, ending: Ending) -> Outcome {
+        self.end(ending)
+    }
+
+    /// Everything the cab and the wayside give a train before departure.
+    fn prepare(&mut self, now: Instant, rig: &mut Rig) -> Result<(), Refusal> {
+        let section = &self.plan.section;
+        self.recording.begins_at_m = rig.sample().get(Signal::TrainPosition).unwrap_or(0.0);
+        for stimulus in [
+            Stimulus::PtuSilent {
+                on: !self.plan.tester,
+            },
+            Stimulus::Load {
+                passengers_kg: self.plan.load_kg,
+            },
+            Stimulus::Station(self.plan.at_departure()),
+            Stimulus::MarkersAlong {
+                section: Some(section.section),
+            },
+            Stimulus::TrainDriven { on: true },
+            Stimulus::ModeSwitch(ModeSwitch::Automatic),
+        ] {
+            rig.apply(now, &stimulus)?;
+        }
+        Ok(())
+    }
+
+    /// Head of the train in the section, m.
+    fn position_m(&self, rig: &Rig) -> f64 {
+        let run_m = rig.sample().get(Signal::TrainPosition).unwrap_or(0.0);
+        self.plan.section.start_m + run_m - self.recording.begins_at_m
+    }
+
+    /// Codes along the section, and the next loop.
+    fn give_wayside(&mut self, now: Instant, x_m: f64, rig: &mut Rig) -> Result<(), Refusal> {
+        while let Some(code) = self.plan.codes.get(self.next_code)
+            && code.at_m <= x_m
+        {
+            rig.apply(now, &code.stimulus)?;
+            self.next_code += 1;
+        }
+        if !self.handed_over && x_m >= self.plan.section.start_m + LOOP_LEFT_M {
+            self.handed_over = true;
+            rig.apply(now, &Stimulus::Station(self.plan.at_arrival()))?;
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, now: Instant, rig: &mut Rig) -> Option<Ending> {
+        if let Some(text) = rig.link_error() {
+            return Some(Ending::LinkLost(text));
+        }
+        let sample = rig.sample();
+        let mode = sample
+            .get(Signal::Mode)
+            .map(|code| Mode::from_code(code as u8));
+        let refusals = sample.get(Signal::Refusals).map(|bits| bits as u16);
+        let moving = sample.get(Signal::TrainSpeed).is_some_and(|v| v > 0.0);
+        let late = |since: Instant, limit: Duration| now.since(since) >= limit;
+        match self.phase {
+            Phase::Preparing { .. } if mode == Some(Mode::Automatic) => {
+                if let Err(Refusal(text)) = rig.apply(now, &Stimulus::Start) {
+                    return Some(Ending::Refused(text));
+                }
+                self.recording.on = true;
+                self.phase = Phase::Starting { since: now };
+            }
+            Phase::Preparing { since } if late(since, READY_WITHIN) => {
+                return Some(Ending::NeverReady { refusals });
+            }
+            Phase::Starting { .. } if mode == Some(Mode::AutomaticRun) => {
+                self.phase = Phase::Leaving { since: now };
+            }
+            Phase::Starting { since } if late(since, RUN_WITHIN) => {
+                return Some(Ending::NeverStarted { refusals });
+            }
+            Phase::Leaving { .. } if moving => {
+                self.recording.moves_since = Some(now);
+                self.phase = Phase::Running {
+                    since: now,
+                    stands: None,
+                };
+            }
+            Phase::Leaving { since } if late(since, LEAVE_WITHIN) => {
+                return Some(Ending::NeverLeft);
+            }
+            Phase::Running { since, stands } => {
+                return self.run(now, rig, (since, stands), mode, moving);
+            }
+            _ => {}
+        }
+        None
+    }
+
+    /// The train has left.
+    fn run(
+        &mut self,
+        now: Instant,
+        rig: &Rig,
+        (since, stands): (Instant, Option<Instant>),
+        mode: Option<Mode>,
+        moving: bool,
+    ) -> Option<Ending> {
+        let sample = rig.sample();
+        if sample.get(Signal::Eb) == Some(1.0) && self.braked.is_none_or(|cause| cause.is_none()) {
+            let cause = sample
+                .get(Signal::EbCause)
+                .map(|code| EbCause::from_code(code as u8));
+            self.braked = Some(cause.filter(|cause| *cause != EbCause::None));
+        }
+        if moving {
+            self.phase = Phase::Running {
+                since,
+                stands: None,
+            };
+            if now.since(since) >= self.longest() {
+                return Some(Ending::TimeLimit);
+            }
+            let left = mode != Some(Mode::AutomaticRun) && self.braked.is_none();
+            return left.then_some(Ending::LeftAutomatic);
+        }
+        let stands = stands.unwrap_or(now);
+        self.phase = Phase::Running {
+            since,
+            stands: Some(stands),
+        };
+        let powers = sample.get(Signal::Power) == Some(1.0)
+            && sample
+                .get(Signal::Effort)
+                .is_some_and(|effort| effort > 0.0);
+        let over = if powers { STANDS_AT_MOST } else { STANDS };
+        (now.since(stands) >= over).then(|| match self.braked {
+            Some(cause) => Ending::EmergencyBrake { cause },
+            None => Ending::Stopped,
+        })
+    }
+
+    fn longest(&self) -> Duration {
+        let section = &self.plan.section;
+        let at_slowest = Duration::from_secs((section.stop_m - section.start_m) / SLOWEST_MPS);
+        Duration::from_us(RUN_BASE.as_us() + at_slowest.as_us())
+    }
+
+    fn end(&mut self, ending: Ending) -> Outcome {
+        self.phase = Phase::Over;
+        let recording = std::mem::take(&mut self.recording);
+        recording.outcome(ending, &self.plan)
+    }
+}
