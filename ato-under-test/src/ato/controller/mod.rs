@@ -7,6 +7,7 @@
 
 mod fuzzy;
 mod pi;
+mod pole_placement;
 mod pss;
 mod servo;
 
@@ -17,6 +18,7 @@ use protocol::config::{AtoConfig, ControllerKind};
 
 pub use fuzzy::Fuzzy;
 pub use pi::Pi;
+pub use pole_placement::{Gains, place};
 pub use pss::Pss;
 pub use servo::Servo;
 

@@ -1,26 +1,184 @@
-//! Servo.
+//! Servo: S-curve profile, marker-driven station stop, tracking controller [S0 §3.1].
+//!
+//! Terms: *reference* is the profile's speed and acceleration now; *compensator* the three integrators
+//! of the error [S0 eq. 7]; *pull* the correction of the reference's speed by its distance from where the
+//! train is.
+//!
+//! The printed law is u = −K·v + K_c·x_c with gains placed for a point mass. Added to it, because a real
+//! train has what the point mass has not:
+//! * **Anti-windup.** When REG could not grant the effort, the compensator takes back the error that would
+//!   have asked for what was granted (conditioning). Without it a clipped ramp leaves three integrators
+//!   full and the stop is lost; the profile's own peak, 3.2 km/h/s, is above the 3.0 allowed.
+//! * **Gains by load.** K and K_c are placed per kilogram and scale with the mass TCMS reports.
+//! * **Feed-forward** of the profile's acceleration, so that the compensator has only errors to correct.
+//! * **Lead.** Effort follows its demand with a lag; the law sees v + lag·a, the speed the train will have
+//!   when the effort has built up, for which the train again is the printed point mass.
+//! * **Pull** toward the profile's own way between PSM2 and PSM4, since eq. (2) runs by time.
 
-use protocol::config::AtoConfig;
+use protocol::CYCLE;
+use protocol::config::{AtoConfig, ServoConfig};
 
-use super::{Demand, Pss, Situation, SpeedController};
+use super::{Demand, Gains, Situation, SpeedController, place};
+use crate::ato::profile::{Approach, Reference, SCurve, last_metres};
+
+/// Greatest pull, share of the reference's speed and m/s.
+const PULL: (f64, f64) = (0.1, 0.1);
+/// Acceleration of a train that has to begin anew within the last metres, m/s² [default].
+const CREEP_MPS2: f64 = 0.3;
+
+/// What the profile is doing.
+#[derive(Debug)]
+enum Phase {
+    /// Toward or at the cruising speed by eq. (1).
+    Cruise(SCurve),
+    /// PSM2 to PSM4 by eq. (2).
+    Approach(Approach),
+    /// From PSM4 by eq. (3); the speed it began with and the way it had left then.
+    LastMetres { from_mps: f64, from_m: f64 },
+}
 
 /// The controller.
 #[derive(Debug)]
-pub struct Servo(Pss);
+pub struct Servo {
+    config: ServoConfig,
+    /// Gains for one kilogram.
+    gains: Gains,
+    drag_per_s: f64,
+    lag_s: f64,
+    phase: Phase,
+    reference: Reference,
+    /// Integrals of the error: triple, double, single.
+    integrals: [f64; 3],
+    error_mps: f64,
+    asked_mps2: f64,
+}
 
 impl Servo {
-    /// A controller with the configuration's gains.
+    /// A controller with the configuration's poles and profile.
     pub fn new(config: &AtoConfig) -> Self {
-        Self(Pss::new(config))
+        Self {
+            config: config.servo.clone(),
+            gains: place(&config.servo.poles, 1.0, config.train.drag_per_s),
+            drag_per_s: config.train.drag_per_s,
+            lag_s: config.train.lag_ms / 1000.0,
+            phase: Phase::Cruise(SCurve::hold(0.0)),
+            reference: Reference::default(),
+            integrals: [0.0; 3],
+            error_mps: 0.0,
+            asked_mps2: 0.0,
+        }
+    }
+
+    /// Moves the profile on; gives the speed to follow, pull included.
+    fn advance(&mut self, situation: &Situation) -> f64 {
+        let dt = CYCLE.as_secs();
+        let to_stop = situation.to_stop_m.unwrap_or(f64::INFINITY);
+        self.change_phase(situation, to_stop);
+        let mut pull = 0.0;
+        match &mut self.phase {
+            Phase::Cruise(curve) => self.reference = curve.step(dt),
+            Phase::Approach(approach) => {
+                let (reference, way_m) = approach.step(dt);
+                let from_psm4 = to_stop - situation.markers_to_stop_m[3];
+                let most = PULL.0 * reference.speed_mps + PULL.1;
+                pull = (self.config.position_gain_per_s * (from_psm4 - way_m)).clamp(-most, most);
+                self.reference = reference;
+            }
+            Phase::LastMetres { from_mps, from_m } => {
+                let rising = self.reference.speed_mps.max(0.0) + CREEP_MPS2 * dt;
+                self.reference = last_metres(to_stop, *from_mps, *from_m);
+                if self.reference.speed_mps > rising {
+                    self.reference.speed_mps = rising;
+                    self.reference.accel_mps2 = CREEP_MPS2;
+                }
+            }
+        }
+        self.reference.speed_mps + pull
+    }
+
+    fn change_phase(&mut self, situation: &Situation, to_stop: f64) {
+        let [psm1, psm2, _, psm4] = situation.markers_to_stop_m;
+        let end_mps = self.config.psm4_mps;
+        if matches!(self.phase, Phase::LastMetres { .. }) {
+            return;
+        }
+        if to_stop <= psm4 {
+            self.phase = Phase::LastMetres {
+                from_mps: end_mps,
+                from_m: psm4,
+            };
+            return;
+        }
+        if matches!(self.phase, Phase::Approach(_)) {
+            return;
+        }
+        if to_stop <= psm2 && self.reference.speed_mps > end_mps {
+            let way_m = to_stop - psm4;
+            self.phase = Phase::Approach(Approach::new(self.reference.speed_mps, end_mps, way_m));
+            return;
+        }
+        let mut target = situation.cruise_mps;
+        if to_stop <= psm1 {
+            target = target.min(self.config.psm1_kmh / 3.6);
+        }
+        if to_stop <= psm2 {
+            target = target.min(end_mps);
+        }
+        if let Phase::Cruise(curve) = &mut self.phase
+            && curve.target_mps() != target
+        {
+            let change = libm::fabs(target - self.reference.speed_mps);
+            let seconds = self.config.s_curve_s_per_mps * change + self.config.s_curve_s;
+            *curve = SCurve::new(self.reference, target, seconds);
+        }
+    }
+
+    /// Compensator [S0 eq. 7], conditioned on what was granted of the last demand.
+    fn compensate(&mut self, granted_mps2: f64) {
+        let t = CYCLE.as_secs();
+        let input = [t * t * t / 6.0, t * t / 2.0, t];
+        let gain: f64 = dot(&self.gains.integrals, &input);
+        let taken_back = (granted_mps2 - self.asked_mps2) / gain;
+        let [mut a, mut b, mut c] = self.integrals;
+        a += input[0] * taken_back;
+        b += input[1] * taken_back;
+        c += input[2] * taken_back;
+        let e = self.error_mps;
+        self.integrals = [
+            a + t * b + t * t / 2.0 * c + input[0] * e,
+            b + t * c + input[1] * e,
+            c + t * e,
+        ];
     }
 }
 
 impl SpeedController for Servo {
     fn step(&mut self, situation: &Situation) -> Demand {
-        self.0.step(situation)
+        self.compensate(situation.granted_n / situation.mass_kg);
+        let follow_mps = self.advance(situation);
+        let reference = self.reference;
+        let wanted = follow_mps + self.lag_s * reference.accel_mps2;
+        let seen = situation.speed_mps + self.lag_s * situation.accel_mps2;
+        self.error_mps = wanted - seen;
+        self.asked_mps2 = reference.accel_mps2
+            + self.drag_per_s * follow_mps
+            + self.gains.speed * self.error_mps
+            + dot(&self.gains.integrals, &self.integrals);
+        Demand {
+            target_mps: reference.speed_mps,
+            force_n: self.asked_mps2 * situation.mass_kg,
+        }
     }
 
     fn reset(&mut self) {
-        self.0.reset();
+        self.phase = Phase::Cruise(SCurve::hold(0.0));
+        self.reference = Reference::default();
+        self.integrals = [0.0; 3];
+        self.error_mps = 0.0;
+        self.asked_mps2 = 0.0;
     }
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
