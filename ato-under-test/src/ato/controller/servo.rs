@@ -19,7 +19,7 @@ use protocol::CYCLE;
 use protocol::config::{AtoConfig, ServoConfig};
 
 use super::{Demand, Gains, Situation, SpeedController, place};
-use crate::ato::profile::{Approach, Reference, SCurve, last_metres};
+use crate::ato::profile::{MarkerApproach, SCurve, Setpoint, last_metres};
 
 /// Greatest pull, share of the reference's speed and m/s.
 const PULL: (f64, f64) = (0.1, 0.1);
@@ -32,7 +32,7 @@ enum Phase {
     /// Toward or at the cruising speed by eq. (1).
     Cruise(SCurve),
     /// PSM2 to PSM4 by eq. (2).
-    Approach(Approach),
+    Approach(MarkerApproach),
     /// From PSM4 by eq. (3); the speed it began with and the way it had left then.
     LastMetres { from_mps: f64, from_m: f64 },
 }
@@ -46,7 +46,7 @@ pub struct Servo {
     drag_per_s: f64,
     lag_s: f64,
     phase: Phase,
-    reference: Reference,
+    reference: Setpoint,
     /// Integrals of the error: triple, double, single.
     integrals: [f64; 3],
     error_mps: f64,
@@ -62,7 +62,7 @@ impl Servo {
             drag_per_s: config.train.drag_per_s,
             lag_s: config.train.lag_ms / 1000.0,
             phase: Phase::Cruise(SCurve::hold(0.0)),
-            reference: Reference::default(),
+            reference: Setpoint::default(),
             integrals: [0.0; 3],
             error_mps: 0.0,
             asked_mps2: 0.0,
@@ -114,7 +114,11 @@ impl Servo {
         }
         if to_stop <= psm2 && self.reference.speed_mps > end_mps {
             let way_m = to_stop - psm4;
-            self.phase = Phase::Approach(Approach::new(self.reference.speed_mps, end_mps, way_m));
+            self.phase = Phase::Approach(MarkerApproach::new(
+                self.reference.speed_mps,
+                end_mps,
+                way_m,
+            ));
             return;
         }
         let mut target = situation.cruise_mps;
@@ -172,7 +176,7 @@ impl SpeedController for Servo {
 
     fn reset(&mut self) {
         self.phase = Phase::Cruise(SCurve::hold(0.0));
-        self.reference = Reference::default();
+        self.reference = Setpoint::default();
         self.integrals = [0.0; 3];
         self.error_mps = 0.0;
         self.asked_mps2 = 0.0;

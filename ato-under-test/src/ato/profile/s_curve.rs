@@ -7,7 +7,7 @@ const CARRY_JERK: f64 = 0.8;
 
 /// A target speed and how it changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reference {
+pub struct Setpoint {
     /// Speed, m/s.
     pub speed_mps: f64,
     /// Acceleration, m/s².
@@ -29,7 +29,7 @@ pub struct SCurve {
 
 impl SCurve {
     /// From a reference to a speed in `seconds` [S0: t_a = 5/6·|Δv| + 11].
-    pub fn new(from: Reference, to_mps: f64, seconds: f64) -> Self {
+    pub fn new(from: Setpoint, to_mps: f64, seconds: f64) -> Self {
         let carried_s = (2.0 * libm::fabs(from.accel_mps2) / CARRY_JERK).max(CARRY_S);
         Self {
             from_mps: from.speed_mps,
@@ -43,7 +43,7 @@ impl SCurve {
 
     /// Holds a speed.
     pub fn hold(speed_mps: f64) -> Self {
-        let from = Reference {
+        let from = Setpoint {
             speed_mps,
             accel_mps2: 0.0,
         };
@@ -58,15 +58,15 @@ impl SCurve {
     }
 
     /// Moves on by `dt_s`.
-    pub fn step(&mut self, dt_s: f64) -> Reference {
+    pub fn step(&mut self, dt_s: f64) -> Setpoint {
         self.elapsed_s += dt_s;
         self.at(self.elapsed_s)
     }
 
-    fn at(&self, t_s: f64) -> Reference {
+    fn at(&self, t_s: f64) -> Setpoint {
         let (share, slope) = share(t_s / self.seconds);
         let change = self.to_mps - self.from_mps;
-        let mut reference = Reference {
+        let mut reference = Setpoint {
             speed_mps: self.from_mps + change * share,
             accel_mps2: change * slope / self.seconds,
         };
@@ -102,7 +102,7 @@ mod tests {
 
     const DT: f64 = 0.05;
 
-    fn run(curve: &mut SCurve, seconds: f64) -> alloc::vec::Vec<Reference> {
+    fn run(curve: &mut SCurve, seconds: f64) -> alloc::vec::Vec<Setpoint> {
         let cycles = (seconds / DT) as usize;
         (0..cycles).map(|_| curve.step(DT)).collect()
     }
@@ -112,7 +112,7 @@ mod tests {
     fn it_is_the_printed_curve() {
         let top = 60.0 / 3.6;
         let seconds = 5.0 / 6.0 * top + 11.0;
-        let mut curve = SCurve::new(Reference::default(), top, seconds);
+        let mut curve = SCurve::new(Setpoint::default(), top, seconds);
         let speeds = run(&mut curve, 30.0);
         let at = |s: f64| speeds[(s / DT) as usize - 1];
         assert!((at(seconds / 2.0).speed_mps - top / 2.0).abs() < 0.06);
@@ -125,7 +125,7 @@ mod tests {
     /// jerk stays bounded, and the new target is reached.
     #[test]
     fn a_new_target_in_the_middle_of_a_ramp_is_continuous() {
-        let mut curve = SCurve::new(Reference::default(), 16.0, 24.0);
+        let mut curve = SCurve::new(Setpoint::default(), 16.0, 24.0);
         let mut last = *run(&mut curve, 10.0).last().unwrap();
         assert!(last.accel_mps2 > 0.85);
         let mut curve = SCurve::new(last, 11.1, 15.0);

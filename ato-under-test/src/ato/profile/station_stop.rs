@@ -7,11 +7,11 @@
 //! stops at the stop point, and speed follows way instead of time, which is the same curve for a train
 //! that follows it and corrects one that does not.
 
-use super::Reference;
+use super::Setpoint;
 
 /// Braking by eq. (2).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
+pub struct MarkerApproach {
     from_mps: f64,
     to_mps: f64,
     seconds: f64,
@@ -19,7 +19,7 @@ pub struct Approach {
     elapsed_s: f64,
 }
 
-impl Approach {
+impl MarkerApproach {
     /// From a speed to a speed in a way.
     pub fn new(from_mps: f64, to_mps: f64, way_m: f64) -> Self {
         Self {
@@ -32,14 +32,14 @@ impl Approach {
     }
 
     /// Moves on by `dt_s`; gives the target and the way it has left, m.
-    pub fn step(&mut self, dt_s: f64) -> (Reference, f64) {
+    pub fn step(&mut self, dt_s: f64) -> (Setpoint, f64) {
         self.elapsed_s += dt_s;
         let x = (self.elapsed_s / self.seconds).min(1.0);
         let (w, slope, area) = share(x);
         let change = self.to_mps - self.from_mps;
         let after_s = (self.elapsed_s - self.seconds).max(0.0);
         let run_m = self.seconds * (self.from_mps * x + change * area) + after_s * self.to_mps;
-        let reference = Reference {
+        let reference = Setpoint {
             speed_mps: self.from_mps + change * w,
             accel_mps2: change * slope / self.seconds,
         };
@@ -70,9 +70,9 @@ fn share(x: f64) -> (f64, f64, f64) {
 }
 
 /// Eq. (3) by way: the speed with `to_stop_m` left, when `from_mps` was had with `from_m` left.
-pub fn last_metres(to_stop_m: f64, from_mps: f64, from_m: f64) -> Reference {
+pub fn last_metres(to_stop_m: f64, from_mps: f64, from_m: f64) -> Setpoint {
     let rate = from_mps * from_mps / (2.0 * from_m);
-    Reference {
+    Setpoint {
         speed_mps: libm::sqrt(2.0 * rate * to_stop_m.max(0.0)),
         accel_mps2: -rate,
     }
@@ -86,7 +86,7 @@ mod tests {
     /// the integral of speed.
     #[test]
     fn the_printed_approach_reaches_psm4_at_its_speed() {
-        let mut approach = Approach::new(11.1, 1.5, 105.0);
+        let mut approach = MarkerApproach::new(11.1, 1.5, 105.0);
         assert!((approach.seconds - 18.04).abs() < 0.01);
         let dt = 0.001;
         let (mut way, mut peak, mut last) = (105.0, 0.0f64, 11.1);
