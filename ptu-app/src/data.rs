@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
-use protocol::line::Line;
+use protocol::line::{self, Line};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, did_you_mean};
@@ -20,7 +20,7 @@ pub struct ScriptsDirectory(PathBuf);
 pub struct DataFile<T> {
     /// The checked content.
     pub content: T,
-    /// CRC-32 of the text, as the unit reports it.
+    /// CRC-32 of the text, as the unit reports it; a line's leaves its own `checksum` line out.
     pub crc: u32,
     /// SHA-256 of the text, in hex.
     pub sha256: String,
@@ -83,7 +83,14 @@ impl ScriptsDirectory {
     /// # Errors
     /// There is none of that name, or it is wrong.
     pub fn line(&self, name: &str) -> Result<DataFile<Line>, Failure> {
-        self.load("lines", name, "line", Line::from_toml)
+        let read = |text: &str| Line::from_toml(text).map(|line| (line, line::checksum(text)));
+        let file = self.load("lines", name, "line", read)?;
+        let (content, crc) = file.content;
+        Ok(DataFile {
+            content,
+            crc,
+            sha256: file.sha256,
+        })
     }
 
     /// The catalogue of parts and fault modes.

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Place, list, text};
+use common::{Place, list, scripts, text};
 
 const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
 
@@ -301,4 +301,83 @@ fn a_prompt_that_nobody_can_answer_is_an_error() {
     let (said, report) = place.run(&["prompt.star"]);
     said.exits(3).explains(&["Is the lamp lit?"]);
     assert_eq!(report["steps"][0]["verdict"], "error");
+}
+
+/// A scripts directory with one line file, `lines/slip.toml`, and a sound unit configuration.
+fn scripts_with_line(place: &Place, line: &str) -> String {
+    for folder in ["units", "lines"] {
+        std::fs::create_dir_all(place.path("mine").join(folder)).expect("a folder");
+    }
+    place.write("mine/units/sg100.toml", &delivered("units/sg100.toml"));
+    place.write("mine/lines/slip.toml", line);
+    place.text_path("mine")
+}
+
+/// A file of the scripts directory.
+fn delivered(name: &str) -> String {
+    std::fs::read_to_string(scripts().join(name)).expect("a data file")
+}
+
+/// Goal: a slip of the finger in a track database is named with file, line and reason.
+#[test]
+fn a_wrong_track_database_is_refused_with_line_and_reason() {
+    let place = Place::new();
+    let good = delivered("lines/line8.toml");
+    for (entry, instead, words) in [
+        (
+            "741.53, 829.03",
+            "829.03, 741.53",
+            "section 61: PSM3 at 741.53 m must lie after PSM2 at 829.03 m",
+        ),
+        (
+            "length_m = 850.03",
+            "length_m = -850.03",
+            "section 61: length_m = -850.03",
+        ),
+        ("stop_m = 850.03\n", "\n", "missing field `stop_m`"),
+    ] {
+        let damaged = good.replacen(entry, instead, 1);
+        assert_ne!(damaged, good, "{entry}");
+        let mine = scripts_with_line(&place, &damaged);
+        let said = place.ptu(&["catalog", "lines", "--scripts", &mine]);
+        let said = said.exits(2).explains(&["slip.toml: ", "line ", words]);
+        assert!(
+            place
+                .ptu(&["run", "--line", "slip", "--scripts", &mine])
+                .exits(2)
+                .err
+                .contains(words),
+            "{}",
+            said.all()
+        );
+    }
+}
+
+/// Goal: a file changed without its checksum is refused, and the one it has now is told.
+#[test]
+fn a_wrong_checksum_of_a_track_database_is_refused() {
+    let place = Place::new();
+    let track = |checksum: &str| {
+        let track = delivered("lines/test_track.toml");
+        let others = track.lines().filter(|line| !line.starts_with("checksum"));
+        let guarded = format!(
+            "checksum = \"{checksum}\"\n{}",
+            others.collect::<Vec<_>>().join("\n")
+        );
+        scripts_with_line(&place, &guarded)
+    };
+    let arguments =
+        |mine: &str| ["catalog", "lines", "--json", "--scripts", mine].map(str::to_owned);
+    let refused = place.ptu(&arguments(&track("00000000")).each_ref().map(String::as_str));
+    let refused = refused
+        .exits(2)
+        .explains(&["slip.toml: line 1: checksum \"00000000\" is wrong"]);
+    let told = refused
+        .err
+        .split("is \"")
+        .nth(1)
+        .and_then(|rest| rest.get(..8));
+    let told = told.expect("the file's own checksum").to_owned();
+    let taken = place.json(&arguments(&track(&told)).each_ref().map(String::as_str));
+    assert_eq!(taken[0]["checksum"], told.as_str());
 }

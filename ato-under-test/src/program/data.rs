@@ -35,7 +35,7 @@ pub fn setup(arguments: &Arguments) -> Result<Setup> {
         config: UnitConfig::from_toml(&unit_text).map_err(|e| wrong(&unit_file, &e))?,
         config_crc: protocol::config::checksum(&unit_text),
         line: Line::from_toml(&line_text).map_err(|e| wrong(&line_file, &e))?,
-        tdb_crc: protocol::config::checksum(&line_text),
+        tdb_crc: protocol::line::checksum(&line_text),
         seed: arguments.seed,
         faults: faults(&scripts, &arguments.inject)?,
     })

@@ -87,10 +87,12 @@ impl CatalogArguments {
         let scripts = self.scripts.find()?;
         let mut entries = Vec::new();
         for name in scripts.line_names() {
-            for section in scripts.line(&name)?.content.sections {
+            let file = scripts.line(&name)?;
+            for section in file.content.sections {
                 entries.push(json!({
                     "line": name, "section": section.section, "length_m": section.length_m,
                     "from_station": section.from_station, "to_station": section.to_station,
+                    "checksum": format!("{:08x}", file.crc),
                 }));
             }
         }

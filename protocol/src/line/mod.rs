@@ -1,11 +1,15 @@
 //! Track database: the record of S0 §3.3 for each section of a line, as checked data.
 
-use alloc::string::{String, ToString};
+mod file;
+mod rules;
+
+use alloc::string::String;
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::{ConfigError, conflict, within};
+pub use file::{LineError, checksum};
+pub use rules::Broken;
 
 /// A gradient from a position on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,8 +80,7 @@ pub struct Section {
 }
 
 /// The track database of a line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
     /// Name, for instance `line8`.
     pub name: String,
@@ -89,57 +92,21 @@ impl Line {
     /// Reads and checks a line file.
     ///
     /// # Errors
-    /// The first thing wrong: syntax with line and column, or a section that cannot be.
-    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        let line: Self = toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
-        line.check()?;
-        Ok(line)
+    /// The first thing wrong, with its line in the file.
+    pub fn from_toml(text: &str) -> Result<Self, LineError> {
+        file::read(text)
     }
 
-    /// Checks every section.
+    /// Checks the data, wherever they come from.
     ///
     /// # Errors
-    /// The first thing wrong.
-    pub fn check(&self) -> Result<(), ConfigError> {
-        if self.sections.is_empty() {
-            return Err(conflict("a line needs at least one section"));
-        }
-        self.sections.iter().try_for_each(Section::check)
+    /// The first rule broken.
+    pub fn check(&self) -> Result<(), Broken> {
+        rules::check(self)
     }
 
     /// The section numbered `number`.
     pub fn section(&self, number: u16) -> Option<&Section> {
         self.sections.iter().find(|s| s.section == number)
-    }
-}
-
-impl Section {
-    fn check(&self) -> Result<(), ConfigError> {
-        within("length_m", self.length_m, 50.0, 20000.0)?;
-        within(
-            "stop_m",
-            self.stop_m,
-            self.start_m + 1.0,
-            self.start_m + self.length_m,
-        )?;
-        let mut last = self.start_m;
-        for (i, &marker) in self.markers_m.iter().enumerate() {
-            if !(marker > last && marker < self.stop_m) {
-                return Err(ConfigError::Conflict(alloc::format!(
-                    "section {}: PSM{} at {marker} m must lie after {last} m and before the stop point",
-                    self.section,
-                    i + 1
-                )));
-            }
-            last = marker;
-        }
-        if !["left", "right", "both"].contains(&self.door_side.as_str()) {
-            return Err(ConfigError::Conflict(alloc::format!(
-                "section {}: door_side \"{}\" must be left, right or both",
-                self.section,
-                self.door_side
-            )));
-        }
-        Ok(())
     }
 }

@@ -1,0 +1,357 @@
+//! A line file: what is wrong is said with its line, and a checksum guards against slips.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::Deserialize;
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::rules::Place;
+use super::{Broken, Line, Section};
+use crate::config;
+
+/// Why a line file is refused.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum LineError {
+    /// The text does not parse, or an entry is missing; the message has line and column.
+    #[error("{0}")]
+    Syntax(String),
+    /// The data of a line cannot be.
+    #[error("line {line}: {reason}")]
+    Data {
+        /// Line of the file, from 1.
+        line: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+}
+
+/// What a line file holds.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: String,
+    checksum: Option<Spanned<String>>,
+    sections: Vec<Section>,
+}
+
+/// Reads and checks a line file.
+pub(super) fn read(text: &str) -> Result<Line, LineError> {
+    let file: File = toml::from_str(text).map_err(|e| LineError::Syntax(e.to_string()))?;
+    let line = Line {
+        name: file.name,
+        sections: file.sections,
+    };
+    line.check().map_err(|broken| located(text, broken))?;
+    match file.checksum {
+        Some(given) => check_sum(text, &given).map(|()| line),
+        None => Ok(line),
+    }
+}
+
+/// CRC-32 of a line file, its own `checksum = "…"` line left out: what the unit reports of its
+/// track database.
+pub fn checksum(text: &str) -> u32 {
+    let at = DeTable::parse(text)
+        .ok()
+        .and_then(|file| Some(file.get_ref().get_key_value("checksum")?.0.span().start));
+    let Some((before, rest)) = at.and_then(|at| text.split_at_checked(at)) else {
+        return config::checksum(text);
+    };
+    let before = before.rfind('\n').map_or("", |end| &before[..=end]);
+    let after = rest.find('\n').map_or("", |end| &rest[end + 1..]);
+    config::checksum(&[before, after].concat())
+}
+
+fn check_sum(text: &str, given: &Spanned<String>) -> Result<(), LineError> {
+    let found = format!("{:08x}", checksum(text));
+    if given.get_ref().eq_ignore_ascii_case(&found) {
+        return Ok(());
+    }
+    Err(LineError::Data {
+        line: line_at(text, given.span().start),
+        reason: format!(
+            "checksum \"{}\" is wrong, the file's is \"{found}\": undo what was changed, or enter it",
+            given.get_ref()
+        ),
+    })
+}
+
+fn located(text: &str, broken: Broken) -> LineError {
+    let start = broken.place.and_then(|place| start_of(text, place));
+    LineError::Data {
+        line: line_at(text, start.unwrap_or(0)),
+        reason: broken.reason,
+    }
+}
+
+/// Where a place begins in the text; an entry that is left out is at its section.
+fn start_of(text: &str, place: Place) -> Option<usize> {
+    let file = DeTable::parse(text).ok()?;
+    let section = file
+        .get_ref()
+        .get("sections")?
+        .get_ref()
+        .get(place.section)?;
+    let entry = section.get_ref().get(place.key);
+    let item = entry.and_then(|entry| entry.get_ref().get(place.item?));
+    let spanned: &Spanned<DeValue<'_>> = item.or(entry).unwrap_or(section);
+    Some(spanned.span().start)
+}
+
+/// Line of the byte at `at`, from 1.
+fn line_at(text: &str, at: usize) -> usize {
+    let before = text.as_bytes().get(..at).unwrap_or_default();
+    before.iter().filter(|&&byte| byte == b'\n').count() + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE8: &str = include_str!("../../../scripts/lines/line8.toml");
+    const LINE6: &str = include_str!("../../../scripts/lines/line6.toml");
+    const TEST_TRACK: &str = include_str!("../../../scripts/lines/test_track.toml");
+
+    /// A good section from line 2 on, with one entry replaced.
+    fn section(entry: &str, instead: &str) -> String {
+        let section = "\
+name = \"x\"
+[[sections]]
+section = 61
+route = 8
+length_m = 850.03
+from_station = 823
+from_loop = 8231
+to_station = 824
+to_loop = 8241
+start_m = 0.0
+stop_m = 850.03
+markers_m = [304.03, 741.53, 829.03, 846.53]
+door_side = \"right\"
+gradients = [
+    { at_m = 0.0, permille = 0.0 },
+    { at_m = 200.0, permille = -3.0 },
+]
+curves = [
+    { at_m = 100.0, radius_m = 300.0 },
+    { at_m = 300.0, radius_m = 0.0 },
+]
+speed_codes = [
+    { at_m = 0.0, code = \"65\" },
+    { at_m = 300.0, code = \"55\" },
+]
+";
+        assert!(section.contains(entry), "{entry}");
+        section.replace(entry, instead)
+    }
+
+    #[test]
+    fn the_lines_that_are_delivered_are_good() {
+        for text in [LINE8, LINE6, TEST_TRACK] {
+            read(text).unwrap();
+        }
+        assert!(read(&section("", "")).is_ok());
+    }
+
+    /// Section 61 as printed [S0 §4].
+    #[test]
+    fn section_61_is_as_printed() {
+        let line = read(LINE8).unwrap();
+        let section = line.section(61).unwrap();
+        assert_eq!(section.length_m, 850.03);
+        assert_eq!(section.markers_m, [304.03, 741.53, 829.03, 846.53]);
+        assert_eq!((section.gradients.len(), section.curves.len()), (4, 0));
+        let numbers: Vec<_> = line.sections.iter().map(|s| s.section).collect();
+        assert_eq!(numbers, (54..=65).collect::<Vec<u16>>());
+    }
+
+    /// What is wrong, at which line, in which words.
+    #[test]
+    fn what_cannot_be_is_refused_with_its_line() {
+        let wrong = [
+            (
+                "741.53, 829.03",
+                "829.03, 741.53",
+                12,
+                "section 61: PSM3 at 741.53 m must lie after PSM2 at 829.03 m",
+            ),
+            (
+                "304.03,",
+                "-304.03,",
+                12,
+                "PSM1 at -304.03 m must lie after the start at 0 m",
+            ),
+            (
+                "846.53]",
+                "850.03]",
+                12,
+                "PSM4 at 850.03 m must lie before the stop point at 850.03 m",
+            ),
+            ("846.53]", "nan]", 12, "PSM4 at NaN m"),
+            (
+                "length_m = 850.03",
+                "length_m = -850.03",
+                5,
+                "length_m = -850.03 is outside 50 .. 20000",
+            ),
+            (
+                "start_m = 0.0",
+                "start_m = -5.0",
+                10,
+                "start_m = -5 is outside",
+            ),
+            (
+                "stop_m = 850.03",
+                "stop_m = 851.0",
+                11,
+                "stop_m = 851 is outside 1 .. 850.03",
+            ),
+            (
+                "to_station = 824",
+                "to_station = 823",
+                8,
+                "to_station 823 is from_station, too",
+            ),
+            (
+                "to_loop = 8241",
+                "to_loop = 8231",
+                9,
+                "to_loop 8231 is from_loop, too",
+            ),
+            (
+                "\"right\"",
+                "\"rihgt\"",
+                13,
+                "door_side \"rihgt\" must be left, right or both",
+            ),
+            (
+                "at_m = 200.0,",
+                "at_m = 0.0,",
+                16,
+                "gradients: at 0 m must lie after 0 m",
+            ),
+            (
+                "at_m = 200.0,",
+                "at_m = 900.0,",
+                16,
+                "gradients: at 900 m lies outside the section",
+            ),
+            (
+                "-3.0",
+                "-61.0",
+                16,
+                "gradient of -61 ‰ is steeper than 60 ‰",
+            ),
+            (
+                "at_m = 300.0, radius",
+                "at_m = 50.0, radius",
+                20,
+                "curves: at 50 m must lie after 100 m",
+            ),
+            (
+                "radius_m = 300.0",
+                "radius_m = 79.0",
+                19,
+                "radius of 79 m is tighter than 80 m",
+            ),
+            (
+                "at_m = 300.0, code",
+                "at_m = 0.0, code",
+                24,
+                "speed_codes: at 0 m must lie after 0 m",
+            ),
+            (
+                "[[sections]]",
+                "sections = []\n[[x]]",
+                0,
+                "unknown field `x`",
+            ),
+            (
+                "door_side = \"right\"\n",
+                "",
+                2,
+                "missing field `door_side`",
+            ),
+            (
+                "at_m = 200.0, permille",
+                "permille",
+                16,
+                "missing field `at_m`",
+            ),
+            ("route = 8", "route = 80000", 4, "80000"),
+            ("[304.03, 741.53,", "[304.03,", 12, "an array of length 4"),
+        ];
+        for (entry, instead, at, words) in wrong {
+            let said = read(&section(entry, instead)).unwrap_err().to_string();
+            assert!(said.contains(words), "{instead}: {said}");
+            assert!(
+                at == 0 || said.contains(&format!("line {at}")),
+                "{instead}: {said}"
+            );
+        }
+    }
+
+    #[test]
+    fn sections_must_fit_together() {
+        let second = LINE8.find("# Sujin").unwrap();
+        let twice = LINE8.replacen("section = 55", "section = 54", 1);
+        let astray = LINE8.replacen("from_station = 817", "from_station = 717", 1);
+        let line = |key: &str| line_at(LINE8, second + LINE8[second..].find(key).unwrap());
+        for (text, key, words) in [
+            (&twice, "section =", "section 54 is listed twice"),
+            (
+                &astray,
+                "from_station",
+                "section 55: from_station 717 must be to_station 817 of section 54",
+            ),
+        ] {
+            let expected = format!("line {}: {words}", line(key));
+            assert_eq!(read(text).unwrap_err().to_string(), expected);
+        }
+        assert!(read("name = \"x\"\nsections = []").is_err());
+    }
+
+    /// Goal: the checksum is that of everything but its own line, wherever that stands.
+    #[test]
+    fn a_wrong_checksum_is_refused_and_the_right_one_told() {
+        let plain = section("", "");
+        let crc = checksum(&plain);
+        assert_eq!(crc, config::checksum(&plain));
+        let with = |sum: &str| {
+            section(
+                "[[sections]]",
+                &format!("checksum = \"{sum}\" # guard\n[[sections]]"),
+            )
+        };
+        assert_eq!(checksum(&with("?")), crc);
+        assert!(read(&with(&format!("{crc:08X}"))).is_ok());
+        let said = read(&with("00000000")).unwrap_err().to_string();
+        assert!(
+            said.starts_with("line 2: checksum \"00000000\" is wrong"),
+            "{said}"
+        );
+        assert!(said.contains(&format!("\"{crc:08x}\"")), "{said}");
+        let changed = with(&format!("{crc:08x}")).replace("850.03", "850.04");
+        assert!(read(&changed).is_err());
+    }
+
+    /// Goal: no text panics, cut or changed anywhere.
+    #[test]
+    fn a_damaged_file_never_panics() {
+        let text = section("", "checksum = \"0\"\n");
+        for at in (0..text.len()).step_by(11) {
+            let (before, after) = (&text[..at], &text[at + 1..]);
+            for damaged in [
+                before.to_string(),
+                format!("{before}9{after}"),
+                format!("{before}\n{after}"),
+            ] {
+                let _ = (read(&damaged), checksum(&damaged));
+            }
+        }
+    }
+}
