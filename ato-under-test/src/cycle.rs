@@ -104,14 +104,8 @@ impl Unit {
                 && !matches!(self.faults.at(Place::AtoCpu), Some(Effect::Dead)),
         };
         self.ato_outputs = self.ato.step(inputs, &self.setup.config.ato);
-        match self.faults.at(Place::AtoCpu) {
-            Some(Effect::StuckOn) => self.ato_outputs.effort = 1023,
-            Some(Effect::Offset { by }) => {
-                let effort = f64::from(self.ato_outputs.effort) + by;
-                self.ato_outputs.effort = effort.clamp(-1024.0, 1023.0) as i16;
-            }
-            _ => {}
-        }
+        let fault = self.faults.at(Place::AtoCpu);
+        self.ato_outputs.effort = self.effort_output.give(self.ato_outputs.effort, fault);
         if was_ready && !self.ato_outputs.ready {
             self.log.push(now, Event::AtoFailed, 0);
         }

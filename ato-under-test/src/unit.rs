@@ -14,7 +14,7 @@ use protocol::{Duration, Instant};
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ScanContext};
 use crate::com::{ArmConditions, IoImage, Maintenance, RejectWatch, TcmsLink};
-use crate::front_end::{Faults, FrontEnd, OutputStage};
+use crate::front_end::{EffortOutput, Faults, FrontEnd, OutputStage, spoil_stored_data};
 use crate::kernel::{EventLog, FreezeFrame, SelfTestInputs, SelfTester};
 use crate::psm::{Locator, Movement, Tra};
 use crate::report;
@@ -59,6 +59,7 @@ pub struct Unit {
     pub(crate) tra: Tra,
     pub(crate) tcms: TcmsLink,
     pub(crate) ato_outputs: AtoOutputs,
+    pub(crate) effort_output: EffortOutput,
     pub(crate) inputs: Inputs,
     pub(crate) image: IoImage,
     pub(crate) ato: Ato,
@@ -74,6 +75,7 @@ pub struct Unit {
 impl Unit {
     /// Powers a unit up at [`Instant::ZERO`].
     pub fn new(setup: Setup) -> Self {
+        let setup = spoil_stored_data(setup);
         let config = &setup.config;
         let link = &config.link;
         let ms = |ms: u32| Duration::from_ms(u64::from(ms));
@@ -97,6 +99,7 @@ impl Unit {
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms)),
             ato: Ato::new(&config.ato),
             ato_outputs: AtoOutputs::default(),
+            effort_output: EffortOutput::default(),
             inputs: Inputs::default(),
             image: IoImage::new(ms(link.io_timeout_ms)),
             faults: Faults::new(&setup.faults, setup.seed ^ 0x5EED),

@@ -48,6 +48,10 @@ pub enum Place {
     TestBoard,
     /// ATO processor's effort.
     AtoCpu,
+    /// Stop points in the stored track database.
+    TrackDatabase,
+    /// Wheel diameter the unit is set to.
+    WheelParameter,
 }
 
 /// What happens at a place.
@@ -67,13 +71,23 @@ pub enum Effect {
     },
     /// Moved.
     Offset {
-        /// By this, in the place's own unit (Hz, km/h, effort …).
+        /// By this, in the place's own unit (Hz, km/h, m, effort …).
         by: f64,
+    },
+    /// Kept within bounds.
+    Limit {
+        /// Greatest size that comes through.
+        to: f64,
     },
     /// Late.
     Delay {
         /// By this, ms.
         ms: u32,
+    },
+    /// One marker does not come through.
+    Deaf {
+        /// To this one, 1 to 4.
+        to_marker: u8,
     },
     /// Spurious or missing pulses.
     Noise {

@@ -2,17 +2,21 @@
 //!
 //! Test signals join here, and injected faults act here, each at its own place in the signal path.
 
+mod effort;
 mod faults;
 mod outputs;
 mod sensors;
+mod stored;
 
 use protocol::injection::{Effect, Place};
 use protocol::message::{IoInput, TrainLines};
 use protocol::{Instant, SCAN};
 
+pub use effort::EffortOutput;
 pub use faults::Faults;
 pub use outputs::OutputStage;
 pub use sensors::PulseSensor;
+pub use stored::spoil_stored_data;
 
 use crate::com::IoImage;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
@@ -126,14 +130,18 @@ impl FrontEnd {
             }),
             _ => None,
         };
-        let antenna_dead = matches!(faults.at(Place::MarkerAntenna), Some(Effect::Dead));
         let tra_dead = matches!(faults.at(Place::Tra), Some(Effect::Dead));
+        let deaf = |marker: u8| match faults.at(Place::MarkerAntenna) {
+            Some(Effect::Dead) => true,
+            Some(Effect::Deaf { to_marker }) => marker == to_marker,
+            _ => false,
+        };
         board
             .take_marker()
             .map(|marker| MarkerPulse { marker, age_us: 0 })
             .or(passed)
             // TRA has four inputs; anything else on the wire is no marker.
-            .filter(|pulse| matches!(pulse.marker, 1..=4) && !antenna_dead && !tra_dead)
+            .filter(|pulse| matches!(pulse.marker, 1..=4) && !deaf(pulse.marker) && !tra_dead)
     }
 }
 
