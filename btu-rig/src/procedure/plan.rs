@@ -36,6 +36,8 @@ pub struct Procedure {
     pub title_ko: Option<String>,
     /// What it needs.
     pub needs: Connection,
+    /// Run only when it is asked for by name: too long for a run of everything.
+    pub on_request: bool,
     /// Part to suspect when a step fails and names none itself.
     pub suspect: String,
     /// Path of the script under the scripts folder.

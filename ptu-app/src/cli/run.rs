@@ -13,13 +13,14 @@ use serde_json::json;
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
 use crate::data::{ScriptsDirectory, sha256};
+use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, did_you_mean};
 use crate::link::Endpoint;
 use crate::report::Target;
 use crate::run::{self, BenchSetup, RunPlan, Task, select};
 use crate::stop::Stop;
 
-/// Run check procedures; by default all under scripts/
+/// Run check procedures; by default all under scripts/ but those on request only
 ///
 /// Examples:
 ///   ptu run                                     everything, on the embedded unit
@@ -43,6 +44,9 @@ pub struct RunArguments {
     /// Unit configuration, units/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
+    /// Unit configuration key to change, as ato.controller=pi; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<Setting>,
     /// Serial number: of the embedded unit, or expected of a real one
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
@@ -124,6 +128,7 @@ impl RunArguments {
                 procedures.len()
             ));
         }
+        let procedures = self.asked_for(procedures);
         let tasks = self.tasks(procedures)?;
         if self.list {
             return self.show(&tasks);
@@ -164,13 +169,26 @@ impl RunArguments {
         }
         Ok(BenchSetup {
             endpoint: self.unit.clone(),
-            config: directory.unit_config(&self.unit_config)?,
+            config: unit_config(directory, &self.unit_config, &self.set)?,
             line: directory.line(&self.line)?,
             faults: directory.chosen_faults(&self.inject)?,
             seed: self.seed,
             serial: self.serial_no.clone(),
             realtime: self.realtime,
         })
+    }
+
+    /// All when some are named, else those that are not run on request only.
+    fn asked_for(&self, mut procedures: Vec<Arc<Procedure>>) -> Vec<Arc<Procedure>> {
+        if self.procedures.is_empty() {
+            let (left_out, run) = procedures.into_iter().partition(|p| p.on_request);
+            procedures = run;
+            let names: Vec<_> = left_out.iter().map(|p: &Arc<_>| p.id.as_str()).collect();
+            if !names.is_empty() {
+                eprintln!("run only when named: {}", names.join(", "));
+            }
+        }
+        procedures
     }
 
     /// Procedures with the steps chosen; those with none are left out.
@@ -301,7 +319,7 @@ fn listed(task: &Task) -> serde_json::Value {
     json!({
         "procedure": procedure.id, "title": procedure.title, "title_ko": procedure.title_ko,
         "needs": match procedure.needs { Connection::Btu => "btu", Connection::Ptu => "ptu" },
-        "sha256": procedure.sha256, "worst_case_s": procedure.worst_case().as_secs(),
+        "on_request": procedure.on_request, "sha256": procedure.sha256, "worst_case_s": procedure.worst_case().as_secs(),
         "steps": steps,
     })
 }

@@ -84,6 +84,7 @@ pub(super) fn assemble(
         title: head.title,
         title_ko: head.title_ko,
         needs: head.needs,
+        on_request: head.on_request,
         suspect: head.suspect,
         path: path.to_owned(),
         sha256: sha256(text),

@@ -18,6 +18,7 @@ pub(super) struct ProcedureDraft {
     pub title: String,
     pub title_ko: Option<String>,
     pub needs: Connection,
+    pub on_request: bool,
     pub suspect: String,
     pub setup: Vec<Action>,
     pub cleanup: Vec<Action>,
