@@ -99,6 +99,11 @@ pub struct ProfileConfig {
     pub decel_mps2: f64,
     /// Jerk limit, m/s³ [S1: J = 0.8].
     pub jerk_mps3: f64,
+    /// Speed by which the profile may run ahead of a train that cannot follow it, km/h.
+    pub lead_kmh: f64,
+    /// The profile's acceleration is asked for in every ramp, not only in the station stop. The
+    /// printed laws work on the speed error alone, and follow a ramp with a large one.
+    pub feed_forward: bool,
 }
 
 /// Proportional-integral controller [S1].
@@ -125,21 +130,16 @@ pub enum GainUnit {
     Kmh,
 }
 
-/// Mamdani controller [S1]. Places of the isosceles sets are not printed.
+/// Mamdani controller [S1]. Places of the sets are not printed; isosceles triangles that overlap by
+/// half lie evenly, so the outermost peak fixes all of a variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FuzzyConfig {
-    /// Error at which `ns`/`ps` peak, m/s.
-    pub small_error_mps: f64,
-    /// Error at which `nb`/`pb` peak, m/s.
+    /// Error at which `nb`/`pb` peak, m/s; `ns`/`ps` at half of it.
     pub big_error_mps: f64,
     /// Change of error per second at which `negative`/`positive` peak, m/s².
     pub change_mps2: f64,
-    /// Output at which `nh`/`ph` peak, share of the greatest force.
-    pub high_share: f64,
-    /// Output at which `nvh`/`pvh` peak, share of the greatest force.
-    pub very_high_share: f64,
-    /// Force that a share of 1 stands for at `mass_kg`, N [S1: 400 kN].
+    /// Force at which `nvh`/`pvh` peak at `mass_kg`, N [S1: 400 kN]; `nh`/`ph` at half of it.
     pub force_n: f64,
     /// Mass it is for, kg [S1: 432 000]; it scales with the load.
     pub mass_kg: f64,
@@ -155,10 +155,47 @@ pub struct PssConfig {
     pub offset_m: f64,
     /// Slope of the linear end, 1/s [S2: S_l].
     pub slope_per_s: f64,
+    /// Jerk with which the curve's deceleration is built up, m/s³.
+    pub jerk_mps3: f64,
+    /// How fast the reference takes away its distance from the curve, 1/s.
+    pub join_per_s: f64,
     /// Speed error that asks for full effort, km/h.
     pub full_effort_error_kmh: f64,
     /// Share of the error taken away per second by the integral part.
     pub integral_per_s: f64,
+    /// Speed below which it rests, km/h: too few tachometer pulses.
+    pub integral_above_kmh: f64,
+}
+
+impl PssConfig {
+    /// Speed of the linear end at the stop point, m/s [S2: V_stop], so that it meets the square root
+    /// in value and slope.
+    pub fn stop_mps(&self) -> f64 {
+        self.brake_rate_mps2 / (2.0 * self.slope_per_s) - self.slope_per_s * self.offset_m
+    }
+
+    /// Whether a train can follow the curve to its end.
+    fn check(&self, ato: &AtoConfig) -> Result<(), ConfigError> {
+        let stop_mps = self.stop_mps();
+        if !(stop_mps > 0.0) {
+            return Err(ConfigError::Conflict(alloc::format!(
+                "ato.pss: V_stop = brake_rate_mps2/(2 slope_per_s) - slope_per_s offset_m is {stop_mps:.3} m/s; it must be above 0, or the train comes near the stop point but never arrives"
+            )));
+        }
+        let jerk = self.brake_rate_mps2 * self.slope_per_s;
+        if jerk > ato.train.jerk_mps3 {
+            return Err(ConfigError::Conflict(alloc::format!(
+                "ato.pss: the linear end begins with a jerk of brake_rate_mps2 x slope_per_s = {jerk:.2} m/s3, more than ato.train.jerk_mps3 = {}",
+                ato.train.jerk_mps3
+            )));
+        }
+        if self.brake_rate_mps2 > ato.profile.decel_mps2 {
+            return Err(conflict(
+                "ato.pss.brake_rate_mps2 must not be above ato.profile.decel_mps2",
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// When ATO doubts itself or its inputs.
@@ -228,12 +265,7 @@ impl AtoConfig {
                 )));
             }
         }
-        if self.fuzzy.small_error_mps >= self.fuzzy.big_error_mps {
-            return Err(conflict(
-                "ato.fuzzy.small_error_mps must be below big_error_mps",
-            ));
-        }
-        Ok(())
+        self.pss.check(self)
     }
 
     fn ranges(&self) -> Vec<(&'static str, f64, f64, f64)> {
@@ -280,19 +312,19 @@ impl AtoConfig {
             ("ato.profile.accel_mps2", p.accel_mps2, 0.1, 2.0),
             ("ato.profile.decel_mps2", p.decel_mps2, 0.1, 2.0),
             ("ato.profile.jerk_mps3", p.jerk_mps3, 0.1, 5.0),
+            ("ato.profile.lead_kmh", p.lead_kmh, 0.5, 50.0),
             ("ato.pi.proportional_n", pi.proportional_n, 0.0, 1e8),
             ("ato.pi.integral_n_per_s", pi.integral_n_per_s, 0.0, 1e8),
             ("ato.pi.mass_kg", pi.mass_kg, 1e3, 1e7),
-            ("ato.fuzzy.small_error_mps", f.small_error_mps, 1e-3, 10.0),
             ("ato.fuzzy.big_error_mps", f.big_error_mps, 1e-3, 20.0),
             ("ato.fuzzy.change_mps2", f.change_mps2, 1e-3, 20.0),
-            ("ato.fuzzy.high_share", f.high_share, 0.01, 1.0),
-            ("ato.fuzzy.very_high_share", f.very_high_share, 0.01, 3.0),
             ("ato.fuzzy.force_n", f.force_n, 1e3, 1e7),
             ("ato.fuzzy.mass_kg", f.mass_kg, 1e3, 1e7),
             ("ato.pss.brake_rate_mps2", pss.brake_rate_mps2, 0.1, 1.2),
             ("ato.pss.offset_m", pss.offset_m, 0.0, 5.0),
             ("ato.pss.slope_per_s", pss.slope_per_s, 0.1, 10.0),
+            ("ato.pss.jerk_mps3", pss.jerk_mps3, 0.1, 5.0),
+            ("ato.pss.join_per_s", pss.join_per_s, 0.1, 10.0),
             (
                 "ato.pss.full_effort_error_kmh",
                 pss.full_effort_error_kmh,
@@ -300,6 +332,7 @@ impl AtoConfig {
                 50.0,
             ),
             ("ato.pss.integral_per_s", pss.integral_per_s, 0.0, 5.0),
+            ("ato.pss.integral_above_kmh", pss.integral_above_kmh, 0.0, 20.0),
             ("ato.watch.following_kmh", w.following_kmh, 0.5, 50.0),
             ("ato.watch.overrun_m", w.overrun_m, 0.1, 20.0),
             ("ato.watch.wheel_error", w.wheel_error, 0.001, 0.2),

@@ -5,7 +5,9 @@
 //! added outside ([`super::feed_forward`]); REG limits the sum and tells the controller what was
 //! granted.
 
+mod doubt;
 mod fuzzy;
+mod integral;
 mod pi;
 mod pole_placement;
 mod pss;
@@ -15,6 +17,8 @@ use alloc::boxed::Box;
 use core::fmt::Debug;
 
 use protocol::config::{AtoConfig, ControllerKind};
+
+use super::profile::{GuideInputs, Setpoint};
 
 pub use fuzzy::Fuzzy;
 pub use pi::Pi;
@@ -39,6 +43,19 @@ pub struct Situation {
     pub mass_kg: f64,
     /// Force granted for the last demand, N, feed-forward taken off again.
     pub granted_n: f64,
+}
+
+impl From<&Situation> for GuideInputs {
+    fn from(situation: &Situation) -> Self {
+        Self {
+            cruise_mps: situation.cruise_mps,
+            train: Setpoint {
+                speed_mps: situation.speed_mps,
+                accel_mps2: situation.accel_mps2,
+            },
+            to_stop_m: situation.to_stop_m,
+        }
+    }
 }
 
 /// What a controller asks for.

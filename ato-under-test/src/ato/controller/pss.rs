@@ -1,56 +1,98 @@
 //! PSS: run at the cruising target until the stop curve is lower, then follow that [S2 §3.2].
+//!
+//! The target is the printed one: the cruising speed (limit less 5 km/h) or the curve, whichever is
+//! lower. How the train is brought there is not printed beyond "100 % powering, less as the target
+//! nears". Here:
+//! * the force is proportional to the speed error, full effort at `full_effort_error_kmh`, and eased so
+//!   that it is gone at the jerk limit when the error is;
+//! * in the stop, the curve's deceleration is asked for outright, along a reference that leaves the
+//!   cruising speed early enough to meet the curve at the jerk limit ([`super::super::profile`]);
+//! * a slow integral takes away what is left. It works only near the target, while effort is not
+//!   clipped, and above the speed below which a tachometer says little, so that neither a heavy train
+//!   nor the last metre winds it up.
 
-use protocol::CYCLE;
 use protocol::config::AtoConfig;
 
+use super::doubt::Doubt;
+use super::integral::Integral;
 use super::{Demand, Situation, SpeedController};
-use crate::ato::profile::StopCurve;
+use crate::ato::profile::{Descent, Setpoint, correction_mps2};
 
 /// The controller.
 #[derive(Debug)]
 pub struct Pss {
-    curve: StopCurve,
+    descent: Descent,
+    doubt: Doubt,
     gain_per_s: f64,
+    jerk_mps3: f64,
     integral_per_s: f64,
-    integral_mps2: f64,
-    asked_n: f64,
+    integral_above_mps: f64,
+    near_mps: f64,
+    /// m/s².
+    integral: Integral,
+    /// The reference in the station stop.
+    stop: Option<Setpoint>,
 }
 
 impl Pss {
     /// A controller with the configuration's curve and gains.
     pub fn new(config: &AtoConfig) -> Self {
+        let pss = &config.pss;
         Self {
-            curve: StopCurve::new(&config.pss),
-            gain_per_s: config.decel_kmh_per_s / config.pss.full_effort_error_kmh,
-            integral_per_s: config.pss.integral_per_s,
-            integral_mps2: 0.0,
-            asked_n: 0.0,
+            descent: Descent::new(pss),
+            doubt: Doubt::new(config),
+            gain_per_s: config.decel_kmh_per_s / pss.full_effort_error_kmh,
+            jerk_mps3: pss.jerk_mps3,
+            integral_per_s: pss.integral_per_s,
+            integral_above_mps: pss.integral_above_kmh / 3.6,
+            near_mps: pss.full_effort_error_kmh / 3.6,
+            integral: Integral::default(),
+            stop: None,
         }
+    }
+
+    /// The reference: the cruising speed, or what leads from there to the curve and along it.
+    fn reference(&mut self, situation: &Situation) -> Setpoint {
+        let cruise = Setpoint {
+            speed_mps: situation.cruise_mps.max(0.0),
+            accel_mps2: 0.0,
+        };
+        let from = self.stop.unwrap_or(cruise);
+        self.stop = situation
+            .to_stop_m
+            .map(|way| self.descent.follow(from, way))
+            .filter(|stop| stop.speed_mps < cruise.speed_mps);
+        self.stop.unwrap_or(cruise)
     }
 }
 
 impl SpeedController for Pss {
     fn step(&mut self, situation: &Situation) -> Demand {
-        let stop = situation.to_stop_m.map(|way| self.curve.at(way));
-        let (target_mps, accel_mps2) = match stop {
-            Some(stop) if stop.0 < situation.cruise_mps => stop,
-            _ => (situation.cruise_mps, 0.0),
-        };
-        let error = target_mps - situation.speed_mps;
-        let clipped = libm::fabs(situation.granted_n - self.asked_n) > 0.01 * situation.mass_kg;
-        if !clipped {
-            self.integral_mps2 += self.gain_per_s * self.integral_per_s * error * CYCLE.as_secs();
+        if let Some(brake) = self.doubt.brake(situation) {
+            return brake;
         }
-        let asked_mps2 = accel_mps2 + self.gain_per_s * error + self.integral_mps2;
-        self.asked_n = asked_mps2 * situation.mass_kg;
+        let reference = self.reference(situation);
+        let error = reference.speed_mps - situation.speed_mps;
+        let correction_mps2 = correction_mps2(error, self.gain_per_s, self.jerk_mps3);
+        let near = libm::fabs(error) < self.near_mps;
+        if near && situation.speed_mps > self.integral_above_mps {
+            let rate = self.gain_per_s * self.integral_per_s * error;
+            self.integral.add(rate, situation);
+        }
+        let asked_mps2 = reference.accel_mps2 + correction_mps2 + self.integral.value();
+        let force_n = asked_mps2 * situation.mass_kg;
+        self.integral.asked(force_n);
+        let curve_mps = situation
+            .to_stop_m
+            .map_or(f64::INFINITY, |way| self.descent.curve().at(way).0);
         Demand {
-            target_mps,
-            force_n: self.asked_n,
+            target_mps: situation.cruise_mps.min(curve_mps),
+            force_n,
         }
     }
 
     fn reset(&mut self) {
-        self.integral_mps2 = 0.0;
-        self.asked_n = 0.0;
+        self.integral = Integral::default();
+        self.stop = None;
     }
 }

@@ -1,0 +1,50 @@
+//! Inputs that no train can have: braked, not driven on.
+
+use protocol::config::AtoConfig;
+
+use super::{Demand, Situation};
+
+/// Speed of sound, m/s: no train is faster, and no sum of such speeds leaves the range of numbers.
+const FASTEST_MPS: f64 = 340.0;
+/// Masses a unit configuration may have, kg.
+const MASSES_KG: core::ops::RangeInclusive<f64> = 1e3..=1e7;
+
+/// Full braking of the configured train.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Doubt {
+    decel_mps2: f64,
+    empty_kg: f64,
+}
+
+impl Doubt {
+    pub(super) fn new(config: &AtoConfig) -> Self {
+        Self {
+            decel_mps2: config.decel_kmh_per_s / 3.6,
+            empty_kg: config.train.empty_kg + config.train.rotating_kg,
+        }
+    }
+
+    /// The brake, if anything in the situation is no number or absurd. The caller's state is to stay
+    /// as it was, so that one bad cycle leaves no trace.
+    pub(super) fn brake(&self, situation: &Situation) -> Option<Demand> {
+        let speeds = [situation.cruise_mps, situation.speed_mps];
+        let others = [
+            situation.accel_mps2,
+            situation.granted_n,
+            situation.to_stop_m.unwrap_or(0.0),
+        ];
+        let mass = MASSES_KG.contains(&situation.mass_kg);
+        let sound = mass
+            && speeds.iter().all(|v| libm::fabs(*v) <= FASTEST_MPS)
+            && others.iter().all(|x| x.is_finite());
+        let mass_kg = if mass {
+            situation.mass_kg
+        } else {
+            self.empty_kg
+        };
+        (!sound).then_some(Demand {
+            target_mps: 0.0,
+            force_n: -self.decel_mps2 * mass_kg,
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! Mamdani fuzzy control of a jerk-limited profile [S1 §2.3.3].
+//!
+//! Terms: *error* `e` = profile less speed; *change* `Δe` = its rate.
+//!
+//! The rules are S1's (see [`inference`]); where the triangles stand is not printed and is configuration.
+//! Added to the printed law, and why:
+//! * the force scales with the load, as in [`super::Pi`];
+//! * the profile's acceleration is asked for outright: a law without integral follows a ramp only with
+//!   an error, here about half a metre per second. `profile.feed_forward = false` leaves it to
+//!   the station stop and gives the printed law everywhere else;
+//! * the change is the difference of the profile's acceleration and the train's estimated one: the
+//!   difference of two measured speeds 50 ms apart is mostly the tachometer's pulse;
+//! * the station stop ([`super::super::profile`]).
+//!
+//! There is no integral part: what the track database does not tell stays as a small error (35 ‰ about
+//! 0.2 m/s), and nothing can wind up.
+
+mod inference;
+
+use protocol::config::AtoConfig;
+
+use super::doubt::Doubt;
+use super::{Demand, Situation, SpeedController};
+use crate::ato::profile::Guide;
+
+/// The controller.
+#[derive(Debug)]
+pub struct Fuzzy {
+    guide: Guide,
+    doubt: Doubt,
+    feed_forward: bool,
+    big_error_mps: f64,
+    change_mps2: f64,
+    force_n: f64,
+    mass_kg: f64,
+}
+
+impl Fuzzy {
+    /// A controller with the configuration's sets.
+    pub fn new(config: &AtoConfig) -> Self {
+        let fuzzy = &config.fuzzy;
+        Self {
+            guide: Guide::new(config),
+            doubt: Doubt::new(config),
+            feed_forward: config.profile.feed_forward,
+            big_error_mps: fuzzy.big_error_mps,
+            change_mps2: fuzzy.change_mps2,
+            force_n: fuzzy.force_n,
+            mass_kg: fuzzy.mass_kg,
+        }
+    }
+}
+
+impl SpeedController for Fuzzy {
+    fn step(&mut self, situation: &Situation) -> Demand {
+        if let Some(brake) = self.doubt.brake(situation) {
+            return brake;
+        }
+        let guidance = self.guide.step(situation.into());
+        let error = guidance.setpoint.speed_mps - situation.speed_mps;
+        let change = guidance.setpoint.accel_mps2 - situation.accel_mps2;
+        let share = inference::infer(error / self.big_error_mps, change / self.change_mps2);
+        let mut force_n = share * self.force_n * situation.mass_kg / self.mass_kg;
+        if self.feed_forward || guidance.stopping {
+            force_n += situation.mass_kg * guidance.setpoint.accel_mps2;
+        }
+        Demand {
+            target_mps: guidance.setpoint.speed_mps,
+            force_n,
+        }
+    }
+
+    fn reset(&mut self) {
+        self.guide.reset();
+    }
+}
