@@ -20,7 +20,8 @@ pub enum Disturbance {
 pub struct Conditions {
     /// Added to every gradient of the track, ‰, uphill positive.
     pub gradient_offset_permille: f64,
-    /// Wheel–rail adhesion coefficient at standstill; dry steel about 0.2, wet about 0.1.
+    /// Wheel–rail adhesion coefficient at standstill, less at speed [Curtius and Kniffler: 0.33 dry];
+    /// wet about half of it, leaves or ice 0.05 to 0.1. S3's motor cars ask for 0.16 in full service.
     pub adhesion: f64,
     /// Factor on dead times and time constants of traction and brakes.
     pub delay_factor: f64,
@@ -38,7 +39,7 @@ impl Default for Conditions {
     fn default() -> Self {
         Self {
             gradient_offset_permille: 0.0,
-            adhesion: 0.2,
+            adhesion: 0.33,
             delay_factor: 1.0,
             brake_factor: 1.0,
             wheel_factor: 1.0,

@@ -2,6 +2,7 @@
 //!
 //! * [`conditions`]: how train and track differ from what the unit is told;
 //! * [`stimulus`]: what a procedure may do to the unit, as typed values;
+//! * [`train`]: the train models;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
 //!   the unit only through frames;
 //! * [`drive`]: a station-to-station automatic run with its figures;
@@ -15,3 +16,4 @@ pub mod drive;
 pub mod procedure;
 pub mod rig;
 pub mod stimulus;
+pub mod train;

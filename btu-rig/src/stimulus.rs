@@ -90,6 +90,12 @@ pub enum Stimulus {
     },
     /// No signal in the antenna.
     CodeOff,
+    /// The antenna signal follows the speed codes of the section that lies along the way, until
+    /// another signal is put into the antenna.
+    CodesAlong {
+        /// On, or keeping what is there.
+        on: bool,
+    },
     /// Tachometer generators go to a speed at this acceleration.
     Speed {
         /// Speed to reach.

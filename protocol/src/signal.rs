@@ -88,8 +88,8 @@ signals! {
     LevelMv "level_mv" "mV" UNITY, 0 ..= 65535, Rig, "Signal level in the ATP antenna";
     TrainSpeed "train_speed" "km/h" CMS_KMH, 0 ..= 200, Rig, "True speed the tachometer generators follow";
     TrainPosition "train_position" "m" CENTI, -100000 ..= 100000, Rig, "True distance run";
-    TrainAccel "train_accel" "m/s²" MILLI, -20 ..= 20, Rig, "True acceleration of the train, mean of 50 ms";
-    TrainJerk "train_jerk" "m/s³" CENTI, -200 ..= 200, Rig, "Change of the true acceleration in 200 ms, by time";
+    TrainAccel "train_accel" "m/s²" MILLI, -120 ..= 120, Rig, "True acceleration of the train, mean of 50 ms";
+    TrainJerk "train_jerk" "m/s³" CENTI, -1200 ..= 1200, Rig, "Change of the true acceleration in 200 ms, by time";
     ToStop "to_stop" "m" MILLI, -100000 ..= 100000, Rig, "True distance to the stop point of the section laid along the way";
     Tacho1 "tacho1" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 1";
     Tacho2 "tacho2" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 2";

@@ -232,6 +232,7 @@ fn stimulus_text(stimulus: &Stimulus) -> String {
         } => format!("travel {} m at {speed}", number(distance_m)),
         Stimulus::Direction { backward } => format!("wheels turn {}", way(backward)),
         Stimulus::Tacho { channel, condition } => format!("tachometer {channel}: {condition:?}"),
+        Stimulus::CodesAlong { on } => format!("speed codes along the way {}", on_off(on)),
         Stimulus::TrainDriven { on } => format!("train model {}", on_off(on)),
         Stimulus::Marker { psm } => format!("pulse of marker PSM{psm}"),
         Stimulus::MarkersAlong { section: Some(n) } => {

@@ -41,6 +41,7 @@ impl Rig {
                 level_mv,
             } => {
                 self.set_code(carrier_hz, rate_hz, level_mv)?;
+                self.codes_along = false;
             }
             Stimulus::CodeDrift {
                 rate_hz_per_s,
@@ -57,7 +58,11 @@ impl Rig {
                 in_range("drift of the level", level_mv_per_s, -limit, limit, "mV/s")?;
                 self.antenna.drift(rate_hz_per_s, level_mv_per_s);
             }
-            Stimulus::CodeOff => self.antenna.off(),
+            Stimulus::CodeOff => {
+                self.antenna.off();
+                self.codes_along = false;
+            }
+            Stimulus::CodesAlong { on } => self.set_codes_along(on)?,
             Stimulus::Speed { to, accel_mps2 } => {
                 self.need_generator()?;
                 in_range("speed", to.kmh(), 0.0, MAX_SPEED_KMH, "km/h")?;
@@ -115,7 +120,7 @@ impl Rig {
             Stimulus::Tcms(condition) => self.tcms.condition = condition,
             Stimulus::AtoEnable { on } => self.tcms.ato_enable = on,
             Stimulus::Load { passengers_kg } => {
-                let full_kg = self.train.config().full_load_kg;
+                let full_kg = self.train.full_load_kg();
                 self.tcms.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
             }
             _ => return self.apply_ptu(now, stimulus),
@@ -193,10 +198,11 @@ impl Rig {
     fn rest_quiescent(&mut self) {
         self.making_safe = false;
         self.antenna.off();
+        self.codes_along = false;
         self.track = None;
         self.desk.reset();
         self.wayside.reset(&self.line.sections[0]);
-        let way_m = self.wheel.motion().way_m;
+        let way_m = self.wheel.axle().way_m;
         for tacho in &mut self.tachos {
             tacho.set_condition(TachoCondition::Good, way_m);
         }
@@ -220,7 +226,7 @@ impl Rig {
             }
             TachoCondition::Good | TachoCondition::Dead => {}
         }
-        let way_m = self.wheel.motion().way_m;
+        let way_m = self.wheel.axle().way_m;
         let tacho = usize::from(channel)
             .checked_sub(1)
             .and_then(|i| self.tachos.get_mut(i));
@@ -232,7 +238,7 @@ impl Rig {
 
     fn drive_train(&mut self, on: bool) {
         if on && !self.train_driven {
-            self.train.set_velocity(self.wheel.velocity_mps());
+            self.train.place(self.wheel.velocity_mps());
         }
         if self.train_driven && !on {
             // The generators take over the train's speed and bring it to rest.
@@ -269,6 +275,9 @@ impl Rig {
                 known.join(", ")
             )));
         };
+        if self.codes_along {
+            self.check_codes(section)?;
+        }
         let position_m = self.wheel.motion().position_m;
         self.markers.lay(section, position_m);
         self.track = Some(Track::new(section.clone(), position_m));

@@ -18,6 +18,8 @@ const MAX_PENDING: usize = 8;
 pub struct Markers {
     /// Markers along the way, by position on the rig's own scale.
     along_m: Option<[f64; 4]>,
+    /// How far from there each really lies.
+    offsets_m: [f64; 4],
     /// Marker and age at the coming stamp, µs.
     pending: VecDeque<(u8, f64)>,
     last: u8,
@@ -29,6 +31,7 @@ impl Default for Markers {
     fn default() -> Self {
         Self {
             along_m: None,
+            offsets_m: [0.0; 4],
             pending: VecDeque::with_capacity(MAX_PENDING),
             last: 0,
             edges: 0,
@@ -61,6 +64,11 @@ impl Markers {
         );
     }
 
+    /// Sets how far from its place in the track database each marker really lies.
+    pub fn set_offsets(&mut self, offsets_m: [f64; 4]) {
+        self.offsets_m = offsets_m;
+    }
+
     /// Takes the markers along the way away.
     pub fn lift(&mut self) {
         self.along_m = None;
@@ -79,8 +87,9 @@ impl Markers {
         for waiting in &mut self.pending {
             waiting.1 += scan_us;
         }
-        for (psm, at) in (1..).zip(self.along_m.into_iter().flatten()) {
-            let crossed = motion.age_of_position_s(at);
+        let along_m = self.along_m.into_iter().flatten();
+        for (psm, (at, offset)) in (1..).zip(along_m.zip(self.offsets_m)) {
+            let crossed = motion.age_of_position_s(at + offset);
             // A full queue means four markers within centimetres: one coil cannot tell them apart.
             if let Some(age_s) = crossed.filter(|_| self.pending.len() < MAX_PENDING) {
                 self.pending.push_back((psm, age_s * 1e6));

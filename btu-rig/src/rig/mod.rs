@@ -11,15 +11,17 @@
 mod antenna;
 mod apply;
 mod bench;
+mod codes_along;
 mod desk;
 mod exchange;
 mod link_watch;
 mod log_reader;
 mod markers;
 mod motion;
-mod random;
+pub(crate) mod random;
 mod ranges;
 mod sample;
+mod step_profile;
 mod tacho;
 mod tcms;
 mod test_signals;
@@ -27,21 +29,24 @@ mod tester;
 #[cfg(test)]
 mod tests;
 mod track;
-mod train;
+mod truth;
 mod wayside;
 mod wheel;
 
-use protocol::config::UnitConfig;
+use protocol::config::{SpeedCode, UnitConfig};
 use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
 use protocol::message::{Identity, IoInput, Message};
 use protocol::signal::{Sample, Signal};
 use protocol::{Instant, SCAN};
 
+use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::{TachoCondition, WaysideCondition};
+use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
+pub use truth::Truth;
 
 use antenna::Antenna;
 use desk::Desk;
@@ -53,7 +58,7 @@ use tacho::Tacho;
 use tcms::Tcms;
 use tester::Tester;
 use track::Track;
-use train::{Train, TrainInputs};
+use truth::SpeedHistory;
 use wayside::Wayside;
 use wheel::Wheel;
 
@@ -64,10 +69,26 @@ const TRAIN_STEPS: usize = 2;
 #[derive(Debug)]
 pub struct Rig {
     line: Line,
+    /// The unit's code table and the level its receiver is made for, mV.
+    codes: Vec<SpeedCode>,
+    level_mv: f64,
+    /// Way the configured wheel rolls for a pulse, m.
+    metres_per_pulse: f64,
+    conditions: Conditions,
     antenna: Antenna,
+    /// The antenna signal follows the codes of the section laid along the way.
+    codes_along: bool,
+    /// Place in the code table of the one that was put in last that way.
+    code_put_in: Option<usize>,
     wheel: Wheel,
     tachos: [Tacho; 2],
     train: Train,
+    train_data: TrainData,
+    /// Its cars from the head, length in m and share of the weight, at a load in kg.
+    cars: Vec<(f64, f64)>,
+    cars_load_kg: f64,
+    train_state: TrainState,
+    speeds: SpeedHistory,
     /// The wheels follow the train model instead of their generator.
     train_driven: bool,
     track: Option<Track>,
@@ -97,12 +118,25 @@ impl Rig {
         let wayside = Wayside::new(&line.sections[0], random.fork());
         // A session number is never 0.
         let session = random.next_u64() as u32 | 1;
+        let conditions = Conditions::default();
+        let train_data = TrainData::line6();
         let mut rig = Self {
             line: line.clone(),
+            codes: config.codes.clone(),
+            level_mv: config.receiver.level_nominal_mv,
+            metres_per_pulse: pulse_m,
+            conditions,
             antenna: Antenna::default(),
+            codes_along: false,
+            code_put_in: None,
             wheel: Wheel::default(),
             tachos,
-            train: Train::default(),
+            train: Train::new(&train_data, &conditions),
+            cars: weight_shares(&train_data, 0.0),
+            cars_load_kg: 0.0,
+            train_data,
+            train_state: TrainState::default(),
+            speeds: SpeedHistory::default(),
             train_driven: false,
             track: None,
             markers: Markers::default(),
@@ -128,10 +162,11 @@ impl Rig {
         self.watch.step(now);
         self.recorder.step(now);
         self.desk.step(self.recorder.outputs());
-        self.antenna.step();
         self.roll();
+        self.follow_codes();
+        self.antenna.step();
         for tacho in &mut self.tachos {
-            tacho.step(self.wheel.motion());
+            tacho.step(self.wheel.axle());
         }
         self.markers.step(self.wheel.motion());
         self.finish_making_safe();
@@ -224,29 +259,74 @@ impl Rig {
         self.train_driven || self.wheel.settled()
     }
 
+    /// Puts another train under the rig, at the speed the present one has.
+    pub fn set_train(&mut self, data: TrainData) {
+        let mut train = Train::new(&data, &self.conditions);
+        train.place(self.train.velocity_mps());
+        self.train = train;
+        self.cars = weight_shares(&data, self.cars_load_kg);
+        self.train_data = data;
+    }
+
+    /// Changes how train and track differ from what the unit is told, from now on.
+    pub fn set_conditions(&mut self, conditions: Conditions) {
+        self.train.set_conditions(&conditions);
+        self.markers.set_offsets(conditions.marker_offsets_m);
+        let pulse_m = self.metres_per_pulse * conditions.wheel_factor;
+        let way_m = self.wheel.axle().way_m;
+        for tacho in &mut self.tachos {
+            tacho.set_metres_per_pulse(pulse_m, way_m);
+        }
+        self.conditions = conditions;
+    }
+
+    /// What the train really does at the scan's end.
+    pub fn truth(&self) -> Truth {
+        let motion = self.wheel.motion();
+        let track = self.track.as_ref();
+        let state = &self.train_state;
+        Truth {
+            speed_mps: self.wheel.velocity_mps(),
+            accel_mps2: motion.last().accel_mps2,
+            position_m: track.map_or(motion.position_m, |t| t.in_section_m(motion.position_m)),
+            to_stop_m: track.map(|t| t.to_stop_m(motion.position_m)),
+            tractive_power_w: state.tractive_power_w,
+            traction_n: state.traction_n,
+            electric_brake_n: state.electric_brake_n,
+            air_brake_n: state.air_brake_n,
+            sliding: state.sliding,
+        }
+    }
+
     /// Turns the wheels through one scan.
     fn roll(&mut self) {
         let inputs = self.train_inputs();
-        if !self.train_driven {
+        if self.train_driven {
+            let dt = SCAN.as_secs() / TRAIN_STEPS as f64;
+            let states: [_; TRAIN_STEPS] = std::array::from_fn(|_| self.train.step(dt, &inputs));
+            self.wheel.follow(&states);
+            self.train_state = states[TRAIN_STEPS - 1];
+            self.braking = self.train_state.braking;
+        } else {
             self.wheel.step();
+            self.train_state = TrainState::default();
             self.braking = inputs.full_service || inputs.emergency || inputs.demand < 0.0;
-            return;
         }
-        let dt = SCAN.as_secs() / TRAIN_STEPS as f64;
-        let states: [_; TRAIN_STEPS] = std::array::from_fn(|_| self.train.step(dt, &inputs));
-        self.wheel
-            .follow(states.iter().flat_map(|state| state.pieces));
-        self.braking = states[TRAIN_STEPS - 1].braking;
+        self.speeds.push(self.wheel.velocity_mps());
     }
 
-    fn train_inputs(&self) -> TrainInputs {
+    fn train_inputs(&mut self) -> TrainInputs {
         let mut inputs = self
             .tcms
             .train_inputs(self.now, &self.desk, self.recorder.outputs());
-        if let Some(track) = &self.track {
-            let position_m = self.wheel.motion().position_m;
-            inputs.gradient_permille = track.gradient_permille(position_m);
-            inputs.curve_radius_m = track.curve_radius_m(position_m);
+        if inputs.load_kg != self.cars_load_kg {
+            self.cars_load_kg = inputs.load_kg;
+            self.cars = weight_shares(&self.train_data, inputs.load_kg);
+        }
+        if let Some(track) = self.track.as_ref().filter(|_| self.train_driven) {
+            let under = track.under(self.wheel.motion().position_m, &self.cars);
+            inputs.gradient_permille = under.gradient_permille;
+            inputs.curvature_per_m = under.curvature_per_m;
         }
         inputs
     }
@@ -286,6 +366,8 @@ impl Rig {
             (Signal::LevelMv, f64::from(self.antenna.level_mv())),
             (Signal::TrainSpeed, self.wheel.speed().kmh()),
             (Signal::TrainPosition, self.wheel.motion().position_m),
+            (Signal::TrainAccel, self.speeds.accel_mps2()),
+            (Signal::TrainJerk, self.speeds.jerk_mps3()),
             (Signal::Tacho1, condition_index(self.tachos[0].condition())),
             (Signal::Tacho2, condition_index(self.tachos[1].condition())),
             (Signal::MarkerCoil, f64::from(self.markers.last())),
@@ -301,7 +383,23 @@ impl Rig {
         ] {
             sample.set(signal, value);
         }
+        match &self.track {
+            Some(track) => {
+                let to_stop_m = track.to_stop_m(self.wheel.motion().position_m);
+                sample.set(Signal::ToStop, to_stop_m);
+            }
+            None => sample.forget(Signal::ToStop),
+        }
     }
+}
+
+/// Cars of a train from the head, length in m and share of its weight.
+fn weight_shares(train: &TrainData, load_kg: f64) -> Vec<(f64, f64)> {
+    let cars = train.cars(load_kg);
+    let weight_kg: f64 = cars.iter().map(|car| car.1).sum();
+    cars.into_iter()
+        .map(|(length_m, kg)| (length_m, kg / weight_kg))
+        .collect()
 }
 
 /// Place of a tachometer condition among the catalogue's labels.

@@ -3,45 +3,10 @@
 //! Way: distance rolled whatever the direction, never falling. Position: forward counts up,
 //! backward down.
 
+use crate::train::Piece;
+
 /// Pieces one scan can need: three legs of a travel and the rest after it.
 const MAX_PIECES: usize = 4;
-
-/// Constant acceleration for a part of a scan; the sign of speed never changes within it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Piece {
-    /// How long, s.
-    pub seconds: f64,
-    /// Speed at its start, m/s, forward positive.
-    pub speed_mps: f64,
-    /// Acceleration, m/s², forward positive.
-    pub accel_mps2: f64,
-}
-
-impl Piece {
-    /// Distance covered, m, forward positive.
-    pub fn distance_m(&self) -> f64 {
-        (self.speed_mps + 0.5 * self.accel_mps2 * self.seconds) * self.seconds
-    }
-
-    /// Speed at its end, m/s, forward positive.
-    pub fn end_speed_mps(&self) -> f64 {
-        self.speed_mps + self.accel_mps2 * self.seconds
-    }
-
-    /// Time from its start until `way_m` has been rolled, s.
-    fn time_of_way(&self, way_m: f64) -> f64 {
-        let sign = if self.distance_m() < 0.0 { -1.0 } else { 1.0 };
-        let (speed, accel) = (sign * self.speed_mps, sign * self.accel_mps2);
-        // The stable form of the quadratic's root: no difference of near-equal numbers.
-        let root = (speed * speed + 2.0 * accel * way_m).max(0.0).sqrt();
-        let seconds = 2.0 * way_m / (speed + root);
-        if seconds.is_finite() {
-            seconds.clamp(0.0, self.seconds)
-        } else {
-            self.seconds
-        }
-    }
-}
 
 /// The motion of one scan.
 #[derive(Clone, Copy, Debug, Default)]
@@ -86,6 +51,21 @@ impl Motion {
     pub fn correct(&mut self, way_m: f64, position_m: f64) {
         self.way_m = way_m.max(self.way_before_m);
         self.position_m = position_m;
+    }
+
+    /// The motion of something that moves with this one but for a constant distance of its way.
+    pub fn shifted(&self, way_m: f64) -> Self {
+        Self {
+            way_before_m: self.way_before_m + way_m,
+            way_m: self.way_m + way_m,
+            ..*self
+        }
+    }
+
+    /// The last piece: what the wheel was doing when the scan ended.
+    pub fn last(&self) -> Piece {
+        let moving = self.pieces[..self.len].iter().rev();
+        moving.copied().next().unwrap_or_default()
     }
 
     /// How long before the scan's end the wheel had rolled up to `way_m`, s.

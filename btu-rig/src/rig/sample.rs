@@ -50,7 +50,7 @@ const IO_SIGNALS: [Signal; 14] = [
     Signal::MarkerCount,
 ];
 
-const STATUS_SIGNALS: [Signal; 21] = [
+const STATUS_SIGNALS: [Signal; 23] = [
     Signal::Refusals,
     Signal::CodeIndex,
     Signal::EbCause,
@@ -65,6 +65,8 @@ const STATUS_SIGNALS: [Signal; 21] = [
     Signal::Aligned,
     Signal::TraOk,
     Signal::AtoReady,
+    Signal::AtoState,
+    Signal::WheelCorrection,
     Signal::Started,
     Signal::Events,
     Signal::RejectedFrames,

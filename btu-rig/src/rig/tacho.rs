@@ -46,6 +46,13 @@ impl Tacho {
         }
     }
 
+    /// Sets how far the wheel rolls for a pulse from now on.
+    pub fn set_metres_per_pulse(&mut self, metres_per_pulse: f64, way_m: f64) {
+        self.base_phase = self.phase;
+        self.base_way_m = way_m;
+        self.metres_per_pulse = metres_per_pulse;
+    }
+
     /// Sets the condition from now on.
     pub fn set_condition(&mut self, condition: TachoCondition, way_m: f64) {
         self.base_phase = self.phase;

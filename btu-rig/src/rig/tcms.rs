@@ -5,9 +5,9 @@ use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, Outputs, TcmsToAtc, Tcms
 use protocol::{CYCLE, Duration, Instant};
 
 use crate::stimulus::TcmsCondition;
+use crate::train::TrainInputs;
 
 use super::desk::Desk;
-use super::train::TrainInputs;
 
 /// Age at which ATO's commands no longer count [default].
 const COMMAND_TIMEOUT: Duration = Duration::from_ms(300);

@@ -4,7 +4,9 @@ use protocol::{SCAN, Speed};
 
 use crate::procedure::Refusal;
 
-use super::motion::{Motion, Piece};
+use crate::train::{Piece, TrainState};
+
+use super::motion::Motion;
 
 /// Slowing down when a step or a run ends: brisk, yet believable for a wheel [default].
 const SAFE_DECEL_MPS2: f64 = 3.0;
@@ -41,7 +43,8 @@ impl Default for Plan {
     }
 }
 
-/// The wheel that both tachometers sit on.
+/// The train's wheels: those that roll with it, and the axle that both tachometers sit on, which may
+/// slip or slide while the train model drives.
 #[derive(Debug, Default)]
 pub struct Wheel {
     /// Size of the speed, m/s.
@@ -49,6 +52,8 @@ pub struct Wheel {
     backward: bool,
     plan: Plan,
     motion: Motion,
+    /// The tachometers' axle.
+    axle: Motion,
     forward_at_rest: bool,
 }
 
@@ -179,20 +184,42 @@ impl Wheel {
         if self.forward_at_rest && self.standing() {
             self.backward = false;
         }
+        self.roll_axle_along();
     }
 
     /// Follows the train model through one scan.
-    pub fn follow(&mut self, pieces: impl IntoIterator<Item = Piece>) {
+    pub fn follow(&mut self, states: &[TrainState]) {
         self.motion.begin_scan();
-        for piece in pieces.into_iter().filter(|piece| piece.seconds > 0.0) {
-            self.motion.roll(piece);
-            let end = piece.end_speed_mps();
-            self.speed_mps = end.abs();
-            if piece.distance_m() != 0.0 {
-                self.backward = piece.distance_m() < 0.0;
+        for piece in states.iter().flat_map(|state| state.pieces) {
+            if piece.seconds > 0.0 {
+                self.motion.roll(piece);
+                self.speed_mps = piece.end_speed_mps().abs();
             }
         }
+        // A stop within a piece leaves rounding behind.
+        if states.last().is_some_and(|s| s.pieces[1].seconds > 0.0) {
+            self.speed_mps = 0.0;
+        }
+        if self.motion.position_m != self.motion.position_before_m {
+            self.backward = self.motion.position_m < self.motion.position_before_m;
+        }
         self.plan = Plan::default();
+        if states.iter().all(|state| state.axle == state.pieces) {
+            self.roll_axle_along();
+            return;
+        }
+        self.axle.begin_scan();
+        for piece in states.iter().flat_map(|state| state.axle) {
+            if piece.seconds > 0.0 {
+                self.axle.roll(piece);
+            }
+        }
+    }
+
+    /// The axle rolls as the train does; what it slid before stays between their ways.
+    fn roll_axle_along(&mut self) {
+        let slid_m = self.axle.way_m - self.motion.way_before_m;
+        self.axle = self.motion.shifted(slid_m);
     }
 
     /// The plan is carried out.
@@ -224,9 +251,14 @@ impl Wheel {
         }
     }
 
-    /// Its motion in the last scan.
+    /// The train's motion in the last scan.
     pub fn motion(&self) -> &Motion {
         &self.motion
+    }
+
+    /// The tachometers' axle's.
+    pub fn axle(&self) -> &Motion {
+        &self.axle
     }
 }
 

@@ -79,6 +79,15 @@ pub(super) static VERBS: &[Verb] = &[
         },
     },
     Verb {
+        name: "antenna.along",
+        params: &[needs("on", Want::Bool)],
+        make: |args| {
+            at_once(Stimulus::CodesAlong {
+                on: args.flag("on", true),
+            })
+        },
+    },
+    Verb {
         name: "antenna.off",
         params: &[],
         make: |_| at_once(Stimulus::CodeOff),

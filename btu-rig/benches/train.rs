@@ -1,0 +1,46 @@
+//! How long the train models take: `cargo bench -p btu-rig --bench train`. One item is the two
+//! steps of 5 ms of a scan.
+
+use btu_rig::conditions::Conditions;
+use btu_rig::train::{Train, TrainData, TrainInputs, TrainState};
+use divan::Bencher;
+use divan::counter::ItemsCount;
+
+/// Scans of a run of 95 s.
+const SCANS: usize = 9500;
+
+fn main() {
+    divan::main();
+}
+
+/// Power to 60 km/h, coasting, braking to a stop: the three things a train does.
+fn run(train: &mut Train) -> TrainState {
+    let mut state = TrainState::default();
+    for scan in 0..SCANS {
+        let inputs = TrainInputs {
+            demand: [1.0, 0.05, -0.6][(scan / 2500).min(2)],
+            gradient_permille: -3.0,
+            ..TrainInputs::default()
+        };
+        train.step(0.005, &inputs);
+        state = train.step(0.005, &inputs);
+    }
+    state
+}
+
+#[divan::bench(args = ["line6", "ideal", "line6 sliding"])]
+fn section_run(bencher: Bencher<'_, '_>, name: &str) {
+    let data = match name {
+        "ideal" => TrainData::ideal(),
+        _ => TrainData::line6(),
+    };
+    let mut conditions = Conditions::default();
+    if name == "line6 sliding" {
+        conditions.adhesion = 0.06;
+    }
+    let train = Train::new(&data, &conditions);
+    bencher
+        .counter(ItemsCount::new(SCANS))
+        .with_inputs(|| train.clone())
+        .bench_refs(run);
+}

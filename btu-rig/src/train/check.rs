@@ -1,0 +1,152 @@
+//! Ranges of a train's data, and what must fit together.
+
+use protocol::config::ConfigError;
+
+use super::MAX_CARS;
+use super::data::{CarData, CarsData, IdealData, Role};
+
+/// Longest dead time or time constant, s.
+const MAX_TIME_S: f64 = 5.0;
+
+/// Checks a point mass.
+pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
+    for (key, value, low, high) in [
+        ("mass_kg", data.mass_kg, 1e3, 1e7),
+        ("full_load_kg", data.full_load_kg, 0.0, 1e6),
+        ("length_m", data.length_m, 1.0, 500.0),
+        ("drag_per_s", data.drag_per_s, 0.0, 0.1),
+        ("power_kmh_per_s", data.power_kmh_per_s, 0.1, 10.0),
+        (
+            "base_speed_kmh",
+            data.base_speed_kmh.unwrap_or(40.0),
+            1.0,
+            200.0,
+        ),
+        ("service_kmh_per_s", data.service_kmh_per_s, 0.1, 10.0),
+        ("emergency_kmh_per_s", data.emergency_kmh_per_s, 0.1, 10.0),
+        ("holding_share", data.holding_share, 0.0, 1.0),
+    ] {
+        within(key, value, low, high)?;
+    }
+    Ok(())
+}
+
+/// Checks a train of cars.
+pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
+    for (key, value, low, high) in ranges(data) {
+        within(key, value, low, high)?;
+    }
+    let electric = &data.electric_brake;
+    if electric.fade_to_kmh >= electric.fade_from_kmh
+        || electric.fade_from_kmh > electric.full_to_kmh
+    {
+        return Err(ConfigError::Conflict(format!(
+            "electric_brake: fade_to_kmh {} < fade_from_kmh {} <= full_to_kmh {} is needed",
+            electric.fade_to_kmh, electric.fade_from_kmh, electric.full_to_kmh
+        )));
+    }
+    let count = data.cars.len();
+    within("cars", count as f64, 1.0, MAX_CARS as f64)?;
+    within(
+        "tachometer_car",
+        data.tachometer_car as f64,
+        1.0,
+        count as f64,
+    )?;
+    for (i, car) in data.cars.iter().enumerate() {
+        check_car(i + 1, car)?;
+    }
+    if !data.cars.iter().any(|car| car.role == Role::Motor) {
+        return Err(ConfigError::Conflict(
+            "cars: a train needs a motor car".to_owned(),
+        ));
+    }
+    check_air(data)
+}
+
+fn check_car(number: usize, car: &CarData) -> Result<(), ConfigError> {
+    for (key, value, low, high) in [
+        ("brake_unit", car.brake_unit as f64, 1.0, MAX_CARS as f64),
+        ("length_m", car.length_m, 5.0, 40.0),
+        ("empty_kg", car.empty_kg, 1e3, 2e5),
+        ("rotating_kg", car.rotating_kg, 1.0, 5e4),
+        ("full_load_kg", car.full_load_kg, 0.0, 1e5),
+        ("air_n", car.air_n, 0.0, 1e6),
+    ] {
+        let key = format!("cars {number} ({}): {key}", car.name);
+        within(&key, value, low, high)?;
+    }
+    Ok(())
+}
+
+/// Air alone must be able to give full service braking of a full train.
+fn check_air(data: &CarsData) -> Result<(), ConfigError> {
+    for unit in 1..=MAX_CARS {
+        let cars = || data.cars.iter().filter(|car| car.brake_unit == unit);
+        let inertia_kg = |car: &CarData| car.empty_kg + car.rotating_kg + car.full_load_kg;
+        let needs_n = cars().map(inertia_kg).sum::<f64>() * data.service_brake.kmh_per_s / 3.6;
+        let has_n = cars().map(|car| car.air_n).sum::<f64>();
+        // S3's table is rounded to newtons.
+        if has_n < 0.999 * needs_n {
+            return Err(ConfigError::Conflict(format!(
+                "brake_unit {unit}: air_n of {has_n:.0} N in all is less than full service of the full train, {needs_n:.0} N"
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 29] {
+    let (t, el, s) = (&data.traction, &data.electric_brake, &data.service_brake);
+    let (em, r, w) = (&data.emergency_brake, &data.resistance, &data.wheels);
+    let time = MAX_TIME_S;
+    [
+        ("traction.full_load_n", t.full_load_n, 1e3, 1e7),
+        ("traction.base_speed_kmh", t.base_speed_kmh, 1.0, 200.0),
+        ("traction.jerk_mps3", t.jerk_mps3, 0.1, 100.0),
+        ("traction.dead_time_s", t.dead_time_s, 0.0, time),
+        ("traction.lag_s", t.lag_s, 0.0, time),
+        ("electric_brake.adhesion_limit", el.adhesion_limit, 0.0, 0.5),
+        ("electric_brake.full_to_kmh", el.full_to_kmh, 1.0, 200.0),
+        ("electric_brake.fade_from_kmh", el.fade_from_kmh, 0.1, 200.0),
+        ("electric_brake.fade_to_kmh", el.fade_to_kmh, 0.0, 200.0),
+        ("service_brake.kmh_per_s", s.kmh_per_s, 0.1, 10.0),
+        ("service_brake.holding_share", s.holding_share, 0.0, 1.0),
+        ("service_brake.dead_time_s", s.dead_time_s, 0.0, time),
+        ("service_brake.build_up_s", s.build_up_s, 0.0, time),
+        ("service_brake.release_s", s.release_s, 0.0, time),
+        ("emergency_brake.kmh_per_s", em.kmh_per_s, 0.1, 10.0),
+        ("emergency_brake.dead_time_s", em.dead_time_s, 0.0, time),
+        ("emergency_brake.build_up_s", em.build_up_s, 0.0, time),
+        ("emergency_brake.release_s", em.release_s, 0.0, time),
+        ("resistance.starting_kgf_t", r.starting_kgf_t, 0.0, 50.0),
+        ("resistance.starting_kmh", r.starting_kmh, 0.0, 20.0),
+        ("resistance.rolling_kgf_t", r.rolling_kgf_t, 0.0, 50.0),
+        (
+            "resistance.rolling_kgf_t_per_kmh",
+            r.rolling_kgf_t_per_kmh,
+            0.0,
+            1.0,
+        ),
+        ("resistance.air_kgf_per_kmh2", r.air_kgf_per_kmh2, 0.0, 10.0),
+        ("resistance.tunnel_kgf_t", r.tunnel_kgf_t, 0.0, 20.0),
+        ("resistance.curve_kgf_m_t", r.curve_kgf_m_t, 0.0, 5000.0),
+        ("wheels.sliding_share", w.sliding_share, 0.1, 1.0),
+        ("wheels.protection_mps", w.protection_mps, 0.05, 20.0),
+        ("wheels.release_s", w.release_s, 0.01, 10.0),
+        ("wheels.restore_s", w.restore_s, 0.01, 60.0),
+    ]
+}
+
+fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
+    // Not a number is in no range.
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(ConfigError::Range {
+        key: key.to_owned(),
+        value: value.to_string(),
+        low: low.to_string(),
+        high: high.to_string(),
+    })
+}

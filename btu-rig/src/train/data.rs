@@ -1,0 +1,350 @@
+//! Data of a train as files have it; see `scripts/trains/`.
+
+use protocol::config::ConfigError;
+use serde::Deserialize;
+
+use super::check;
+
+/// Data of a train, checked when it comes from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TrainData {
+    /// A point mass with ideal drive and brakes.
+    Ideal(IdealData),
+    /// A train of cars.
+    Cars(CarsData),
+}
+
+/// The papers' point mass [S0 eq. 8].
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IdealData {
+    /// Name of the train.
+    pub name: String,
+    /// Always `ideal`.
+    pub model: String,
+    /// Mass without passengers, kg.
+    pub mass_kg: f64,
+    /// Greatest passenger load, kg.
+    pub full_load_kg: f64,
+    /// Length, m.
+    pub length_m: f64,
+    /// Resistance r, 1/s.
+    pub drag_per_s: f64,
+    /// Acceleration at full power, km/h/s.
+    pub power_kmh_per_s: f64,
+    /// Speed up to which it is there, km/h, constant power beyond; none = at all speeds.
+    #[serde(default)]
+    pub base_speed_kmh: Option<f64>,
+    /// Full service brake, km/h/s.
+    pub service_kmh_per_s: f64,
+    /// Emergency brake, km/h/s.
+    pub emergency_kmh_per_s: f64,
+    /// Holding brake, share of full service [S4].
+    pub holding_share: f64,
+    /// Gradients act on it.
+    pub gradients: bool,
+}
+
+/// A train of cars.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CarsData {
+    /// Name of the train.
+    pub name: String,
+    /// Always `cars`.
+    pub model: String,
+    /// Car whose axle carries the tachometers, counted from 1.
+    pub tachometer_car: usize,
+    /// Powering.
+    pub traction: Traction,
+    /// Electric brake.
+    pub electric_brake: ElectricBrake,
+    /// Service brake, and the air brake that makes up for what is not electric.
+    pub service_brake: AirBrake,
+    /// Emergency brake.
+    pub emergency_brake: EmergencyBrake,
+    /// What resists motion.
+    pub resistance: Resistance,
+    /// Slip, slide and the protection against it.
+    pub wheels: Wheels,
+    /// The cars from the head.
+    pub cars: Vec<CarData>,
+}
+
+/// Powering.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Traction {
+    /// Force of the whole train at full power and full load, N [S3 eq. 1].
+    pub full_load_n: f64,
+    /// Speed up to which it is there, km/h; constant power beyond [S3].
+    pub base_speed_kmh: f64,
+    /// Greatest change of powering and service braking effort, m/s³ [S1].
+    pub jerk_mps3: f64,
+    /// Command to the inverters' first answer, s.
+    pub dead_time_s: f64,
+    /// Time constant of their effort, s.
+    pub lag_s: f64,
+}
+
+/// Electric brake of the motor cars.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElectricBrake {
+    /// Its greatest force over the car's weight [S3 eq. 6].
+    pub adhesion_limit: f64,
+    /// Speed up to which it is there, km/h; constant power beyond.
+    pub full_to_kmh: f64,
+    /// Speed below which it fades, km/h [S3].
+    pub fade_from_kmh: f64,
+    /// Speed at which nothing is left, km/h.
+    pub fade_to_kmh: f64,
+}
+
+/// Service brake.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AirBrake {
+    /// Full service brake, km/h/s [S3: B7].
+    pub kmh_per_s: f64,
+    /// Holding brake, share of full service [S4].
+    pub holding_share: f64,
+    /// Demand to the first force of air, s.
+    pub dead_time_s: f64,
+    /// Time constant while it builds up, s.
+    pub build_up_s: f64,
+    /// Time constant while it is released, s.
+    pub release_s: f64,
+}
+
+/// Emergency brake, by air alone [S3].
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EmergencyBrake {
+    /// Its deceleration, km/h/s.
+    pub kmh_per_s: f64,
+    /// Opening of the loop to the first force, s.
+    pub dead_time_s: f64,
+    /// Time constant while it builds up, s.
+    pub build_up_s: f64,
+    /// Time constant while it is released, s.
+    pub release_s: f64,
+}
+
+/// What resists motion.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Resistance {
+    /// Resistance when starting from rest, kgf/t.
+    pub starting_kgf_t: f64,
+    /// Speed up to which it counts, km/h.
+    pub starting_kmh: f64,
+    /// Rolling resistance, kgf/t.
+    pub rolling_kgf_t: f64,
+    /// Its rise with speed, kgf/t per km/h.
+    pub rolling_kgf_t_per_kmh: f64,
+    /// Air resistance of the whole train, kgf per (km/h)².
+    pub air_kgf_per_kmh2: f64,
+    /// Resistance of a tunnel, kgf/t.
+    pub tunnel_kgf_t: f64,
+    /// Curve resistance times radius, kgf·m/t.
+    pub curve_kgf_m_t: f64,
+}
+
+/// Slip, slide and the protection against it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wheels {
+    /// Friction of a sliding wheel over adhesion.
+    pub sliding_share: f64,
+    /// Difference to the train's speed at which effort is taken off, m/s.
+    pub protection_mps: f64,
+    /// Time in which all effort is taken off, s.
+    pub release_s: f64,
+    /// Time in which all of it is given back, s.
+    pub restore_s: f64,
+}
+
+/// One car.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CarData {
+    /// Name, for instance `M1`.
+    pub name: String,
+    /// Motored or not.
+    pub role: Role,
+    /// Cars of one brake unit share a demand: electric first, then air on trailers, then on motor
+    /// cars [S3].
+    pub brake_unit: usize,
+    /// Length, m.
+    pub length_m: f64,
+    /// Empty mass, kg.
+    pub empty_kg: f64,
+    /// Rotating parts as mass, kg.
+    pub rotating_kg: f64,
+    /// Greatest passenger load, kg.
+    pub full_load_kg: f64,
+    /// Greatest force of its air brake in service, N.
+    pub air_n: f64,
+}
+
+/// Whether a car is driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// With motors and electric brake.
+    Motor,
+    /// Without.
+    Trailer,
+}
+
+/// The one key all models have.
+#[derive(Deserialize)]
+struct Kind {
+    model: String,
+}
+
+impl TrainData {
+    /// Reads and checks a train file.
+    ///
+    /// # Errors
+    /// The first thing wrong: syntax with line and column, or a train that cannot be.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let Kind { model } = parse(text)?;
+        let data = match model.as_str() {
+            "ideal" => Self::Ideal(parse(text)?),
+            "cars" => Self::Cars(parse(text)?),
+            _ => {
+                return Err(ConfigError::Conflict(format!(
+                    "model \"{model}\" must be ideal or cars"
+                )));
+            }
+        };
+        match &data {
+            Self::Ideal(ideal) => check::ideal(ideal)?,
+            Self::Cars(cars) => check::cars(cars)?,
+        }
+        Ok(data)
+    }
+
+    /// The train of eight cars of line 6 [S3].
+    ///
+    /// # Panics
+    /// Never: a test reads the same text.
+    pub fn line6() -> Self {
+        built_in(include_str!("../../../scripts/trains/line6.toml"))
+    }
+
+    /// The point mass of S0: 200 t, r = 0.001 1/s, 3.0 and 3.5 km/h/s.
+    ///
+    /// # Panics
+    /// Never: a test reads the same text.
+    pub fn ideal() -> Self {
+        built_in(include_str!("../../../scripts/trains/ideal.toml"))
+    }
+
+    /// Name of the train.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Ideal(data) => &data.name,
+            Self::Cars(data) => &data.name,
+        }
+    }
+
+    /// Passengers it can carry, kg.
+    pub fn full_load_kg(&self) -> f64 {
+        match self {
+            Self::Ideal(data) => data.full_load_kg,
+            Self::Cars(data) => data.cars.iter().map(|car| car.full_load_kg).sum(),
+        }
+    }
+
+    /// Length and weight of each car from the head, m and kg, with these passengers spread over
+    /// the train.
+    pub fn cars(&self, load_kg: f64) -> Vec<(f64, f64)> {
+        match self {
+            Self::Ideal(data) => vec![(data.length_m, data.mass_kg + load_kg)],
+            Self::Cars(data) => {
+                let share = load_kg / self.full_load_kg().max(1.0);
+                let cars = data.cars.iter();
+                cars.map(|c| (c.length_m, c.empty_kg + share * c.full_load_kg))
+                    .collect()
+            }
+        }
+    }
+}
+
+fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ConfigError> {
+    toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))
+}
+
+fn built_in(text: &str) -> TrainData {
+    TrainData::from_toml(text).unwrap_or_else(|e| panic!("built-in train: {e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE6: &str = include_str!("../../../scripts/trains/line6.toml");
+
+    /// Against the sums S3 prints: empty, braking mass full, brake force at B7 full; it adds up
+    /// what it rounds afterwards.
+    #[test]
+    fn line_6_adds_up_to_the_printed_sums() {
+        let TrainData::Cars(train) = TrainData::line6() else {
+            panic!("a train of cars");
+        };
+        let sum = |f: fn(&CarData) -> f64| train.cars.iter().map(f).sum::<f64>();
+        assert_eq!(sum(|c| c.empty_kg), 268_807.0);
+        let full_kg = sum(|c| c.empty_kg + c.rotating_kg + c.full_load_kg);
+        assert!((full_kg - 456_368.0).abs() <= 1.0, "{full_kg}");
+        assert!((sum(|c| c.air_n) - 443_691.0).abs() <= 4.0);
+        assert_eq!(TrainData::ideal().full_load_kg(), 160_000.0);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_by_name() {
+        let cut = LINE6.find("[[cars]]").unwrap_or(LINE6.len());
+        for (text, words) in [
+            (
+                LINE6.replace("empty_kg = 33552", "empty_kg = -1"),
+                "cars 1 (TC1): empty_kg",
+            ),
+            (
+                LINE6.replace("role = \"motor\"", "role = \"pusher\""),
+                "pusher",
+            ),
+            (LINE6.replace("lag_s = 0.20", ""), "lag_s"),
+            (
+                LINE6.replace("lag_s = 0.20", "lag_s = nan"),
+                "traction.lag_s",
+            ),
+            (LINE6.replace("lag_s", "lagging_s"), "lagging_s"),
+            (LINE6[..cut].to_owned(), "cars"),
+            (
+                LINE6.replace("tachometer_car = 1", "tachometer_car = 9"),
+                "tachometer_car",
+            ),
+            (
+                LINE6.replace("model = \"cars\"", "model = \"maglev\""),
+                "maglev",
+            ),
+            (
+                LINE6.replace("fade_to_kmh = 5", "fade_to_kmh = 15"),
+                "fade_to_kmh",
+            ),
+            (
+                LINE6.replace("role = \"motor\"", "role = \"trailer\""),
+                "motor car",
+            ),
+            (
+                LINE6.replace("air_n = 54022", "air_n = 5402"),
+                "brake_unit 1",
+            ),
+        ] {
+            let error = TrainData::from_toml(&text).unwrap_err().to_string();
+            assert!(error.contains(words), "{words}: {error}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The papers' train: dv/dt = −r·v + u/M [S0 eq. 8], M·dv/dt + f_d(t)·v = u [S1].
+//!
+//! Exact for constant effort over a step [S0 eq. 9]: v′ = A·v + B·u with A = e^(−rT) and
+//! B = (1 − e^(−rT))/(M·r). Effort is a share of an acceleration, so the mass cancels but for f_d.
+
+use crate::conditions::{Conditions, Disturbance};
+
+use super::data::IdealData;
+use super::{KGF_PER_T, Piece, TrainInputs, TrainState};
+
+/// A point mass with ideal drive and brakes.
+#[derive(Clone, Debug)]
+pub(super) struct Ideal {
+    data: IdealData,
+    brake_factor: f64,
+    gradient_offset_permille: f64,
+    disturbance: Disturbance,
+    velocity_mps: f64,
+    seconds: f64,
+    /// The step and damping the discretisation is for.
+    discrete: Discrete,
+}
+
+/// A and B/(1/M) of [S0 eq. 9] for one step and damping.
+#[derive(Clone, Copy, Debug, Default)]
+struct Discrete {
+    dt_s: f64,
+    damping_per_s: f64,
+    keeps: f64,
+    gains_s: f64,
+}
+
+impl Discrete {
+    fn new(dt_s: f64, damping_per_s: f64) -> Self {
+        let lost = -(-damping_per_s * dt_s).exp_m1();
+        let gains_s = if damping_per_s == 0.0 {
+            dt_s
+        } else {
+            lost / damping_per_s
+        };
+        Self {
+            dt_s,
+            damping_per_s,
+            keeps: 1.0 - lost,
+            gains_s,
+        }
+    }
+}
+
+impl Ideal {
+    pub(super) fn new(data: &IdealData, conditions: &Conditions) -> Self {
+        let mut train = Self {
+            data: data.clone(),
+            brake_factor: 1.0,
+            gradient_offset_permille: 0.0,
+            disturbance: Disturbance::None,
+            velocity_mps: 0.0,
+            seconds: 0.0,
+            discrete: Discrete::default(),
+        };
+        train.set_conditions(conditions);
+        train
+    }
+
+    pub(super) fn set_conditions(&mut self, conditions: &Conditions) {
+        self.brake_factor = conditions.brake_factor;
+        self.gradient_offset_permille = conditions.gradient_offset_permille;
+        self.disturbance = conditions.disturbance;
+    }
+
+    pub(super) fn place(&mut self, velocity_mps: f64) {
+        self.velocity_mps = velocity_mps;
+        self.seconds = 0.0;
+    }
+
+    pub(super) fn velocity_mps(&self) -> f64 {
+        self.velocity_mps
+    }
+
+    pub(super) fn step(&mut self, dt_s: f64, inputs: &TrainInputs) -> TrainState {
+        let mass_kg = self.data.mass_kg + inputs.load_kg;
+        // The middle of the step stands for it, as the trapezoidal rule would have it.
+        let damping_n_s_per_m = self.disturbance.at(self.seconds + 0.5 * dt_s);
+        self.seconds += dt_s;
+        let damping_per_s = self.data.drag_per_s + damping_n_s_per_m / mass_kg;
+        if dt_s != self.discrete.dt_s || damping_per_s != self.discrete.damping_per_s {
+            self.discrete = Discrete::new(dt_s, damping_per_s);
+        }
+        let speed_mps = self.velocity_mps;
+        let (power, brake) = self.efforts_mps2(inputs);
+        let gradient = if self.data.gradients {
+            (inputs.gradient_permille + self.gradient_offset_permille) * KGF_PER_T
+        } else {
+            0.0
+        };
+        let drive = if inputs.backward { -power } else { power } - gradient;
+        // Brakes oppose motion; at rest they hold as far as they reach.
+        let direction = match speed_mps {
+            v if v != 0.0 => v.signum(),
+            _ if drive.abs() <= brake => 0.0,
+            _ => drive.signum(),
+        };
+        let net = if direction == 0.0 {
+            0.0
+        } else {
+            drive - direction * brake
+        };
+        let end = self.discrete.keeps * speed_mps + self.discrete.gains_s * net;
+        let stops = speed_mps != 0.0 && end * speed_mps <= 0.0;
+        self.velocity_mps = if stops { 0.0 } else { end };
+        let pieces = Piece::between(speed_mps, end, dt_s);
+        let middle_mps = 0.5 * (speed_mps + self.velocity_mps);
+        TrainState {
+            pieces,
+            axle: pieces,
+            traction_n: power * mass_kg,
+            air_brake_n: brake * mass_kg,
+            resistance_n: damping_per_s * mass_kg * middle_mps.abs(),
+            gradient_n: gradient * mass_kg,
+            tractive_power_w: power * mass_kg * middle_mps.abs(),
+            braking: brake > 0.0,
+            ..TrainState::default()
+        }
+    }
+
+    /// Powering and braking, m/s², both sizes.
+    fn efforts_mps2(&self, inputs: &TrainInputs) -> (f64, f64) {
+        let share = inputs.share(self.data.holding_share);
+        let fade = self.data.base_speed_kmh.map_or(1.0, |base_kmh| {
+            let base_mps = base_kmh / 3.6;
+            base_mps / self.velocity_mps.abs().max(base_mps)
+        });
+        let power = share.max(0.0) * self.data.power_kmh_per_s / 3.6 * fade;
+        let service = (-share).max(0.0) * self.data.service_kmh_per_s / 3.6;
+        let emergency = if inputs.emergency {
+            self.data.emergency_kmh_per_s / 3.6
+        } else {
+            0.0
+        };
+        (power, service.max(emergency) * self.brake_factor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::train::TrainData;
+
+    const DT: f64 = 0.005;
+
+    fn train(change: fn(&mut IdealData), conditions: &Conditions) -> Ideal {
+        let TrainData::Ideal(mut data) = TrainData::ideal() else {
+            panic!("a point mass");
+        };
+        change(&mut data);
+        Ideal::new(&data, conditions)
+    }
+
+    fn demand(demand: f64) -> TrainInputs {
+        TrainInputs {
+            demand,
+            ..TrainInputs::default()
+        }
+    }
+
+    /// After n steps of constant effort: v = u/(M·r)·(1 − e^(−r·n·T)), the solution of eq. (8).
+    #[test]
+    fn follows_equation_9() {
+        let mut train = train(|_| (), &Conditions::default());
+        let (mut way, steps) = (0.0, 2000);
+        for _ in 0..steps {
+            let state = train.step(DT, &demand(0.6));
+            way += state.pieces[0].distance_m();
+        }
+        let (accel, r, t) = (0.6 * 3.0 / 3.6, 0.001, f64::from(steps) * DT);
+        let speed = accel / r * (1.0 - (-r * t).exp());
+        assert!((train.velocity_mps() - speed).abs() < 1e-10);
+        let distance = accel / r * (t - (1.0 - (-r * t).exp()) / r);
+        assert!((way - distance).abs() < 1e-6, "{way} {distance}");
+    }
+
+    /// Full brake from 10 m/s without drag: 10²/(2·3.5/3.6) m, then it stays.
+    #[test]
+    fn brakes_stop_it_and_hold_it() {
+        let mut train = train(|d| d.drag_per_s = 0.0, &Conditions::default());
+        train.place(10.0);
+        let mut way = 0.0;
+        for _ in 0..4000 {
+            let state = train.step(DT, &demand(-1.0));
+            way += state.pieces[0].distance_m();
+        }
+        assert_eq!(train.velocity_mps(), 0.0);
+        assert!((way - 50.0 * 3.6 / 3.5).abs() < 1e-6, "{way}");
+    }
+
+    /// S1's plant: 432 t coasting under f_d = 2e4·sin(2πt) has lost nothing after each period, and
+    /// after half a period v = v₀·exp(−∫f_d/M dt) = v₀·exp(−2e4/(π·432e3)).
+    #[test]
+    fn a_disturbance_damps_and_drives_in_turn() {
+        let conditions = Conditions {
+            disturbance: Disturbance::Sine {
+                amplitude_n_s_per_m: 2e4,
+                hz: 1.0,
+            },
+            ..Conditions::default()
+        };
+        let change: fn(&mut IdealData) = |d| (d.mass_kg, d.drag_per_s) = (432e3, 0.0);
+        let mut train = train(change, &conditions);
+        train.place(10.0);
+        for step in 1..=400 {
+            train.step(DT, &demand(0.0));
+            let expected = match step {
+                100 | 300 => 10.0 * (-2e4 / (std::f64::consts::PI * 432e3)).exp(),
+                200 | 400 => 10.0,
+                _ => continue,
+            };
+            assert!((train.velocity_mps() - expected).abs() < 1e-5, "{step}");
+        }
+    }
+
+    #[test]
+    fn gradients_act_only_when_asked() {
+        let downhill = TrainInputs {
+            gradient_permille: -35.0,
+            ..TrainInputs::default()
+        };
+        let mut level = train(|_| (), &Conditions::default());
+        level.step(DT, &downhill);
+        assert_eq!(level.velocity_mps(), 0.0);
+        let mut rolls = train(|d| d.gradients = true, &Conditions::default());
+        rolls.step(DT, &downhill);
+        assert!(rolls.velocity_mps() > 0.0);
+    }
+}

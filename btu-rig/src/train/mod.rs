@@ -1,0 +1,186 @@
+//! The train: what it does with the commands it gets, as forces on rails.
+//!
+//! Two models behind [`Train::step`]: the papers' ideal point mass (`ideal`), and a train of cars
+//! (`formation`): command → demands for each car (`blending`) → effort that is there (`actuator`) →
+//! what the rails carry (`wheels`) → motion against `resistance`. Its data is [`TrainData`].
+//!
+//! Terms: *weight* is the mass gravity acts on, *inertia* that and the rotating parts (S3's braking
+//! mass); an *axle* is the one the tachometers sit on. Forward is positive, efforts are sizes.
+
+mod actuator;
+mod blending;
+mod check;
+mod data;
+mod formation;
+mod ideal;
+mod piece;
+mod resistance;
+#[cfg(test)]
+mod tests;
+mod wheels;
+
+use crate::conditions::{Conditions, Disturbance};
+
+pub use data::{
+    AirBrake, CarData, CarsData, ElectricBrake, EmergencyBrake, IdealData, Resistance, Role,
+    Traction, TrainData, Wheels,
+};
+pub use piece::Piece;
+
+use formation::Formation;
+use ideal::Ideal;
+
+/// Cars a train may have.
+pub const MAX_CARS: usize = 12;
+
+/// A value for each car; those beyond the train's last are 0.
+pub type PerCar = [f64; MAX_CARS];
+
+/// One kilogram-force per tonne, N/kg; also what 1 ‰ of gradient takes.
+pub const KGF_PER_T: f64 = 9.80665e-3;
+
+/// What acts on the train.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TrainInputs {
+    /// Share of full effort, −1 full service brake .. 1 full power.
+    pub demand: f64,
+    /// Full service brake, whatever the demand.
+    pub full_service: bool,
+    /// Emergency brake; no power and no electric brake while it is on (S3).
+    pub emergency: bool,
+    /// Holding brake.
+    pub holding: bool,
+    /// No power.
+    pub power_cut: bool,
+    /// The reverser points backward.
+    pub backward: bool,
+    /// Passengers, kg.
+    pub load_kg: f64,
+    /// Gradient under the train, mean over its weight, ‰, uphill positive.
+    pub gradient_permille: f64,
+    /// Curvature under the train, mean over its weight, 1/m.
+    pub curvature_per_m: f64,
+}
+
+impl TrainInputs {
+    /// Share of full effort that the commands come to.
+    fn share(&self, holding_share: f64) -> f64 {
+        if self.full_service {
+            return -1.0;
+        }
+        let most = if self.power_cut || self.emergency {
+            0.0
+        } else {
+            1.0
+        };
+        let most = if self.holding { -holding_share } else { most };
+        // Not a number is no order at all, and a train without one coasts.
+        if self.demand.is_nan() {
+            return most.min(0.0);
+        }
+        self.demand.clamp(-1.0, most)
+    }
+}
+
+/// What the train did in one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TrainState {
+    /// Its motion: moving, and standing for the rest if it came to a stop.
+    pub pieces: [Piece; 2],
+    /// What the rim of the axle with the tachometers did; the same unless it slips or slides.
+    pub axle: [Piece; 2],
+    /// Traction on the rails, N, a size.
+    pub traction_n: f64,
+    /// Electric brake, N, a size.
+    pub electric_brake_n: f64,
+    /// Air brake, N, a size.
+    pub air_brake_n: f64,
+    /// Running, starting and curve resistance and the disturbance, N, against the motion.
+    pub resistance_n: f64,
+    /// What the gradient takes, N, uphill positive.
+    pub gradient_n: f64,
+    /// Traction power at the wheels, W.
+    pub tractive_power_w: f64,
+    /// A brake is on.
+    pub braking: bool,
+    /// A car slips or slides.
+    pub sliding: bool,
+}
+
+/// A train.
+#[derive(Clone, Debug)]
+pub struct Train {
+    model: Model,
+    full_load_kg: f64,
+}
+
+#[derive(Clone, Debug)]
+enum Model {
+    Ideal(Ideal),
+    // Boxed: delay lines and cars make it a hundred times the other's size.
+    Cars(Box<Formation>),
+}
+
+impl Train {
+    /// A train at rest with no effort.
+    pub fn new(data: &TrainData, conditions: &Conditions) -> Self {
+        let model = match data {
+            TrainData::Ideal(data) => Model::Ideal(Ideal::new(data, conditions)),
+            TrainData::Cars(data) => Model::Cars(Box::new(Formation::new(data, conditions))),
+        };
+        Self {
+            model,
+            full_load_kg: data.full_load_kg(),
+        }
+    }
+
+    /// Changes what it differs from its data in, from now on.
+    pub fn set_conditions(&mut self, conditions: &Conditions) {
+        match &mut self.model {
+            Model::Ideal(train) => train.set_conditions(conditions),
+            Model::Cars(train) => train.set_conditions(conditions),
+        }
+    }
+
+    /// Puts the train at a speed, m/s, forward positive, with no effort, and begins its time anew.
+    pub fn place(&mut self, velocity_mps: f64) {
+        match &mut self.model {
+            Model::Ideal(train) => train.place(velocity_mps),
+            Model::Cars(train) => train.place(velocity_mps),
+        }
+    }
+
+    /// Its speed, m/s, forward positive.
+    pub fn velocity_mps(&self) -> f64 {
+        match &self.model {
+            Model::Ideal(train) => train.velocity_mps(),
+            Model::Cars(train) => train.velocity_mps(),
+        }
+    }
+
+    /// Passengers it can carry, kg.
+    pub fn full_load_kg(&self) -> f64 {
+        self.full_load_kg
+    }
+
+    /// One step of `dt_s`, at most 5 ms.
+    pub fn step(&mut self, dt_s: f64, inputs: &TrainInputs) -> TrainState {
+        match &mut self.model {
+            Model::Ideal(train) => train.step(dt_s, inputs),
+            Model::Cars(train) => train.step(dt_s, inputs),
+        }
+    }
+}
+
+impl Disturbance {
+    /// Its coefficient at a time, N·s/m: the force is `−f_d·v`.
+    fn at(&self, seconds: f64) -> f64 {
+        match *self {
+            Self::None => 0.0,
+            Self::Sine {
+                amplitude_n_s_per_m,
+                hz,
+            } => amplitude_n_s_per_m * (std::f64::consts::TAU * hz * seconds).sin(),
+        }
+    }
+}
