@@ -39,6 +39,7 @@ impl Dimension {
     pub(super) fn of_unit(unit: &str) -> Option<Self> {
         match unit {
             "km/h" => Some(Self::Speed),
+            "m/s²" => Some(Self::Acceleration),
             "ms" => Some(Self::Time),
             "m" => Some(Self::Distance),
             "Hz" => Some(Self::Frequency),

@@ -62,7 +62,7 @@ pub(super) static VERBS: &[Verb] = &[
     plain!("tcms.stale", Stimulus::Tcms(TcmsCondition::Stale)),
     switch!("tcms.ato_enable", AtoEnable),
     Verb {
-        name: "tcms.load",
+        name: "tcms.passengers",
         params: &[needs("passengers", Want::Amount(Dimension::Mass))],
         make: |args| {
             let passengers_kg = args.amount("passengers")?;
