@@ -134,6 +134,13 @@ pub enum Stimulus {
         /// 1 to 4 = PSM1 to PSM4.
         psm: u8,
     },
+    /// One of the markers along the way lies elsewhere, or nowhere, until markers are laid anew.
+    MarkerMoved {
+        /// 1 to 4 = PSM1 to PSM4.
+        psm: u8,
+        /// How far beyond its place, m; `None` = it is missing.
+        by_m: Option<f64>,
+    },
     /// Markers of a section lie along the way from here on and pulse by position.
     MarkersAlong {
         /// Section of the line; `None` = no markers along the way.

@@ -235,6 +235,11 @@ fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::CodesAlong { on } => format!("speed codes along the way {}", on_off(on)),
         Stimulus::TrainDriven { on } => format!("train model {}", on_off(on)),
         Stimulus::Marker { psm } => format!("pulse of marker PSM{psm}"),
+        Stimulus::MarkerMoved { psm, by_m: None } => format!("PSM{psm} is missing"),
+        Stimulus::MarkerMoved {
+            psm,
+            by_m: Some(by_m),
+        } => format!("PSM{psm} lies {} m beyond its place", number(by_m)),
         Stimulus::MarkersAlong { section: Some(n) } => {
             format!("markers of section {n} along the way")
         }

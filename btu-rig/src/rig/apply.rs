@@ -16,6 +16,8 @@ const MAX_SPEED_KMH: f64 = 200.0;
 const MAX_ACCEL_MPS2: f64 = 100.0;
 /// Longest way of one travel, m.
 const MAX_TRAVEL_M: f64 = 100_000.0;
+/// Farthest a marker can be moved, m.
+const MAX_MOVE_M: f64 = 100.0;
 /// Most spurious pulses, 1/s.
 const MAX_NOISE_PER_S: f64 = 5_000.0;
 /// Greatest factor between a channel and its wheel.
@@ -91,6 +93,12 @@ impl Rig {
             Stimulus::Marker { psm } => {
                 in_range("marker", f64::from(psm), 1.0, 4.0, "")?;
                 self.markers.pulse(psm)?;
+            }
+            Stimulus::MarkerMoved { psm, by_m } => {
+                let by_m = by_m
+                    .map(|by| in_range("marker move", by, -MAX_MOVE_M, MAX_MOVE_M, "m"))
+                    .transpose()?;
+                self.markers.move_one(psm, by_m)?;
             }
             Stimulus::MarkersAlong { section } => self.lay_section(section)?,
             Stimulus::Station(data) => self.wayside.set_data(data),

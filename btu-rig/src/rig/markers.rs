@@ -17,7 +17,7 @@ const MAX_PENDING: usize = 8;
 #[derive(Debug)]
 pub struct Markers {
     /// Markers along the way, by position on the rig's own scale.
-    along_m: Option<[f64; 4]>,
+    along_m: [Option<f64>; 4],
     /// How far from there each really lies.
     offsets_m: [f64; 4],
     /// Marker and age at the coming stamp, µs.
@@ -30,7 +30,7 @@ pub struct Markers {
 impl Default for Markers {
     fn default() -> Self {
         Self {
-            along_m: None,
+            along_m: [None; 4],
             offsets_m: [0.0; 4],
             pending: VecDeque::with_capacity(MAX_PENDING),
             last: 0,
@@ -57,11 +57,24 @@ impl Markers {
 
     /// Lays a section's markers along the way; its start is at `position_m`.
     pub fn lay(&mut self, section: &Section, position_m: f64) {
-        self.along_m = Some(
-            section
-                .markers_m
-                .map(|at| position_m + at - section.start_m),
-        );
+        self.along_m = section
+            .markers_m
+            .map(|at| Some(position_m + at - section.start_m));
+    }
+
+    /// Moves one of the markers along the way by so many metres, or takes it away.
+    ///
+    /// # Errors
+    /// When it does not lie along the way.
+    pub fn move_one(&mut self, psm: u8, by_m: Option<f64>) -> Result<(), Refusal> {
+        let places = self.along_m.iter_mut();
+        match places.zip(1..).find(|(_, number)| *number == psm) {
+            Some((place @ Some(_), _)) => {
+                *place = place.zip(by_m).map(|(at, by)| at + by);
+                Ok(())
+            }
+            _ => Err(Refusal(format!("no PSM{psm} lies along the way"))),
+        }
     }
 
     /// Sets how far from its place in the track database each marker really lies.
@@ -71,7 +84,7 @@ impl Markers {
 
     /// Takes the markers along the way away.
     pub fn lift(&mut self) {
-        self.along_m = None;
+        self.along_m = [None; 4];
     }
 
     /// Forgets pulses that still wait, and the markers along the way.
@@ -87,9 +100,8 @@ impl Markers {
         for waiting in &mut self.pending {
             waiting.1 += scan_us;
         }
-        let along_m = self.along_m.into_iter().flatten();
-        for (psm, (at, offset)) in (1..).zip(along_m.zip(self.offsets_m)) {
-            let crossed = motion.age_of_position_s(at + offset);
+        for (psm, (at, offset)) in (1..).zip(self.along_m.into_iter().zip(self.offsets_m)) {
+            let crossed = at.and_then(|at| motion.age_of_position_s(at + offset));
             // A full queue means four markers within centimetres: one coil cannot tell them apart.
             if let Some(age_s) = crossed.filter(|_| self.pending.len() < MAX_PENDING) {
                 self.pending.push_back((psm, age_s * 1e6));
@@ -149,6 +161,28 @@ mod tests {
             assert_eq!(psm, expected);
             assert!((at - place).abs() < 1e-3, "PSM{psm}: {at}");
         }
+    }
+
+    /// A marker that is moved pulses elsewhere, one that is missing not at all; laid anew all are back.
+    #[test]
+    fn a_marker_can_be_moved_and_missing() {
+        let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
+        let section = line.section(61).unwrap();
+        let mut markers = Markers::default();
+        assert!(
+            markers.move_one(2, None).is_err(),
+            "nothing lies along the way"
+        );
+        markers.lay(section, 100.0);
+        markers.move_one(1, Some(-4.0)).unwrap();
+        markers.move_one(2, None).unwrap();
+        assert!(markers.move_one(5, Some(1.0)).is_err());
+        let places = [Some(400.03), None, Some(929.03), Some(946.53)];
+        for (found, expected) in markers.along_m.into_iter().zip(places) {
+            assert_eq!(found.map(f64::round), expected.map(f64::round));
+        }
+        markers.lay(section, 100.0);
+        assert!(markers.along_m.iter().all(Option::is_some));
     }
 
     #[test]

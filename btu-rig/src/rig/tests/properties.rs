@@ -56,6 +56,8 @@ fn other() -> impl Strategy<Value = Stimulus> {
             .prop_map(|(channel, condition)| Stimulus::Tacho { channel, condition }),
         any::<u8>().prop_map(|psm| Stimulus::Marker { psm }),
         prop::option::of(60u16..63).prop_map(|section| Stimulus::MarkersAlong { section }),
+        (any::<u8>(), prop::option::of(number()))
+            .prop_map(|(psm, by_m)| Stimulus::MarkerMoved { psm, by_m }),
         (-9i8..6).prop_map(|notch| Stimulus::Controller { notch }),
         (-2i8..3).prop_map(|position| Stimulus::Reverser { position }),
         number().prop_map(|passengers_kg| Stimulus::Load { passengers_kg }),
@@ -64,6 +66,7 @@ fn other() -> impl Strategy<Value = Stimulus> {
         Just(Stimulus::ModeSwitch(ModeSwitch::Automatic)),
         Just(Stimulus::Wayside(WaysideCondition::Corrupt)),
         Just(Stimulus::Tcms(TcmsCondition::Stale)),
+        any::<bool>().prop_map(|on| Stimulus::CodesAlong { on }),
         Just(Stimulus::PtuArm),
         Just(Stimulus::PtuDisarm),
         Just(Stimulus::PtuRelease),

@@ -170,6 +170,29 @@ pub(super) static VERBS: &[Verb] = &[
         },
     },
     Verb {
+        name: "psm.missing",
+        params: &[needs("marker", Want::Int(1, 4))],
+        make: |args| {
+            at_once(Stimulus::MarkerMoved {
+                psm: marker(args, "marker")?,
+                by_m: None,
+            })
+        },
+    },
+    Verb {
+        name: "psm.moved",
+        params: &[
+            needs("marker", Want::Int(1, 4)),
+            needs("by", Want::Amount(Distance)),
+        ],
+        make: |args| {
+            at_once(Stimulus::MarkerMoved {
+                psm: marker(args, "marker")?,
+                by_m: Some(args.amount("by")?),
+            })
+        },
+    },
+    Verb {
         name: "psm.along",
         params: &[takes("section", Want::Section)],
         make: |args| {
