@@ -4,6 +4,7 @@ mod driving;
 mod fake_unit;
 mod properties;
 mod session;
+mod train;
 mod wire;
 
 use protocol::config::UnitConfig;
