@@ -129,6 +129,11 @@ pub enum Stimulus {
         /// On or back to the generators.
         on: bool,
     },
+    /// Adhesion between the train's wheels and the rail.
+    Adhesion {
+        /// Coefficient at standstill; `None` = that of the run's conditions.
+        coefficient: Option<f64>,
+    },
     /// One pulse of a marker coil.
     Marker {
         /// 1 to 4 = PSM1 to PSM4.

@@ -234,6 +234,10 @@ fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::Tacho { channel, condition } => format!("tachometer {channel}: {condition:?}"),
         Stimulus::CodesAlong { on } => format!("speed codes along the way {}", on_off(on)),
         Stimulus::TrainDriven { on } => format!("train model {}", on_off(on)),
+        Stimulus::Adhesion {
+            coefficient: Some(coefficient),
+        } => format!("adhesion {}", number(coefficient)),
+        Stimulus::Adhesion { coefficient: None } => "adhesion as always".into(),
         Stimulus::Marker { psm } => format!("pulse of marker PSM{psm}"),
         Stimulus::MarkerMoved { psm, by_m: None } => format!("PSM{psm} is missing"),
         Stimulus::MarkerMoved {

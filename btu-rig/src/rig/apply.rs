@@ -90,6 +90,7 @@ impl Rig {
             }
             Stimulus::Tacho { channel, condition } => self.set_tacho(channel, condition)?,
             Stimulus::TrainDriven { on } => self.drive_train(on),
+            Stimulus::Adhesion { coefficient } => self.set_adhesion(coefficient)?,
             Stimulus::Marker { psm } => {
                 in_range("marker", f64::from(psm), 1.0, 4.0, "")?;
                 self.markers.pulse(psm)?;
@@ -205,6 +206,7 @@ impl Rig {
 
     fn rest_quiescent(&mut self) {
         self.making_safe = false;
+        self.train.set_conditions(&self.conditions);
         self.antenna.off();
         self.codes_along = false;
         self.track = None;
@@ -241,6 +243,15 @@ impl Rig {
         tacho
             .ok_or_else(|| Refusal(format!("there is no tachometer {channel}: use 1 or 2")))?
             .set_condition(condition, way_m);
+        Ok(())
+    }
+
+    fn set_adhesion(&mut self, coefficient: Option<f64>) -> Result<(), Refusal> {
+        let mut conditions = self.conditions;
+        if let Some(coefficient) = coefficient {
+            conditions.adhesion = in_range("adhesion", coefficient, 0.01, 1.0, "")?;
+        }
+        self.train.set_conditions(&conditions);
         Ok(())
     }
 

@@ -56,6 +56,7 @@ fn other() -> impl Strategy<Value = Stimulus> {
             .prop_map(|(channel, condition)| Stimulus::Tacho { channel, condition }),
         any::<u8>().prop_map(|psm| Stimulus::Marker { psm }),
         prop::option::of(60u16..63).prop_map(|section| Stimulus::MarkersAlong { section }),
+        prop::option::of(number()).prop_map(|coefficient| Stimulus::Adhesion { coefficient }),
         (any::<u8>(), prop::option::of(number()))
             .prop_map(|(psm, by_m)| Stimulus::MarkerMoved { psm, by_m }),
         (-9i8..6).prop_map(|notch| Stimulus::Controller { notch }),

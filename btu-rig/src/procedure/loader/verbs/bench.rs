@@ -161,6 +161,17 @@ pub(super) static VERBS: &[Verb] = &[
         },
     },
     Verb {
+        name: "train.adhesion",
+        params: &[takes("coefficient", Want::Number)],
+        make: |args| {
+            let coefficient = match args.get("coefficient") {
+                Some(_) => Some(args.number("coefficient")?),
+                None => None,
+            };
+            at_once(Stimulus::Adhesion { coefficient })
+        },
+    },
+    Verb {
         name: "psm.pulse",
         params: &[needs("marker", Want::Int(1, 4))],
         make: |args| {
