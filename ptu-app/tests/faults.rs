@@ -21,7 +21,7 @@ const AFTER_S: f64 = 5.0;
 const WORKERS: usize = 2;
 
 /// Fault mode → procedure and words in the name of a step that must fail.
-const FOUND_BY: [(&str, &str, &str); 27] = [
+const FOUND_BY: [(&str, &str, &str); 34] = [
     ("atp_receiver.dead", "atp/power_up", "start-up self-test"),
     ("atp_receiver.detuned", "atp/power_up", "start-up self-test"),
     ("atp_receiver.stuck", "atp/overspeed", "code 0 stops"),
@@ -94,6 +94,41 @@ const FOUND_BY: [(&str, &str, &str); 27] = [
         "ato_cpu.full_effort",
         "ato/automatic_mode",
         "limit less 5 km/h",
+    ),
+    (
+        "ato_cpu.overrun",
+        "ato/station_run",
+        "section 61, empty train",
+    ),
+    (
+        "ato_cpu.saturated_effort",
+        "ato/station_run",
+        "section 61, empty train",
+    ),
+    (
+        "ato_cpu.saturated_effort",
+        "ato/automatic_mode",
+        "full power",
+    ),
+    (
+        "ato_cpu.wrong_track_database",
+        "ato/station_run",
+        "section 61, empty train",
+    ),
+    (
+        "atp_cpu.wrong_wheel_diameter",
+        "atp/speed_input",
+        "on both inputs",
+    ),
+    (
+        "marker_antenna.deaf_to_psm4",
+        "ato/markers",
+        "PSM4 is detected",
+    ),
+    (
+        "tra.fails_on_the_way",
+        "ato/station_run",
+        "section 61, empty train",
     ),
     ("test_board.dead", "atp/power_up", "start-up self-test"),
     ("test_board.dead", "twc/ptu_exchange", "its end is noticed"),
