@@ -26,17 +26,31 @@ impl StepProfile {
         Self { steps }
     }
 
-    /// It is 0 everywhere.
-    pub fn is_zero(&self) -> bool {
-        self.steps.iter().all(|step| step.2 == 0.0)
+    /// Reads integrals at positions that fall from one to the next, as from the head to the tail of
+    /// a train.
+    pub fn descend(&self) -> Descent<'_> {
+        Descent { steps: &self.steps }
     }
+}
 
-    /// Integral from before the first position up to `at`.
-    pub fn integral(&self, at: f64) -> f64 {
-        let passed = self.steps.iter().rev().find(|step| step.0 <= at);
-        passed.map_or(0.0, |(from, integral, value)| {
-            integral + value * (at - from)
-        })
+/// A reader of integrals at falling positions.
+#[derive(Clone, Copy, Debug)]
+pub struct Descent<'a> {
+    /// Steps that may still lie before the next position.
+    steps: &'a [(f64, f64, f64)],
+}
+
+impl Descent<'_> {
+    /// Integral from before the first position up to `at`, which is not beyond the last one asked
+    /// for.
+    pub fn integral(&mut self, at: f64) -> f64 {
+        while let Some((&(from, integral, value), before)) = self.steps.split_last() {
+            if from <= at {
+                return integral + value * (at - from);
+            }
+            self.steps = before;
+        }
+        0.0
     }
 }
 
@@ -47,11 +61,9 @@ mod tests {
     #[test]
     fn integrals_are_areas() {
         let profile = StepProfile::new([(10.0, 2.0), (15.0, -1.0), (20.0, 0.0)]);
-        let at = [0.0, 10.0, 12.0, 15.0, 18.0, 20.0, 99.0];
-        assert_eq!(
-            at.map(|m| profile.integral(m)),
-            [0.0, 0.0, 4.0, 10.0, 7.0, 5.0, 5.0]
-        );
-        assert!(StepProfile::new([(0.0, 0.0)]).is_zero());
+        let mut descent = profile.descend();
+        let at = [99.0, 20.0, 18.0, 15.0, 12.0, 10.0, 0.0];
+        let areas = at.map(|m| descent.integral(m));
+        assert_eq!(areas, [5.0, 5.0, 7.0, 10.0, 4.0, 0.0, 0.0]);
     }
 }

@@ -58,21 +58,13 @@ impl Track {
     /// What lies under a train of these cars, length in m and share of the train's weight, whose
     /// head is at `position_m`.
     pub fn under(&self, position_m: f64, cars: &[(f64, f64)]) -> UnderTrain {
-        let mut front_m = self.in_section_m(position_m);
         let mut under = UnderTrain::default();
-        if self.gradient.is_zero() && self.curvature.is_zero() {
-            return under;
-        }
-        let (mut height, mut turn) = (
-            self.gradient.integral(front_m),
-            self.curvature.integral(front_m),
-        );
+        let (mut heights, mut turns) = (self.gradient.descend(), self.curvature.descend());
+        let mut front_m = self.in_section_m(position_m);
+        let (mut height, mut turn) = (heights.integral(front_m), turns.integral(front_m));
         for &(length_m, weight_share) in cars {
             front_m -= length_m;
-            let (lower, less) = (
-                self.gradient.integral(front_m),
-                self.curvature.integral(front_m),
-            );
+            let (lower, less) = (heights.integral(front_m), turns.integral(front_m));
             let share_per_m = weight_share / length_m;
             under.gradient_permille += (height - lower) * share_per_m;
             under.curvature_per_m += (turn - less) * share_per_m;

@@ -215,3 +215,68 @@ impl Blending {
 fn part(value: f64, whole: f64) -> f64 {
     if whole > 0.0 { value / whole } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::train::TrainData;
+
+    /// Full train, full service, the jerk limit long past.
+    fn full_service(kmh: f64, emergency: bool, lost_n: Option<&PerCar>) -> CarDemands {
+        let TrainData::Cars(data) = TrainData::line6() else {
+            panic!("a train of cars");
+        };
+        let mut blending = Blending::new(&data);
+        let (mut weight_kg, mut inertia_kg) = ([0.0; MAX_CARS], [0.0; MAX_CARS]);
+        for (i, car) in data.cars.iter().enumerate() {
+            weight_kg[i] = car.empty_kg + car.full_load_kg;
+            inertia_kg[i] = weight_kg[i] + car.rotating_kg;
+        }
+        blending.weigh(&weight_kg, &inertia_kg);
+        let command = Command {
+            share: -1.0,
+            emergency,
+            speed_mps: kmh / 3.6,
+            electric_lost_n: lost_n,
+        };
+        (0..500)
+            .fold(None, |_, _| Some(blending.step(0.005, command)))
+            .unwrap()
+    }
+
+    fn check(demand_n: f64, printed_n: f64) {
+        assert!((demand_n - printed_n).abs() < 3.0, "{demand_n} {printed_n}");
+    }
+
+    /// M2 and T1 (cars 3 and 4), from S3's table: 108 825 N together, 87 418 N of it electric, the
+    /// rest air on the trailer.
+    #[test]
+    fn electric_first_then_air_on_the_trailer() {
+        let demands = full_service(50.0, false, None);
+        check(demands.motor_n[2], -87_418.0);
+        check(demands.air_n[3], 108_825.0 - 87_418.0);
+        assert_eq!((demands.motor_n[3], demands.air_n[2]), (0.0, 0.0));
+    }
+
+    /// Below the fade, and in emergency, air gives each car's own B7 force [S3: FBE].
+    #[test]
+    fn without_electric_brake_air_takes_all_of_it() {
+        for (kmh, emergency) in [(3.0, false), (50.0, true)] {
+            let demands = full_service(kmh, emergency, None);
+            assert!(demands.motor_n.iter().all(|&n| n == 0.0));
+            check(demands.air_n[2], 59_068.0);
+            check(demands.air_n[3], 49_756.0);
+        }
+    }
+
+    /// What an inverter fails to give comes as air, on its own unit's trailer first [S3 eq. 8].
+    #[test]
+    fn air_makes_up_for_an_inverter_that_fails_to_brake() {
+        let mut lost_n = [0.0; MAX_CARS];
+        lost_n[2] = 40_000.0;
+        let demands = full_service(50.0, false, Some(&lost_n));
+        check(demands.air_n[3], 49_756.0);
+        check(demands.air_n[2], 108_825.0 - 87_418.0 + 40_000.0 - 49_756.0);
+        check(demands.air_n[0], full_service(50.0, false, None).air_n[0]);
+    }
+}

@@ -210,11 +210,8 @@ impl Formation {
     fn weigh(&mut self, load_kg: f64) {
         self.load_kg = load_kg;
         let full_kg: f64 = self.data.cars.iter().map(|car| car.full_load_kg).sum();
-        let share = if full_kg > 0.0 {
-            load_kg / full_kg
-        } else {
-            0.0
-        };
+        // `max` also takes what is not a number for an empty train.
+        let share = load_kg.max(0.0) / full_kg.max(1.0);
         let (mut weight_kg, mut inertia_kg) = ([0.0; MAX_CARS], [0.0; MAX_CARS]);
         for (i, car) in self.data.cars.iter().enumerate() {
             weight_kg[i] = car.empty_kg + share * car.full_load_kg;

@@ -116,8 +116,7 @@ pub struct Train {
 
 #[derive(Clone, Debug)]
 enum Model {
-    Ideal(Ideal),
-    // Boxed: delay lines and cars make it a hundred times the other's size.
+    Ideal(Box<Ideal>),
     Cars(Box<Formation>),
 }
 
@@ -125,7 +124,7 @@ impl Train {
     /// A train at rest with no effort.
     pub fn new(data: &TrainData, conditions: &Conditions) -> Self {
         let model = match data {
-            TrainData::Ideal(data) => Model::Ideal(Ideal::new(data, conditions)),
+            TrainData::Ideal(data) => Model::Ideal(Box::new(Ideal::new(data, conditions))),
             TrainData::Cars(data) => Model::Cars(Box::new(Formation::new(data, conditions))),
         };
         Self {
