@@ -1,33 +1,87 @@
-//! Where the train will be when the effort of this cycle begins to act.
+//! Speed and way at which the effort of this cycle will meet the train.
 //!
-//! The printed laws act on the present speed. A measured one is the mean of a window that lies in
-//! the past, and an effort is followed after a dead time: the observer runs the train model over that
-//! time with the efforts already asked for.
+//! The printed laws act on the present speed of a train whose effort is there at once. A measured speed
+//! is the mean of a window that lies in the past, and effort follows its command after a dead time and
+//! with a lag, slower for air than for inverters. The observer runs the train model over that time with
+//! the efforts already asked for, and looks ahead by the lag: of a first-order lag, `v + lag·a` follows
+//! the command as the printed point mass follows its force.
+//!
+//! The model is held to the measured speed, and what it lacks (a brake that gives more or less, a gradient
+//! that is not in the track database) is estimated as a constant acceleration. Toward standstill pulses
+//! come so seldom that a measured speed says less than the model: there it goes on by itself.
 
 use protocol::CYCLE;
 use protocol::config::AtoTrainConfig;
 
-/// Cycles of efforts that are remembered: 1 s, the longest dead time, and the measuring delay.
-const CYCLES: usize = 24;
-/// Age of a measured speed when it is used: half the window and a frame [default window: 100 ms].
+/// Cycles of efforts that are remembered: the longest dead time, 1 s.
+const CYCLES: usize = 22;
+/// Age of a measured speed when it is used: half the window of 100 ms, and a frame.
 const MEASURED_S: f64 = 0.06;
+
+/// Correction of speed per cycle, and of the missing acceleration per cycle and second: both poles of
+/// the error at 3 1/s.
+const CORRECTION: (f64, f64) = (0.28, 0.4);
+/// Speeds between which the measured one gains its weight: a pulse every 0.1 s .. every 0.03 s, m/s.
+const MEASURABLE_MPS: (f64, f64) = (0.27, 0.8);
+/// Greatest missing acceleration, m/s².
+const MOST_MISSING_MPS2: f64 = 0.5;
 
 /// The observer.
 #[derive(Debug, Default)]
 pub struct Observer {
+    /// What was asked for, newest first, m/s².
     asked: [f64; CYCLES],
-    accel_mps2: f64,
+    /// What of it the train gives by the model.
+    given: Lag,
+    speed_mps: f64,
+    missing_mps2: f64,
 }
 
-/// The train at the time the effort begins to act.
+/// A first-order lag.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lag(f64);
+
+impl Lag {
+    fn follow(&mut self, asked: f64, seconds: f64, lag_s: f64) {
+        let share = if lag_s > seconds {
+            seconds / lag_s
+        } else {
+            1.0
+        };
+        self.0 += (asked - self.0) * share;
+    }
+}
+
+/// The train when the effort has built up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ahead {
     /// Speed, m/s.
     pub speed_mps: f64,
-    /// Acceleration, m/s².
+    /// Acceleration as the effort begins to act, m/s².
     pub accel_mps2: f64,
     /// Way until then, m.
     pub moved_m: f64,
+}
+
+/// Dead time and time constant, s.
+#[derive(Clone, Copy, Debug)]
+struct Times {
+    dead_s: f64,
+    lag_s: f64,
+}
+
+impl Times {
+    /// Of inverters, of air, or of both while one hands over to the other.
+    fn of(train: &AtoTrainConfig, speed_mps: f64, braking: bool) -> Self {
+        let span = (train.air_from_kmh - train.air_alone_kmh).max(0.1);
+        let air = ((train.air_from_kmh - speed_mps * 3.6) / span).clamp(0.0, 1.0);
+        let air = if braking { air } else { 0.0 };
+        let between = |inverter: f64, brake: f64| (inverter + (brake - inverter) * air) / 1000.0;
+        Self {
+            dead_s: between(train.dead_time_ms, train.air_dead_time_ms),
+            lag_s: between(train.lag_ms, train.air_lag_ms),
+        }
+    }
 }
 
 impl Observer {
@@ -35,26 +89,55 @@ impl Observer {
     pub fn step(&mut self, measured_mps: f64, asked_mps2: f64, train: &AtoTrainConfig) -> Ahead {
         self.asked.rotate_right(1);
         self.asked[0] = asked_mps2;
+        let times = Times::of(train, measured_mps, asked_mps2 < 0.0);
         let dt = CYCLE.as_secs();
-        let follow = |accel: f64, asked: f64| {
-            let share = (dt / (train.lag_ms / 1000.0)).min(1.0);
-            accel + (asked - accel) * share
-        };
-        let dead_cycles = libm::round(train.dead_time_ms / 1000.0 / dt) as usize;
-        let begins = dead_cycles.min(CYCLES - 1);
-        self.accel_mps2 = follow(self.accel_mps2, self.asked[begins]);
-        let mut ahead = Ahead {
-            speed_mps: measured_mps + self.accel_mps2 * MEASURED_S,
-            accel_mps2: self.accel_mps2,
-            moved_m: 0.0,
-        };
-        for cycle in (0..begins).rev() {
-            ahead.accel_mps2 = follow(ahead.accel_mps2, self.asked[cycle]);
-            ahead.moved_m += ahead.speed_mps * dt;
-            ahead.speed_mps += ahead.accel_mps2 * dt;
+        let dead_cycles = (times.dead_s / dt).min(CYCLES as f64 - 2.0);
+        self.given
+            .follow(self.asked_before(dead_cycles), dt, times.lag_s);
+        self.correct(measured_mps, dt);
+        let mut given = self.given;
+        let mut speed = self.speed_mps;
+        let mut moved = 0.0;
+        let mut left = dead_cycles;
+        while left > 0.0 {
+            let seconds = left.min(1.0) * dt;
+            let asked = self.asked_before((left - 1.0).max(0.0));
+            given.follow(asked, seconds, times.lag_s);
+            moved += speed * seconds;
+            speed += (given.0 + self.missing_mps2) * seconds;
+            left -= 1.0;
         }
-        ahead.speed_mps = ahead.speed_mps.max(0.0);
-        ahead
+        let accel_mps2 = given.0 + self.missing_mps2;
+        moved += (speed + accel_mps2 * times.lag_s / 2.0) * times.lag_s;
+        speed += accel_mps2 * times.lag_s;
+        Ahead {
+            speed_mps: speed.max(0.0),
+            accel_mps2,
+            moved_m: moved.max(0.0),
+        }
+    }
+
+    /// Moves the model on by a cycle and holds it to the measured speed.
+    fn correct(&mut self, measured_mps: f64, dt: f64) {
+        let accel = self.given.0 + self.missing_mps2;
+        self.speed_mps = (self.speed_mps + accel * dt).max(0.0);
+        if measured_mps <= 0.0 {
+            self.speed_mps = self.speed_mps.min(MEASURABLE_MPS.0);
+        }
+        let expected = self.speed_mps - accel * MEASURED_S;
+        let (low, high) = MEASURABLE_MPS;
+        let sure = ((measured_mps.max(self.speed_mps) - low) / (high - low)).clamp(0.0, 1.0);
+        let error = (measured_mps - expected) * sure;
+        self.speed_mps += CORRECTION.0 * error;
+        self.missing_mps2 = (self.missing_mps2 + CORRECTION.1 * error * sure)
+            .clamp(-MOST_MISSING_MPS2, MOST_MISSING_MPS2);
+    }
+
+    /// What was asked for some cycles before the last effort.
+    fn asked_before(&self, cycles: f64) -> f64 {
+        let whole = (cycles as usize).min(CYCLES - 2);
+        let part = cycles - whole as f64;
+        self.asked[whole] * (1.0 - part) + self.asked[whole + 1] * part
     }
 
     /// The train stands.

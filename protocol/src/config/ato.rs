@@ -59,10 +59,18 @@ pub struct AtoTrainConfig {
     pub brake_kmh_per_s: f64,
     /// Greatest change of effort, m/s³ of the acceleration it stands for [S1: 0.8].
     pub jerk_mps3: f64,
-    /// Time from a command until the effort begins to follow it, ms.
+    /// Time from a command until inverters begin to follow it, ms.
     pub dead_time_ms: f64,
-    /// Time constant with which it follows, ms.
+    /// Time constant with which they follow, ms.
     pub lag_ms: f64,
+    /// The same of the air brake, ms.
+    pub air_dead_time_ms: f64,
+    /// The same of the air brake, ms.
+    pub air_lag_ms: f64,
+    /// Speed below which the electric brake hands over to air, km/h [S3: 15].
+    pub air_from_kmh: f64,
+    /// Speed below which air brakes alone, km/h.
+    pub air_alone_kmh: f64,
     /// Speed-proportional resistance, 1/s [S0: r = 0.001].
     pub drag_per_s: f64,
     /// Constant running resistance, kgf/t.
@@ -290,7 +298,21 @@ impl AtoConfig {
             ("ato.train.brake_kmh_per_s", t.brake_kmh_per_s, 0.5, 6.0),
             ("ato.train.jerk_mps3", t.jerk_mps3, 0.1, 100.0),
             ("ato.train.dead_time_ms", t.dead_time_ms, 0.0, 1000.0),
-            ("ato.train.lag_ms", t.lag_ms, 0.0, 2000.0),
+            ("ato.train.lag_ms", t.lag_ms, 0.0, 1000.0),
+            (
+                "ato.train.air_dead_time_ms",
+                t.air_dead_time_ms,
+                0.0,
+                1000.0,
+            ),
+            ("ato.train.air_lag_ms", t.air_lag_ms, 0.0, 1000.0),
+            ("ato.train.air_alone_kmh", t.air_alone_kmh, 0.0, 60.0),
+            (
+                "ato.train.air_from_kmh",
+                t.air_from_kmh,
+                t.air_alone_kmh,
+                80.0,
+            ),
             ("ato.train.drag_per_s", t.drag_per_s, 0.0, 0.1),
             ("ato.train.rolling_kgf_t", t.rolling_kgf_t, 0.0, 20.0),
             ("ato.train.curve_kgf_m_t", t.curve_kgf_m_t, 0.0, 2000.0),
@@ -337,5 +359,35 @@ impl AtoConfig {
             ("ato.watch.overrun_m", w.overrun_m, 0.1, 20.0),
             ("ato.watch.wheel_error", w.wheel_error, 0.001, 0.2),
         ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::UnitConfig;
+
+    fn read_with(line: &str, instead: &str) -> Result<UnitConfig, ConfigError> {
+        let text = include_str!("../../../scripts/units/sg100.toml");
+        assert!(text.contains(line), "{line}");
+        UnitConfig::from_toml(&text.replace(line, instead))
+    }
+
+    /// A line of the configuration, what stands there instead, and what the reason must say.
+    #[test]
+    fn a_stop_curve_that_cannot_be_followed_is_refused_with_the_reason() {
+        for (line, instead, reason) in [
+            ("\noffset_m = 0.10", "\noffset_m = 0.30", "never arrives"),
+            ("\nslope_per_s = 1.2", "\nslope_per_s = 2.0", "jerk"),
+            (
+                "\ndecel_mps2 = 0.8333333333333334",
+                "\ndecel_mps2 = 0.6",
+                "brake_rate_mps2",
+            ),
+        ] {
+            let refused = read_with(line, instead).unwrap_err();
+            assert!(matches!(refused, ConfigError::Conflict(_)), "{refused:?}");
+            assert!(alloc::format!("{refused}").contains(reason), "{refused}");
+        }
     }
 }

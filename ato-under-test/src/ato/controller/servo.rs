@@ -11,20 +11,19 @@
 //!   full and the stop is lost; the profile's own peak, 3.2 km/h/s, is above the 3.0 allowed.
 //! * **Gains by load.** K and K_c are placed per kilogram and scale with the mass TCMS reports.
 //! * **Feed-forward** of the profile's acceleration, so that the compensator has only errors to correct.
-//! * **Lead.** Effort follows its demand with a lag; the law sees v + lag·a, the speed the train will have
-//!   when the effort has built up, for which the train again is the printed point mass.
 //! * **Pull** toward the profile's own way between PSM2 and PSM4, since eq. (2) runs by time.
 
 use protocol::CYCLE;
 use protocol::config::{AtoConfig, ServoConfig};
 
+use super::doubt::Doubt;
 use super::{Demand, Gains, Situation, SpeedController, place};
-use crate::ato::profile::{MarkerApproach, SCurve, Setpoint, last_metres};
+use crate::ato::profile::{LastMetres, MarkerApproach, SCurve, Setpoint};
 
 /// Greatest pull, share of the reference's speed and m/s.
 const PULL: (f64, f64) = (0.1, 0.1);
-/// Acceleration of a train that has to begin anew within the last metres, m/s² [default].
-const CREEP_MPS2: f64 = 0.3;
+/// Cycles at rest too far from the stop point after which it begins anew.
+const REST_CYCLES: u32 = 40;
 
 /// What the profile is doing.
 #[derive(Debug)]
@@ -33,8 +32,8 @@ enum Phase {
     Cruise(SCurve),
     /// PSM2 to PSM4 by eq. (2).
     Approach(MarkerApproach),
-    /// From PSM4 by eq. (3); the speed it began with and the way it had left then.
-    LastMetres { from_mps: f64, from_m: f64 },
+    /// From PSM4 by eq. (3).
+    LastMetres(LastMetres),
 }
 
 /// The controller.
@@ -44,7 +43,9 @@ pub struct Servo {
     /// Gains for one kilogram.
     gains: Gains,
     drag_per_s: f64,
-    lag_s: f64,
+    jerk_mps3: f64,
+    rest_cycles: u32,
+    doubt: Doubt,
     phase: Phase,
     reference: Setpoint,
     /// Integrals of the error: triple, double, single.
@@ -60,7 +61,9 @@ impl Servo {
             config: config.servo.clone(),
             gains: place(&config.servo.poles, 1.0, config.train.drag_per_s),
             drag_per_s: config.train.drag_per_s,
-            lag_s: config.train.lag_ms / 1000.0,
+            jerk_mps3: config.train.jerk_mps3,
+            rest_cycles: 0,
+            doubt: Doubt::new(config),
             phase: Phase::Cruise(SCurve::hold(0.0)),
             reference: Setpoint::default(),
             integrals: [0.0; 3],
@@ -84,13 +87,13 @@ impl Servo {
                 pull = (self.config.position_gain_per_s * (from_psm4 - way_m)).clamp(-most, most);
                 self.reference = reference;
             }
-            Phase::LastMetres { from_mps, from_m } => {
-                let rising = self.reference.speed_mps.max(0.0) + CREEP_MPS2 * dt;
-                self.reference = last_metres(to_stop, *from_mps, *from_m);
-                if self.reference.speed_mps > rising {
-                    self.reference.speed_mps = rising;
-                    self.reference.accel_mps2 = CREEP_MPS2;
+            Phase::LastMetres(last) => {
+                let rests = self.reference.speed_mps <= 0.0 && situation.speed_mps <= 0.0;
+                self.rest_cycles = if rests { self.rest_cycles + 1 } else { 0 };
+                if self.rest_cycles > REST_CYCLES {
+                    last.creep();
                 }
+                self.reference = last.step(dt, to_stop);
             }
         }
         self.reference.speed_mps + pull
@@ -99,14 +102,12 @@ impl Servo {
     fn change_phase(&mut self, situation: &Situation, to_stop: f64) {
         let [psm1, psm2, _, psm4] = situation.markers_to_stop_m;
         let end_mps = self.config.psm4_mps;
-        if matches!(self.phase, Phase::LastMetres { .. }) {
+        if matches!(self.phase, Phase::LastMetres(_)) {
             return;
         }
-        if to_stop <= psm4 {
-            self.phase = Phase::LastMetres {
-                from_mps: end_mps,
-                from_m: psm4,
-            };
+        let jerk = self.jerk_mps3;
+        if to_stop <= psm4 + LastMetres::begins_before_m(end_mps, psm4, jerk) {
+            self.phase = Phase::LastMetres(LastMetres::new(self.reference, jerk));
             return;
         }
         if matches!(self.phase, Phase::Approach(_)) {
@@ -158,12 +159,13 @@ impl Servo {
 
 impl SpeedController for Servo {
     fn step(&mut self, situation: &Situation) -> Demand {
+        if let Some(brake) = self.doubt.brake(situation) {
+            return brake;
+        }
         self.compensate(situation.granted_n / situation.mass_kg);
         let follow_mps = self.advance(situation);
         let reference = self.reference;
-        let wanted = follow_mps + self.lag_s * reference.accel_mps2;
-        let seen = situation.speed_mps + self.lag_s * situation.accel_mps2;
-        self.error_mps = wanted - seen;
+        self.error_mps = follow_mps - situation.speed_mps;
         self.asked_mps2 = reference.accel_mps2
             + self.drag_per_s * follow_mps
             + self.gains.speed * self.error_mps
@@ -180,6 +182,7 @@ impl SpeedController for Servo {
         self.integrals = [0.0; 3];
         self.error_mps = 0.0;
         self.asked_mps2 = 0.0;
+        self.rest_cycles = 0;
     }
 }
 

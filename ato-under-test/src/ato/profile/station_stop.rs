@@ -4,8 +4,9 @@
 //! between the markers and the speed at the beginning, so that 1.5 m/s is reached where PSM4 lies: the mean
 //! of W is 0.55, so t_a = way / (0.55·v_end + 0.45·v_begin), 18.04 s for the printed 105 m, 11.1 and 1.5 m/s.
 //! Eq. (3), v = 1.5 − 0.33·t, stops in 3.409 m, 9.1 cm short of the 3.5 m; here the rate is the one that
-//! stops at the stop point, and speed follows way instead of time, which is the same curve for a train
-//! that follows it and corrects one that does not.
+//! stops at the stop point, taken anew each cycle from speed and way left, so that a train that is not where
+//! the curve has it still arrives; and it is built up at a jerk that brakes can follow, half of it before
+//! PSM4.
 
 use super::Setpoint;
 
@@ -69,12 +70,60 @@ fn share(x: f64) -> (f64, f64, f64) {
     }
 }
 
-/// Eq. (3) by way: the speed with `to_stop_m` left, when `from_mps` was had with `from_m` left.
-pub fn last_metres(to_stop_m: f64, from_mps: f64, from_m: f64) -> Setpoint {
-    let rate = from_mps * from_mps / (2.0 * from_m);
-    Setpoint {
-        speed_mps: libm::sqrt(2.0 * rate * to_stop_m.max(0.0)),
-        accel_mps2: -rate,
+/// From PSM4 to the stop point by eq. (3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastMetres {
+    setpoint: Setpoint,
+    jerk_mps3: f64,
+    creeping: bool,
+}
+
+/// Way to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
+const HOLD_M: f64 = 0.1;
+/// Rate that is never asked to be exceeded, m/s² [S0 §4: 3.5 km/h/s].
+const MOST_MPS2: f64 = 3.5 / 3.6;
+/// How a train begins anew that came to rest too early, m/s² and m/s [default].
+const CREEP: (f64, f64) = (0.25, 0.5);
+
+impl LastMetres {
+    /// From a setpoint; the rate is built up at `jerk_mps3`.
+    pub fn new(from: Setpoint, jerk_mps3: f64) -> Self {
+        Self {
+            setpoint: from,
+            jerk_mps3,
+            creeping: false,
+        }
+    }
+
+    /// Way before PSM4 at which to begin, m, so that building up the rate is half done there.
+    pub fn begins_before_m(speed_mps: f64, from_m: f64, jerk_mps3: f64) -> f64 {
+        let rate = speed_mps * speed_mps / (2.0 * from_m);
+        speed_mps * rate / jerk_mps3 / 2.0
+    }
+
+    /// Begins anew from rest.
+    pub fn creep(&mut self) {
+        self.setpoint = Setpoint::default();
+        self.creeping = true;
+    }
+
+    /// Moves on by `dt_s` with `to_stop_m` left.
+    pub fn step(&mut self, dt_s: f64, to_stop_m: f64) -> Setpoint {
+        let speed = self.setpoint.speed_mps;
+        let most = libm::sqrt(2.0 * CREEP.0 * to_stop_m.max(0.0)).min(CREEP.1);
+        self.creeping &= speed < most;
+        let wanted = if self.creeping {
+            CREEP.0
+        } else if to_stop_m > HOLD_M {
+            -(speed * speed / (2.0 * to_stop_m)).min(MOST_MPS2)
+        } else {
+            self.setpoint.accel_mps2
+        };
+        let step = self.jerk_mps3 * dt_s;
+        let change = (wanted - self.setpoint.accel_mps2).clamp(-step, step);
+        self.setpoint.accel_mps2 += change;
+        self.setpoint.speed_mps = (speed + self.setpoint.accel_mps2 * dt_s).max(0.0);
+        self.setpoint
     }
 }
 
@@ -104,12 +153,29 @@ mod tests {
         assert!((peak - 3.07).abs() < 0.01, "{peak}");
     }
 
+    /// A train on the reference from PSM4 on: it stops at the stop point, at the rate of eq. (3) made
+    /// exact, 1.5²/(2·3.5) = 0.321 m/s², also when it is told half a metre later that it is further.
     #[test]
     fn the_last_metres_end_at_the_stop_point() {
-        let first = last_metres(3.5, 1.5, 3.5);
-        assert!((first.speed_mps - 1.5).abs() < 1e-12);
-        assert!((first.accel_mps2 + 0.3214).abs() < 1e-4);
-        assert_eq!(last_metres(0.0, 1.5, 3.5).speed_mps, 0.0);
-        assert_eq!(last_metres(-1.0, 1.5, 3.5).speed_mps, 0.0);
+        for correction in [0.0, -0.1, 0.1] {
+            let begins = 3.5 + LastMetres::begins_before_m(1.5, 3.5, 0.8);
+            let from = Setpoint {
+                speed_mps: 1.5,
+                accel_mps2: 0.0,
+            };
+            let mut last = LastMetres::new(from, 0.8);
+            let (mut way, mut peak) = (begins, 0.0f64);
+            for cycle in 0..400 {
+                let before = from.speed_mps.min(last.setpoint.speed_mps);
+                let setpoint = last.step(0.05, way);
+                way -= (before + setpoint.speed_mps) / 2.0 * 0.05;
+                peak = peak.max(-setpoint.accel_mps2);
+                if cycle == 20 {
+                    way += correction;
+                }
+            }
+            assert!(way.abs() < 0.01, "{correction}: {way}");
+            assert!((peak - 0.3214).abs() < 0.03, "{correction}: {peak}");
+        }
     }
 }
