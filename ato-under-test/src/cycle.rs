@@ -4,11 +4,12 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
-use protocol::message::{ModeSwitch, Refusals, SelfTest, TrainLines};
+use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
 use protocol::{Instant, Speed};
 
-use crate::ato::AtoInputs;
+use crate::ato::{AtoInputs, Checks};
 use crate::atp::{Atp, Code, ModeInputs};
+use crate::kernel::RunCycle;
 use crate::report;
 use crate::unit::Unit;
 
@@ -87,6 +88,10 @@ impl Unit {
     fn operate(&mut self, now: Instant) {
         let was_ready = self.ato_outputs.ready;
         let data = self.twc.data();
+        let tachometers = self.atp.tachometers();
+        // ATO goes by the wheel that markers calibrate; ATP keeps its own, safe speed.
+        let wheel = 1.0 + self.locator.wheel_correction();
+        let speed = tachometers.channel(tachometers.way_channel()).mps() * wheel;
         let inputs = AtoInputs {
             mode: self.atp.sequence().mode(),
             limit: self.atp.limit(),
@@ -96,18 +101,88 @@ impl Unit {
             running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
             section: self.locator.section(),
             position_m: self.locator.position_m(),
-            speed: self.atp.tachometers().speed(),
-            standstill: self.atp.tachometers().standstill(),
+            ahead_m: self.locator.ahead_m(),
+            aligned_m: self.setup.config.doors.aligned_m,
+            speed: Speed::from_mps(speed),
+            standstill: tachometers.standstill(),
             power_cut: self.atp.power_cut(),
             load_kg: self.tcms.load_kg(),
-            healthy: self.self_tester.finished()
-                && !matches!(self.faults.at(Place::AtoCpu), Some(Effect::Dead)),
+            checks: self.ato_checks(),
         };
         self.ato_outputs = self.ato.step(inputs, &self.setup.config.ato);
         let fault = self.faults.at(Place::AtoCpu);
         self.ato_outputs.effort = self.effort_output.give(self.ato_outputs.effort, fault);
-        if was_ready && !self.ato_outputs.ready {
-            self.log.push(now, Event::AtoFailed, 0);
+        self.report_ato(now, was_ready);
+        self.record_run(now, Speed::from_mps(speed));
+    }
+
+    fn record_run(&mut self, now: Instant, speed: Speed) {
+        let cycle = RunCycle {
+            position_m: self.locator.position_m(),
+            speed_cms: speed.to_cms(),
+            target_cms: self.ato_outputs.target.to_cms(),
+            effort: self.ato_outputs.effort,
+            marker: (self.locator.last_marker(), self.locator.count()),
+            state: self.ato.state(),
+        };
+        let running = self.atp.sequence().mode() == Mode::AutomaticRun;
+        self.run_record.step(now, running, cycle);
+    }
+
+    /// KRN's checks of what ATO needs [S0 §1, §3.3].
+    fn ato_checks(&self) -> Checks {
+        let failed = self.self_tester.failed();
+        let run = self.atp.sequence().mode() == Mode::AutomaticRun;
+        let causes = [
+            (
+                matches!(self.faults.at(Place::AtoCpu), Some(Effect::Dead)),
+                AtoFailure::Processor,
+            ),
+            (
+                failed.intersects(SelfTest::CONFIGURATION | SelfTest::TRACK_DATABASE),
+                AtoFailure::StoredData,
+            ),
+            (
+                failed.intersects(SelfTest::MEMORY | SelfTest::TRA | SelfTest::TWC_MODEM),
+                AtoFailure::SelfTest,
+            ),
+            (
+                run && self.atp.tachometers().faulty(),
+                AtoFailure::Tachometers,
+            ),
+            // On the way the train is better brought to its platform than stopped.
+            (!run && !self.tra.ok(), AtoFailure::Tra),
+        ];
+        match causes.iter().find(|(holds, _)| *holds) {
+            Some((_, failure)) => Checks::Failed(*failure),
+            None if self.self_tester.finished() => Checks::Passed,
+            None => Checks::Running,
+        }
+    }
+
+    /// Logs what ATO found, and that it failed.
+    fn report_ato(&mut self, now: Instant, was_ready: bool) {
+        let outputs = self.ato_outputs;
+        let found = outputs.findings;
+        let hundredths = |value: f64| libm::round(value * 100.0) as i32;
+        let failed = was_ready && !outputs.ready;
+        if failed && !found.absurd.is_empty() {
+            let bits = i32::from(found.absurd.bits());
+            self.log.push(now, Event::AtoInputAbsurd, bits);
+        }
+        let findings = [
+            (Event::AtoNotFollowing, found.not_following_mps),
+            (Event::StopOverrun, found.overrun_m),
+            (Event::StopShort, found.short_m),
+        ];
+        for (event, value) in findings {
+            if let Some(value) = value {
+                self.log.push(now, event, hundredths(value));
+            }
+        }
+        if failed {
+            let reason = i32::from(outputs.failure.code());
+            self.log.push(now, Event::AtoFailed, reason);
         }
     }
 
@@ -118,6 +193,10 @@ impl Unit {
         if self.maintenance.listened_to(now) {
             self.link.send(now, &report::status(self), out);
             self.maintenance.read_log(&self.log, &mut self.replies);
+            if self.replies.is_empty() {
+                self.maintenance
+                    .read_run(&self.run_record, &mut self.replies);
+            }
             for reply in self.replies.drain(..) {
                 self.link.send(now, &reply, out);
             }

@@ -8,14 +8,14 @@ use protocol::event::Event;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link, Received};
-use protocol::message::{Channel, IoOutput, Message, Outputs, TrainLines, TwcWayside};
+use protocol::message::{Channel, IoOutput, Message, Mode, Outputs, TrainLines, TwcWayside};
 use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ScanContext};
 use crate::com::{ArmConditions, IoImage, Maintenance, RejectWatch, TcmsLink};
 use crate::front_end::{EffortOutput, Faults, FrontEnd, OutputStage, spoil_stored_data};
-use crate::kernel::{EventLog, FreezeFrame, SelfTestInputs, SelfTester};
+use crate::kernel::{EventLog, FreezeFrame, RunRecord, SelfTestInputs, SelfTester};
 use crate::psm::{Locator, Movement, Tra};
 use crate::report;
 use crate::signals::{AntennaSignal, Inputs};
@@ -63,6 +63,7 @@ pub struct Unit {
     pub(crate) inputs: Inputs,
     pub(crate) image: IoImage,
     pub(crate) ato: Ato,
+    pub(crate) run_record: RunRecord,
     pub(crate) faults: Faults,
     front_end: FrontEnd,
     output_stage: OutputStage,
@@ -94,10 +95,11 @@ impl Unit {
             ),
             atp: Atp::new(config),
             twc: Twc::new(ms(link.twc_timeout_ms)),
-            locator: Locator::new(config.marker.window_m),
+            locator: Locator::new(config),
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms)),
             ato: Ato::new(&config.ato),
+            run_record: RunRecord::default(),
             ato_outputs: AtoOutputs::default(),
             effort_output: EffortOutput::default(),
             inputs: Inputs::default(),
@@ -306,10 +308,14 @@ impl Unit {
 
     fn locate(&mut self, now: Instant) {
         let tachometers = self.atp.tachometers();
+        let channel = tachometers.way_channel();
+        let pulses = &self.inputs.pulses[channel];
         let movement = Movement {
             moved_m: tachometers.moved_m(),
-            speed: tachometers.speed(),
+            edge_age_s: pulses.sampled_at.since(pulses.edge_at).as_secs(),
+            speed_mps: tachometers.channel(channel).mps(),
             standstill: tachometers.standstill(),
+            driven: self.atp.sequence().mode() == Mode::AutomaticRun,
         };
         self.locator
             .step(now, movement, self.inputs.marker, &mut self.log);

@@ -1,6 +1,6 @@
 //! The event dictionary: stable numbers, never reused, with severity and the part under suspicion.
 
-use crate::message::{Channel, SelfTest};
+use crate::message::{AtoFailure, Channel, SelfTest};
 
 /// How bad an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,11 +115,11 @@ events! {
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";
     TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
-    AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason";
-    AtoNotFollowing = 601 "ato_not_following" Major "ato_cpu" "Speed does not follow ATO's target" "목표속도 추종 불량" "error, cm/s";
+    AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason, `AtoFailure`";
+    AtoNotFollowing = 601 "ato_not_following" Major "ato_cpu" "The train does not do what ATO's effort asks" "목표속도 추종 불량" "speed less what effort should have made, cm/s";
     StopOverrun = 602 "stop_overrun" Major "ato_cpu" "Passed the stop point" "정위치 초과" "distance, cm";
     StopShort = 603 "stop_short" Minor "ato_cpu" "Stopped short of the stop point" "정위치 미달" "distance, cm";
-    AtoInputAbsurd = 604 "ato_input_absurd" Major "-" "ATO was given what no train can do" "ATO 입력 이상" "inputs as bits";
+    AtoInputAbsurd = 604 "ato_input_absurd" Major "-" "ATO was given what no train can do" "ATO 입력 이상" "inputs as bits, `AbsurdInputs`";
     ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
 }
@@ -132,6 +132,13 @@ impl Event {
             // The parameter is the channel that loses frames.
             Self::FramesRejected if parameter == i32::from(Channel::Twc.code()) => {
                 return "fsk_board";
+            }
+            Self::AtoFailed if parameter == i32::from(AtoFailure::Tra.code()) => return "tra",
+            Self::AtoFailed
+                if parameter == i32::from(AtoFailure::Tachometers.code())
+                    || parameter == i32::from(AtoFailure::Inputs.code()) =>
+            {
+                return "-";
             }
             Self::FramesRejected if parameter != i32::from(Channel::Tcms.code()) => {
                 return "io_board";

@@ -33,6 +33,7 @@ VALUES = {
     "TestTwc": {"session": SESSION, **STATION},
     "TestRelease": {"session": SESSION, "signals": "CODE|SPEED_1|SPEED_2"},
     "ReadLog": {"from_index": 65541},
+    "ReadRun": {"from_index": 4801},
     "ClearLog": {"session": SESSION},
     "Identity": {
         "serial": "SG-0042", "config": "sg100", "config_crc": 0xDEADBEEF, "tdb_crc": 0x01234567,
@@ -54,6 +55,11 @@ VALUES = {
         "limit_cms": 1528, "position_cm": 98765, "mode": "automatic_run", "eb_cause": "overspeed",
     },
     "LogEnd": {"next_index": 17, "oldest_index": 2},
+    "RunRow": {
+        "index": 4801, "run": 3, "at_ms": 123450, "position_cm": -2, "speed_cms": 1667,
+        "target_cms": 1528, "effort": -300, "marker": 2, "ato_state": "run",
+    },
+    "RunEnd": {"next_index": 4900, "oldest_index": 100},
     "IoInput": {
         "carrier_hz": 3000, "code_rate_chz": 1500, "level_mv": 500, "tacho1_count": 65530,
         "tacho1_edge_us": 4321, "tacho2_count": 12, "tacho2_edge_us": 1234, "tacho_backward": 2,

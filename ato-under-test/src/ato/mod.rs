@@ -1,8 +1,9 @@
 //! ATO: drives the train from station to station while ATP says Automatic Run.
 //!
-//! One cycle, in order [S0 §3]: operating state ([`AtoState`], ART), speed to run at (`cruise`), where
-//! the train will be when the effort acts (`observer`), the speed controller ([`controller`], SPR),
-//! what the track costs (`feed_forward`), and the share of available effort for TCMS (`reg`, REG).
+//! One cycle, in order [S0 §3]: what the inputs are worth (`watch`), operating state ([`AtoState`],
+//! ART), speed to run at (`cruise`), where the train will be when the effort acts (`observer`), the
+//! speed controller ([`controller`], SPR), what the track costs (`feed_forward`), and the share of
+//! available effort for TCMS (`reg`, REG).
 
 mod art;
 pub mod controller;
@@ -11,20 +12,26 @@ mod feed_forward;
 mod observer;
 mod profile;
 mod reg;
+mod watch;
 
 use alloc::boxed::Box;
 
 use protocol::Speed;
 use protocol::config::AtoConfig;
 use protocol::line::Section;
-use protocol::message::{AtoState, Mode, RunningMode};
+use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
 use controller::{Situation, SpeedController, controller};
 use cruise::CruiseInputs;
 use observer::Observer;
 use reg::{Bounds, Granted, Regulator};
+use watch::{Watch, Watched};
 
-pub use art::ArtInputs;
+pub use art::{ArtInputs, Checks};
+pub use watch::Findings;
+
+/// Effort of the full service brake.
+const FULL_BRAKE: i16 = -1024;
 
 /// What ATO looks at in one cycle.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +48,10 @@ pub struct AtoInputs<'a> {
     pub section: Option<&'a Section>,
     /// Position in it, m.
     pub position_m: f64,
+    /// How much further the train may be, m, while markers do not come.
+    pub ahead_m: f64,
+    /// Distance from the stop point that counts as aligned, m.
+    pub aligned_m: f64,
     /// Measured speed.
     pub speed: Speed,
     /// Standing still.
@@ -49,8 +60,8 @@ pub struct AtoInputs<'a> {
     pub power_cut: bool,
     /// Passenger load TCMS reports, kg.
     pub load_kg: f64,
-    /// The processor works.
-    pub healthy: bool,
+    /// What KRN's checks say.
+    pub checks: Checks,
 }
 
 /// What ATO commands.
@@ -64,12 +75,18 @@ pub struct AtoOutputs {
     pub effort: i16,
     /// Holding brake.
     pub holding_brake: bool,
+    /// Why it cannot drive.
+    pub failure: AtoFailure,
+    /// What its watch found in this cycle.
+    pub findings: Findings,
 }
 
 /// The automatic operation.
 #[derive(Debug)]
 pub struct Ato {
     state: AtoState,
+    failure: AtoFailure,
+    watch: Watch,
     observer: Observer,
     controller: Box<dyn SpeedController>,
     regulator: Regulator,
@@ -82,6 +99,8 @@ impl Ato {
     pub fn new(config: &AtoConfig) -> Self {
         Self {
             state: AtoState::Inspection,
+            failure: AtoFailure::None,
+            watch: Watch::default(),
             observer: Observer::default(),
             controller: controller(config),
             regulator: Regulator::default(),
@@ -93,33 +112,6 @@ impl Ato {
     /// One 50 ms cycle.
     pub fn step(&mut self, inputs: AtoInputs<'_>, config: &AtoConfig) -> AtoOutputs {
         let to_stop_m = inputs.section.map(|s| s.stop_m - inputs.position_m);
-        self.state = art::next(
-            self.state,
-            ArtInputs {
-                healthy: inputs.healthy,
-                run: inputs.mode == Mode::AutomaticRun,
-                standstill: inputs.standstill,
-                arrived: to_stop_m.is_some_and(|d| d < config.arrived_m),
-            },
-        );
-        match self.state {
-            AtoState::Start | AtoState::Run => self.drive(&inputs, to_stop_m, config),
-            AtoState::Stop | AtoState::Inspection | AtoState::Unknown(_) => self.rest(&inputs),
-        }
-    }
-
-    /// Drives for one cycle.
-    fn drive(
-        &mut self,
-        inputs: &AtoInputs<'_>,
-        to_stop_m: Option<f64>,
-        config: &AtoConfig,
-    ) -> AtoOutputs {
-        let train = &config.train;
-        let weight_kg = train.empty_kg + inputs.load_kg;
-        let mass_kg = weight_kg + train.rotating_kg;
-        let net_mps2 = (self.granted.force_n - self.feed_forward_n) / mass_kg;
-        let ahead = self.observer.step(inputs.speed.mps(), net_mps2, train);
         let cruise = cruise::cruise(
             CruiseInputs {
                 limit: inputs.limit,
@@ -128,6 +120,72 @@ impl Ato {
             },
             config,
         );
+        let watched = Watched {
+            state: self.state,
+            may_go: cruise > Speed::ZERO && !inputs.power_cut,
+            asked_mps2: self.net_mps2(&inputs, config),
+            to_stop_m,
+        };
+        let findings = self.watch.step(&inputs, watched, config);
+        self.failure = self.failure_after(&inputs, &findings);
+        self.state = art::next(
+            self.state,
+            ArtInputs {
+                fit: inputs.checks != Checks::Running && self.failure == AtoFailure::None,
+                run: inputs.mode == Mode::AutomaticRun,
+                standstill: inputs.standstill,
+                arrived: to_stop_m.is_some_and(|d| d < config.arrived_m),
+            },
+        );
+        // As near as can be believed while the position is unsure.
+        let to_stop_m = to_stop_m.map(|way| way - inputs.ahead_m);
+        let held = inputs.standstill && to_stop_m.is_some_and(|way| way < config.arrived_m);
+        let outputs = if art::drives(self.state) && !held {
+            self.drive(&inputs, cruise, to_stop_m, config)
+        } else {
+            self.rest(&inputs)
+        };
+        AtoOutputs {
+            ready: self.state != AtoState::Inspection,
+            failure: self.failure,
+            findings,
+            ..outputs
+        }
+    }
+
+    /// What has failed: the first failure of a run is kept until the train stands outside Automatic
+    /// Run; then ATO is inspected anew.
+    fn failure_after(&self, inputs: &AtoInputs<'_>, findings: &Findings) -> AtoFailure {
+        let run = inputs.mode == Mode::AutomaticRun;
+        let kept = run || !inputs.standstill;
+        match (inputs.checks, self.failure) {
+            (Checks::Failed(failure), _) => failure,
+            (_, failure) if failure != AtoFailure::None && kept => failure,
+            _ if run && !findings.absurd.is_empty() => AtoFailure::Inputs,
+            _ if findings.not_following_mps.is_some() => AtoFailure::NotFollowing,
+            _ => AtoFailure::None,
+        }
+    }
+
+    /// Acceleration the last effort asks for, what the track costs taken off, m/s².
+    fn net_mps2(&self, inputs: &AtoInputs<'_>, config: &AtoConfig) -> f64 {
+        let mass_kg = config.train.empty_kg + inputs.load_kg + config.train.rotating_kg;
+        (self.granted.force_n - self.feed_forward_n) / mass_kg
+    }
+
+    /// Drives for one cycle.
+    fn drive(
+        &mut self,
+        inputs: &AtoInputs<'_>,
+        cruise: Speed,
+        to_stop_m: Option<f64>,
+        config: &AtoConfig,
+    ) -> AtoOutputs {
+        let train = &config.train;
+        let weight_kg = train.empty_kg + inputs.load_kg;
+        let mass_kg = weight_kg + train.rotating_kg;
+        let net_mps2 = self.net_mps2(inputs, config);
+        let ahead = self.observer.step(inputs.speed.mps(), net_mps2, train);
         let markers_to_stop_m = inputs
             .section
             .map_or([0.0; 4], |s| s.markers_m.map(|at| s.stop_m - at));
@@ -150,13 +208,14 @@ impl Ato {
             power_cut: inputs.power_cut,
         };
         // A demand that is no number stays one, so that REG brakes.
-        let asked_n = demand.force_n.clamp(least, most) + self.feed_forward_n;
+        let past_it = to_stop_m.is_some_and(|way| way < -config.watch.overrun_m);
+        let force_n = if past_it { least } else { demand.force_n };
+        let asked_n = force_n.clamp(least, most) + self.feed_forward_n;
         self.granted = self.regulator.step(asked_n, bounds, config);
         AtoOutputs {
-            ready: inputs.healthy,
             target: Speed::from_mps(demand.target_mps),
             effort: self.granted.effort,
-            holding_brake: false,
+            ..AtoOutputs::default()
         }
     }
 
@@ -169,11 +228,12 @@ impl Ato {
         self.feed_forward_n = 0.0;
         let holding_brake = inputs.mode == Mode::AutomaticRun
             || inputs.mode == Mode::Automatic && inputs.standstill;
+        // A train that ATO has to drive and cannot is braked until it stands.
+        let brakes = inputs.mode == Mode::AutomaticRun && !inputs.standstill;
         AtoOutputs {
-            ready: inputs.healthy,
-            target: Speed::ZERO,
-            effort: 0,
+            effort: if brakes { FULL_BRAKE } else { 0 },
             holding_brake,
+            ..AtoOutputs::default()
         }
     }
 

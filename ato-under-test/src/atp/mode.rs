@@ -98,9 +98,15 @@ fn next(mode: Mode, inputs: &ModeInputs, departing: bool) -> Mode {
 
 fn automatic(mode: Mode, inputs: &ModeInputs, departing: bool) -> Mode {
     let lacking = inputs.lacking.difference(RUN_ONLY);
+    // When ATO fails on the way the service brake stops the train first: nobody may be driving.
+    let ends = if lacking.contains(Refusals::NOT_STANDSTILL) {
+        RUN_ENDS.difference(Refusals::ATO_NOT_READY)
+    } else {
+        RUN_ENDS
+    };
     match mode {
         Mode::AutomaticRun if inputs.arrived => Mode::Automatic,
-        Mode::AutomaticRun if !lacking.intersects(RUN_ENDS) => Mode::AutomaticRun,
+        Mode::AutomaticRun if !lacking.intersects(ends) => Mode::AutomaticRun,
         _ if !lacking.is_empty() => Mode::Manual,
         Mode::Automatic if departing => Mode::AutomaticRun,
         _ => Mode::Automatic,
@@ -152,6 +158,18 @@ mod tests {
                 lacking(Refusals::DOORS_OPEN),
                 false,
                 Mode::Manual,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::ATO_NOT_READY),
+                false,
+                Mode::Manual,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::ATO_NOT_READY.union(Refusals::NOT_STANDSTILL)),
+                false,
+                Mode::AutomaticRun,
             ),
             (
                 Mode::AutomaticRun,

@@ -28,6 +28,7 @@ pub struct Tachometers {
     slow: Lasting,
     standstill: bool,
     moved_m: f64,
+    way_channel: usize,
 }
 
 #[derive(Debug, Default)]
@@ -52,6 +53,7 @@ impl Tachometers {
             slow: Lasting::default(),
             standstill: false,
             moved_m: 0.0,
+            way_channel: 0,
         }
     }
 
@@ -110,7 +112,8 @@ impl Tachometers {
     /// Way by channel 1, by channel 2 when only that turns.
     fn measure_way(&mut self, inputs: &Inputs, config: &UnitConfig) {
         let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
-        let pulses = &inputs.pulses[usize::from(first_dead)];
+        self.way_channel = usize::from(first_dead);
+        let pulses = &inputs.pulses[self.way_channel];
         let way = f64::from(pulses.count) * config.metres_per_pulse();
         self.moved_m = if pulses.backward { -way } else { way };
     }
@@ -138,6 +141,11 @@ impl Tachometers {
     /// Standing still by the train's own sensors, not by the TEST board.
     pub fn train_stands(&self) -> bool {
         self.standstill || self.from_board != [false; 2]
+    }
+
+    /// The channel that counts the way, 0 or 1.
+    pub fn way_channel(&self) -> usize {
+        self.way_channel
     }
 
     /// Way run in this scan, m, backward negative.

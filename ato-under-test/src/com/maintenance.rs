@@ -1,4 +1,4 @@
-//! The tester's session: identity, arm exchange, stimuli, event log.
+//! The tester's session: identity, arm exchange, stimuli, event log, run record.
 //!
 //! Stimuli act only while armed. Arming needs the maintenance key and standstill, and lapses when
 //! the key goes off or the tester falls silent; whoever holds the TEST board then takes every test
@@ -8,12 +8,12 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::message::{
-    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, LogEnd, Message,
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, LogEnd, Message, RunEnd,
     StimulusAnswer,
 };
 use protocol::{Duration, Instant};
 
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, RunRecord};
 use crate::random::Random;
 use crate::test_board::TestBoard;
 
@@ -21,6 +21,8 @@ use crate::test_board::TestBoard;
 const CHALLENGE_TIME: Duration = Duration::from_ms(1000);
 /// Log entries sent in one cycle, so that the cycle's byte budget holds.
 const ENTRIES_PER_CYCLE: usize = 2;
+/// Rows of the run record sent in a cycle without log entries, for the same reason.
+const ROWS_PER_CYCLE: usize = 2;
 
 /// What arming needs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,13 +44,10 @@ pub struct Maintenance {
     session_heard: Instant,
     timeout: Duration,
     random: Random,
-    reader: Option<LogReader>,
-}
-
-/// How far the log has been read out.
-#[derive(Clone, Copy, Debug)]
-pub struct LogReader {
-    next: u32,
+    /// Index of the next log entry to send.
+    reader: Option<u32>,
+    /// Index of the next row of the run record to send.
+    run_reader: Option<u32>,
 }
 
 impl Maintenance {
@@ -62,6 +61,7 @@ impl Maintenance {
             timeout,
             random: Random::new(seed),
             reader: None,
+            run_reader: None,
         }
     }
 
@@ -134,11 +134,8 @@ impl Maintenance {
                 replies.push(self.disarm(now, request.session, refusal, board, log));
             }
             Message::KeepAlive(alive) => self.hear_session(now, alive.session),
-            Message::ReadLog(request) => {
-                self.reader = Some(LogReader {
-                    next: request.from_index,
-                })
-            }
+            Message::ReadLog(request) => self.reader = Some(request.from_index),
+            Message::ReadRun(request) => self.run_reader = Some(request.from_index),
             other => {
                 if let Some(answer) = self.stimulate(now, other, board, log) {
                     replies.push(
@@ -258,23 +255,45 @@ impl Maintenance {
 
     /// Log entries to send in this cycle.
     pub fn read_log(&mut self, log: &EventLog, replies: &mut Vec<Message>) {
-        let Some(reader) = &mut self.reader else {
+        let Some(next) = &mut self.reader else {
             return;
         };
         for _ in 0..ENTRIES_PER_CYCLE {
-            let Some(entry) = log.at_or_after(reader.next) else {
+            let Some(entry) = log.at_or_after(*next) else {
                 break;
             };
-            reader.next = entry.index + 1;
+            *next = entry.index + 1;
             replies.push((*entry).into());
         }
-        if log.at_or_after(reader.next).is_none() {
+        if log.at_or_after(*next).is_none() {
             let end = LogEnd {
                 next_index: log.next_index(),
                 oldest_index: log.oldest_index(),
             };
             replies.push(end.into());
             self.reader = None;
+        }
+    }
+
+    /// Rows of the run record to send in this cycle.
+    pub fn read_run(&mut self, record: &RunRecord, replies: &mut Vec<Message>) {
+        let Some(next) = &mut self.run_reader else {
+            return;
+        };
+        for _ in 0..ROWS_PER_CYCLE {
+            let Some(row) = record.at_or_after(*next) else {
+                break;
+            };
+            *next = row.index + 1;
+            replies.push((*row).into());
+        }
+        if record.at_or_after(*next).is_none() {
+            let end = RunEnd {
+                next_index: record.next_index(),
+                oldest_index: record.oldest_index(),
+            };
+            replies.push(end.into());
+            self.run_reader = None;
         }
     }
 }

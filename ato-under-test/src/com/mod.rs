@@ -6,6 +6,6 @@ mod reject_watch;
 mod tcms;
 
 pub use image::IoImage;
-pub use maintenance::{ArmConditions, LogReader, Maintenance};
+pub use maintenance::{ArmConditions, Maintenance};
 pub use reject_watch::RejectWatch;
 pub use tcms::TcmsLink;

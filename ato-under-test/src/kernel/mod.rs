@@ -1,7 +1,9 @@
-//! KRN: start-up, self-test and the event log [S0 §3].
+//! KRN: start-up, self-test, event log and run record [S0 §3].
 
 mod log;
+mod run_record;
 mod self_test;
 
 pub use log::{EventLog, FreezeFrame, LOG_CAPACITY};
+pub use run_record::{RUN_ROWS, RunCycle, RunRecord};
 pub use self_test::{SelfTestInputs, SelfTester};

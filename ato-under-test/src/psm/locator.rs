@@ -1,45 +1,71 @@
 //! Position in the section: distance run from the departure, corrected at markers.
+//!
+//! Markers correct the position ([`super::belief`]) and calibrate the wheel ([`super::wheel`]). One
+//! that must have come by now and has not leaves the position unsure: from there on
+//! [`Locator::ahead_m`] grows, the way by which the train may be further than it seems. ATO stops by
+//! the most advanced position that can be believed, so that a train without markers stops short
+//! rather than beyond the platform.
 
+use protocol::Instant;
+use protocol::config::{MarkerConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::line::{Line, Section};
 use protocol::message::TwcWayside;
-use protocol::{Instant, Speed};
 
+use super::belief::{Fix, Judgement, Sighting, judge, place_m, window_m};
+use super::{Movement, Odometer, WheelCalibration};
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
 
-/// How the train moves in this scan.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Movement {
-    /// Distance run since the last scan, m, backward negative.
-    pub moved_m: f64,
-    /// Measured speed.
-    pub speed: Speed,
-    /// Standing still.
-    pub standstill: bool,
-}
+/// Markers of a section.
+const MARKERS: u8 = 4;
+/// Greatest share of the way run by which [`Locator::ahead_m`] grows, so that the stop point comes
+/// nearer gently [default].
+const AHEAD_SHARE: f64 = 0.5;
 
 /// Section, position and marker order.
 #[derive(Debug)]
 pub struct Locator {
-    window_m: f64,
+    config: MarkerConfig,
+    odometer: Odometer,
+    wheel: WheelCalibration,
     section: Option<Section>,
-    position_m: f64,
+    fix: Fix,
+    /// Number the next pulse should have; pulses of test markers count, too.
     expected: u8,
-    corrected: bool,
+    doubtful: Option<Sighting>,
+    /// Way told when the position became unsure, m.
+    unsure_since_m: Option<f64>,
+    wheel_reported: bool,
     last_marker: u8,
     count: u8,
 }
 
 impl Locator {
-    /// Believes markers within `window_m` of their place.
-    pub fn new(window_m: f64) -> Self {
+    /// A locator that knows nothing yet.
+    pub fn new(config: &UnitConfig) -> Self {
+        let marker = config.marker.clone();
         Self {
-            window_m,
+            odometer: Odometer::new(
+                config.metres_per_pulse(),
+                f64::from(config.tacho.window_ms) / 1000.0,
+            ),
+            wheel: WheelCalibration::new(
+                marker.wheel_spread,
+                marker.scatter_m,
+                config.ato.watch.wheel_error,
+            ),
+            config: marker,
             section: None,
-            position_m: 0.0,
+            fix: Fix {
+                place_m: 0.0,
+                way_m: 0.0,
+                marker: 0,
+            },
             expected: 1,
-            corrected: false,
+            doubtful: None,
+            unsure_since_m: None,
+            wheel_reported: false,
             last_marker: 0,
             count: 0,
         }
@@ -55,12 +81,18 @@ impl Locator {
             .as_ref()
             .is_some_and(|s| s.section == section.section);
         let departing = data.loop_id == section.from_loop;
-        let run = same && self.position_m > section.start_m + self.window_m;
+        let run = same && self.position_m() > section.start_m + self.config.start_window_m;
         if standstill && (!same || (departing && run)) {
+            self.fix = Fix {
+                place_m: section.start_m,
+                way_m: self.odometer.way_m(),
+                marker: 0,
+            };
             self.section = Some(section.clone());
-            self.position_m = section.start_m;
             self.expected = 1;
-            self.corrected = false;
+            self.doubtful = None;
+            self.unsure_since_m = None;
+            self.wheel_reported = false;
         }
     }
 
@@ -72,22 +104,28 @@ impl Locator {
         pulse: Option<MarkerPulse>,
         log: &mut EventLog,
     ) {
-        self.position_m += movement.moved_m;
+        self.odometer.step(&movement);
         if let Some(pulse) = pulse {
-            self.pass_marker(now, movement, pulse, log);
+            self.last_marker = pulse.marker;
+            self.count = self.count.wrapping_add(1);
+            if movement.standstill || self.section.is_none() {
+                self.take_standing(now, pulse.marker, log);
+            } else {
+                let age_s = f64::from(pulse.age_us) / 1e6;
+                let sighting = Sighting {
+                    marker: pulse.marker,
+                    way_m: self.odometer.way_ago_m(age_s),
+                };
+                self.pass_marker(now, sighting, log);
+            }
+        }
+        if movement.driven && self.unsure_since_m.is_none() {
+            self.look_for_overdue(now, log);
         }
     }
 
-    fn pass_marker(
-        &mut self,
-        now: Instant,
-        movement: Movement,
-        pulse: MarkerPulse,
-        log: &mut EventLog,
-    ) {
-        let marker = pulse.marker;
-        self.last_marker = marker;
-        self.count = self.count.wrapping_add(1);
+    /// A pulse at standstill comes from a test marker: its order counts, its place cannot.
+    fn take_standing(&mut self, now: Instant, marker: u8, log: &mut EventLog) {
         if marker < self.expected && marker != 1 {
             log.push(now, Event::MarkerOrder, i32::from(marker));
             return;
@@ -95,62 +133,95 @@ impl Locator {
         if marker > self.expected {
             log.push(now, Event::MarkerMissing, i32::from(self.expected));
         }
-        self.expected = if marker == 4 { 1 } else { marker + 1 };
-        self.correct(now, movement, pulse, log);
+        self.expected = marker % MARKERS + 1;
     }
 
-    /// Takes the marker's place as the position. A pulse at standstill comes from a test marker:
-    /// its order counts, its place cannot.
-    fn correct(
-        &mut self,
-        now: Instant,
-        movement: Movement,
-        pulse: MarkerPulse,
-        log: &mut EventLog,
-    ) {
+    /// A pulse on the way. One that is not believed is reported and changes nothing.
+    fn pass_marker(&mut self, now: Instant, sighting: Sighting, log: &mut EventLog) {
         let Some(section) = &self.section else { return };
-        let Some(&place) = section
-            .markers_m
-            .get(usize::from(pulse.marker).wrapping_sub(1))
-        else {
+        let scale = 1.0 + self.wheel_correction();
+        let doubtful = self.doubtful;
+        let config = &self.config;
+        match judge(section, &self.fix, sighting, doubtful, scale, config) {
+            Judgement::Believed => self.believe(now, sighting, log),
+            Judgement::OutOfOrder => {
+                log.push(now, Event::MarkerOrder, i32::from(sighting.marker));
+            }
+            Judgement::Away(error_m) => {
+                let error_cm = libm::round(error_m * 100.0) as i32;
+                log.push(now, Event::MarkerPosition, error_cm);
+                self.doubtful = Some(sighting);
+            }
+        }
+    }
+
+    /// Takes the marker's place as the position.
+    fn believe(&mut self, now: Instant, sighting: Sighting, log: &mut EventLog) {
+        let marker = sighting.marker;
+        let place = self.section.as_ref().and_then(|s| place_m(s, marker));
+        let Some(place_m) = place else { return };
+        for missing in self.fix.marker + 1..marker {
+            // The one before may have been heard and not believed.
+            if self.doubtful.is_none_or(|d| d.marker != missing) {
+                log.push(now, Event::MarkerMissing, i32::from(missing));
+            }
+        }
+        if self.fix.marker != 0 {
+            let track_m = place_m - self.fix.place_m;
+            self.wheel.learn(track_m, sighting.way_m - self.fix.way_m);
+            self.report_wheel(now, log);
+        }
+        self.fix = Fix {
+            place_m,
+            way_m: sighting.way_m,
+            marker,
+        };
+        self.expected = marker % MARKERS + 1;
+        self.doubtful = None;
+        self.unsure_since_m = None;
+    }
+
+    fn report_wheel(&mut self, now: Instant, log: &mut EventLog) {
+        let Some(share) = self.wheel.impossible() else {
             return;
         };
-        if movement.standstill {
-            return;
+        if !self.wheel_reported {
+            self.wheel_reported = true;
+            log.push(now, Event::WheelDiameter, libm::round(share * 1e4) as i32);
         }
-        let since_m = movement.speed.mps() * f64::from(pulse.age_us) / 1e6;
-        let error = self.position_m - since_m - place;
-        if libm::fabs(error) > self.window_m {
-            log.push(
-                now,
-                Event::MarkerPosition,
-                libm::round(error * 100.0) as i32,
-            );
+    }
+
+    /// A marker that must have come by now, wherever in its window it lies.
+    fn look_for_overdue(&mut self, now: Instant, log: &mut EventLog) {
+        let next = self.fix.marker + 1;
+        let Some(place_m) = self.section.as_ref().and_then(|s| place_m(s, next)) else {
             return;
+        };
+        let run_m = self.position_m() - self.fix.place_m;
+        if self.position_m() > place_m + window_m(&self.fix, run_m, &self.config) {
+            self.unsure_since_m = Some(self.odometer.way_m());
+            log.push(now, Event::PositionUnsure, i32::from(next));
         }
-        self.position_m = place + since_m;
-        self.corrected |= pulse.marker == 4;
     }
 
     /// Stopped within `tolerance_m` of the stop point, the last marker having been seen.
     pub fn aligned(&self, tolerance_m: f64) -> bool {
-        self.corrected
+        self.fix.marker == MARKERS
             && self
-                .section
-                .as_ref()
-                .is_some_and(|s| libm::fabs(self.position_m - s.stop_m) <= tolerance_m)
+                .to_stop_m()
+                .is_some_and(|way| libm::fabs(way) <= tolerance_m)
     }
 
     /// Distance to the stop point, m.
     pub fn to_stop_m(&self) -> Option<f64> {
         self.section
             .as_ref()
-            .map(|section| section.stop_m - self.position_m)
+            .map(|section| section.stop_m - self.position_m())
     }
 
     /// What is added to the way the wheels tell, as a share.
     pub fn wheel_correction(&self) -> f64 {
-        0.0
+        self.wheel.correction()
     }
 
     /// Section the train is in.
@@ -160,7 +231,18 @@ impl Locator {
 
     /// Position, m.
     pub fn position_m(&self) -> f64 {
-        self.position_m
+        let run_m = self.odometer.way_m() - self.fix.way_m;
+        self.fix.place_m + run_m * (1.0 + self.wheel_correction())
+    }
+
+    /// How much further the train may be, m; 0 as long as markers come.
+    pub fn ahead_m(&self) -> f64 {
+        self.unsure_since_m.map_or(0.0, |since_m| {
+            let way_m = self.odometer.way_m();
+            let run_m = libm::fabs(way_m - self.fix.way_m);
+            let grown_m = libm::fabs(way_m - since_m) * AHEAD_SHARE;
+            (run_m * self.wheel.uncertainty()).min(grown_m)
+        })
     }
 
     /// Last marker detected, 0 = none.

@@ -1,8 +1,14 @@
 //! PSM: where the train is in its section, from distance run, corrected at markers whose order and
 //! place are checked; and the health of TRA [S0 §3.3].
 
+mod belief;
 mod locator;
-mod tra;
+mod odometer;
 
-pub use locator::{Locator, Movement};
+mod tra;
+mod wheel;
+
+pub use locator::Locator;
+pub use odometer::{Movement, Odometer};
 pub use tra::Tra;
+pub use wheel::WheelCalibration;

@@ -158,8 +158,16 @@ pub struct LinkConfig {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerConfig {
-    /// Distance from its place at which a marker is believed, m.
+    /// Distance from its place at which a marker is believed right after another one, m.
     pub window_m: f64,
+    /// The same right after the section's start, where trains do not stand to the metre, m.
+    pub start_window_m: f64,
+    /// What is added per way run since the last marker or the start: wheels and sliding, share.
+    pub window_share: f64,
+    /// Scatter of markers around their places, m (1σ).
+    pub scatter_m: f64,
+    /// Scatter of wheels around the configured diameter, share (1σ).
+    pub wheel_spread: f64,
     /// Time between TRA tests, ms.
     pub tra_test_ms: u32,
 }
@@ -242,8 +250,9 @@ impl UnitConfig {
     }
 
     /// Key, value and allowed range of every bounded number.
-    fn ranges(&self) -> [(&'static str, f64, f64, f64); 20] {
+    fn ranges(&self) -> [(&'static str, f64, f64, f64); 25] {
         let (r, t, o, l) = (&self.receiver, &self.tacho, &self.overspeed, &self.link);
+        let m = &self.marker;
         [
             (
                 "receiver.carrier_tolerance_hz",
@@ -278,6 +287,11 @@ impl UnitConfig {
             ("overspeed.yard_kmh", o.yard_kmh, 5.0, 45.0),
             ("overspeed.emergency_kmh", o.emergency_kmh, 5.0, 45.0),
             ("doors.aligned_m", self.doors.aligned_m, 0.05, 2.0),
+            ("marker.window_m", m.window_m, 0.1, 50.0),
+            ("marker.start_window_m", m.start_window_m, 0.1, 50.0),
+            ("marker.window_share", m.window_share, 0.0, 0.2),
+            ("marker.scatter_m", m.scatter_m, 0.001, 2.0),
+            ("marker.wheel_spread", m.wheel_spread, 0.0001, 0.1),
             (
                 "link.io_timeout_ms",
                 f64::from(l.io_timeout_ms),

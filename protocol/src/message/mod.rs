@@ -17,14 +17,14 @@ pub use layout::{
 };
 pub use ptu::{
     ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
-    KeepAlive, LogEnd, LogEntry, ReadLog, SelfTest, Status, StatusBits, StimulusAnswer, TestCode,
-    TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
+    KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, RunEnd, RunRow, SelfTest, Status, StatusBits,
+    StimulusAnswer, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
 };
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
 pub use words::{
-    Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Refusals,
-    RunningMode,
+    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause, Mode,
+    ModeSwitch, Refusals, RunningMode,
 };
 
 /// The four channels of the wire.
@@ -192,6 +192,7 @@ messages!(
     TestTwc,
     TestRelease,
     ReadLog,
+    ReadRun,
     ClearLog,
     Identity,
     ArmChallenge,
@@ -200,6 +201,8 @@ messages!(
     Status,
     LogEntry,
     LogEnd,
+    RunRow,
+    RunEnd,
     IoInput,
     IoOutput,
     TcmsToAtc,
@@ -219,6 +222,7 @@ pub const ENUMS: &[WordSpec] = &[
     Answer::SPEC,
     ArmRefusal::SPEC,
     AtoState::SPEC,
+    AtoFailure::SPEC,
 ];
 
 /// Every set of bits that is a field's type.
@@ -232,4 +236,5 @@ pub const BIT_SETS: &[WordSpec] = &[
     TcmsToAtcBits::SPEC,
     AtcToTcmsBits::SPEC,
     TwcTrainBits::SPEC,
+    AbsurdInputs::SPEC,
 ];

@@ -35,6 +35,48 @@ wire_enum! {
 }
 
 wire_enum! {
+    /// Why ATO failed: the parameter of event `ato_failed`.
+    AtoFailure {
+        /// It has not.
+        None = 0 "none",
+        /// Its processor does not work.
+        Processor = 1 "processor",
+        /// The start-up self-test failed an item that ATO needs.
+        SelfTest = 2 "self_test",
+        /// Its configuration or the track database does not pass its checks.
+        StoredData = 3 "stored_data",
+        /// TRA failed its test while the train stood; on the way the run is brought to its end.
+        Tra = 4 "tra",
+        /// The tachometers disagree.
+        Tachometers = 5 "tachometers",
+        /// Inputs that no train can make, `AbsurdInputs`.
+        Inputs = 6 "inputs",
+        /// The train does not do what the effort asks for.
+        NotFollowing = 7 "not_following",
+    }
+}
+
+wire_bits! {
+    /// What ATO cannot believe: the parameter of event `ato_input_absurd`.
+    AbsurdInputs {
+        /// Speed that is no number, negative or beyond any train's.
+        SPEED = 0,
+        /// Speed that changed faster than any train's.
+        SPEED_JUMP = 1,
+        /// Speed that stays exactly the same while effort is asked for.
+        FROZEN_SPEED = 2,
+        /// Position far outside the section.
+        POSITION = 3,
+        /// Passenger load that is negative or beyond the train's own mass.
+        LOAD = 4,
+        /// Speed limit or ordered speed that is no speed.
+        LIMIT = 5,
+        /// No section of the track database, or one whose numbers cannot be.
+        SECTION = 6,
+    }
+}
+
+wire_enum! {
     /// Position of the cab's mode switch.
     ModeSwitch {
         /// Off.

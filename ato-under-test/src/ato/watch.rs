@@ -1,0 +1,216 @@
+//! ATO's watch over its inputs and over itself [S0 §1: monitoring].
+//!
+//! * Inputs no train can make end the run at once: nothing computed from them is worth more than a
+//!   brake.
+//! * A train that does not do what the effort asks is not driven any longer. What counts is not the
+//!   distance to the target, which is great in every departure, but the speed the efforts should
+//!   have made within the last seconds against the speed there is.
+//! * The end of a run away from the stop point is told.
+
+use protocol::config::AtoConfig;
+use protocol::line::Section;
+use protocol::message::{AbsurdInputs, AtoState};
+use protocol::{CYCLE, Speed};
+
+use super::{AtoInputs, art};
+
+/// Speed beyond any train's of these lines, m/s: 150 km/h [default].
+const FASTEST_MPS: f64 = 150.0 / 3.6;
+/// Greatest change of speed within a cycle, also of a sliding wheel, m/s [default].
+const JUMP_MPS: f64 = 1.0;
+/// Acceleration asked for at which something must happen, m/s² [default].
+const ASKED_MPS2: f64 = 0.3;
+/// Change of speed in a cycle below which a tachometer says the same, m/s: what edge times in whole
+/// microseconds can make of one speed.
+const SAME_MPS: f64 = 5e-4;
+/// Distance from the section at which a position cannot be, m [default].
+const OUTSIDE_M: f64 = 100.0;
+/// Way past the stop point at which an overrun is told although the train still moves, m [default].
+const FAR_PAST_M: f64 = 10.0;
+/// Time standing short of the stop point after which nothing more is expected, s [default].
+const STANDS_S: f64 = 5.0;
+
+/// What the watch looks at besides ATO's inputs.
+#[derive(Clone, Copy, Debug)]
+pub struct Watched {
+    /// State until now.
+    pub state: AtoState,
+    /// Acceleration the last effort asks for, track and resistance taken off, m/s².
+    pub asked_mps2: f64,
+    /// Neither limit nor order nor brake keeps the train standing.
+    pub may_go: bool,
+    /// Way to the stop point, m.
+    pub to_stop_m: Option<f64>,
+}
+
+/// What it found in this cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// Inputs no train can make.
+    pub absurd: AbsurdInputs,
+    /// Speed less the speed effort should have made, m/s.
+    pub not_following_mps: Option<f64>,
+    /// Way past the stop point, m; told once a run.
+    pub overrun_m: Option<f64>,
+    /// Way short of the stop point, m; told once a run.
+    pub short_m: Option<f64>,
+}
+
+/// The watch.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Watch {
+    before_mps: Option<f64>,
+    expected_mps2: f64,
+    deviation_mps: f64,
+    frozen_s: f64,
+    moved: bool,
+    stands_s: f64,
+    told: bool,
+}
+
+impl Watch {
+    /// One cycle.
+    pub fn step(&mut self, inputs: &AtoInputs<'_>, on: Watched, config: &AtoConfig) -> Findings {
+        let mut absurd = absurd(inputs, config);
+        let speed_mps = inputs.speed.mps();
+        let before_mps = self.before_mps.replace(speed_mps);
+        let (overrun_m, short_m) = self.stop_error(inputs, on, config);
+        if !art::drives(on.state) {
+            self.expected_mps2 = 0.0;
+            self.deviation_mps = 0.0;
+            self.frozen_s = 0.0;
+            return Findings {
+                absurd,
+                overrun_m,
+                short_m,
+                ..Findings::default()
+            };
+        }
+        let change_mps = speed_mps - before_mps.unwrap_or(speed_mps);
+        absurd.set(AbsurdInputs::SPEED_JUMP, libm::fabs(change_mps) > JUMP_MPS);
+        let frozen = self.frozen(change_mps, inputs, on.asked_mps2, config);
+        absurd.set(AbsurdInputs::FROZEN_SPEED, frozen);
+        let not_following_mps = absurd
+            .is_empty()
+            .then(|| self.follow(change_mps, inputs, on.asked_mps2, config))
+            .flatten();
+        Findings {
+            absurd,
+            not_following_mps,
+            overrun_m,
+            short_m,
+        }
+    }
+
+    /// The speed says exactly the same although effort is asked for.
+    fn frozen(
+        &mut self,
+        change_mps: f64,
+        inputs: &AtoInputs<'_>,
+        asked_mps2: f64,
+        config: &AtoConfig,
+    ) -> bool {
+        let stands_braked = inputs.standstill && asked_mps2 < 0.0;
+        let asked = libm::fabs(asked_mps2) > ASKED_MPS2 && !inputs.power_cut && !stands_braked;
+        if !asked || libm::fabs(change_mps) > SAME_MPS {
+            self.frozen_s = 0.0;
+            return false;
+        }
+        self.frozen_s += CYCLE.as_secs();
+        let span_s = f64::from(config.watch.following_ms) / 1000.0;
+        // A departure waits for brakes to release; on the way nothing keeps a speed the same.
+        let share = if inputs.standstill { 1.0 } else { 0.5 };
+        self.frozen_s >= span_s * share
+    }
+
+    /// Compares the change of speed with what the efforts should have made, both fading with the
+    /// watch's time. While ATP brakes ATO's efforts do not count.
+    fn follow(
+        &mut self,
+        change_mps: f64,
+        inputs: &AtoInputs<'_>,
+        asked_mps2: f64,
+        config: &AtoConfig,
+    ) -> Option<f64> {
+        let dt = CYCLE.as_secs();
+        let lag_s = (config.train.dead_time_ms + config.train.lag_ms) / 1000.0;
+        let share = (dt / lag_s.max(dt)).min(1.0);
+        self.expected_mps2 += (asked_mps2 - self.expected_mps2) * share;
+        let memory_s = f64::from(config.watch.following_ms.max(1)) / 1000.0;
+        self.deviation_mps -= self.deviation_mps * (dt / memory_s).min(1.0);
+        let stands_braked = inputs.standstill && self.expected_mps2 < 0.0;
+        if !inputs.power_cut && !stands_braked {
+            self.deviation_mps += change_mps - self.expected_mps2 * dt;
+        }
+        let most_mps = config.watch.following_kmh / 3.6;
+        (libm::fabs(self.deviation_mps) > most_mps).then_some(self.deviation_mps)
+    }
+
+    /// Overrun and stop short, once a run and when the wheels really stand.
+    fn stop_error(
+        &mut self,
+        inputs: &AtoInputs<'_>,
+        on: Watched,
+        config: &AtoConfig,
+    ) -> (Option<f64>, Option<f64>) {
+        let arrived = on.to_stop_m.is_some_and(|way| way < config.arrived_m);
+        match on.state {
+            AtoState::Run => self.moved = true,
+            AtoState::Stop if arrived => {}
+            // Departing, or the run was ended by somebody.
+            _ => (self.moved, self.told) = (false, false),
+        }
+        let stands = inputs.speed == Speed::ZERO;
+        self.stands_s = if stands && on.may_go {
+            self.stands_s + CYCLE.as_secs()
+        } else {
+            0.0
+        };
+        let Some(to_stop_m) = on.to_stop_m.filter(|_| self.moved && !self.told) else {
+            return (None, None);
+        };
+        let past_m = -to_stop_m;
+        let ended = stands && (arrived || self.stands_s > STANDS_S);
+        let overrun = past_m > config.watch.overrun_m && (ended || past_m > FAR_PAST_M);
+        let short = to_stop_m > inputs.aligned_m && ended;
+        self.told = ended || overrun;
+        (overrun.then_some(past_m), short.then_some(to_stop_m))
+    }
+}
+
+/// Inputs that cannot be, each by itself.
+fn absurd(inputs: &AtoInputs<'_>, config: &AtoConfig) -> AbsurdInputs {
+    let speed = |mps: f64| (0.0..=FASTEST_MPS).contains(&mps);
+    let order = |order: Speed| order.mps().is_finite() && order >= Speed::ZERO;
+    let limits = speed(inputs.limit.mps()) && inputs.fixed_speed.is_none_or(order);
+    let load = (0.0..=config.train.empty_kg).contains(&inputs.load_kg);
+    let section = inputs.section.is_some_and(sound);
+    let position = inputs.section.is_none_or(|s| {
+        let place = s.start_m - OUTSIDE_M..=s.stop_m + OUTSIDE_M;
+        place.contains(&inputs.position_m) && (0.0..=s.length_m).contains(&inputs.ahead_m)
+    });
+    let mut absurd = AbsurdInputs::empty();
+    absurd.set(AbsurdInputs::SPEED, !speed(inputs.speed.mps()));
+    absurd.set(AbsurdInputs::LIMIT, !limits);
+    absurd.set(AbsurdInputs::LOAD, !load);
+    absurd.set(AbsurdInputs::SECTION, !section);
+    absurd.set(AbsurdInputs::POSITION, !position);
+    absurd
+}
+
+/// A section whose numbers can be those of a track.
+fn sound(section: &Section) -> bool {
+    let places = [section.start_m, section.stop_m, section.length_m];
+    let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+    let gradients = &section.gradients;
+    let curves = &section.curves;
+    finite(&places)
+        && finite(&section.markers_m)
+        && section.start_m < section.stop_m
+        && gradients
+            .iter()
+            .all(|g| finite(&[g.at_m]) && libm::fabs(g.permille) <= 100.0)
+        && curves
+            .iter()
+            .all(|c| finite(&[c.at_m]) && (0.0..=1e6).contains(&c.radius_m))
+}

@@ -1,0 +1,142 @@
+//! The record of automatic runs: what ATO saw and did, every cycle, in a bounded ring [S0 §2, §3.1].
+
+use alloc::collections::VecDeque;
+
+use protocol::Instant;
+use protocol::message::{AtoState, RunRow};
+
+/// Rows kept, 4 min of driving; older ones fall off and their indices stay used.
+pub const RUN_ROWS: usize = 4800;
+
+/// One cycle as it is recorded.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RunCycle {
+    /// Position in the section, m.
+    pub position_m: f64,
+    /// Speed ATO goes by, cm/s.
+    pub speed_cms: u16,
+    /// Target speed, cm/s.
+    pub target_cms: u16,
+    /// Effort, -1024..1023.
+    pub effort: i16,
+    /// Marker detected last, and how many so far.
+    pub marker: (u8, u8),
+    /// Operating state.
+    pub state: AtoState,
+}
+
+/// The ring.
+#[derive(Debug, Default)]
+pub struct RunRecord {
+    rows: VecDeque<RunRow>,
+    next_index: u32,
+    run: u16,
+    state: AtoState,
+    markers: u8,
+}
+
+impl RunRecord {
+    /// One cycle; `running` while ATP has set Automatic Run. Rows that would only repeat that the
+    /// train stands are left out.
+    pub fn step(&mut self, now: Instant, running: bool, cycle: RunCycle) {
+        let before = core::mem::replace(&mut self.state, cycle.state);
+        let passed = cycle.marker.1 != core::mem::replace(&mut self.markers, cycle.marker.1);
+        if cycle.state == AtoState::Start && before != AtoState::Start {
+            self.run = self.run.wrapping_add(1);
+        }
+        if !running || self.run == 0 {
+            return;
+        }
+        let row = RunRow {
+            index: self.next_index,
+            run: self.run,
+            at_ms: now.stamp_ms(),
+            position_cm: libm::round(cycle.position_m * 100.0) as i32,
+            speed_cms: cycle.speed_cms,
+            target_cms: cycle.target_cms,
+            effort: cycle.effort,
+            marker: if passed { cycle.marker.0 } else { 0 },
+            ato_state: cycle.state,
+        };
+        if self.rows.back().is_some_and(|last| repeats(last, &row)) {
+            return;
+        }
+        if self.rows.len() == RUN_ROWS {
+            self.rows.pop_front();
+        }
+        self.rows.push_back(row);
+        self.next_index += 1;
+    }
+
+    /// The first kept row with an index of at least `index`.
+    pub fn at_or_after(&self, index: u32) -> Option<&RunRow> {
+        let skip = index.saturating_sub(self.oldest_index()) as usize;
+        self.rows.get(skip)
+    }
+
+    /// Index the next row will get.
+    pub fn next_index(&self) -> u32 {
+        self.next_index
+    }
+
+    /// Oldest index kept.
+    pub fn oldest_index(&self) -> u32 {
+        self.rows.front().map_or(self.next_index, |row| row.index)
+    }
+}
+
+/// The same but for its time, and standing.
+fn repeats(last: &RunRow, row: &RunRow) -> bool {
+    let same = RunRow {
+        index: last.index,
+        at_ms: last.at_ms,
+        ..*row
+    };
+    row.speed_cms == 0 && same == *last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cycle(speed_cms: u16, state: AtoState) -> RunCycle {
+        RunCycle {
+            speed_cms,
+            state,
+            ..RunCycle::default()
+        }
+    }
+
+    #[test]
+    fn runs_are_numbered_and_old_rows_fall_off() {
+        let mut record = RunRecord::default();
+        record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
+        assert!(record.at_or_after(0).is_none(), "nothing but runs");
+        for run in 1..=2 {
+            record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
+            for _ in 0..RUN_ROWS - 1 {
+                record.step(Instant::ZERO, true, cycle(500, AtoState::Run));
+            }
+            record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
+            let rows = record.next_index() - record.oldest_index();
+            assert_eq!(rows as usize, RUN_ROWS);
+            assert_eq!(record.at_or_after(0).map(|row| row.run), Some(run));
+        }
+        assert_eq!(record.oldest_index() as usize, RUN_ROWS);
+    }
+
+    #[test]
+    fn a_train_that_stands_fills_no_rows_and_a_marker_is_in_one() {
+        let mut record = RunRecord::default();
+        for _ in 0..100 {
+            record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
+        }
+        assert_eq!(record.next_index(), 1);
+        let mut moving = cycle(500, AtoState::Run);
+        moving.marker = (2, 1);
+        record.step(Instant::ZERO, true, moving);
+        record.step(Instant::ZERO, true, moving);
+        let markers = [1, 2].map(|i| record.at_or_after(i).map(|row| row.marker));
+        assert_eq!(markers, [Some(2), Some(0)]);
+    }
+}

@@ -1,0 +1,93 @@
+//! Wheel calibration: way by pulses between two believed markers against the track database.
+//!
+//! One number is estimated, by how much the configured wheel is too small, with its variance: a span
+//! tells the more the longer it is, because markers lie some centimetres off their places.
+
+/// Share of the way by which creep and short slips falsify any span, however long [default].
+const CREEP: f64 = 5e-4;
+/// Share by which a wheel may change from one span to the next [default].
+const WEAR: f64 = 1e-4;
+/// Shortest span that tells anything, m [default].
+const SHORTEST_M: f64 = 50.0;
+
+/// The estimate; kept until power goes.
+#[derive(Clone, Copy, Debug)]
+pub struct WheelCalibration {
+    share: f64,
+    variance: f64,
+    scatter_m: f64,
+    bound: f64,
+}
+
+impl WheelCalibration {
+    /// Nothing known but that the wheel is within `spread` (1σ share) of the configured one; markers
+    /// scatter by `scatter_m` (1σ) and the correction is kept within ±`bound`.
+    pub fn new(spread: f64, scatter_m: f64, bound: f64) -> Self {
+        Self {
+            share: 0.0,
+            variance: spread * spread,
+            scatter_m,
+            bound,
+        }
+    }
+
+    /// Takes a span of `track_m` between two markers that the wheel told as `wheel_m`.
+    pub fn learn(&mut self, track_m: f64, wheel_m: f64) {
+        if track_m < SHORTEST_M || wheel_m < SHORTEST_M / 2.0 {
+            return;
+        }
+        let measured = track_m / wheel_m - 1.0;
+        let places = core::f64::consts::SQRT_2 * self.scatter_m / track_m;
+        let doubt = places * places + CREEP * CREEP;
+        self.variance += WEAR * WEAR;
+        let gain = self.variance / (self.variance + doubt);
+        self.share += gain * (measured - self.share);
+        self.variance *= 1.0 - gain;
+    }
+
+    /// What is added to the way the wheel tells, as a share; bounded.
+    pub fn correction(&self) -> f64 {
+        self.share.clamp(-self.bound, self.bound)
+    }
+
+    /// The difference found, when it is more than any wheel in service can have.
+    pub fn impossible(&self) -> Option<f64> {
+        (libm::fabs(self.share) > self.bound).then_some(self.share)
+    }
+
+    /// Share of the way by which it may still be wrong (2σ).
+    pub fn uncertainty(&self) -> f64 {
+        2.0 * libm::sqrt(self.variance + CREEP * CREEP)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fresh() -> WheelCalibration {
+        WheelCalibration::new(0.015, 0.05, 0.03)
+    }
+
+    #[test]
+    fn one_long_span_tells_a_worn_wheel_and_a_short_one_hardly_moves_it() {
+        let mut wheel = fresh();
+        assert_eq!(wheel.correction(), 0.0);
+        wheel.learn(437.5, 437.5 / 0.98);
+        assert!((wheel.correction() + 0.02).abs() < 1e-4);
+        assert!(wheel.uncertainty() < 0.002);
+        // A marker 30 cm off its place at the end of the short span.
+        wheel.learn(87.5, 87.8 / 0.98);
+        assert!((wheel.correction() + 0.02).abs() < 1e-3);
+        wheel.learn(17.5, 30.0);
+        assert!((wheel.correction() + 0.02).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_wheel_that_cannot_be_is_told_and_corrected_to_the_bound_only() {
+        let mut wheel = fresh();
+        wheel.learn(437.5, 437.5 * 1.04);
+        assert_eq!(wheel.correction(), -0.03);
+        assert!(wheel.impossible().is_some_and(|share| share < -0.035));
+    }
+}

@@ -1,0 +1,431 @@
+//! Automatic operation from station to station through the wire: position by markers and wheels,
+//! what ATO does with inputs it cannot believe, and the record of the run.
+
+mod common;
+
+use common::Bench;
+use protocol::SCAN;
+use protocol::injection::{Effect, FaultMode, Place};
+use protocol::line::Section;
+use protocol::message::{
+    AtoFailure, AtoState, DoorSide, Message, Mode, ModeSwitch, Outputs, ReadRun, RunRow,
+    StatusBits, TrainLines, TwcWayside,
+};
+
+/// A train that follows its effort, on the level, with the markers of section 61.
+struct Journey {
+    bench: Bench,
+    section: Section,
+    /// True position and speed, m and m/s.
+    x_m: f64,
+    v_mps: f64,
+    accel_mps2: f64,
+    /// Way the wheels tell over way run.
+    wheels_tell: f64,
+    /// Marker and where its pulse comes, m.
+    markers: Vec<(u8, f64)>,
+    /// What traction and brake give of what is asked.
+    follows: f64,
+    /// Position by the last status less the true one then, m.
+    position_error_m: f64,
+}
+
+impl Journey {
+    fn new(faults: &[FaultMode]) -> Self {
+        let mut bench = Bench::new(faults);
+        let section = common::line().section(61).unwrap().clone();
+        bench.code("65");
+        bench.input.mode_switch = ModeSwitch::Automatic;
+        bench.station = Some(TwcWayside {
+            departure: 1,
+            ..common::departure(&section)
+        });
+        bench.run(1.5);
+        bench.input.lines.insert(TrainLines::START);
+        bench.run(0.3);
+        bench.input.lines.remove(TrainLines::START);
+        assert_eq!(bench.status.mode, Mode::AutomaticRun);
+        Self {
+            bench,
+            x_m: section.start_m,
+            v_mps: 0.0,
+            accel_mps2: 0.0,
+            wheels_tell: 1.0,
+            markers: (1..).zip(section.markers_m).collect(),
+            follows: 1.0,
+            position_error_m: 0.0,
+            section,
+        }
+    }
+
+    fn step(&mut self) {
+        let dt = SCAN.as_secs();
+        let effort = f64::from(self.bench.status.effort);
+        let asked = match effort {
+            _ if self.bench.braking() => -1.25,
+            _ if self.bench.has(Outputs::FSB) => -3.5 / 3.6,
+            _ if self.bench.has(Outputs::HOLDING_BRAKE) => -0.7 * 3.5 / 3.6,
+            e if e > 0.0 && !self.bench.has(Outputs::POWER_CUT) => {
+                let fade = (40.0 / 3.6) / self.v_mps.max(40.0 / 3.6);
+                e / 1023.0 * 3.0 / 3.6 * fade * self.follows
+            }
+            e if e < 0.0 => e / 1024.0 * 3.5 / 3.6 * self.follows,
+            _ => 0.0,
+        };
+        self.accel_mps2 += (asked - self.accel_mps2) * dt / 0.3;
+        let before = self.x_m;
+        self.v_mps = (self.v_mps + self.accel_mps2 * dt).max(0.0);
+        self.x_m += self.v_mps * dt;
+        self.bench.speeds = [self.v_mps * self.wheels_tell; 2];
+        let passed = |&&(_, at): &&(u8, f64)| before < at && at <= self.x_m;
+        if let Some(&(marker, at)) = self.markers.iter().find(passed) {
+            let input = &mut self.bench.input;
+            input.marker = marker;
+            input.marker_edges = input.marker_edges.wrapping_add(1);
+            input.marker_edge_us = ((self.x_m - at) / self.v_mps * 1e6) as u16;
+        }
+        if before < 100.0 && self.x_m >= 100.0 {
+            self.bench.station = Some(TwcWayside {
+                station: self.section.to_station,
+                next_station: self.section.to_station + 1,
+                loop_id: self.section.to_loop,
+                door_side: DoorSide::Right,
+                ..common::departure(&self.section)
+            });
+        }
+        self.bench.scan();
+        // A status is made in the first scan of each cycle.
+        if self.bench.now.as_us() % 50_000 == 10_000 {
+            self.position_error_m = f64::from(self.bench.status.position_cm) / 100.0 - self.x_m;
+        }
+    }
+
+    /// Runs to its end: standing for ten seconds, or long past the platform.
+    fn run(mut self) -> Self {
+        let mut stands_s = 0.0;
+        for _ in 0..20_000 {
+            self.step();
+            stands_s = if self.v_mps > 0.0 || self.x_m < 1.0 {
+                0.0
+            } else {
+                stands_s + SCAN.as_secs()
+            };
+            if stands_s > 10.0 {
+                return self;
+            }
+        }
+        panic!("no end: {} m, {} m/s", self.x_m, self.v_mps);
+    }
+
+    fn to_position(mut self, x_m: f64) -> Self {
+        while self.x_m < x_m {
+            self.step();
+        }
+        self
+    }
+
+    /// True position less the stop point, m.
+    fn stop_error_m(&self) -> f64 {
+        self.x_m - self.section.stop_m
+    }
+
+    /// Events besides those of a good run.
+    fn faults(&mut self) -> Vec<&'static str> {
+        let usual = [
+            "power_up",
+            "mode_changed",
+            "eb_released",
+            "door_enable_refused",
+        ];
+        let mut events = self.bench.events();
+        events.retain(|event| !usual.contains(event));
+        events
+    }
+
+    /// Parameters of the logged events called `name`.
+    fn parameters(&self, name: &str) -> Vec<i32> {
+        let code = protocol::event::Event::from_name(name).unwrap();
+        let code = code.definition().code;
+        let entries = self.bench.log.iter().filter(|e| e.code == code);
+        entries.map(|e| e.parameter).collect()
+    }
+}
+
+fn fault(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
+    FaultMode {
+        id: "part.mode".into(),
+        lru: "part".into(),
+        mode: String::new(),
+        severity: "major".into(),
+        weight: 1.0,
+        unsafe_: false,
+        place,
+        effect,
+        onset_s,
+    }
+}
+
+#[test]
+fn a_good_run_ends_at_the_stop_point_and_says_nothing() {
+    let mut journey = Journey::new(&[]).run();
+    assert!(
+        journey.stop_error_m().abs() < 0.3,
+        "{}",
+        journey.stop_error_m()
+    );
+    assert!(
+        journey.position_error_m.abs() < 0.015,
+        "{}",
+        journey.position_error_m
+    );
+    assert_eq!(journey.bench.status.ato_state, AtoState::Stop);
+    assert!(journey.bench.status.bits.contains(StatusBits::ALIGNED));
+    assert!(journey.bench.has(Outputs::DOOR_ENABLE_RIGHT));
+    assert_eq!(journey.faults(), [""; 0]);
+}
+
+/// Each marker corrects to a centimetre at the speed at which the train passes it.
+#[test]
+fn a_marker_gives_the_position_to_a_centimetre() {
+    let mut journey = Journey::new(&[]);
+    journey.wheels_tell = 1.004;
+    let mut speeds_kmh = Vec::new();
+    for place_m in journey.section.markers_m {
+        journey = journey.to_position(place_m);
+        // Far enough for a status after the marker, too near for the wheels to matter.
+        let beyond_m = 0.06 * journey.v_mps + 0.2;
+        journey = journey.to_position(place_m + beyond_m);
+        speeds_kmh.push(journey.v_mps * 3.6);
+        let error = journey.position_error_m;
+        assert!(error.abs() < 0.012, "PSM at {place_m}: {error}");
+    }
+    assert!(speeds_kmh[0] > 50.0, "{speeds_kmh:?}");
+}
+
+/// Wheels worn by 2 % beyond what the unit is set to: found between PSM1 and PSM2, then corrected.
+#[test]
+fn worn_wheels_are_calibrated_between_markers() {
+    let mut journey = Journey::new(&[]);
+    journey.wheels_tell = 1.0 / 0.98;
+    let journey = journey.to_position(828.0);
+    let correction = f64::from(journey.bench.status.wheel_correction_10ppm) / 1e5;
+    assert!((correction + 0.02).abs() < 5e-4, "{correction}");
+    assert!(
+        journey.position_error_m.abs() < 0.1,
+        "{}",
+        journey.position_error_m
+    );
+    let mut journey = journey.run();
+    assert!(
+        journey.position_error_m.abs() < 0.015,
+        "{}",
+        journey.position_error_m
+    );
+    assert!(
+        journey.stop_error_m().abs() < 0.3,
+        "{}",
+        journey.stop_error_m()
+    );
+    assert_eq!(journey.faults(), [""; 0]);
+}
+
+#[test]
+fn wheels_that_no_service_wears_are_told_once() {
+    let mut journey = Journey::new(&[]);
+    journey.wheels_tell = 1.04;
+    let mut journey = journey.run();
+    assert_eq!(journey.faults(), ["wheel_diameter"]);
+    let found = journey.parameters("wheel_diameter")[0];
+    assert!(
+        (-395..=-375).contains(&found),
+        "1/1.04 is -385 in 0.01 %: {found}"
+    );
+    assert!(
+        journey.stop_error_m().abs() < 0.3,
+        "{}",
+        journey.stop_error_m()
+    );
+}
+
+#[test]
+fn a_missing_marker_costs_no_centimetre_once_the_next_has_come() {
+    let mut journey = Journey::new(&[]);
+    journey.wheels_tell = 0.995;
+    journey.markers.remove(1);
+    let mut journey = journey.run();
+    assert!(
+        journey.position_error_m.abs() < 0.025,
+        "{}",
+        journey.position_error_m
+    );
+    assert!(
+        journey.stop_error_m().abs() < 0.3,
+        "{}",
+        journey.stop_error_m()
+    );
+    assert_eq!(journey.faults(), ["position_unsure", "marker_missing"]);
+    assert_eq!(journey.parameters("position_unsure"), [2]);
+    assert_eq!(journey.parameters("marker_missing"), [2]);
+}
+
+/// A pulse of another coil between two places: reported, and neither position nor order follow it.
+#[test]
+fn an_extra_marker_is_reported_and_ignored() {
+    for (extra, at_m, event) in [
+        (3, 500.0, "marker_position"),
+        (1, 600.0, "marker_position"),
+        (2, 741.9, "marker_order"),
+        (4, 836.5, "marker_position"),
+    ] {
+        let mut journey = Journey::new(&[]);
+        journey.markers.push((extra, at_m));
+        let mut journey = journey.run();
+        let error_m = journey.stop_error_m();
+        assert!(error_m.abs() < 0.3, "PSM{extra} at {at_m}: {error_m}");
+        assert_eq!(journey.faults(), [event], "PSM{extra} at {at_m}");
+    }
+}
+
+/// PSM4 a second late, as from a hanging relay: the train has passed its place, or stands.
+#[test]
+fn a_late_psm4_is_not_believed() {
+    let mut journey = Journey::new(&[]);
+    journey.markers[3].1 += 2.5;
+    let mut journey = journey.run();
+    assert!(
+        journey.stop_error_m().abs() < 0.3,
+        "{}",
+        journey.stop_error_m()
+    );
+    let faults = journey.faults();
+    assert!(faults.contains(&"marker_position"), "{faults:?}");
+    assert!(!journey.bench.status.bits.contains(StatusBits::ALIGNED));
+}
+
+#[test]
+fn swapped_markers_are_out_of_order_and_correct_nothing() {
+    let mut journey = Journey::new(&[]);
+    (journey.markers[1].0, journey.markers[2].0) = (3, 2);
+    let mut journey = journey.run();
+    let error_m = journey.stop_error_m();
+    assert!((-20.0..0.3).contains(&error_m), "{error_m}");
+    let faults = journey.faults();
+    let expected = [
+        "marker_order",
+        "position_unsure",
+        "marker_position",
+        "stop_short",
+    ];
+    assert_eq!(faults, expected);
+}
+
+/// Without markers and with wheels that make it run further than it seems, the train stops short.
+#[test]
+fn with_a_dead_tra_the_train_stops_short_of_the_platforms_end() {
+    for wheels_tell in [0.985, 1.0] {
+        let dead = fault(Place::Tra, Effect::Dead, 10.0);
+        let mut journey = Journey::new(&[dead]);
+        journey.wheels_tell = wheels_tell;
+        let mut journey = journey.run();
+        let error_m = journey.stop_error_m();
+        assert!((-30.0..0.5).contains(&error_m), "{error_m}");
+        let faults = journey.faults();
+        for event in ["tra_failed", "position_unsure", "stop_short"] {
+            assert!(faults.contains(&event), "{event} in {faults:?}");
+        }
+        assert!(!journey.bench.has(Outputs::DOOR_ENABLE_RIGHT));
+    }
+}
+
+#[test]
+fn a_train_that_does_not_answer_its_brake_is_noticed_and_atp_brakes() {
+    let mut journey = Journey::new(&[]).to_position(400.0);
+    journey.follows = 0.1;
+    let mut journey = journey.run();
+    let faults = journey.faults();
+    assert!(faults.contains(&"ato_not_following"), "{faults:?}");
+    assert_eq!(
+        journey.parameters("ato_failed"),
+        [i32::from(AtoFailure::NotFollowing.code())]
+    );
+}
+
+#[test]
+fn full_power_that_does_not_end_is_noticed() {
+    let stuck = fault(Place::AtoCpu, Effect::StuckOn, 20.0);
+    let mut journey = Journey::new(&[stuck]).run();
+    let faults = journey.faults();
+    assert!(faults.contains(&"ato_not_following"), "{faults:?}");
+    assert!(faults.contains(&"ato_failed"), "{faults:?}");
+    assert!(journey.stop_error_m() < 0.0, "{}", journey.stop_error_m());
+}
+
+/// Both tachometers keep saying the same while ATO powers.
+#[test]
+fn a_frozen_speed_stops_the_train() {
+    let mut journey = Journey::new(&[]).to_position(60.0);
+    let frozen = journey.v_mps;
+    let mut seconds = 0.0;
+    while journey.bench.status.bits.contains(StatusBits::ATO_READY) {
+        journey.follows = 0.0;
+        journey.step();
+        (journey.v_mps, journey.accel_mps2) = (frozen, 0.0);
+        seconds += SCAN.as_secs();
+        assert!(seconds < 10.0);
+    }
+    journey.follows = 1.0;
+    (0..10).for_each(|_| journey.step());
+    assert!(journey.bench.status.effort == -1024 && journey.bench.has(Outputs::FSB));
+    assert_eq!(
+        journey.bench.status.mode,
+        Mode::AutomaticRun,
+        "until it stands"
+    );
+    let mut journey = journey.run();
+    assert_eq!(journey.bench.status.mode, Mode::Automatic, "inspected anew");
+    assert_eq!(journey.faults(), ["ato_input_absurd", "ato_failed"]);
+    assert_eq!(journey.parameters("ato_input_absurd"), [1 << 2]);
+}
+
+#[test]
+fn the_run_can_be_read_back() {
+    let mut journey = Journey::new(&[]).run();
+    journey.bench.answers.clear();
+    journey.bench.send(ReadRun { from_index: 0 });
+    journey.bench.run(60.0);
+    let mut rows: Vec<RunRow> = Vec::new();
+    let mut end = None;
+    for answer in &journey.bench.answers {
+        match answer {
+            Message::RunRow(row) => rows.push(*row),
+            Message::RunEnd(message) => end = Some(*message),
+            _ => {}
+        }
+    }
+    let end = end.expect("an end");
+    assert_eq!((end.oldest_index, end.next_index as usize), (0, rows.len()));
+    assert!(
+        (1200..2400).contains(&rows.len()),
+        "{} rows of 50 ms",
+        rows.len()
+    );
+    assert!(
+        rows.windows(2)
+            .all(|w| w[1].index == w[0].index + 1 && w[1].at_ms > w[0].at_ms)
+    );
+    assert!(rows.iter().all(|row| row.run == 1));
+    let markers: Vec<u8> = rows
+        .iter()
+        .map(|row| row.marker)
+        .filter(|&m| m != 0)
+        .collect();
+    assert_eq!(markers, [1, 2, 3, 4]);
+    let last = rows[rows.len() - 1];
+    assert!((last.position_cm - 85_003).abs() < 50, "{last:?}");
+    let top = rows.iter().map(|row| row.speed_cms).max();
+    assert!(top > Some(1500), "{top:?}");
+    assert!(
+        rows.iter()
+            .any(|row| row.ato_state == AtoState::Run && row.effort < 0)
+    );
+}
