@@ -20,6 +20,7 @@ mod markers;
 mod motion;
 pub(crate) mod random;
 mod ranges;
+mod rolling;
 mod sample;
 mod step_profile;
 mod tacho;
@@ -38,12 +39,12 @@ use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
 use protocol::message::{Identity, IoInput, Message};
 use protocol::signal::{Sample, Signal};
-use protocol::{Instant, SCAN};
+use protocol::Instant;
 
 use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::{TachoCondition, WaysideCondition};
-use crate::train::{Train, TrainData, TrainInputs, TrainState};
+use crate::train::{Train, TrainData, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use truth::Truth;
@@ -53,6 +54,7 @@ use desk::Desk;
 use link_watch::LinkWatch;
 use markers::Markers;
 use random::Random;
+use rolling::weight_shares;
 use sample::Recorder;
 use tacho::Tacho;
 use tcms::Tcms;
@@ -61,9 +63,6 @@ use track::Track;
 use truth::SpeedHistory;
 use wayside::Wayside;
 use wheel::Wheel;
-
-/// The train is integrated in this many steps a scan: 5 ms each.
-const TRAIN_STEPS: usize = 2;
 
 /// Everything around the unit.
 #[derive(Debug)]
@@ -259,78 +258,6 @@ impl Rig {
         self.train_driven || self.wheel.settled()
     }
 
-    /// Puts another train under the rig, at the speed the present one has.
-    pub fn set_train(&mut self, data: TrainData) {
-        let mut train = Train::new(&data, &self.conditions);
-        train.place(self.train.velocity_mps());
-        self.train = train;
-        self.cars = weight_shares(&data, self.cars_load_kg);
-        self.train_data = data;
-    }
-
-    /// Changes how train and track differ from what the unit is told, from now on.
-    pub fn set_conditions(&mut self, conditions: Conditions) {
-        self.train.set_conditions(&conditions);
-        self.markers.set_offsets(conditions.marker_offsets_m);
-        let pulse_m = self.metres_per_pulse * conditions.wheel_factor;
-        let way_m = self.wheel.axle().way_m;
-        for tacho in &mut self.tachos {
-            tacho.set_metres_per_pulse(pulse_m, way_m);
-        }
-        self.conditions = conditions;
-    }
-
-    /// What the train really does at the scan's end.
-    pub fn truth(&self) -> Truth {
-        let motion = self.wheel.motion();
-        let track = self.track.as_ref();
-        let state = &self.train_state;
-        Truth {
-            speed_mps: self.wheel.velocity_mps(),
-            accel_mps2: motion.last().accel_mps2,
-            position_m: track.map_or(motion.position_m, |t| t.in_section_m(motion.position_m)),
-            to_stop_m: track.map(|t| t.to_stop_m(motion.position_m)),
-            tractive_power_w: state.tractive_power_w,
-            traction_n: state.traction_n,
-            electric_brake_n: state.electric_brake_n,
-            air_brake_n: state.air_brake_n,
-            sliding: state.sliding,
-        }
-    }
-
-    /// Turns the wheels through one scan.
-    fn roll(&mut self) {
-        let inputs = self.train_inputs();
-        if self.train_driven {
-            let dt = SCAN.as_secs() / TRAIN_STEPS as f64;
-            let states: [_; TRAIN_STEPS] = std::array::from_fn(|_| self.train.step(dt, &inputs));
-            self.wheel.follow(&states);
-            self.train_state = states[TRAIN_STEPS - 1];
-            self.braking = self.train_state.braking;
-        } else {
-            self.wheel.step();
-            self.train_state = TrainState::default();
-            self.braking = inputs.full_service || inputs.emergency || inputs.demand < 0.0;
-        }
-        self.speeds.push(self.wheel.velocity_mps());
-    }
-
-    fn train_inputs(&mut self) -> TrainInputs {
-        let mut inputs = self
-            .tcms
-            .train_inputs(self.now, &self.desk, self.recorder.outputs());
-        if inputs.load_kg != self.cars_load_kg {
-            self.cars_load_kg = inputs.load_kg;
-            self.cars = weight_shares(&self.train_data, inputs.load_kg);
-        }
-        if let Some(track) = self.track.as_ref().filter(|_| self.train_driven) {
-            let under = track.under(self.wheel.motion().position_m, &self.cars);
-            inputs.gradient_permille = under.gradient_permille;
-            inputs.curvature_per_m = under.curvature_per_m;
-        }
-        inputs
-    }
-
     /// What the unit's inputs see at `now`.
     fn io_input(&self, now: Instant) -> IoInput {
         let [one, two] = &self.tachos;
@@ -391,15 +318,6 @@ impl Rig {
             None => sample.forget(Signal::ToStop),
         }
     }
-}
-
-/// Cars of a train from the head, length in m and share of its weight.
-fn weight_shares(train: &TrainData, load_kg: f64) -> Vec<(f64, f64)> {
-    let cars = train.cars(load_kg);
-    let weight_kg: f64 = cars.iter().map(|car| car.1).sum();
-    cars.into_iter()
-        .map(|(length_m, kg)| (length_m, kg / weight_kg))
-        .collect()
 }
 
 /// Place of a tachometer condition among the catalogue's labels.
