@@ -185,7 +185,7 @@ impl PssConfig {
     /// Whether a train can follow the curve to its end.
     fn check(&self, ato: &AtoConfig) -> Result<(), ConfigError> {
         let stop_mps = self.stop_mps();
-        if !(stop_mps > 0.0) {
+        if stop_mps <= 0.0 {
             return Err(ConfigError::Conflict(alloc::format!(
                 "ato.pss: V_stop = brake_rate_mps2/(2 slope_per_s) - slope_per_s offset_m is {stop_mps:.3} m/s; it must be above 0, or the train comes near the stop point but never arrives"
             )));
@@ -260,7 +260,7 @@ impl AtoConfig {
         }
         for [re, im] in self.servo.poles {
             let size = libm::hypot(re, im);
-            if !(size < 1.0) {
+            if size.is_nan() || size >= 1.0 {
                 return Err(ConfigError::Conflict(alloc::format!(
                     "ato.servo.poles: {re} {im:+}i has size {size}, a stable pole lies inside the unit circle"
                 )));
@@ -354,7 +354,12 @@ impl AtoConfig {
                 50.0,
             ),
             ("ato.pss.integral_per_s", pss.integral_per_s, 0.0, 5.0),
-            ("ato.pss.integral_above_kmh", pss.integral_above_kmh, 0.0, 20.0),
+            (
+                "ato.pss.integral_above_kmh",
+                pss.integral_above_kmh,
+                0.0,
+                20.0,
+            ),
             ("ato.watch.following_kmh", w.following_kmh, 0.5, 50.0),
             ("ato.watch.overrun_m", w.overrun_m, 0.1, 20.0),
             ("ato.watch.wheel_error", w.wheel_error, 0.001, 0.2),
@@ -378,7 +383,7 @@ mod tests {
     fn a_stop_curve_that_cannot_be_followed_is_refused_with_the_reason() {
         for (line, instead, reason) in [
             ("\noffset_m = 0.10", "\noffset_m = 0.30", "never arrives"),
-            ("\nslope_per_s = 1.2", "\nslope_per_s = 2.0", "jerk"),
+            ("\nslope_per_s = 1.2", "\nslope_per_s = 1.4", "jerk"),
             (
                 "\ndecel_mps2 = 0.8333333333333334",
                 "\ndecel_mps2 = 0.6",

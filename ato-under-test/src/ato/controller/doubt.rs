@@ -6,6 +6,8 @@ use super::{Demand, Situation};
 
 /// Speed of sound, m/s: no train is faster, and no sum of such speeds leaves the range of numbers.
 const FASTEST_MPS: f64 = 340.0;
+/// A hundred times gravity: no wheel does that.
+const HARDEST_MPS2: f64 = 1e3;
 /// Masses a unit configuration may have, kg.
 const MASSES_KG: core::ops::RangeInclusive<f64> = 1e3..=1e7;
 
@@ -27,16 +29,18 @@ impl Doubt {
     /// The brake, if anything in the situation is no number or absurd. The caller's state is to stay
     /// as it was, so that one bad cycle leaves no trace.
     pub(super) fn brake(&self, situation: &Situation) -> Option<Demand> {
-        let speeds = [situation.cruise_mps, situation.speed_mps];
-        let others = [
-            situation.accel_mps2,
-            situation.granted_n,
-            situation.to_stop_m.unwrap_or(0.0),
-        ];
         let mass = MASSES_KG.contains(&situation.mass_kg);
         let sound = mass
-            && speeds.iter().all(|v| libm::fabs(*v) <= FASTEST_MPS)
-            && others.iter().all(|x| x.is_finite());
+            && [situation.cruise_mps, situation.speed_mps]
+                .iter()
+                .all(|v| libm::fabs(*v) <= FASTEST_MPS)
+            && [
+                situation.accel_mps2,
+                situation.granted_n / situation.mass_kg,
+            ]
+            .iter()
+            .all(|a| libm::fabs(*a) <= HARDEST_MPS2)
+            && situation.to_stop_m.is_none_or(f64::is_finite);
         let mass_kg = if mass {
             situation.mass_kg
         } else {

@@ -65,6 +65,7 @@ impl SpeedController for Pi {
         if self.feed_forward || guidance.stopping {
             force_n += situation.mass_kg * guidance.setpoint.accel_mps2;
         }
+        force_n = force_n.min(guidance.most_mps2 * situation.mass_kg);
         self.integral.asked(force_n);
         Demand {
             target_mps: guidance.setpoint.speed_mps,

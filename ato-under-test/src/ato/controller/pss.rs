@@ -23,6 +23,7 @@ use crate::ato::profile::{Descent, Setpoint, correction_mps2};
 pub struct Pss {
     descent: Descent,
     doubt: Doubt,
+    ahead_s: f64,
     gain_per_s: f64,
     jerk_mps3: f64,
     integral_per_s: f64,
@@ -41,6 +42,7 @@ impl Pss {
         Self {
             descent: Descent::new(pss),
             doubt: Doubt::new(config),
+            ahead_s: (config.train.dead_time_ms + config.train.lag_ms) / 1000.0,
             gain_per_s: config.decel_kmh_per_s / pss.full_effort_error_kmh,
             jerk_mps3: pss.jerk_mps3,
             integral_per_s: pss.integral_per_s,
@@ -49,6 +51,15 @@ impl Pss {
             integral: Integral::default(),
             stop: None,
         }
+    }
+
+    /// The printed target where the train is now: the situation is that much ahead.
+    fn target_mps(&self, situation: &Situation) -> f64 {
+        let ahead_m = situation.speed_mps * self.ahead_s;
+        situation.to_stop_m.map_or(situation.cruise_mps, |way| {
+            let curve_mps = self.descent.curve().at(way + ahead_m).0;
+            situation.cruise_mps.min(curve_mps)
+        })
     }
 
     /// The reference: the cruising speed, or what leads from there to the curve and along it.
@@ -80,13 +91,11 @@ impl SpeedController for Pss {
             self.integral.add(rate, situation);
         }
         let asked_mps2 = reference.accel_mps2 + correction_mps2 + self.integral.value();
-        let force_n = asked_mps2 * situation.mass_kg;
+        let most_mps2 = self.descent.most_mps2(situation.to_stop_m);
+        let force_n = asked_mps2.min(most_mps2) * situation.mass_kg;
         self.integral.asked(force_n);
-        let curve_mps = situation
-            .to_stop_m
-            .map_or(f64::INFINITY, |way| self.descent.curve().at(way).0);
         Demand {
-            target_mps: situation.cruise_mps.min(curve_mps),
+            target_mps: self.target_mps(situation),
             force_n,
         }
     }

@@ -29,6 +29,8 @@ pub struct Guidance {
     pub setpoint: Setpoint,
     /// The stop curve rules.
     pub stopping: bool,
+    /// Greatest acceleration that may be asked for, m/s².
+    pub most_mps2: f64,
 }
 
 /// The generator of references.
@@ -37,7 +39,8 @@ pub struct Guide {
     ramp: JerkLimited,
     descent: Descent,
     lead_mps: f64,
-    running: bool,
+    /// Command of the last cycle, m/s; `None` = not running.
+    command_mps: Option<f64>,
 }
 
 impl Guide {
@@ -47,25 +50,16 @@ impl Guide {
             ramp: JerkLimited::new(&config.profile),
             descent: Descent::new(&config.pss),
             lead_mps: config.profile.lead_kmh / 3.6,
-            running: false,
+            command_mps: None,
         }
     }
 
     /// One cycle.
     pub fn step(&mut self, inputs: GuideInputs) -> Guidance {
-        if !self.running {
-            self.running = true;
-            self.ramp.place(inputs.train);
-        }
-        let ahead_mps = inputs.train.speed_mps + self.lead_mps;
-        if self.ramp.setpoint().speed_mps > ahead_mps {
-            self.ramp.place(Setpoint {
-                speed_mps: ahead_mps,
-                ..inputs.train
-            });
-        }
+        let command_mps = inputs.cruise_mps.max(0.0);
+        self.keep_to_the_train(command_mps, inputs.train);
         let from = self.ramp.setpoint();
-        let ramp = self.ramp.step(inputs.cruise_mps.max(0.0), CYCLE.as_secs());
+        let ramp = self.ramp.step(command_mps, CYCLE.as_secs());
         let stop = inputs.to_stop_m.map(|way| self.descent.follow(from, way));
         let lower = stop
             .filter(|stop| stop.accel_mps2 < ramp.accel_mps2 || stop.speed_mps < ramp.speed_mps);
@@ -75,11 +69,74 @@ impl Guide {
         Guidance {
             setpoint: self.ramp.setpoint(),
             stopping: lower.is_some(),
+            most_mps2: self.descent.most_mps2(inputs.to_stop_m),
+        }
+    }
+
+    /// Begins where the train is, and does not run away from it.
+    fn keep_to_the_train(&mut self, command_mps: f64, train: Setpoint) {
+        let ramp = self.ramp.setpoint();
+        let last_mps = self.command_mps.replace(command_mps);
+        let lowered = last_mps.is_some_and(|last| command_mps < last);
+        if last_mps.is_none() || lowered && train.speed_mps < ramp.speed_mps {
+            // Else a train that never was as fast as its ramp would go on to the old command.
+            self.ramp.place(train);
+        } else if ramp.speed_mps > train.speed_mps + self.lead_mps {
+            // Never more acceleration than its own, which ends at the command.
+            self.ramp.place(Setpoint {
+                speed_mps: train.speed_mps + self.lead_mps,
+                accel_mps2: ramp.accel_mps2.min(train.accel_mps2),
+            });
         }
     }
 
     /// Begin anew with the train's speed.
     pub fn reset(&mut self) {
-        self.running = false;
+        self.command_mps = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ato::tests::config;
+
+    fn inputs(cruise_mps: f64, speed_mps: f64, accel_mps2: f64) -> GuideInputs {
+        GuideInputs {
+            cruise_mps,
+            train: Setpoint {
+                speed_mps,
+                accel_mps2,
+            },
+            to_stop_m: None,
+        }
+    }
+
+    /// A train with 0.2 m/s² that believes to have 0.8: the ramp stays within its lead, and ends at the
+    /// command.
+    #[test]
+    fn the_ramp_waits_for_a_slow_train() {
+        let mut guide = Guide::new(&config());
+        let mut speed = 0.0_f64;
+        for _ in 0..2400 {
+            let ramp = guide.step(inputs(15.0, speed, 0.8)).setpoint.speed_mps;
+            assert!(ramp <= 15.0 + 1e-9, "{ramp} m/s");
+            assert!(
+                ramp <= speed + guide.lead_mps + 0.05,
+                "{ramp} at {speed} m/s"
+            );
+            speed = (speed + 0.2 * CYCLE.as_secs()).min(ramp);
+        }
+        assert_eq!(guide.ramp.setpoint().speed_mps, 15.0);
+    }
+
+    #[test]
+    fn a_lower_command_begins_at_the_train() {
+        let mut guide = Guide::new(&config());
+        for _ in 0..400 {
+            guide.step(inputs(15.0, 9.0, 0.0));
+        }
+        let after = guide.step(inputs(10.0, 9.0, 0.0)).setpoint.speed_mps;
+        assert!((9.0..9.1).contains(&after), "{after} m/s");
     }
 }

@@ -64,6 +64,7 @@ impl SpeedController for Fuzzy {
         if self.feed_forward || guidance.stopping {
             force_n += situation.mass_kg * guidance.setpoint.accel_mps2;
         }
+        force_n = force_n.min(guidance.most_mps2 * situation.mass_kg);
         Demand {
             target_mps: guidance.setpoint.speed_mps,
             force_n,
