@@ -69,6 +69,9 @@ impl Unit {
         // The TEST board takes no part in running.
         let failed = self.self_tester.failed().difference(SelfTest::TEST_BOARD);
         lacking.set(Refusals::SELF_TEST, !failed.is_empty());
+        // While the position is unsure the train is brought no nearer.
+        let ahead_m = self.locator.ahead_m();
+        let to_stop_m = self.locator.to_stop_m().map(|way| way - ahead_m);
         ModeInputs {
             ready: self.self_tester.finished() && self.inputs.alive,
             cab_active: lines.contains(TrainLines::HCR),
@@ -80,7 +83,7 @@ impl Unit {
             lacking,
             departure: self.twc.data().is_some_and(|data| data.departure == 1),
             start: lines.contains(TrainLines::START),
-            arrived: standstill && self.locator.to_stop_m().is_some_and(|d| d < 1.0),
+            arrived: self.ato.arrived(),
         }
     }
 

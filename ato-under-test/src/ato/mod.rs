@@ -30,6 +30,9 @@ use watch::{Watch, Watched};
 pub use art::{ArtInputs, Checks};
 pub use watch::Findings;
 
+/// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
+/// train that is stopping still has a second to go.
+const STOPPED: Speed = Speed::from_kmh(0.2);
 /// Effort of the full service brake.
 const FULL_BRAKE: i16 = -1024;
 
@@ -111,7 +114,11 @@ impl Ato {
 
     /// One 50 ms cycle.
     pub fn step(&mut self, inputs: AtoInputs<'_>, config: &AtoConfig) -> AtoOutputs {
-        let to_stop_m = inputs.section.map(|s| s.stop_m - inputs.position_m);
+        // As near as can be believed while the position is unsure.
+        let to_stop_m = inputs
+            .section
+            .map(|s| s.stop_m - inputs.position_m - inputs.ahead_m);
+        let arrived = to_stop_m.is_some_and(|way| way < config.arrived_m);
         let cruise = cruise::cruise(
             CruiseInputs {
                 limit: inputs.limit,
@@ -124,22 +131,23 @@ impl Ato {
             state: self.state,
             may_go: cruise > Speed::ZERO && !inputs.power_cut,
             asked_mps2: self.net_mps2(&inputs, config),
-            to_stop_m,
+            arrived,
         };
         let findings = self.watch.step(&inputs, watched, config);
+        let stands = inputs.standstill && inputs.speed <= STOPPED;
         self.failure = self.failure_after(&inputs, &findings);
         self.state = art::next(
             self.state,
             ArtInputs {
                 fit: inputs.checks != Checks::Running && self.failure == AtoFailure::None,
                 run: inputs.mode == Mode::AutomaticRun,
-                standstill: inputs.standstill,
-                arrived: to_stop_m.is_some_and(|d| d < config.arrived_m),
+                standstill: stands,
+                arrived,
             },
         );
         // As near as can be believed while the position is unsure.
         let to_stop_m = to_stop_m.map(|way| way - inputs.ahead_m);
-        let held = inputs.standstill && to_stop_m.is_some_and(|way| way < config.arrived_m);
+        let held = stands && to_stop_m.is_some_and(|way| way < config.arrived_m);
         let outputs = if art::drives(self.state) && !held {
             self.drive(&inputs, cruise, to_stop_m, config)
         } else {
@@ -235,6 +243,11 @@ impl Ato {
             holding_brake,
             ..AtoOutputs::default()
         }
+    }
+
+    /// Stands at the stop point after a run.
+    pub fn arrived(&self) -> bool {
+        self.state == AtoState::Stop
     }
 
     /// Operating state.
