@@ -108,7 +108,7 @@ const FOUND_BY: [(&str, &str, &str); 34] = [
     (
         "ato_cpu.saturated_effort",
         "ato/automatic_mode",
-        "full power",
+        "nearly full power",
     ),
     (
         "ato_cpu.wrong_track_database",
