@@ -69,9 +69,6 @@ impl Unit {
         // The TEST board takes no part in running.
         let failed = self.self_tester.failed().difference(SelfTest::TEST_BOARD);
         lacking.set(Refusals::SELF_TEST, !failed.is_empty());
-        // While the position is unsure the train is brought no nearer.
-        let ahead_m = self.locator.ahead_m();
-        let to_stop_m = self.locator.to_stop_m().map(|way| way - ahead_m);
         ModeInputs {
             ready: self.self_tester.finished() && self.inputs.alive,
             cab_active: lines.contains(TrainLines::HCR),

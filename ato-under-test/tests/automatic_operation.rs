@@ -8,7 +8,7 @@ use protocol::SCAN;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Section;
 use protocol::message::{
-    AtoFailure, AtoState, DoorSide, Message, Mode, ModeSwitch, Outputs, ReadRun, RunRow,
+    AtoFailure, AtoState, DoorSide, Message, Mode, ModeSwitch, Outputs, ReadRun, Refusals, RunRow,
     StatusBits, TrainLines, TwcWayside,
 };
 
@@ -117,7 +117,7 @@ impl Journey {
         panic!("no end: {} m, {} m/s", self.x_m, self.v_mps);
     }
 
-    fn to_position(mut self, x_m: f64) -> Self {
+    fn until_position(mut self, x_m: f64) -> Self {
         while self.x_m < x_m {
             self.step();
         }
@@ -191,10 +191,10 @@ fn a_marker_gives_the_position_to_a_centimetre() {
     journey.wheels_tell = 1.004;
     let mut speeds_kmh = Vec::new();
     for place_m in journey.section.markers_m {
-        journey = journey.to_position(place_m);
+        journey = journey.until_position(place_m);
         // Far enough for a status after the marker, too near for the wheels to matter.
         let beyond_m = 0.06 * journey.v_mps + 0.2;
-        journey = journey.to_position(place_m + beyond_m);
+        journey = journey.until_position(place_m + beyond_m);
         speeds_kmh.push(journey.v_mps * 3.6);
         let error = journey.position_error_m;
         assert!(error.abs() < 0.012, "PSM at {place_m}: {error}");
@@ -207,7 +207,7 @@ fn a_marker_gives_the_position_to_a_centimetre() {
 fn worn_wheels_are_calibrated_between_markers() {
     let mut journey = Journey::new(&[]);
     journey.wheels_tell = 1.0 / 0.98;
-    let journey = journey.to_position(828.0);
+    let journey = journey.until_position(828.0);
     let correction = f64::from(journey.bench.status.wheel_correction_10ppm) / 1e5;
     assert!((correction + 0.02).abs() < 5e-4, "{correction}");
     assert!(
@@ -339,7 +339,7 @@ fn with_a_dead_tra_the_train_stops_short_of_the_platforms_end() {
 
 #[test]
 fn a_train_that_does_not_answer_its_brake_is_noticed_and_atp_brakes() {
-    let mut journey = Journey::new(&[]).to_position(400.0);
+    let mut journey = Journey::new(&[]).until_position(400.0);
     journey.follows = 0.1;
     let mut journey = journey.run();
     let faults = journey.faults();
@@ -363,7 +363,7 @@ fn full_power_that_does_not_end_is_noticed() {
 /// Both tachometers keep saying the same while ATO powers.
 #[test]
 fn a_frozen_speed_stops_the_train() {
-    let mut journey = Journey::new(&[]).to_position(60.0);
+    let mut journey = Journey::new(&[]).until_position(60.0);
     let frozen = journey.v_mps;
     let mut seconds = 0.0;
     while journey.bench.status.bits.contains(StatusBits::ATO_READY) {
@@ -390,6 +390,16 @@ fn a_frozen_speed_stops_the_train() {
 #[test]
 fn the_run_can_be_read_back() {
     let mut journey = Journey::new(&[]).run();
+    journey.bench.send(ReadRun { from_index: 0 });
+    for _ in 0..100 {
+        let mut bytes = Vec::new();
+        for _ in 0..5 {
+            journey.bench.scan();
+            journey.bench.now += SCAN;
+            journey.bench.unit.step(journey.bench.now, &mut bytes);
+        }
+        assert!(bytes.len() < 400, "{} bytes in 50 ms", bytes.len());
+    }
     journey.bench.answers.clear();
     journey.bench.send(ReadRun { from_index: 0 });
     journey.bench.run(60.0);
@@ -428,4 +438,19 @@ fn the_run_can_be_read_back() {
         rows.iter()
             .any(|row| row.ato_state == AtoState::Run && row.effort < 0)
     );
+}
+
+#[test]
+fn a_failed_start_up_check_keeps_ato_in_inspection() {
+    for place in [Place::Tra, Place::FskReceiver, Place::AtoCpu] {
+        let mut bench = Bench::new(&[fault(place, Effect::Dead, 0.0)]);
+        bench.code("65");
+        bench.input.mode_switch = ModeSwitch::Automatic;
+        bench.run(2.0);
+        assert_eq!(bench.status.ato_state, AtoState::Inspection, "{place:?}");
+        assert!(bench.status.refusals.contains(Refusals::ATO_NOT_READY));
+        assert_eq!(bench.status.mode, Mode::Manual, "{place:?}");
+    }
+    let bench = Bench::new(&[]);
+    assert_eq!(bench.status.ato_state, AtoState::Stop);
 }

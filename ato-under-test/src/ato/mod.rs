@@ -127,14 +127,15 @@ impl Ato {
             },
             config,
         );
+        let stands = inputs.standstill && inputs.speed <= STOPPED;
         let watched = Watched {
             state: self.state,
             may_go: cruise > Speed::ZERO && !inputs.power_cut,
             asked_mps2: self.net_mps2(&inputs, config),
+            stands,
             arrived,
         };
         let findings = self.watch.step(&inputs, watched, config);
-        let stands = inputs.standstill && inputs.speed <= STOPPED;
         self.failure = self.failure_after(&inputs, &findings);
         self.state = art::next(
             self.state,
@@ -145,10 +146,7 @@ impl Ato {
                 arrived,
             },
         );
-        // As near as can be believed while the position is unsure.
-        let to_stop_m = to_stop_m.map(|way| way - inputs.ahead_m);
-        let held = stands && to_stop_m.is_some_and(|way| way < config.arrived_m);
-        let outputs = if art::drives(self.state) && !held {
+        let outputs = if art::drives(self.state) {
             self.drive(&inputs, cruise, to_stop_m, config)
         } else {
             self.rest(&inputs)

@@ -25,6 +25,8 @@ const ASKED_MPS2: f64 = 0.3;
 const SAME_MPS: f64 = 5e-4;
 /// Distance from the section at which a position cannot be, m [default].
 const OUTSIDE_M: f64 = 100.0;
+/// Longest section, m [default].
+const LONGEST_M: f64 = 50e3;
 /// Way past the stop point at which an overrun is told although the train still moves, m [default].
 const FAR_PAST_M: f64 = 10.0;
 /// Time standing short of the stop point after which nothing more is expected, s [default].
@@ -39,8 +41,10 @@ pub struct Watched {
     pub asked_mps2: f64,
     /// Neither limit nor order nor brake keeps the train standing.
     pub may_go: bool,
-    /// Way to the stop point, m.
-    pub to_stop_m: Option<f64>,
+    /// The wheels stand.
+    pub stands: bool,
+    /// As near to the stop point as ATO can bring the train.
+    pub arrived: bool,
 }
 
 /// What it found in this cycle.
@@ -63,7 +67,6 @@ pub struct Watch {
     expected_mps2: f64,
     deviation_mps: f64,
     frozen_s: f64,
-    moved: bool,
     stands_s: f64,
     told: bool,
 }
@@ -146,35 +149,34 @@ impl Watch {
         (libm::fabs(self.deviation_mps) > most_mps).then_some(self.deviation_mps)
     }
 
-    /// Overrun and stop short, once a run and when the wheels really stand.
+    /// Overrun and stop short, once a run.
     fn stop_error(
         &mut self,
         inputs: &AtoInputs<'_>,
         on: Watched,
         config: &AtoConfig,
     ) -> (Option<f64>, Option<f64>) {
-        let arrived = on.to_stop_m.is_some_and(|way| way < config.arrived_m);
-        match on.state {
-            AtoState::Run => self.moved = true,
-            AtoState::Stop if arrived => {}
-            // Departing, or the run was ended by somebody.
-            _ => (self.moved, self.told) = (false, false),
-        }
-        let stands = inputs.speed == Speed::ZERO;
-        self.stands_s = if stands && on.may_go {
+        let running = inputs.section.filter(|_| on.state == AtoState::Run);
+        let Some(section) = running else {
+            (self.stands_s, self.told) = (0.0, false);
+            return (None, None);
+        };
+        self.stands_s = if on.stands && on.may_go {
             self.stands_s + CYCLE.as_secs()
         } else {
             0.0
         };
-        let Some(to_stop_m) = on.to_stop_m.filter(|_| self.moved && !self.told) else {
-            return (None, None);
-        };
+        let to_stop_m = section.stop_m - inputs.position_m;
         let past_m = -to_stop_m;
-        let ended = stands && (arrived || self.stands_s > STANDS_S);
+        let ended = on.stands && on.arrived || self.stands_s > STANDS_S;
         let overrun = past_m > config.watch.overrun_m && (ended || past_m > FAR_PAST_M);
         let short = to_stop_m > inputs.aligned_m && ended;
-        self.told = ended || overrun;
-        (overrun.then_some(past_m), short.then_some(to_stop_m))
+        let first = !self.told;
+        self.told |= ended || overrun;
+        (
+            (first && overrun).then_some(past_m),
+            (first && short).then_some(to_stop_m),
+        )
     }
 }
 
@@ -207,6 +209,8 @@ fn sound(section: &Section) -> bool {
     finite(&places)
         && finite(&section.markers_m)
         && section.start_m < section.stop_m
+        && section.length_m <= LONGEST_M
+        && section.stop_m - section.start_m <= section.length_m + OUTSIDE_M
         && gradients
             .iter()
             .all(|g| finite(&[g.at_m]) && libm::fabs(g.permille) <= 100.0)
