@@ -7,17 +7,19 @@
 //! * [`plan`]: what is run;
 //! * [`row`]: what is recorded each cycle;
 //! * [`metrics`]: figures of a run, from its rows;
-//! * [`landmarks`]: what happened where, from its rows and the unit's log.
+//! * [`landmarks`]: what happened where, from its rows and the unit's log;
+//! * [`scatter`]: how trains and days differ, drawn for many runs.
 
 pub mod landmarks;
 pub mod metrics;
 mod plan;
 mod recording;
 mod row;
+pub mod scatter;
 
 use protocol::message::{EbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
-use protocol::{CYCLE, Duration, Instant};
+use protocol::{Duration, Instant};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
@@ -26,8 +28,9 @@ use crate::stimulus::Stimulus;
 
 pub use landmarks::Landmark;
 pub use metrics::Metrics;
-pub use plan::{DrivePlan, PlanError};
+pub use plan::{Codes, DrivePlan, PlanError};
 pub use row::Row;
+pub use scatter::{Drawn, Scatter};
 
 use recording::Recording;
 
@@ -79,8 +82,11 @@ pub enum Ending {
         cause: Option<EbCause>,
     },
     /// ATP took the train out of Automatic Run while it moved.
-    #[error("left Automatic Run while moving")]
-    LeftAutomatic,
+    #[error("left Automatic Run while moving{}", into(*.mode))]
+    LeftAutomatic {
+        /// Mode it went to, if the unit said.
+        mode: Option<Mode>,
+    },
     /// The run took too long.
     #[error("time limit: still under way")]
     TimeLimit,
@@ -97,6 +103,10 @@ fn because(cause: Option<EbCause>) -> String {
     cause.map_or_else(String::new, |cause| format!(": {}", cause.label()))
 }
 
+fn into(mode: Option<Mode>) -> String {
+    mode.map_or_else(String::new, |mode| format!(": mode {}", mode.label()))
+}
+
 /// What a run came to.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -104,9 +114,12 @@ pub struct Outcome {
     pub ending: Ending,
     /// One row a cycle from the start button on. Time 0 is when the train began to move.
     pub rows: Vec<Row>,
-    /// What happened on the way.
+    /// What happened on the way, in order.
     pub landmarks: Vec<Landmark>,
-    /// Figures; `None` when the train never moved.
+    /// Head of the train at rest less stop point, m; above 0 = past it. `None` unless it stands
+    /// after having moved.
+    pub stop_error_m: Option<f64>,
+    /// The other figures; `None` when the train never moved.
     pub metrics: Option<Metrics>,
 }
 
@@ -135,7 +148,6 @@ enum Phase {
 pub struct Drive {
     plan: DrivePlan,
     phase: Phase,
-    next_code: usize,
     handed_over: bool,
     braked: Option<Option<EbCause>>,
     recording: Recording,
@@ -147,7 +159,6 @@ impl Drive {
         Self {
             plan,
             phase: Phase::Begin,
-            next_code: 0,
             handed_over: false,
             braked: None,
             recording: Recording::default(),
@@ -162,12 +173,8 @@ impl Drive {
             }
             self.phase = Phase::Preparing { since: now };
         }
-        self.recording.hear_events(now, rig.take_events());
-        let x_m = self.position_m(rig);
-        if now.as_us().is_multiple_of(CYCLE.as_us()) {
-            self.recording.record(now, x_m, rig);
-        }
-        let ending = match self.give_wayside(now, x_m, rig) {
+        self.recording.scan(now, rig);
+        let ending = match self.hand_over(now, rig) {
             Err(Refusal(text)) => Some(Ending::Refused(text)),
             Ok(()) => self.advance(now, rig),
         };
@@ -181,8 +188,8 @@ impl Drive {
 
     /// Everything the cab and the wayside give a train before departure.
     fn prepare(&mut self, now: Instant, rig: &mut Rig) -> Result<(), Refusal> {
-        let section = &self.plan.section;
-        self.recording.begins_at_m = rig.sample().get(Signal::TrainPosition).unwrap_or(0.0);
+        rig.set_train(self.plan.train.clone());
+        rig.set_conditions(self.plan.conditions);
         for stimulus in [
             Stimulus::PtuSilent {
                 on: !self.plan.tester,
@@ -192,7 +199,11 @@ impl Drive {
             },
             Stimulus::Station(self.plan.at_departure()),
             Stimulus::MarkersAlong {
-                section: Some(section.section),
+                section: Some(self.plan.section.section),
+            },
+            match self.plan.codes {
+                Codes::Along => Stimulus::CodesAlong { on: true },
+                Codes::Fixed(code) => code,
             },
             Stimulus::TrainDriven { on: true },
             Stimulus::ModeSwitch(ModeSwitch::Automatic),
@@ -202,21 +213,10 @@ impl Drive {
         Ok(())
     }
 
-    /// Head of the train in the section, m.
-    fn position_m(&self, rig: &Rig) -> f64 {
-        let run_m = rig.sample().get(Signal::TrainPosition).unwrap_or(0.0);
-        self.plan.section.start_m + run_m - self.recording.begins_at_m
-    }
-
-    /// Codes along the section, and the next loop.
-    fn give_wayside(&mut self, now: Instant, x_m: f64, rig: &mut Rig) -> Result<(), Refusal> {
-        while let Some(code) = self.plan.codes.get(self.next_code)
-            && code.at_m <= x_m
-        {
-            rig.apply(now, &code.stimulus)?;
-            self.next_code += 1;
-        }
-        if !self.handed_over && x_m >= self.plan.section.start_m + LOOP_LEFT_M {
+    /// The next loop, once the train has left the first.
+    fn hand_over(&mut self, now: Instant, rig: &mut Rig) -> Result<(), Refusal> {
+        let left_m = rig.truth().position_m - self.plan.section.start_m;
+        if !self.handed_over && left_m >= LOOP_LEFT_M {
             self.handed_over = true;
             rig.apply(now, &Stimulus::Station(self.plan.at_arrival()))?;
         }
@@ -232,7 +232,7 @@ impl Drive {
             .get(Signal::Mode)
             .map(|code| Mode::from_code(code as u8));
         let refusals = sample.get(Signal::Refusals).map(|bits| bits as u16);
-        let moving = sample.get(Signal::TrainSpeed).is_some_and(|v| v > 0.0);
+        let moving = rig.truth().speed_mps != 0.0;
         let late = |since: Instant, limit: Duration| now.since(since) >= limit;
         match self.phase {
             Phase::Preparing { .. } if mode == Some(Mode::Automatic) => {
@@ -293,10 +293,12 @@ impl Drive {
             if now.since(since) >= self.longest() {
                 return Some(Ending::TimeLimit);
             }
-            let left = mode != Some(Mode::AutomaticRun) && self.braked.is_none();
-            return left.then_some(Ending::LeftAutomatic);
+            // A unit that takes the last centimetres for a standstill goes back to Automatic there.
+            let drives = matches!(mode, Some(Mode::AutomaticRun | Mode::Automatic));
+            return (!drives && self.braked.is_none()).then_some(Ending::LeftAutomatic { mode });
         }
         let stands = stands.unwrap_or(now);
+        self.recording.stands_since = Some(stands);
         self.phase = Phase::Running {
             since,
             stands: Some(stands),
@@ -306,10 +308,11 @@ impl Drive {
                 .get(Signal::Effort)
                 .is_some_and(|effort| effort > 0.0);
         let over = if powers { STANDS_AT_MOST } else { STANDS };
-        (now.since(stands) >= over).then(|| match self.braked {
+        let ending = match self.braked {
             Some(cause) => Ending::EmergencyBrake { cause },
             None => Ending::Stopped,
-        })
+        };
+        (now.since(stands) >= over).then_some(ending)
     }
 
     fn longest(&self) -> Duration {

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use crate::conditions::Conditions;
 use crate::stimulus::{StationData, Stimulus};
+use crate::train::TrainData;
 
 /// Train number the wayside names [default].
 const TRAIN_NUMBER: u16 = 8001;
@@ -24,7 +25,7 @@ pub enum PlanError {
         /// Sections there are.
         known: String,
     },
-    /// A code along the section is not in the unit's code table.
+    /// A code is not in the unit's code table.
     #[error("section {section}: code \"{code}\" is not in the code table; it has {known}")]
     NoCode {
         /// The section.
@@ -36,13 +37,13 @@ pub enum PlanError {
     },
 }
 
-/// A code put into the antenna from a place on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CodeAt {
-    /// Where, m in the section.
-    pub at_m: f64,
-    /// What is applied there.
-    pub stimulus: Stimulus,
+/// Speed codes of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Codes {
+    /// Those the section has, each from its place on.
+    Along,
+    /// One from start to end.
+    Fixed(Stimulus),
 }
 
 /// A run.
@@ -52,10 +53,12 @@ pub struct DrivePlan {
     pub section: Section,
     /// Station after the arrival station, as the arrival loop says.
     pub onward_station: u16,
-    /// Codes along it; the first lies at its start.
-    pub codes: Vec<CodeAt>,
+    /// Speed codes on it.
+    pub codes: Codes,
     /// ATO's target below the limit, km/h, from the unit's configuration.
     pub below_limit_kmh: f64,
+    /// The train.
+    pub train: TrainData,
     /// Passengers, kg.
     pub load_kg: f64,
     /// How train and track differ from what the unit is told.
@@ -66,13 +69,14 @@ pub struct DrivePlan {
 
 impl DrivePlan {
     /// A nominal run of an empty train through a section under the codes the line has for it, or
-    /// under `code` all along.
+    /// under `code` from start to end.
     ///
     /// # Errors
     /// An unknown section or code.
     pub fn new(
         config: &UnitConfig,
         line: &Line,
+        train: TrainData,
         section: u16,
         code: Option<&str>,
     ) -> Result<Self, PlanError> {
@@ -81,30 +85,9 @@ impl DrivePlan {
             section,
             known: list(line.sections.iter().map(|s| s.section.to_string())),
         })?;
-        let mut along: Vec<_> = match code {
-            Some(code) => vec![(found.start_m, code)],
-            None => found
-                .speed_codes
-                .iter()
-                .map(|from| (from.at_m, from.code.as_str()))
-                .collect(),
-        };
-        if along.is_empty() {
-            along.push((found.start_m, DEFAULT_CODE));
-        }
-        let find = |(at_m, name): (f64, &str)| {
-            let code = config.codes.iter().find(|code| code.name == name);
-            let code = code.ok_or_else(|| PlanError::NoCode {
-                section,
-                code: name.to_owned(),
-                known: list(config.codes.iter().map(|code| code.name.clone())),
-            })?;
-            let stimulus = Stimulus::Code {
-                carrier_hz: code.carrier_hz,
-                rate_hz: code.rate_hz,
-                level_mv: config.receiver.level_nominal_mv,
-            };
-            Ok(CodeAt { at_m, stimulus })
+        let codes = match code {
+            None if !found.speed_codes.is_empty() => Codes::Along,
+            code => Codes::Fixed(fixed_code(config, section, code.unwrap_or(DEFAULT_CODE))?),
         };
         let onward = line
             .sections
@@ -113,8 +96,9 @@ impl DrivePlan {
         Ok(Self {
             section: found.clone(),
             onward_station: onward.map_or(found.to_station, |s| s.to_station),
-            codes: along.into_iter().map(find).collect::<Result<_, _>>()?,
+            codes,
             below_limit_kmh: config.ato.below_limit_kmh,
+            train,
             load_kg: 0.0,
             conditions: Conditions::default(),
             tester: true,
@@ -150,6 +134,20 @@ impl DrivePlan {
             ..self.at_departure()
         }
     }
+}
+
+fn fixed_code(config: &UnitConfig, section: u16, name: &str) -> Result<Stimulus, PlanError> {
+    let found = config.codes.iter().find(|code| code.name == name);
+    let code = found.ok_or_else(|| PlanError::NoCode {
+        section,
+        code: name.to_owned(),
+        known: list(config.codes.iter().map(|code| code.name.clone())),
+    })?;
+    Ok(Stimulus::Code {
+        carrier_hz: code.carrier_hz,
+        rate_hz: code.rate_hz,
+        level_mv: config.receiver.level_nominal_mv,
+    })
 }
 
 /// Code of a section that names none: with 5 km/h below its limit the target is S0's 60 km/h.

@@ -1,87 +1,107 @@
-//! Gathers the rows and the unit's log while a run goes on.
+//! Gathers rows and the unit's log while a run goes on.
 
 use protocol::signal::Signal;
-use protocol::{CYCLE, Instant};
+use protocol::{CYCLE, Instant, SCAN};
 
 use super::{DrivePlan, Ending, Landmark, Metrics, Outcome, Row, landmarks};
 use crate::procedure::UnitEvent;
 use crate::rig::Rig;
 
-/// Cycles over which jerk is the change of acceleration: 200 ms.
-const JERK_CYCLES: usize = 4;
+/// Rows of a usual run, so that they need not move as they come.
+const USUAL_ROWS: usize = 2_500;
 
 /// Rows and log so far.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
     /// Rows are kept.
     pub on: bool,
-    /// The rig's position when the section was laid, m.
-    pub begins_at_m: f64,
     /// When the train began to move.
     pub moves_since: Option<Instant>,
+    /// Since when it stands after having moved.
+    pub stands_since: Option<Instant>,
     rows: Vec<Row>,
+    /// Work of traction in the present cycle, J.
+    work_j: f64,
+    to_stop_m: Option<f64>,
     /// Entries of the unit's log and when they were read.
     log: Vec<(Instant, UnitEvent)>,
 }
 
 impl Recording {
-    /// Keeps new entries of the unit's log.
-    pub fn hear_events(&mut self, now: Instant, events: Vec<UnitEvent>) {
-        self.log
-            .extend(events.into_iter().map(|event| (now, event)));
-    }
-
-    /// One cycle.
-    pub fn record(&mut self, now: Instant, x_m: f64, rig: &Rig) {
+    /// One scan.
+    pub fn scan(&mut self, now: Instant, rig: &mut Rig) {
+        let read = rig.take_events().into_iter();
+        self.log.extend(read.map(|event| (now, event)));
+        let truth = rig.truth();
+        self.to_stop_m = truth.to_stop_m;
+        self.work_j += truth.tractive_power_w.max(0.0) * SCAN.as_secs();
+        if !now.as_us().is_multiple_of(CYCLE.as_us()) {
+            return;
+        }
+        let power_w = std::mem::take(&mut self.work_j) / CYCLE.as_secs();
         if !self.on {
             return;
         }
+        if self.rows.capacity() == 0 {
+            self.rows.reserve(USUAL_ROWS);
+        }
         let sample = rig.sample();
         let get = |signal| sample.get(signal).unwrap_or(f64::NAN);
-        let speed_kmh = get(Signal::TrainSpeed);
-        let before = self.rows.last().map_or(speed_kmh, |row| row.speed_kmh);
-        let accel_mps2 = (speed_kmh - before) / 3.6 / CYCLE.as_secs();
-        let earlier = self
-            .rows
-            .len()
-            .checked_sub(JERK_CYCLES)
-            .map(|i| self.rows[i].accel_mps2);
-        let jerk_mps3 = earlier.map_or(0.0, |a| {
-            (accel_mps2 - a) / (JERK_CYCLES as f64 * CYCLE.as_secs())
-        });
         self.rows.push(Row {
             t_s: now.as_secs(),
-            x_m,
-            speed_kmh,
+            x_m: truth.position_m,
+            speed_kmh: truth.speed_mps * 3.6,
             measured_kmh: get(Signal::Speed),
             limit_kmh: get(Signal::Limit),
             target_kmh: get(Signal::Target),
             effort: get(Signal::Effort),
-            accel_mps2,
-            jerk_mps3,
+            accel_mps2: get(Signal::TrainAccel),
+            jerk_mps3: get(Signal::TrainJerk),
             position_m: get(Signal::Position),
-            power_w: 0.0,
-            marker: get(Signal::MarkerCoil) as u8,
+            traction_n: truth.traction_n,
+            electric_brake_n: truth.electric_brake_n,
+            air_brake_n: truth.air_brake_n,
+            power_w,
+            sliding: truth.sliding,
         });
     }
 
     /// What it all came to.
     pub fn outcome(mut self, ending: Ending, plan: &DrivePlan) -> Outcome {
-        let zero = self.moves_since.map_or(f64::NAN, Instant::as_secs);
+        let Some(zero) = self.moves_since else {
+            return Outcome {
+                ending,
+                rows: self.rows,
+                landmarks: Vec::new(),
+                stop_error_m: None,
+                metrics: None,
+            };
+        };
+        let zero_s = zero.as_secs();
         for row in &mut self.rows {
-            row.t_s -= zero;
+            row.t_s -= zero_s;
         }
-        let metrics = self
-            .moves_since
-            .and_then(|_| Metrics::of(&self.rows, plan.section.stop_m));
-        let mut found: Vec<Landmark> = landmarks::of_rows(&self.rows, plan.below_limit_kmh);
-        found.extend(landmarks::of_log(&self.log, zero, &self.rows));
+        let stop = self
+            .stands_since
+            .zip(self.to_stop_m)
+            .map(|(at, left_m)| Landmark {
+                t_s: at.since(zero).as_secs(),
+                x_m: plan.section.stop_m - left_m,
+                what: "stop".into(),
+            });
+        let stop_error_m = stop.as_ref().map(|stop| stop.x_m - plan.section.stop_m);
+        let run_time_s = stop.as_ref().map(|stop| stop.t_s);
+        let metrics = Metrics::of(&self.rows, run_time_s);
+        let mut found = landmarks::of_rows(&self.rows, plan);
+        found.extend(landmarks::of_log(&self.log, zero_s, &self.rows));
+        found.extend(stop);
         found.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
         Outcome {
             ending,
-            landmarks: found,
-            metrics,
             rows: self.rows,
+            landmarks: found,
+            stop_error_m,
+            metrics,
         }
     }
 }

@@ -17,14 +17,20 @@ pub struct Row {
     pub target_kmh: f64,
     /// Effort sent to TCMS, −1024..1023.
     pub effort: f64,
-    /// True acceleration, mean of the cycle, m/s².
+    /// True acceleration, mean of 50 ms, m/s².
     pub accel_mps2: f64,
-    /// Change of the acceleration over 200 ms, m/s³.
+    /// Change of that in 200 ms, by time, m/s³.
     pub jerk_mps3: f64,
     /// Position in the section as the unit sees it, m.
     pub position_m: f64,
-    /// Mechanical power of traction, W.
+    /// Traction, N.
+    pub traction_n: f64,
+    /// Electric brake, N.
+    pub electric_brake_n: f64,
+    /// Air brake, N.
+    pub air_brake_n: f64,
+    /// Power of traction at the wheels, mean of the cycle, W.
     pub power_w: f64,
-    /// Marker coil entered last: 1 to 4, 0 = none.
-    pub marker: u8,
+    /// A car slips or slides.
+    pub sliding: bool,
 }

@@ -7,6 +7,7 @@ use protocol::Instant;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
 
+use super::Setting;
 use crate::data::DataFile;
 use crate::link::SimLink;
 
@@ -17,6 +18,8 @@ pub struct DriveBench {
     pub config: DataFile<UnitConfig>,
     /// Track database.
     pub line: DataFile<Line>,
+    /// What was changed in the configuration's file.
+    pub settings: Vec<Setting>,
 }
 
 /// Drives `plan` once, in virtual time.

@@ -1,7 +1,22 @@
-//! Station-to-station automatic runs on the embedded unit.
+//! Station-to-station automatic runs on the embedded unit, in virtual time.
+//!
+//! * [`Request`]: what is asked for, as commands name it;
+//! * [`Case`]: one section under one controller, ready to be driven;
+//! * [`monte_carlo`]: a case driven thousands of times, each with another train and day;
+//! * [`Setting`]: unit configuration keys changed for the purpose.
 
 mod bench;
+mod case;
+mod choice;
+pub mod monte_carlo;
+mod pool;
+mod progress;
 mod settings;
+mod train;
 
 pub use bench::{DriveBench, drive};
+pub use case::{Case, Driven, Request, drive_all};
+pub use choice::{Fixed, LoadChoice, SectionChoice, disturbance};
+pub use pool::cores;
+pub use progress::Progress;
 pub use settings::{Setting, unit_config};

@@ -1,0 +1,183 @@
+//! How trains, tracks and days differ: what is drawn for each of many runs.
+
+use protocol::config::ConfigError;
+use serde::Deserialize;
+
+use crate::conditions::{Conditions, Disturbance};
+use crate::rig::random::Random;
+
+/// A quantity that differs from run to run.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(untagged, deny_unknown_fields)]
+pub enum Spread {
+    /// Any value of a range as likely as any other.
+    Uniform {
+        /// Least value.
+        low: f64,
+        /// Greatest value.
+        high: f64,
+    },
+    /// Normal distribution.
+    Normal {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        sigma: f64,
+    },
+}
+
+impl Spread {
+    fn draw(self, random: &mut Random) -> f64 {
+        // Both kinds take two numbers, so that changing one quantity leaves the others as they are.
+        let (first, second) = (random.unit(), random.unit());
+        match self {
+            Self::Uniform { low, high } => low + (high - low) * first,
+            Self::Normal { mean, sigma } => mean + sigma * standard_normal(first, second),
+        }
+    }
+
+    /// Least and greatest believable value; of a normal distribution all but one in 15 000.
+    fn range(self) -> (f64, f64) {
+        match self {
+            Self::Uniform { low, high } => (low, high),
+            Self::Normal { mean, sigma } => (mean - 4.0 * sigma, mean + 4.0 * sigma),
+        }
+    }
+}
+
+/// Box and Muller: a standard normal number of two uniform ones.
+fn standard_normal(first: f64, second: f64) -> f64 {
+    (-2.0 * (1.0 - first).ln()).sqrt() * (std::f64::consts::TAU * second).cos()
+}
+
+/// All that differs; see `scripts/scatter.toml`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scatter {
+    /// Passengers, kg; what the train cannot carry stays behind.
+    pub load_kg: Spread,
+    /// Added to every gradient, ‰.
+    pub gradient_offset_permille: Spread,
+    /// Wheel–rail adhesion coefficient at standstill.
+    pub adhesion: Spread,
+    /// Factor on dead times and time constants of traction and brakes.
+    pub delay_factor: Spread,
+    /// Factor on braking effort.
+    pub brake_factor: Spread,
+    /// True wheel diameter over the configured one.
+    pub wheel_factor: Spread,
+    /// Place of each marker's pulse along the track, as laid and as antenna and TRA receive it, m.
+    pub marker_offset_m: Spread,
+}
+
+/// What was drawn for one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn {
+    /// Passengers, kg.
+    pub load_kg: f64,
+    /// The rest.
+    pub conditions: Conditions,
+}
+
+impl Scatter {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// The first thing wrong: syntax with line and column, or a spread no train can have.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let scatter: Self =
+            toml::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;
+        scatter.check()?;
+        Ok(scatter)
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        for (key, spread, low, high) in [
+            ("load_kg", self.load_kg, 0.0, 1e6),
+            (
+                "gradient_offset_permille",
+                self.gradient_offset_permille,
+                -50.0,
+                50.0,
+            ),
+            ("adhesion", self.adhesion, 0.02, 0.6),
+            ("delay_factor", self.delay_factor, 0.0, 5.0),
+            ("brake_factor", self.brake_factor, 0.2, 2.0),
+            ("wheel_factor", self.wheel_factor, 0.8, 1.2),
+            ("marker_offset_m", self.marker_offset_m, -5.0, 5.0),
+        ] {
+            let (least, most) = spread.range();
+            // A negated comparison so that not-a-number is refused, too.
+            if !(low <= least && least <= most && most <= high) {
+                return Err(ConfigError::Conflict(format!(
+                    "{key}: values from {least} to {most} are not all within {low} to {high}"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws a run's train and day; the same for the same `seed`.
+    pub fn draw(&self, seed: u64, full_load_kg: f64) -> Drawn {
+        let random = &mut Random::new(seed);
+        Drawn {
+            load_kg: self.load_kg.draw(random).clamp(0.0, full_load_kg),
+            conditions: Conditions {
+                gradient_offset_permille: self.gradient_offset_permille.draw(random),
+                adhesion: self.adhesion.draw(random),
+                delay_factor: self.delay_factor.draw(random),
+                brake_factor: self.brake_factor.draw(random),
+                wheel_factor: self.wheel_factor.draw(random),
+                marker_offsets_m: [(); 4].map(|()| self.marker_offset_m.draw(random)),
+                disturbance: Disturbance::None,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FILE: &str = include_str!("../../../scripts/scatter.toml");
+
+    /// Means and spreads of 10 000 draws against the file: load uniform to 160 t, brakes 1 ± 3 %.
+    #[test]
+    fn draws_have_the_spread_the_file_says_and_repeat() {
+        let scatter = Scatter::from_toml(FILE).unwrap();
+        let drawn: Vec<_> = (0..10_000)
+            .map(|seed| scatter.draw(seed, 160_000.0))
+            .collect();
+        let spread = |of: fn(&Drawn) -> f64| {
+            let mean = drawn.iter().map(of).sum::<f64>() / 1e4;
+            let var = drawn.iter().map(|d| (of(d) - mean).powi(2)).sum::<f64>() / 1e4;
+            (mean, var.sqrt())
+        };
+        let (load, _) = spread(|d| d.load_kg);
+        assert!((load - 80_000.0).abs() < 1_500.0, "{load}");
+        let (brake, sigma) = spread(|d| d.conditions.brake_factor);
+        assert!(
+            (brake - 1.0).abs() < 1e-3 && (sigma - 0.03).abs() < 1e-3,
+            "{brake} {sigma}"
+        );
+        let (_, third) = spread(|d| d.conditions.marker_offsets_m[2]);
+        assert!((third - 0.02).abs() < 1e-3, "{third}");
+        assert_eq!(scatter.draw(77, 160_000.0), drawn[77]);
+    }
+
+    #[test]
+    fn spreads_no_train_can_have_are_refused_by_key() {
+        for (from, to, words) in [
+            ("high = 0.25", "high = 2.5", "adhesion"),
+            ("low = 0.10", "low = 0.3", "adhesion"),
+            ("sigma = 0.03", "sigma = 0.3", "brake_factor"),
+            ("sigma = 0.03", "sigma = nan", "brake_factor"),
+            ("wheel_factor", "weel_factor", "weel_factor"),
+        ] {
+            let text = FILE.replace(from, to);
+            assert_ne!(text, FILE, "{from}");
+            let error = Scatter::from_toml(&text).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! One section under one controller, and how it is made of what was asked for.
+
+use std::sync::Arc;
+
+use btu_rig::conditions::Conditions;
+use btu_rig::drive::{DrivePlan, Ending, Outcome, Scatter};
+use btu_rig::train::TrainData;
+use protocol::config::{ControllerKind, checksum};
+use protocol::line::Line;
+
+use super::{
+    DriveBench, Fixed, LoadChoice, SectionChoice, Setting, drive, pool, train, unit_config,
+};
+use crate::data::{DataFile, ScriptsDirectory, sha256};
+use crate::failure::Failure;
+use crate::stop::Stop;
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Line, `lines/NAME.toml`.
+    pub line: String,
+    /// Its sections.
+    pub sections: SectionChoice,
+    /// Controllers; none = the configuration's.
+    pub controllers: Vec<ControllerKind>,
+    /// Train, `trains/NAME.toml` or a file.
+    pub train: String,
+    /// Total mass, kg.
+    pub mass_kg: Option<f64>,
+    /// Passengers.
+    pub load: Option<LoadChoice>,
+    /// What is other than nominal.
+    pub fixed: Fixed,
+    /// Code from start to end, in place of the line's.
+    pub code: Option<String>,
+    /// Unit configuration, `units/NAME.toml`.
+    pub unit_config: String,
+    /// Keys changed in it.
+    pub settings: Vec<Setting>,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// A run, ready to be driven.
+#[derive(Clone)]
+pub struct Case {
+    /// Controller.
+    pub controller: ControllerKind,
+    /// Unit configuration and line.
+    pub bench: Arc<DriveBench>,
+    /// The run.
+    pub plan: DrivePlan,
+    /// What is held fixed where the rest is drawn.
+    pub fixed: Fixed,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// A run that is over.
+pub struct Driven {
+    /// What was run.
+    pub case: Case,
+    /// What it came to.
+    pub outcome: Outcome,
+}
+
+impl Request {
+    /// A case for each section and controller, controllers of a section side by side.
+    ///
+    /// # Errors
+    /// A name that is not known, or a value out of range.
+    pub fn cases(&self, directory: &ScriptsDirectory) -> Result<Vec<Case>, Failure> {
+        self.fixed.check()?;
+        let mut train = train::train(directory, &self.train)?;
+        let load_kg = train::load(&mut train, self.mass_kg, self.load)?;
+        let fixed = Fixed {
+            load_kg,
+            ..self.fixed
+        };
+        let line = self.line(directory, &train)?;
+        let sections = self.sections.numbers(&line.content)?;
+        let benches = self.benches(directory, &train, &line)?;
+        let mut cases = Vec::new();
+        for section in sections {
+            for bench in &benches {
+                let code = self.code.as_deref();
+                let (config, line) = (&bench.config.content, &bench.line.content);
+                let mut plan = DrivePlan::new(config, line, train.clone(), section, code)
+                    .map_err(|error| Failure::usage(error.to_string()))?;
+                (plan.load_kg, plan.conditions) = fixed.hold(0.0, Conditions::default());
+                cases.push(Case {
+                    controller: config.ato.controller,
+                    bench: bench.clone(),
+                    plan,
+                    fixed,
+                    seed: self.seed,
+                });
+            }
+        }
+        Ok(cases)
+    }
+
+    fn line(
+        &self,
+        directory: &ScriptsDirectory,
+        train: &TrainData,
+    ) -> Result<DataFile<Line>, Failure> {
+        let mut line = directory.line(&self.line)?;
+        if train::needs_level_track(train) {
+            for section in &mut line.content.sections {
+                section.gradients.clear();
+                section.curves.clear();
+            }
+            // Another track database than the file's, so another checksum.
+            let level = format!("{} level", line.sha256);
+            line.crc = checksum(&level);
+            line.sha256 = sha256(&level);
+        }
+        Ok(line)
+    }
+
+    fn benches(
+        &self,
+        directory: &ScriptsDirectory,
+        train: &TrainData,
+        line: &DataFile<Line>,
+    ) -> Result<Vec<Arc<DriveBench>>, Failure> {
+        let told = train::told(train);
+        let bench = |controller: Option<&ControllerKind>| {
+            let chosen = controller.map(|kind| Setting::new("ato.controller", kind.name()));
+            let settings: Vec<_> = chosen
+                .into_iter()
+                .chain(told.iter().cloned())
+                .chain(self.settings.clone())
+                .collect();
+            Ok(Arc::new(DriveBench {
+                config: unit_config(directory, &self.unit_config, &settings)?,
+                line: line.clone(),
+                settings,
+            }))
+        };
+        if self.controllers.is_empty() {
+            return Ok(vec![bench(None)?]);
+        }
+        self.controllers
+            .iter()
+            .map(|kind| bench(Some(kind)))
+            .collect()
+    }
+}
+
+impl Case {
+    /// The same with train and day drawn by `seed`, but for what is held fixed.
+    pub fn drawn(&self, scatter: &Scatter, seed: u64) -> Self {
+        let drawn = scatter.draw(seed, self.plan.train.full_load_kg());
+        let (load_kg, conditions) = self.fixed.hold(drawn.load_kg, drawn.conditions);
+        Self {
+            plan: DrivePlan {
+                load_kg,
+                conditions,
+                ..self.plan.clone()
+            },
+            seed,
+            ..self.clone()
+        }
+    }
+
+    /// Drives it.
+    pub fn drive(&self) -> Outcome {
+        drive(&self.bench, self.plan.clone(), self.seed)
+    }
+
+    /// Distance from the stop point at which doors may open, m.
+    pub fn tolerance_m(&self) -> f64 {
+        self.bench.config.content.doors.aligned_m
+    }
+}
+
+impl Driven {
+    /// It came to its stop where doors may open.
+    pub fn aligned(&self) -> bool {
+        let near = |error: f64| error.abs() <= self.case.tolerance_m();
+        self.outcome.ending == Ending::Stopped && self.outcome.stop_error_m.is_some_and(near)
+    }
+}
+
+/// Drives all cases, some at a time, and gives them back in order. A stop leaves cases out.
+pub fn drive_all(cases: Vec<Case>, jobs: usize, stop: &Stop) -> Vec<Driven> {
+    let outcomes = pool::run(cases.len(), jobs, stop, &mut |_| {}, |i| cases[i].drive());
+    let mut cases: Vec<_> = cases.into_iter().map(Some).collect();
+    outcomes
+        .into_iter()
+        .filter_map(|(i, outcome)| {
+            Some(Driven {
+                case: cases.get_mut(i)?.take()?,
+                outcome,
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,165 @@
+//! A case driven many times, each with another train and day.
+
+use btu_rig::drive::{Drawn, Ending, Metrics, Scatter};
+
+use super::{Case, Progress, pool};
+use crate::stop::Stop;
+
+/// Runs that are shown as the worst.
+const WORST: usize = 5;
+/// Share of runs that must stop within the door tolerance for the whole to have passed.
+const ENOUGH: f64 = 0.999;
+/// Farthest a run may stop past the stop point, m.
+const NEVER_PAST_M: f64 = 1.0;
+
+/// One run of many.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// Its own seed: `--scattered --seed` repeats it.
+    pub seed: u64,
+    /// Its train and day.
+    pub drawn: Drawn,
+    /// How it ended.
+    pub ending: Ending,
+    /// Head of the train at rest less stop point, m.
+    pub stop_error_m: Option<f64>,
+    /// Other figures.
+    pub metrics: Option<Metrics>,
+}
+
+/// What many runs came to.
+pub struct MonteCarlo {
+    /// What was run, nominally.
+    pub case: Case,
+    /// Runs asked for.
+    pub asked: usize,
+    /// Those done, by seed.
+    pub trials: Vec<Trial>,
+}
+
+/// Drives `case` `count` times with seeds from its own on. The tester is silent, which changes
+/// nothing but the time it takes.
+pub fn run(case: Case, count: usize, scatter: &Scatter, jobs: usize, stop: &Stop) -> MonteCarlo {
+    let mut quiet = case.clone();
+    quiet.plan.tester = false;
+    let one = |i: usize| {
+        let drawn = quiet.drawn(scatter, case.seed.wrapping_add(i as u64));
+        let outcome = drawn.drive();
+        Trial {
+            seed: drawn.seed,
+            drawn: Drawn {
+                load_kg: drawn.plan.load_kg,
+                conditions: drawn.plan.conditions,
+            },
+            ending: outcome.ending,
+            stop_error_m: outcome.stop_error_m,
+            metrics: outcome.metrics,
+        }
+    };
+    let what = format!(
+        "section {} {}",
+        case.plan.section.section,
+        case.controller.name()
+    );
+    let mut progress = Progress::new(count, what);
+    let trials = pool::run(count, jobs, stop, &mut |done| progress.tell(done), one);
+    MonteCarlo {
+        asked: count,
+        trials: trials.into_iter().map(|(_, trial)| trial).collect(),
+        case,
+    }
+}
+
+impl Trial {
+    /// It came to its stop without an emergency brake.
+    pub fn stopped(&self) -> bool {
+        self.ending == Ending::Stopped
+    }
+
+    /// How far off it stopped, m; infinitely if it did not.
+    fn off_m(&self) -> f64 {
+        let error = self.stop_error_m.filter(|_| self.stopped());
+        error.map_or(f64::INFINITY, f64::abs)
+    }
+}
+
+impl MonteCarlo {
+    /// Stop errors of the runs that came to their stop, sorted, m.
+    pub fn stop_errors_m(&self) -> Vec<f64> {
+        let stopped = self.trials.iter().filter(|trial| trial.stopped());
+        sorted(stopped.filter_map(|trial| trial.stop_error_m))
+    }
+
+    /// A figure of the runs that came to their stop, sorted.
+    pub fn figures(&self, of: fn(&Metrics) -> f64) -> Vec<f64> {
+        let stopped = self.trials.iter().filter(|trial| trial.stopped());
+        sorted(stopped.filter_map(|trial| trial.metrics.as_ref()).map(of))
+    }
+
+    /// Share of all runs that stopped so close to the stop point.
+    pub fn within(&self, metres: f64) -> f64 {
+        let near = self
+            .trials
+            .iter()
+            .filter(|trial| trial.off_m() <= metres)
+            .count();
+        near as f64 / self.trials.len().max(1) as f64
+    }
+
+    /// Runs that did not come to their stop.
+    pub fn failures(&self) -> impl Iterator<Item = &Trial> {
+        self.trials.iter().filter(|trial| !trial.stopped())
+    }
+
+    /// The worst runs, worst first.
+    pub fn worst(&self) -> Vec<&Trial> {
+        let mut trials: Vec<_> = self.trials.iter().collect();
+        trials.sort_by(|a, b| b.off_m().total_cmp(&a.off_m()));
+        trials.truncate(WORST);
+        trials
+    }
+
+    /// At least 99.9 % within the door tolerance, none far past the stop point.
+    pub fn passed(&self) -> bool {
+        let past = |trial: &Trial| trial.stop_error_m.is_some_and(|error| error > NEVER_PAST_M);
+        self.within(self.case.tolerance_m()) >= ENOUGH && !self.trials.iter().any(past)
+    }
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<_> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The value below which `percent` of sorted values lie, between two of them by proportion.
+pub fn percentile(sorted: &[f64], percent: f64) -> Option<f64> {
+    let place = percent / 100.0 * sorted.len().checked_sub(1)? as f64;
+    let below = sorted.get(place.floor() as usize)?;
+    let above = sorted.get(place.ceil() as usize)?;
+    Some(below + (above - below) * place.fract())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 0, 10, 20, 30, 40 the median is 20; 2.5 % of the four gaps is a tenth of the first.
+    #[test]
+    fn percentiles_lie_between_values() {
+        let values = [0.0, 10.0, 20.0, 30.0, 40.0];
+        let expected = [
+            (0.0, 0.0),
+            (2.5, 1.0),
+            (50.0, 20.0),
+            (99.0, 39.6),
+            (100.0, 40.0),
+        ];
+        for (percent, value) in expected {
+            let found = percentile(&values, percent).unwrap();
+            assert!((found - value).abs() < 1e-9, "{percent} %: {found}");
+        }
+        assert_eq!(percentile(&[], 50.0), None);
+        assert_eq!(percentile(&[3.0], 99.9), Some(3.0));
+    }
+}

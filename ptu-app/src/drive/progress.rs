@@ -1,0 +1,58 @@
+//! Progress of many runs on stderr: a bar on a terminal, a line each tenth elsewhere.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Lines told where there is no terminal.
+const LINES: usize = 10;
+
+/// Tells how far many runs are.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    what: String,
+    count: usize,
+    told: usize,
+}
+
+impl Progress {
+    /// Of `count` runs, called `what`.
+    pub fn new(count: usize, what: String) -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let style = "{bar:30} {pos}/{len} runs  {elapsed} (left {eta})  {msg}";
+            ProgressBar::new(count as u64)
+                .with_message(what.clone())
+                .with_style(
+                    ProgressStyle::with_template(style)
+                        .unwrap_or_else(|_| ProgressStyle::default_bar()),
+                )
+        });
+        Self {
+            bar,
+            what,
+            count,
+            told: 0,
+        }
+    }
+
+    /// So many are done.
+    pub fn tell(&mut self, done: usize) {
+        if let Some(bar) = &self.bar {
+            bar.set_position(done as u64);
+            return;
+        }
+        let tenth = done * LINES / self.count.max(1);
+        if tenth > self.told {
+            self.told = tenth;
+            eprintln!("{}: {done} of {} runs", self.what, self.count);
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The train of a run: its file, its mass, and what the unit is told of it.
+
+use std::path::Path;
+
+use btu_rig::train::{IdealData, TrainData};
+
+use super::{LoadChoice, Setting};
+use crate::data::{ScriptsDirectory, read};
+use crate::failure::Failure;
+
+/// Least and greatest mass of an ideal train, kg.
+const IDEAL_KG: (f64, f64) = (1e4, 2e6);
+/// Highest base speed a unit can be told, km/h: none at all.
+const NO_BASE_SPEED_KMH: f64 = 130.0;
+/// Highest jerk a unit can be told, m/s³: none at all.
+const NO_JERK_LIMIT_MPS3: f64 = 100.0;
+
+/// The train called `name` in `trains/`, or of a file.
+///
+/// # Errors
+/// There is none, or it is wrong.
+pub fn train(directory: &ScriptsDirectory, name: &str) -> Result<TrainData, Failure> {
+    if !name.ends_with(".toml") {
+        return Ok(directory
+            .load("trains", name, "train", TrainData::from_toml)?
+            .content);
+    }
+    TrainData::from_toml(&read(Path::new(name))?)
+        .map_err(|error| Failure::usage(format!("{name}: {error}")))
+}
+
+/// Gives the train a total mass: an ideal train is built so heavy, a train of cars is loaded so
+/// far. The passengers aboard come back, if anything was said of them.
+///
+/// # Errors
+/// The train cannot be so heavy, so light or so full.
+pub fn load(
+    train: &mut TrainData,
+    mass_kg: Option<f64>,
+    load: Option<LoadChoice>,
+) -> Result<Option<f64>, Failure> {
+    let full_kg = train.full_load_kg();
+    let in_range = |what: &str, value: f64, low: f64, high: f64| {
+        if (low..=high).contains(&value) {
+            return Ok(value);
+        }
+        let kg = |mass: f64| format!("{mass:.0} kg");
+        Err(Failure::usage(format!(
+            "{what} {} is outside {} .. {}",
+            kg(value),
+            kg(low),
+            kg(high)
+        )))
+    };
+    match (mass_kg, train) {
+        (Some(mass_kg), TrainData::Ideal(ideal)) => {
+            ideal.mass_kg = in_range("--mass", mass_kg, IDEAL_KG.0, IDEAL_KG.1)?;
+            Ok(Some(0.0))
+        }
+        (Some(mass_kg), TrainData::Cars(cars)) => {
+            let empty_kg: f64 = cars.cars.iter().map(|car| car.empty_kg).sum();
+            let what = format!("--mass of train {}:", cars.name);
+            let mass_kg = in_range(&what, mass_kg, empty_kg, empty_kg + full_kg)?;
+            Ok(Some(mass_kg - empty_kg))
+        }
+        (None, _) => match load {
+            None => Ok(None),
+            Some(LoadChoice::Empty) => Ok(Some(0.0)),
+            Some(LoadChoice::Full) => Ok(Some(full_kg)),
+            Some(LoadChoice::Passengers(kg)) => in_range("--load", kg, 0.0, full_kg).map(Some),
+        },
+    }
+}
+
+/// What the unit's configuration must say so that it knows its train. A train of cars is the one
+/// the configuration is made for; the papers' ideal train is another, and their controller knew it.
+pub fn told(train: &TrainData) -> Vec<Setting> {
+    match train {
+        TrainData::Cars(_) => Vec::new(),
+        TrainData::Ideal(ideal) => told_ideal(ideal),
+    }
+}
+
+fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
+    [
+        ("empty_kg", ideal.mass_kg),
+        ("rotating_kg", 0.0),
+        ("length_m", ideal.length_m),
+        ("power_kmh_per_s", ideal.power_kmh_per_s),
+        (
+            "base_speed_kmh",
+            ideal.base_speed_kmh.unwrap_or(NO_BASE_SPEED_KMH),
+        ),
+        ("brake_kmh_per_s", ideal.service_kmh_per_s),
+        ("jerk_mps3", NO_JERK_LIMIT_MPS3),
+        ("dead_time_ms", 0.0),
+        ("lag_ms", 0.0),
+        ("drag_per_s", ideal.drag_per_s),
+        ("rolling_kgf_t", 0.0),
+        ("curve_kgf_m_t", 0.0),
+    ]
+    .map(|(key, value)| Setting::new(&format!("ato.train.{key}"), format!("{value:?}")))
+    .into()
+}
+
+/// Gradients and curves do not act on this train, so its track has none.
+pub fn needs_level_track(train: &TrainData) -> bool {
+    matches!(train, TrainData::Ideal(ideal) if !ideal.gradients)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mass_is_load_for_cars_and_mass_for_the_ideal_train() {
+        let mut cars = TrainData::line6();
+        assert_eq!(
+            load(&mut cars, Some(300_000.0), None).unwrap(),
+            Some(31_193.0)
+        );
+        for wrong in [268_000.0, 429_000.0, f64::NAN] {
+            let failure = load(&mut cars, Some(wrong), None).unwrap_err();
+            assert!(
+                failure.message.contains("268807 kg .. 428807 kg"),
+                "{failure}"
+            );
+        }
+        let mut ideal = TrainData::ideal();
+        assert_eq!(load(&mut ideal, Some(432_000.0), None).unwrap(), Some(0.0));
+        assert!(matches!(&ideal, TrainData::Ideal(data) if data.mass_kg == 432_000.0));
+        let told: Vec<_> = told(&ideal).iter().map(ToString::to_string).collect();
+        assert!(
+            told.contains(&"ato.train.empty_kg=432000.0".into()),
+            "{told:?}"
+        );
+    }
+}

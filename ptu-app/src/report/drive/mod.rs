@@ -1,0 +1,92 @@
+//! What station-to-station runs came to: text for people, JSON, CSV, and HTML with plots.
+
+mod csv;
+mod figures;
+mod html;
+mod html_many;
+mod json;
+mod plot;
+mod text;
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+pub use json::json;
+pub use text::text;
+
+use crate::data;
+use crate::drive::Driven;
+use crate::drive::monte_carlo::MonteCarlo;
+use crate::failure::Failure;
+
+/// What was driven.
+pub enum Results {
+    /// Cases, each once.
+    Single(Vec<Driven>),
+    /// Cases, each many times.
+    Many(Vec<MonteCarlo>),
+}
+
+/// A report to write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    path: PathBuf,
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Html,
+    Json,
+    Csv,
+}
+
+impl FromStr for Target {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let format = match text.rsplit_once('.').map(|(_, ending)| ending) {
+            Some("html") => Format::Html,
+            Some("json") => Format::Json,
+            Some("csv") => Format::Csv,
+            _ => return Err("a report of a drive ends in .html, .json or .csv".into()),
+        };
+        Ok(Self {
+            path: text.into(),
+            format,
+        })
+    }
+}
+
+impl Target {
+    /// Finds out before the run whether the file can be written after it.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check(&self) -> Result<(), Failure> {
+        let folder = self
+            .path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        if folder.is_some_and(|folder| !folder.is_dir()) || self.path.is_dir() {
+            return Err(Failure::usage(format!(
+                "cannot write the report {}: its folder does not exist, or it is one",
+                self.path.display()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Writes the report.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, results: &Results) -> Result<(), Failure> {
+        let text = match self.format {
+            Format::Html => html::html(results),
+            Format::Json => format!("{:#}\n", json(results)),
+            Format::Csv => csv::csv(results),
+        };
+        data::write(&self.path, &text)
+    }
+}
