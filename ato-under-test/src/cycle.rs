@@ -101,6 +101,7 @@ impl Unit {
             running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
             section: self.locator.section(),
             position_m: self.locator.position_m(),
+            marker: self.locator.believed(),
             ahead_m: self.locator.ahead_m(),
             aligned_m: self.setup.config.doors.aligned_m,
             speed: Speed::from_mps(speed),

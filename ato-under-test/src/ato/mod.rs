@@ -33,6 +33,9 @@ pub use watch::Findings;
 /// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
 /// train that is stopping still has a second to go.
 const STOPPED: Speed = Speed::from_kmh(0.2);
+/// Acceleration of a train that has to be brought up to the stop point from beyond PSM2, m/s² [default]: one
+/// that power would take past it must not be given any.
+const GENTLY_MPS2: f64 = 0.3;
 /// Effort of the full service brake.
 const FULL_BRAKE: i16 = -1024;
 
@@ -51,6 +54,8 @@ pub struct AtoInputs<'a> {
     pub section: Option<&'a Section>,
     /// Position in it, m.
     pub position_m: f64,
+    /// Marker that told the position last, 0 = none.
+    pub marker: u8,
     /// How much further the train may be, m, while markers do not come.
     pub ahead_m: f64,
     /// Distance from the stop point that counts as aligned, m.
@@ -91,6 +96,7 @@ pub struct Ato {
     failure: AtoFailure,
     watch: Watch,
     observer: Observer,
+    marker: u8,
     controller: Box<dyn SpeedController>,
     regulator: Regulator,
     granted: Granted,
@@ -105,6 +111,7 @@ impl Ato {
             failure: AtoFailure::None,
             watch: Watch::default(),
             observer: Observer::default(),
+            marker: 0,
             controller: controller(config),
             regulator: Regulator::default(),
             granted: Granted::default(),
@@ -191,6 +198,10 @@ impl Ato {
         let weight_kg = train.empty_kg + inputs.load_kg;
         let mass_kg = weight_kg + train.rotating_kg;
         let net_mps2 = self.net_mps2(inputs, config);
+        if self.marker != inputs.marker {
+            self.marker = inputs.marker;
+            self.observer.pass_marker();
+        }
         let ahead = self.observer.step(inputs.speed.mps(), net_mps2, train);
         let markers_to_stop_m = inputs
             .section
@@ -206,7 +217,10 @@ impl Ato {
         });
         self.feed_forward_n =
             feed_forward::holding_force_n(inputs.section, inputs.position_m, weight_kg, train);
-        let most = config.accel_kmh_per_s / 3.6 * mass_kg;
+        let most = match to_stop_m {
+            Some(way) if way < markers_to_stop_m[1] => GENTLY_MPS2,
+            _ => config.accel_kmh_per_s / 3.6,
+        } * mass_kg;
         let least = -config.decel_kmh_per_s / 3.6 * mass_kg;
         let bounds = Bounds {
             speed_mps: inputs.speed.mps(),

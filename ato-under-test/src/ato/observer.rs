@@ -17,12 +17,20 @@ use protocol::config::AtoTrainConfig;
 const CYCLES: usize = 22;
 /// Age of a measured speed when it is used: half the window of 100 ms, and a frame.
 const MEASURED_S: f64 = 0.06;
+/// Way by which it is older still, since it was measured at the last edge, m: half a pulse of 27 mm.
+const HALF_PULSE_M: f64 = 0.0135;
 
 /// Correction of speed per cycle, and of the missing acceleration per cycle and second: both poles of
 /// the error at 3 1/s.
 const CORRECTION: (f64, f64) = (0.28, 0.4);
 /// Speeds between which the measured one gains its weight: a pulse every 0.1 s .. every 0.03 s, m/s.
 const MEASURABLE_MPS: (f64, f64) = (0.27, 0.8);
+/// Greatest error that is taken for one of the model, m/s: against the effort, and with it. A sliding wheel
+/// is too slow while braking, a slipping one too fast while powering; neither is the train.
+const ERROR_MPS: (f64, f64) = (0.5, 0.1);
+/// Speed below the model's at which a braked wheel slides, m/s, and the longest slide, s [default].
+const SLIDE_MPS: f64 = 0.25;
+const LONGEST_SLIDE_S: f64 = 3.0;
 /// Greatest missing acceleration, m/s².
 const MOST_MISSING_MPS2: f64 = 0.5;
 
@@ -35,6 +43,8 @@ pub struct Observer {
     given: Lag,
     speed_mps: f64,
     missing_mps2: f64,
+    slides_s: f64,
+    slid_m: f64,
 }
 
 /// A first-order lag.
@@ -59,7 +69,7 @@ pub struct Ahead {
     pub speed_mps: f64,
     /// Acceleration as the effort begins to act, m/s².
     pub accel_mps2: f64,
-    /// Way until then, m.
+    /// Way until then, m, with what sliding wheels have not told since the last marker.
     pub moved_m: f64,
 }
 
@@ -113,7 +123,7 @@ impl Observer {
         Ahead {
             speed_mps: speed.max(0.0),
             accel_mps2,
-            moved_m: moved.max(0.0),
+            moved_m: moved.max(0.0) + self.slid_m,
         }
     }
 
@@ -124,13 +134,44 @@ impl Observer {
         if measured_mps <= 0.0 {
             self.speed_mps = self.speed_mps.min(MEASURABLE_MPS.0);
         }
-        let expected = self.speed_mps - accel * MEASURED_S;
+        let age_s = MEASURED_S + HALF_PULSE_M / self.speed_mps.max(MEASURABLE_MPS.0);
+        let expected = self.speed_mps - accel * age_s;
+        if self.slides(measured_mps - expected, dt) {
+            self.slid_m += (expected - measured_mps) * dt;
+            return;
+        }
         let (low, high) = MEASURABLE_MPS;
         let sure = ((measured_mps.max(self.speed_mps) - low) / (high - low)).clamp(0.0, 1.0);
-        let error = (measured_mps - expected) * sure;
+        let (against, along) = ERROR_MPS;
+        let (least, most) = if self.given.0 < 0.0 {
+            (-along, against)
+        } else {
+            (-against, along)
+        };
+        let error = (measured_mps - expected).clamp(least, most) * sure;
         self.speed_mps += CORRECTION.0 * error;
         self.missing_mps2 = (self.missing_mps2 + CORRECTION.1 * error * sure)
             .clamp(-MOST_MISSING_MPS2, MOST_MISSING_MPS2);
+    }
+
+    /// The wheel that is measured slides under the brake: it says nothing of the train. It is not
+    /// believed to for long, since a protection ends a slide.
+    fn slides(&mut self, error_mps: f64, dt: f64) -> bool {
+        let slides =
+            self.given.0 < 0.0 && error_mps < -SLIDE_MPS && self.slides_s < LONGEST_SLIDE_S;
+        self.slides_s = if slides {
+            self.slides_s + dt
+        } else if error_mps < -SLIDE_MPS {
+            self.slides_s
+        } else {
+            0.0
+        };
+        slides
+    }
+
+    /// A marker has told the position: the way that sliding wheels did not tell is in it.
+    pub fn pass_marker(&mut self) {
+        self.slid_m = 0.0;
     }
 
     /// What was asked for some cycles before the last effort.

@@ -245,6 +245,11 @@ impl Locator {
         })
     }
 
+    /// Marker that told the position last, 0 = none.
+    pub fn believed(&self) -> u8 {
+        self.fix.marker
+    }
+
     /// Last marker detected, 0 = none.
     pub fn last_marker(&self) -> u8 {
         self.last_marker

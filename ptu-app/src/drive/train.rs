@@ -95,6 +95,8 @@ fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
         ("jerk_mps3", NO_JERK_LIMIT_MPS3),
         ("dead_time_ms", 0.0),
         ("lag_ms", 0.0),
+        ("air_dead_time_ms", 0.0),
+        ("air_lag_ms", 0.0),
         ("drag_per_s", ideal.drag_per_s),
         ("rolling_kgf_t", 0.0),
         ("curve_kgf_m_t", 0.0),

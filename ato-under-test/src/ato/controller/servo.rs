@@ -22,6 +22,12 @@ use crate::ato::profile::{LastMetres, MarkerApproach, SCurve, Setpoint};
 
 /// Greatest pull, share of the reference's speed and m/s.
 const PULL: (f64, f64) = (0.1, 0.1);
+/// Greatest difference of what is asked for from the profile's own acceleration, m/s²: 50 ‰ that nobody
+/// knew of. What is beyond is a wheel that slides, and no effort helps.
+const MOST_CORRECTION_MPS2: f64 = 0.5;
+/// Speed by which a train that was braked too much may be below the profile before the profile begins
+/// anew from the train, m/s.
+const LEFT_BEHIND_MPS: f64 = 0.8;
 /// Cycles at rest too far from the stop point after which it begins anew.
 const REST_CYCLES: u32 = 40;
 
@@ -111,7 +117,10 @@ impl Servo {
             return;
         }
         if matches!(self.phase, Phase::Approach(_)) {
-            return;
+            if self.reference.speed_mps - situation.speed_mps < LEFT_BEHIND_MPS {
+                return;
+            }
+            self.begin_from(situation);
         }
         if to_stop <= psm2 && self.reference.speed_mps > end_mps {
             let way_m = to_stop - psm4;
@@ -136,6 +145,16 @@ impl Servo {
             let seconds = self.config.s_curve_s_per_mps * change + self.config.s_curve_s;
             *curve = SCurve::new(self.reference, target, seconds);
         }
+    }
+
+    /// The profile goes on from where the train is.
+    fn begin_from(&mut self, situation: &Situation) {
+        self.reference = Setpoint {
+            speed_mps: situation.speed_mps,
+            accel_mps2: 0.0,
+        };
+        self.integrals = [0.0; 3];
+        self.phase = Phase::Cruise(SCurve::hold(situation.speed_mps));
     }
 
     /// Compensator [S0 eq. 7], conditioned on what was granted of the last demand.
@@ -166,13 +185,14 @@ impl SpeedController for Servo {
         let follow_mps = self.advance(situation);
         let reference = self.reference;
         self.error_mps = follow_mps - situation.speed_mps;
-        self.asked_mps2 = reference.accel_mps2
-            + self.drag_per_s * follow_mps
+        let correction = self.drag_per_s * follow_mps
             + self.gains.speed * self.error_mps
             + dot(&self.gains.integrals, &self.integrals);
+        self.asked_mps2 = reference.accel_mps2 + correction;
+        let given = correction.clamp(-MOST_CORRECTION_MPS2, MOST_CORRECTION_MPS2);
         Demand {
             target_mps: reference.speed_mps,
-            force_n: self.asked_mps2 * situation.mass_kg,
+            force_n: (reference.accel_mps2 + given) * situation.mass_kg,
         }
     }
 
