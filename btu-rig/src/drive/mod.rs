@@ -19,11 +19,11 @@ pub mod scatter;
 
 use protocol::message::{EbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
-use protocol::{Duration, Instant};
+use protocol::{CYCLE, Duration, Instant};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
-use crate::rig::Rig;
+use crate::rig::{Rig, Truth};
 use crate::stimulus::Stimulus;
 
 pub use landmarks::Landmark;
@@ -48,6 +48,8 @@ const STANDS_AT_MOST: Duration = Duration::from_ms(10_000);
 const RUN_BASE: Duration = Duration::from_ms(60_000);
 /// Slowest believable mean speed of a run, m/s.
 const SLOWEST_MPS: f64 = 4.0;
+/// A train nobody drives any more is watched for so long, should nothing brake it.
+const COASTS: Duration = Duration::from_ms(60_000);
 /// Way after which the train has left the departure station's loop, m.
 const LOOP_LEFT_M: f64 = 50.0;
 
@@ -81,7 +83,7 @@ pub enum Ending {
         /// Why, if the unit said.
         cause: Option<EbCause>,
     },
-    /// ATP took the train out of Automatic Run while it moved.
+    /// ATP took the train out of Automatic Run while it moved; it stands, or rolls on.
     #[error("left Automatic Run while moving{}", into(*.mode))]
     LeftAutomatic {
         /// Mode it went to, if the unit said.
@@ -149,7 +151,10 @@ pub struct Drive {
     plan: DrivePlan,
     phase: Phase,
     handed_over: bool,
+    /// The emergency brake was applied, and why if the unit said.
     braked: Option<Option<EbCause>>,
+    /// ATP took the moving train out of Automatic Run: when, and into which mode.
+    left: Option<(Instant, Option<Mode>)>,
     recording: Recording,
 }
 
@@ -161,6 +166,7 @@ impl Drive {
             phase: Phase::Begin,
             handed_over: false,
             braked: None,
+            left: None,
             recording: Recording::default(),
         }
     }
@@ -173,10 +179,11 @@ impl Drive {
             }
             self.phase = Phase::Preparing { since: now };
         }
-        self.recording.scan(now, rig);
-        let ending = match self.hand_over(now, rig) {
+        let truth = rig.truth();
+        self.recording.scan(now, &truth, rig);
+        let ending = match self.hand_over(now, &truth, rig) {
             Err(Refusal(text)) => Some(Ending::Refused(text)),
-            Ok(()) => self.advance(now, rig),
+            Ok(()) => self.advance(now, &truth, rig),
         };
         ending.map(|ending| self.end(ending))
     }
@@ -214,8 +221,8 @@ impl Drive {
     }
 
     /// The next loop, once the train has left the first.
-    fn hand_over(&mut self, now: Instant, rig: &mut Rig) -> Result<(), Refusal> {
-        let left_m = rig.truth().position_m - self.plan.section.start_m;
+    fn hand_over(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) -> Result<(), Refusal> {
+        let left_m = truth.position_m - self.plan.section.start_m;
         if !self.handed_over && left_m >= LOOP_LEFT_M {
             self.handed_over = true;
             rig.apply(now, &Stimulus::Station(self.plan.at_arrival()))?;
@@ -223,8 +230,11 @@ impl Drive {
         Ok(())
     }
 
-    fn advance(&mut self, now: Instant, rig: &mut Rig) -> Option<Ending> {
-        if let Some(text) = rig.link_error() {
+    fn advance(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) -> Option<Ending> {
+        // Silence lasts for many cycles before it is one, so it need not be looked for each scan.
+        if now.as_us().is_multiple_of(CYCLE.as_us())
+            && let Some(text) = rig.link_error()
+        {
             return Some(Ending::LinkLost(text));
         }
         let sample = rig.sample();
@@ -232,7 +242,7 @@ impl Drive {
             .get(Signal::Mode)
             .map(|code| Mode::from_code(code as u8));
         let refusals = sample.get(Signal::Refusals).map(|bits| bits as u16);
-        let moving = rig.truth().speed_mps != 0.0;
+        let moving = truth.speed_mps != 0.0;
         let late = |since: Instant, limit: Duration| now.since(since) >= limit;
         match self.phase {
             Phase::Preparing { .. } if mode == Some(Mode::Automatic) => {
@@ -285,17 +295,23 @@ impl Drive {
                 .map(|code| EbCause::from_code(code as u8));
             self.braked = Some(cause.filter(|cause| *cause != EbCause::None));
         }
+        // A unit that takes the last centimetres for a standstill goes back to Automatic there.
+        let drives = matches!(mode, Some(Mode::AutomaticRun | Mode::Automatic));
+        if moving && !drives && self.braked.is_none() && self.left.is_none() {
+            self.left = Some((now, mode));
+        }
         if moving {
+            self.recording.stands_since = None;
             self.phase = Phase::Running {
                 since,
                 stands: None,
             };
-            if now.since(since) >= self.longest() {
-                return Some(Ending::TimeLimit);
-            }
-            // A unit that takes the last centimetres for a standstill goes back to Automatic there.
-            let drives = matches!(mode, Some(Mode::AutomaticRun | Mode::Automatic));
-            return (!drives && self.braked.is_none()).then_some(Ending::LeftAutomatic { mode });
+            return match self.left {
+                Some((at, mode)) => {
+                    (now.since(at) >= COASTS).then_some(Ending::LeftAutomatic { mode })
+                }
+                None => (now.since(since) >= self.longest()).then_some(Ending::TimeLimit),
+            };
         }
         let stands = stands.unwrap_or(now);
         self.recording.stands_since = Some(stands);
@@ -308,9 +324,10 @@ impl Drive {
                 .get(Signal::Effort)
                 .is_some_and(|effort| effort > 0.0);
         let over = if powers { STANDS_AT_MOST } else { STANDS };
-        let ending = match self.braked {
-            Some(cause) => Ending::EmergencyBrake { cause },
-            None => Ending::Stopped,
+        let ending = match (self.left, self.braked) {
+            (Some((_, mode)), _) => Ending::LeftAutomatic { mode },
+            (None, Some(cause)) => Ending::EmergencyBrake { cause },
+            (None, None) => Ending::Stopped,
         };
         (now.since(stands) >= over).then_some(ending)
     }

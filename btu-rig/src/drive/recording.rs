@@ -5,7 +5,7 @@ use protocol::{CYCLE, Instant, SCAN};
 
 use super::{DrivePlan, Ending, Landmark, Metrics, Outcome, Row, landmarks};
 use crate::procedure::UnitEvent;
-use crate::rig::Rig;
+use crate::rig::{Rig, Truth};
 
 /// Rows of a usual run, so that they need not move as they come.
 const USUAL_ROWS: usize = 2_500;
@@ -29,10 +29,9 @@ pub(super) struct Recording {
 
 impl Recording {
     /// One scan.
-    pub fn scan(&mut self, now: Instant, rig: &mut Rig) {
+    pub fn scan(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) {
         let read = rig.take_events().into_iter();
         self.log.extend(read.map(|event| (now, event)));
-        let truth = rig.truth();
         self.to_stop_m = truth.to_stop_m;
         self.work_j += truth.tractive_power_w.max(0.0) * SCAN.as_secs();
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
