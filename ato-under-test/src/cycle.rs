@@ -101,7 +101,6 @@ impl Unit {
             running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
             section: self.locator.section(),
             position_m: self.locator.position_m(),
-            marker: self.locator.believed(),
             ahead_m: self.locator.ahead_m(),
             aligned_m: self.setup.config.doors.aligned_m,
             speed: Speed::from_mps(speed),
@@ -111,6 +110,7 @@ impl Unit {
             checks: self.ato_checks(),
         };
         self.ato_outputs = self.ato.step(inputs, &self.setup.config.ato);
+        self.locator.slide(self.ato_outputs.slid_m);
         let fault = self.faults.at(Place::AtoCpu);
         self.ato_outputs.effort = self.effort_output.give(self.ato_outputs.effort, fault);
         self.report_ato(now, was_ready);

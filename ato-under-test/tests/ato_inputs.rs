@@ -113,7 +113,6 @@ fn step(ato: &mut Ato, drawn: &Drawn, config: &AtoConfig) -> AtoOutputs {
         running_mode: RunningMode::Normal,
         section: drawn.section.as_ref(),
         position_m: drawn.position_m,
-        marker: 0,
         ahead_m: drawn.ahead_m,
         aligned_m: 0.3,
         speed: Speed::from_mps(drawn.speed_mps),

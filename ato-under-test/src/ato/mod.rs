@@ -54,8 +54,6 @@ pub struct AtoInputs<'a> {
     pub section: Option<&'a Section>,
     /// Position in it, m.
     pub position_m: f64,
-    /// Marker that told the position last, 0 = none.
-    pub marker: u8,
     /// How much further the train may be, m, while markers do not come.
     pub ahead_m: f64,
     /// Distance from the stop point that counts as aligned, m.
@@ -83,6 +81,8 @@ pub struct AtoOutputs {
     pub effort: i16,
     /// Holding brake.
     pub holding_brake: bool,
+    /// Way run in this cycle that sliding wheels did not tell, m.
+    pub slid_m: f64,
     /// Why it cannot drive.
     pub failure: AtoFailure,
     /// What its watch found in this cycle.
@@ -96,7 +96,6 @@ pub struct Ato {
     failure: AtoFailure,
     watch: Watch,
     observer: Observer,
-    marker: u8,
     controller: Box<dyn SpeedController>,
     regulator: Regulator,
     granted: Granted,
@@ -111,7 +110,6 @@ impl Ato {
             failure: AtoFailure::None,
             watch: Watch::default(),
             observer: Observer::default(),
-            marker: 0,
             controller: controller(config),
             regulator: Regulator::default(),
             granted: Granted::default(),
@@ -198,10 +196,6 @@ impl Ato {
         let weight_kg = train.empty_kg + inputs.load_kg;
         let mass_kg = weight_kg + train.rotating_kg;
         let net_mps2 = self.net_mps2(inputs, config);
-        if self.marker != inputs.marker {
-            self.marker = inputs.marker;
-            self.observer.pass_marker();
-        }
         let ahead = self.observer.step(inputs.speed.mps(), net_mps2, train);
         let markers_to_stop_m = inputs
             .section
@@ -234,6 +228,7 @@ impl Ato {
         self.granted = self.regulator.step(asked_n, bounds, config);
         AtoOutputs {
             target: Speed::from_mps(demand.target_mps),
+            slid_m: ahead.slid_m,
             effort: self.granted.effort,
             ..AtoOutputs::default()
         }

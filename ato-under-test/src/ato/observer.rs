@@ -69,8 +69,10 @@ pub struct Ahead {
     pub speed_mps: f64,
     /// Acceleration as the effort begins to act, m/s².
     pub accel_mps2: f64,
-    /// Way until then, m, with what sliding wheels have not told since the last marker.
+    /// Way until then, m.
     pub moved_m: f64,
+    /// Way run in the last cycle that sliding wheels did not tell, m.
+    pub slid_m: f64,
 }
 
 /// Dead time and time constant, s.
@@ -123,7 +125,8 @@ impl Observer {
         Ahead {
             speed_mps: speed.max(0.0),
             accel_mps2,
-            moved_m: moved.max(0.0) + self.slid_m,
+            moved_m: moved.max(0.0),
+            slid_m: self.slid_m,
         }
     }
 
@@ -137,9 +140,10 @@ impl Observer {
         let age_s = MEASURED_S + HALF_PULSE_M / self.speed_mps.max(MEASURABLE_MPS.0);
         let expected = self.speed_mps - accel * age_s;
         if self.slides(measured_mps - expected, dt) {
-            self.slid_m += (expected - measured_mps) * dt;
+            self.slid_m = (expected - measured_mps) * dt;
             return;
         }
+        self.slid_m = 0.0;
         let (low, high) = MEASURABLE_MPS;
         let sure = ((measured_mps.max(self.speed_mps) - low) / (high - low)).clamp(0.0, 1.0);
         let (against, along) = ERROR_MPS;
@@ -167,11 +171,6 @@ impl Observer {
             0.0
         };
         slides
-    }
-
-    /// A marker has told the position: the way that sliding wheels did not tell is in it.
-    pub fn pass_marker(&mut self) {
-        self.slid_m = 0.0;
     }
 
     /// What was asked for some cycles before the last effort.

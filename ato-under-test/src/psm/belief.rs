@@ -1,7 +1,8 @@
 //! Which marker is believed.
 //!
-//! A marker is believed within a window around its place: some metres, and a share of the way run
-//! since the last fix, because that is by how much wheels can lie. A pulse outside its window
+//! A marker is believed within a window around its place: some metres, and what wheels can be wrong by
+//! since the last fix: a share of the way run, small once markers have calibrated them, and half of what
+//! they are thought to have slid. A pulse outside its window
 //! corrects nothing. Two such pulses in order, as far apart as their places, are believed
 //! together: then not the markers were wrong but the position.
 
@@ -28,6 +29,24 @@ pub struct Sighting {
     pub way_m: f64,
 }
 
+/// How the way told is related to the way run since the last fix.
+#[derive(Clone, Copy, Debug)]
+pub struct Wheels {
+    /// Way run for a way told.
+    pub scale: f64,
+    /// Share of the way run by which that may be wrong.
+    pub doubt: f64,
+    /// Way run on sliding wheels, m.
+    pub slid_m: f64,
+}
+
+impl Wheels {
+    /// Way run for a way told, m.
+    pub fn run_m(&self, told_m: f64) -> f64 {
+        told_m * self.scale + self.slid_m
+    }
+}
+
 /// What is made of a sighting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Judgement {
@@ -40,31 +59,31 @@ pub enum Judgement {
 }
 
 /// How far from its place a marker is believed after `run_m` from a fix, m.
-pub fn window_m(fix: &Fix, run_m: f64, config: &MarkerConfig) -> f64 {
+pub fn window_m(fix: &Fix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -> f64 {
     let least = if fix.marker == 0 {
         config.start_window_m
     } else {
         config.window_m
     };
-    least + config.window_share * libm::fabs(run_m)
+    let share = config.window_share.min(wheels.doubt);
+    least + share * libm::fabs(run_m) + wheels.slid_m / 2.0
 }
 
-/// Judges a sighting; `scale` turns way told into way run, `doubtful` is the last sighting that was
-/// away from its place.
+/// Judges a sighting; `doubtful` is the last sighting that was away from its place.
 pub fn judge(
     section: &Section,
     fix: &Fix,
     sighting: Sighting,
     doubtful: Option<Sighting>,
-    scale: f64,
+    wheels: &Wheels,
     config: &MarkerConfig,
 ) -> Judgement {
     let Some(place_m) = place_m(section, sighting.marker) else {
         return Judgement::OutOfOrder;
     };
-    let run_m = (sighting.way_m - fix.way_m) * scale;
+    let run_m = wheels.run_m(sighting.way_m - fix.way_m);
     let at_m = fix.place_m + run_m;
-    let window_m = window_m(fix, run_m, config);
+    let window_m = window_m(fix, run_m, wheels, config);
     let near = |place_m: f64| libm::fabs(at_m - place_m) <= window_m;
     if near(place_m) {
         return if sighting.marker > fix.marker {
@@ -73,7 +92,7 @@ pub fn judge(
             Judgement::OutOfOrder
         };
     }
-    if doubtful.is_some_and(|first| agree(section, first, sighting, scale, config)) {
+    if doubtful.is_some_and(|first| agree(section, first, sighting, wheels.scale, config)) {
         return Judgement::Believed;
     }
     if self::place_m(section, fix.marker + 1).is_some_and(near) {
@@ -130,9 +149,29 @@ mod tests {
             marker,
             way_m: position_m - second,
         };
-        let judged = |sighting, doubtful| judge(section, &fix, sighting, doubtful, 1.0, &config);
-        assert_eq!(judged(at(3, third + 2.0), None), Judgement::Believed);
-        assert_eq!(judged(at(4, fourth - 1.0), None), Judgement::Believed);
+        let judged_with = |wheels, sighting| judge(section, &fix, sighting, None, &wheels, &config);
+        let wheels = Wheels {
+            scale: 1.0,
+            doubt: 0.004,
+            slid_m: 0.0,
+        };
+        let judged =
+            |sighting, doubtful| judge(section, &fix, sighting, doubtful, &wheels, &config);
+        assert_eq!(judged(at(3, third + 0.8), None), Judgement::Believed);
+        // Wheels that nothing has calibrated can be wrong by more, and so can those that slid.
+        let late = at(3, third + 2.0);
+        assert_eq!(judged(late, None), Judgement::Away(2.0));
+        let worn = Wheels {
+            doubt: 0.03,
+            ..wheels
+        };
+        assert_eq!(judged_with(worn, late), Judgement::Believed);
+        let slid = Wheels {
+            slid_m: 2.0,
+            ..wheels
+        };
+        assert_eq!(judged_with(slid, at(3, third - 2.9)), Judgement::Believed);
+        assert_eq!(judged(at(4, fourth - 0.8), None), Judgement::Believed);
         assert_eq!(judged(at(2, second + 0.5), None), Judgement::OutOfOrder);
         assert_eq!(judged(at(1, third), None), Judgement::OutOfOrder);
         let early = judged(at(4, fourth - 10.0), None);

@@ -12,7 +12,7 @@ use protocol::event::Event;
 use protocol::line::{Line, Section};
 use protocol::message::TwcWayside;
 
-use super::belief::{Fix, Judgement, Sighting, judge, place_m, window_m};
+use super::belief::{Fix, Judgement, Sighting, Wheels, judge, place_m, window_m};
 use super::{Movement, Odometer, WheelCalibration};
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
@@ -34,6 +34,8 @@ pub struct Locator {
     /// Number the next pulse should have; pulses of test markers count, too.
     expected: u8,
     doubtful: Option<Sighting>,
+    /// Way run on sliding wheels since the fix, m.
+    slid_m: f64,
     /// Way told when the position became unsure, m.
     unsure_since_m: Option<f64>,
     wheel_reported: bool,
@@ -64,6 +66,7 @@ impl Locator {
             },
             expected: 1,
             doubtful: None,
+            slid_m: 0.0,
             unsure_since_m: None,
             wheel_reported: false,
             last_marker: 0,
@@ -91,6 +94,7 @@ impl Locator {
             self.section = Some(section.clone());
             self.expected = 1;
             self.doubtful = None;
+            self.slid_m = 0.0;
             self.unsure_since_m = None;
             self.wheel_reported = false;
         }
@@ -139,10 +143,9 @@ impl Locator {
     /// A pulse on the way. One that is not believed is reported and changes nothing.
     fn pass_marker(&mut self, now: Instant, sighting: Sighting, log: &mut EventLog) {
         let Some(section) = &self.section else { return };
-        let scale = 1.0 + self.wheel_correction();
-        let doubtful = self.doubtful;
+        let (wheels, doubtful) = (self.wheels(), self.doubtful);
         let config = &self.config;
-        match judge(section, &self.fix, sighting, doubtful, scale, config) {
+        match judge(section, &self.fix, sighting, doubtful, &wheels, config) {
             Judgement::Believed => self.believe(now, sighting, log),
             Judgement::OutOfOrder => {
                 log.push(now, Event::MarkerOrder, i32::from(sighting.marker));
@@ -168,8 +171,11 @@ impl Locator {
         }
         if self.fix.marker != 0 {
             let track_m = place_m - self.fix.place_m;
-            self.wheel.learn(track_m, sighting.way_m - self.fix.way_m);
-            self.report_wheel(now, log);
+            // A span on sliding wheels tells nothing of their diameter.
+            if self.slid_m == 0.0 {
+                self.wheel.learn(track_m, sighting.way_m - self.fix.way_m);
+                self.report_wheel(now, log);
+            }
         }
         self.fix = Fix {
             place_m,
@@ -178,6 +184,7 @@ impl Locator {
         };
         self.expected = marker % MARKERS + 1;
         self.doubtful = None;
+        self.slid_m = 0.0;
         self.unsure_since_m = None;
     }
 
@@ -198,7 +205,7 @@ impl Locator {
             return;
         };
         let run_m = self.position_m() - self.fix.place_m;
-        if self.position_m() > place_m + window_m(&self.fix, run_m, &self.config) {
+        if self.position_m() > place_m + window_m(&self.fix, run_m, &self.wheels(), &self.config) {
             self.unsure_since_m = Some(self.odometer.way_m());
             log.push(now, Event::PositionUnsure, i32::from(next));
         }
@@ -231,8 +238,21 @@ impl Locator {
 
     /// Position, m.
     pub fn position_m(&self) -> f64 {
-        let run_m = self.odometer.way_m() - self.fix.way_m;
-        self.fix.place_m + run_m * (1.0 + self.wheel_correction())
+        let told_m = self.odometer.way_m() - self.fix.way_m;
+        self.fix.place_m + self.wheels().run_m(told_m)
+    }
+
+    /// Wheels have slid: way was run that they did not tell, m.
+    pub fn slide(&mut self, way_m: f64) {
+        self.slid_m += way_m;
+    }
+
+    fn wheels(&self) -> Wheels {
+        Wheels {
+            scale: 1.0 + self.wheel_correction(),
+            doubt: self.wheel.uncertainty(),
+            slid_m: self.slid_m,
+        }
     }
 
     /// How much further the train may be, m; 0 as long as markers come.
@@ -243,11 +263,6 @@ impl Locator {
             let grown_m = libm::fabs(way_m - since_m) * AHEAD_SHARE;
             (run_m * self.wheel.uncertainty()).min(grown_m)
         })
-    }
-
-    /// Marker that told the position last, 0 = none.
-    pub fn believed(&self) -> u8 {
-        self.fix.marker
     }
 
     /// Last marker detected, 0 = none.

@@ -29,7 +29,7 @@ const MOST_CORRECTION_MPS2: f64 = 0.5;
 /// anew from the train, m/s.
 const LEFT_BEHIND_MPS: f64 = 0.8;
 /// Cycles at rest too far from the stop point after which it begins anew.
-const REST_CYCLES: u32 = 40;
+const REST_CYCLES: u32 = 20;
 
 /// What the profile is doing.
 #[derive(Debug)]
