@@ -167,17 +167,24 @@ mod tests {
 
     #[test]
     fn spreads_no_train_can_have_are_refused_by_key() {
+        let good = "load_kg = { low = 0, high = 1e5 }
+            gradient_offset_permille = { mean = 0, sigma = 1 }
+            adhesion = { low = 0.1, high = 0.3 }
+            delay_factor = { low = 0.7, high = 1.3 }
+            brake_factor = { mean = 1, sigma = 0.03 }
+            wheel_factor = { low = 0.99, high = 1.01 }
+            marker_offset_m = { mean = 0, sigma = 0.02 }";
+        assert!(Scatter::from_toml(good).is_ok());
         for (from, to, words) in [
-            ("high = 0.25", "high = 2.5", "adhesion"),
-            ("low = 0.10", "low = 0.3", "adhesion"),
+            ("high = 0.3", "high = 2.5", "adhesion"),
+            ("low = 0.1,", "low = 0.4,", "adhesion"),
             ("sigma = 0.03", "sigma = 0.3", "brake_factor"),
             ("sigma = 0.03", "sigma = nan", "brake_factor"),
+            ("sigma = 0.03", "spread = 0.03", "brake_factor"),
             ("wheel_factor", "weel_factor", "weel_factor"),
         ] {
-            let text = FILE.replace(from, to);
-            assert_ne!(text, FILE, "{from}");
-            let error = Scatter::from_toml(&text).unwrap_err().to_string();
-            assert!(error.contains(words), "{error}");
+            let error = Scatter::from_toml(&good.replace(from, to)).unwrap_err();
+            assert!(error.to_string().contains(words), "{to}: {error}");
         }
     }
 }
