@@ -250,7 +250,8 @@ impl Locator {
     fn wheels(&self) -> Wheels {
         Wheels {
             scale: 1.0 + self.wheel_correction(),
-            doubt: self.wheel.uncertainty(),
+            // 4σ: a marker that is not believed costs more than one that is.
+            doubt: 2.0 * self.wheel.uncertainty(),
             slid_m: self.slid_m,
         }
     }
