@@ -189,7 +189,14 @@ impl SpeedController for Servo {
             + self.gains.speed * self.error_mps
             + dot(&self.gains.integrals, &self.integrals);
         self.asked_mps2 = reference.accel_mps2 + correction;
-        let given = correction.clamp(-MOST_CORRECTION_MPS2, MOST_CORRECTION_MPS2);
+        let ends = matches!(self.phase, Phase::LastMetres(_)) && reference.accel_mps2 < 0.0;
+        // Where the profile has ended nothing but a brake is right.
+        let most = if ends && reference.speed_mps <= 0.0 {
+            0.0
+        } else {
+            MOST_CORRECTION_MPS2
+        };
+        let given = correction.clamp(-MOST_CORRECTION_MPS2, most);
         Demand {
             target_mps: reference.speed_mps,
             force_n: (reference.accel_mps2 + given) * situation.mass_kg,

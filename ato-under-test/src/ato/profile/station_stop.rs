@@ -80,6 +80,8 @@ pub struct LastMetres {
 
 /// Way to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
 const HOLD_M: f64 = 0.1;
+/// Rate at which the last of the speed is taken away at least, m/s² [default].
+const REST_MPS2: f64 = 0.25;
 /// Rate that is never asked to be exceeded, m/s² [S0 §4: 3.5 km/h/s].
 const MOST_MPS2: f64 = 3.5 / 3.6;
 /// How a train begins anew that came to rest too early, m/s² and m/s [default].
@@ -117,7 +119,7 @@ impl LastMetres {
         } else if to_stop_m > HOLD_M {
             -(speed * speed / (2.0 * to_stop_m)).min(MOST_MPS2)
         } else {
-            self.setpoint.accel_mps2
+            self.setpoint.accel_mps2.min(-REST_MPS2)
         };
         let step = self.jerk_mps3 * dt_s;
         let change = (wanted - self.setpoint.accel_mps2).clamp(-step, step);
