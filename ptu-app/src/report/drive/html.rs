@@ -401,26 +401,5 @@ fn quoted(argument: &str) -> String {
     format!("'{}'", argument.replace('\'', "'\\''"))
 }
 
-/// Colours after Okabe and Ito, told apart by colour-blind readers, too.
-const STYLE: &str = "
-:root{--ink:#1b1f24;--soft:#5b6470;--paper:#fff;--grid:#e6e8eb;--frame:#9aa3ad;--good:#0a7a4b;--bad:#b3261e;
---c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#cc79a7;--c4:#8a8f98;--c5:#b8860b}
-@media (prefers-color-scheme:dark){:root{--ink:#e6e8eb;--soft:#a3abb5;--paper:#16191d;--grid:#2a2f36;--frame:#5b6470;
---good:#4cc38a;--bad:#ff8078;--c0:#56b4e9;--c1:#f0894a;--c2:#3fcf9f;--c3:#e3a0c8;--c4:#7d8590;--c5:#e6c54a}}
-body{font:15px/1.45 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:1040px;margin:24px auto;padding:0 16px}
-h1{font-size:22px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 4px}
-.verdict{margin:4px 0;font-weight:600}.good{color:var(--good)}.bad{color:var(--bad)}
-.tables{display:flex;flex-wrap:wrap;gap:8px 48px;margin:12px 0}table{border-collapse:collapse;align-self:start}
-th,td{padding:2px 10px 2px 0;text-align:left;vertical-align:top}th{font-weight:500;color:var(--soft)}
-.number{text-align:right;font-variant-numeric:tabular-nums}code{font-size:13px}
-svg{display:block;width:100%;height:auto;margin:10px 0}
-svg text{font:12px system-ui,sans-serif;fill:var(--ink)}svg .title{font-weight:600;font-size:13px}
-svg .tick,svg .label,svg .legend{fill:var(--soft)}svg text.place{fill:var(--soft);font-size:11px}
-.grid{stroke:var(--grid)}.zero{stroke:var(--frame)}.frame{fill:none;stroke:var(--frame)}
-line.place{stroke:var(--frame);stroke-dasharray:2 3}
-.curve{fill:none;stroke-width:1.6}.dashed{stroke-dasharray:5 4}
-.c0{stroke:var(--c0)}.c1{stroke:var(--c1)}.c2{stroke:var(--c2)}.c3{stroke:var(--c3)}.c4{stroke:var(--c4)}.c5{stroke:var(--c5)}
-.dots{stroke:none;fill:var(--c0);fill-opacity:.45}.dots.c1{fill:var(--c1)}.bars{stroke:none;fill:var(--c0)}
-footer{margin-top:28px;color:var(--soft)}summary{cursor:pointer;color:var(--soft)}
-@media print{body{max-width:none}section{break-inside:auto}svg{break-inside:avoid}}
-";
+/// Look of the page, light and dark.
+const STYLE: &str = include_str!("style.css");
