@@ -8,6 +8,10 @@ use protocol::{Duration, Instant, Speed};
 use crate::kernel::EventLog;
 use crate::timer::{Edge, Lasting};
 
+/// Time a train that has just stopped has until its place counts: alignment is known a scan after
+/// standstill.
+const SETTLES: Duration = Duration::from_ms(200);
+
 /// What the door supervision looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct DoorInputs {
@@ -30,6 +34,7 @@ pub struct DoorInputs {
 pub struct Doors {
     open_moving: Lasting,
     tripped: Edge,
+    unaligned: Lasting,
     refused: Edge,
     enable: Outputs,
 }
@@ -50,7 +55,9 @@ impl Doors {
             log.push(now, Event::DoorOpenMoving, i32::from(inputs.speed.to_cms()));
         }
         let stopped = inputs.standstill && inputs.at_platform;
-        if self.refused.rises(stopped && !inputs.aligned) {
+        let refused = stopped && !inputs.aligned;
+        let refused = self.unaligned.update(now, refused, SETTLES);
+        if self.refused.rises(refused) {
             log.push(now, Event::DoorEnableRefused, 0);
         }
         self.enable = match inputs.side {

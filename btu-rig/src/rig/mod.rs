@@ -34,12 +34,12 @@ mod truth;
 mod wayside;
 mod wheel;
 
+use protocol::Instant;
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
 use protocol::message::{Identity, IoInput, Message};
 use protocol::signal::{Sample, Signal};
-use protocol::Instant;
 
 use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
