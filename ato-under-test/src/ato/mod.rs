@@ -132,7 +132,7 @@ impl Ato {
             },
             config,
         );
-        let stands = inputs.standstill && inputs.speed <= STOPPED;
+        let stands = inputs.standstill && inputs.speed <= STOPPED && !self.observer.sliding();
         let watched = Watched {
             state: self.state,
             may_go: cruise > Speed::ZERO && !inputs.power_cut,

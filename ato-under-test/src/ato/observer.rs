@@ -173,6 +173,11 @@ impl Observer {
         slides
     }
 
+    /// The measured wheel slides: that it stands does not say that the train does.
+    pub fn sliding(&self) -> bool {
+        self.slid_m > 0.0
+    }
+
     /// What was asked for some cycles before the last effort.
     fn asked_before(&self, cycles: f64) -> f64 {
         let whole = (cycles as usize).min(CYCLES - 2);
