@@ -1,7 +1,7 @@
 //! Which marker is believed.
 //!
 //! A marker is believed within a window around its place: some metres, and what wheels can be wrong by
-//! since the last fix: a share of the way run, small once markers have calibrated them, and half of what
+//! since the last fix: a share of the way run, small once markers have calibrated them, and what
 //! they are thought to have slid. A pulse outside its window
 //! corrects nothing. Two such pulses in order, as far apart as their places, are believed
 //! together: then not the markers were wrong but the position.
@@ -66,7 +66,7 @@ pub fn window_m(fix: &Fix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -
         config.window_m
     };
     let share = config.window_share.min(wheels.doubt);
-    least + share * libm::fabs(run_m) + wheels.slid_m / 2.0
+    least + share * libm::fabs(run_m) + wheels.slid_m
 }
 
 /// Judges a sighting; `doubtful` is the last sighting that was away from its place.
