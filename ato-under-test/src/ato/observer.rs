@@ -30,7 +30,7 @@ const MEASURABLE_MPS: (f64, f64) = (0.27, 0.8);
 const ERROR_MPS: (f64, f64) = (0.5, 0.1);
 /// Speed below the model's at which a braked wheel slides, m/s, and the longest slide, s [default].
 const SLIDE_MPS: f64 = 0.25;
-const LONGEST_SLIDE_S: f64 = 10.0;
+const LONGEST_SLIDE_S: f64 = 3.0;
 /// Greatest missing acceleration, m/s².
 const MOST_MISSING_MPS2: f64 = 0.5;
 
