@@ -6,6 +6,7 @@ mod html;
 mod html_many;
 mod json;
 mod plot;
+mod plots;
 mod text;
 
 use std::path::PathBuf;
