@@ -24,6 +24,7 @@ fn situations() -> Vec<Situation> {
                 to_stop_m: Some(850.0 * (1.0 - share)),
                 markers_to_stop_m: [546.0, 108.5, 21.0, 3.5],
                 mass_kg: 432_000.0,
+                brake_mps2: 0.97,
                 granted_n: 300_000.0 * (share * std::f64::consts::PI).cos(),
             }
         })

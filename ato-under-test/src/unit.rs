@@ -98,7 +98,7 @@ impl Unit {
             locator: Locator::new(config),
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms)),
-            ato: Ato::new(&config.ato),
+            ato: Ato::new(config),
             run_record: RunRecord::default(),
             ato_outputs: AtoOutputs::default(),
             effort_output: EffortOutput::default(),

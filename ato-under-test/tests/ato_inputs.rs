@@ -149,9 +149,10 @@ proptest! {
         kind in prop::sample::select(ControllerKind::ALL.to_vec()),
         cycles in prop::collection::vec((drawn(), 1..40usize), 1..30),
     ) {
-        let mut config = config().ato;
-        config.controller = kind;
-        let mut ato = Ato::new(&config);
+        let mut unit = config();
+        unit.ato.controller = kind;
+        let mut ato = Ato::new(&unit);
+        let config = unit.ato;
         for (drawn, times) in cycles {
             for _ in 0..times {
                 let out = step(&mut ato, &drawn, &config);
@@ -177,8 +178,9 @@ proptest! {
         which in 0..6usize,
         bad in prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-1e9), Just(1e9)],
     ) {
-        let config = config().ato;
-        let mut ato = Ato::new(&config);
+        let unit = config();
+        let mut ato = Ato::new(&unit);
+        let config = unit.ato;
         let good = Drawn { speed_mps: 1.0, standstill: false, ..departing() };
         for _ in 0..5 {
             step(&mut ato, &departing(), &config);

@@ -215,6 +215,7 @@ fn sound() -> Situation {
         to_stop_m: Some(400.0),
         markers_to_stop_m: [546.0, 108.5, 21.0, 3.5],
         mass_kg: 296e3,
+        brake_mps2: 0.97,
         granted_n: 90e3,
     }
 }
@@ -254,6 +255,7 @@ prop_compose! {
             to_stop_m,
             markers_to_stop_m,
             mass_kg,
+            brake_mps2: 0.97,
             granted_n,
         }
     }

@@ -11,6 +11,8 @@ use protocol::line::Section;
 const KGF_PER_T: f64 = 9.80665e-3;
 /// Places along the train at which the track is looked at.
 const PLACES: u32 = 8;
+/// Parts of the approach at whose ends it is looked at.
+const APPROACH_PLACES: u32 = 10;
 
 /// Force that keeps the speed with the head at `position_m`, N; `weight_kg` is the mass that weighs.
 pub fn holding_force_n(
@@ -19,16 +21,30 @@ pub fn holding_force_n(
     weight_kg: f64,
     train: &AtoTrainConfig,
 ) -> f64 {
-    let track_kgf_t = section.map_or(0.0, |section| {
-        let sum: f64 = (0..PLACES)
-            .map(|i| {
-                let back_m = train.length_m * (f64::from(i) + 0.5) / f64::from(PLACES);
-                at(section, position_m - back_m, train)
-            })
-            .sum();
-        sum / f64::from(PLACES)
-    });
+    let track_kgf_t = section.map_or(0.0, |section| under(section, position_m, train));
     (track_kgf_t + train.rolling_kgf_t) * KGF_PER_T * weight_kg
+}
+
+/// The least of it from PSM2 to the stop point, N for each kilogram that weighs: below 0 = downhill.
+pub fn approach_n_per_kg(section: &Section, train: &AtoTrainConfig) -> f64 {
+    let [_, psm2, _, _] = section.markers_m;
+    let way_m = (section.stop_m - psm2).max(0.0);
+    let least = (0..=APPROACH_PLACES)
+        .map(|i| psm2 + way_m * f64::from(i) / f64::from(APPROACH_PLACES))
+        .map(|position_m| under(section, position_m, train))
+        .fold(f64::INFINITY, f64::min);
+    (least + train.rolling_kgf_t) * KGF_PER_T
+}
+
+/// Mean resistance of the track under the train with its head at `position_m`, kgf/t.
+fn under(section: &Section, position_m: f64, train: &AtoTrainConfig) -> f64 {
+    let sum: f64 = (0..PLACES)
+        .map(|i| {
+            let back_m = train.length_m * (f64::from(i) + 0.5) / f64::from(PLACES);
+            at(section, position_m - back_m, train)
+        })
+        .sum();
+    sum / f64::from(PLACES)
 }
 
 /// Resistance of the track at one place, kgf/t; 1 ‰ is 1 kgf/t.

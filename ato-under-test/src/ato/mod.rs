@@ -17,13 +17,13 @@ mod watch;
 use alloc::boxed::Box;
 
 use protocol::Speed;
-use protocol::config::AtoConfig;
+use protocol::config::{AtoConfig, UnitConfig};
 use protocol::line::Section;
 use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
 use controller::{Situation, SpeedController, controller};
 use cruise::CruiseInputs;
-use observer::Observer;
+use observer::{Measuring, Observer};
 use reg::{Bounds, Granted, Regulator};
 use watch::{Watch, Watched};
 
@@ -33,9 +33,12 @@ pub use watch::Findings;
 /// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
 /// train that is stopping still has a second to go.
 const STOPPED: Speed = Speed::from_kmh(0.2);
-/// Acceleration of a train that has to be brought up to the stop point from beyond PSM2, m/s² [default]: one
-/// that power would take past it must not be given any.
-const GENTLY_MPS2: f64 = 0.3;
+/// Speed below which a train has come to its end, m/s.
+const ENDING_MPS: f64 = 0.05;
+/// Demand above which a train is to go, m/s².
+const STARTING_MPS2: f64 = 0.05;
+/// Brake with which a train comes to rest at least, beyond what the track costs, m/s².
+const RESTING_MPS2: f64 = 0.1;
 /// Effort of the full service brake.
 const FULL_BRAKE: i16 = -1024;
 
@@ -96,6 +99,8 @@ pub struct Ato {
     failure: AtoFailure,
     watch: Watch,
     observer: Observer,
+    /// Section and least force on its approach, N/kg.
+    approach: Option<(u16, f64)>,
     controller: Box<dyn SpeedController>,
     regulator: Regulator,
     granted: Granted,
@@ -104,12 +109,18 @@ pub struct Ato {
 
 impl Ato {
     /// Ready once it has been inspected.
-    pub fn new(config: &AtoConfig) -> Self {
+    pub fn new(unit: &UnitConfig) -> Self {
+        let config = &unit.ato;
+        let measuring = Measuring {
+            window_s: f64::from(unit.tacho.window_ms) / 1000.0,
+            pulse_m: unit.metres_per_pulse(),
+        };
         Self {
             state: AtoState::Inspection,
             failure: AtoFailure::None,
             watch: Watch::default(),
-            observer: Observer::default(),
+            observer: Observer::new(&config.observer, measuring),
+            approach: None,
             controller: controller(config),
             regulator: Regulator::default(),
             granted: Granted::default(),
@@ -200,6 +211,7 @@ impl Ato {
         let markers_to_stop_m = inputs
             .section
             .map_or([0.0; 4], |s| s.markers_m.map(|at| s.stop_m - at));
+        let brake_mps2 = self.brake_mps2(inputs, weight_kg / mass_kg, config);
         let demand = self.controller.step(&Situation {
             cruise_mps: cruise.mps(),
             speed_mps: ahead.speed_mps,
@@ -207,12 +219,13 @@ impl Ato {
             to_stop_m: to_stop_m.map(|way| way - ahead.moved_m),
             markers_to_stop_m,
             mass_kg,
+            brake_mps2,
             granted_n: self.granted.force_n - self.feed_forward_n,
         });
         self.feed_forward_n =
             feed_forward::holding_force_n(inputs.section, inputs.position_m, weight_kg, train);
         let most = match to_stop_m {
-            Some(way) if way < markers_to_stop_m[1] => GENTLY_MPS2,
+            Some(way) if way < markers_to_stop_m[1] => config.gently_mps2,
             _ => config.accel_kmh_per_s / 3.6,
         } * mass_kg;
         let least = -config.decel_kmh_per_s / 3.6 * mass_kg;
@@ -221,17 +234,43 @@ impl Ato {
             mass_kg,
             power_cut: inputs.power_cut,
         };
+        let speed_ends = ahead.speed_mps <= ENDING_MPS;
+        let goes = demand.force_n > STARTING_MPS2 * mass_kg;
+        let rests = self.state == AtoState::Run && !goes;
         // A demand that is no number stays one, so that REG brakes.
         let past_it = to_stop_m.is_some_and(|way| way < -config.watch.overrun_m);
         let force_n = if past_it { least } else { demand.force_n };
         let asked_n = force_n.clamp(least, most) + self.feed_forward_n;
+        // When this effort acts the train will stand: what held it on a climb until then must be a brake.
+        let standing_n = -(libm::fabs(self.feed_forward_n) + RESTING_MPS2 * mass_kg);
+        let asked_n = if rests && speed_ends {
+            asked_n.min(standing_n)
+        } else {
+            asked_n
+        };
         self.granted = self.regulator.step(asked_n, bounds, config);
         AtoOutputs {
+            holding_brake: rests && inputs.standstill && inputs.speed <= STOPPED,
             target: Speed::from_mps(demand.target_mps),
             slid_m: ahead.slid_m,
             effort: self.granted.effort,
             ..AtoOutputs::default()
         }
+    }
+
+    /// Deceleration the full brake has on the steepest descent of the approach, m/s².
+    fn brake_mps2(&mut self, inputs: &AtoInputs<'_>, weighs: f64, config: &AtoConfig) -> f64 {
+        let Some(section) = inputs.section else {
+            return 0.0;
+        };
+        let known = self
+            .approach
+            .filter(|(number, _)| *number == section.section);
+        let (_, least) = *self.approach.insert(known.unwrap_or_else(|| {
+            let least = feed_forward::approach_n_per_kg(section, &config.train);
+            (section.section, least)
+        }));
+        config.decel_kmh_per_s / 3.6 + least * weighs
     }
 
     /// Stands, or is not to drive.

@@ -11,32 +11,29 @@
 //! come so seldom that a measured speed says less than the model: there it goes on by itself.
 
 use protocol::CYCLE;
-use protocol::config::AtoTrainConfig;
+use protocol::config::{AtoTrainConfig, ObserverConfig};
 
 /// Cycles of efforts that are remembered: the longest dead time, 1 s.
 const CYCLES: usize = 22;
-/// Age of a measured speed when it is used: half the window of 100 ms, and a frame.
-const MEASURED_S: f64 = 0.06;
-/// Way by which it is older still, since it was measured at the last edge, m: half a pulse of 27 mm.
-const HALF_PULSE_M: f64 = 0.0135;
+/// Time a frame takes from the tachometer to ATO, s: a scan on each side.
+const FRAME_S: f64 = 0.01;
+/// Time between pulses at which a measured speed begins to lose its weight, and has none left, s.
+const PULSE_S: (f64, f64) = (0.034, 0.1);
 
-/// Correction of speed per cycle, and of the missing acceleration per cycle and second: both poles of
-/// the error at 3 1/s.
-const CORRECTION: (f64, f64) = (0.28, 0.4);
-/// Speeds between which the measured one gains its weight: a pulse every 0.1 s .. every 0.03 s, m/s.
-const MEASURABLE_MPS: (f64, f64) = (0.27, 0.8);
-/// Greatest error that is taken for one of the model, m/s: against the effort, and with it. A sliding wheel
-/// is too slow while braking, a slipping one too fast while powering; neither is the train.
-const ERROR_MPS: (f64, f64) = (0.5, 0.1);
-/// Speed below the model's at which a braked wheel slides, m/s, and the longest slide, s [default].
-const SLIDE_MPS: f64 = 0.25;
-const LONGEST_SLIDE_S: f64 = 3.0;
-/// Greatest missing acceleration, m/s².
-const MOST_MISSING_MPS2: f64 = 0.5;
+/// How speed is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Measuring {
+    /// Window over which it is averaged, s.
+    pub window_s: f64,
+    /// Way between pulses, m.
+    pub pulse_m: f64,
+}
 
 /// The observer.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Observer {
+    config: ObserverConfig,
+    measuring: Measuring,
     /// What was asked for, newest first, m/s².
     asked: [f64; CYCLES],
     /// What of it the train gives by the model.
@@ -97,6 +94,20 @@ impl Times {
 }
 
 impl Observer {
+    /// An observer of a train at rest.
+    pub fn new(config: &ObserverConfig, measuring: Measuring) -> Self {
+        Self {
+            config: config.clone(),
+            measuring,
+            asked: [0.0; CYCLES],
+            given: Lag::default(),
+            speed_mps: 0.0,
+            missing_mps2: 0.0,
+            slides_s: 0.0,
+            slid_m: 0.0,
+        }
+    }
+
     /// One cycle: `asked_mps2` is what the last effort asks of the train.
     pub fn step(&mut self, measured_mps: f64, asked_mps2: f64, train: &AtoTrainConfig) -> Ahead {
         self.asked.rotate_right(1);
@@ -134,38 +145,46 @@ impl Observer {
     fn correct(&mut self, measured_mps: f64, dt: f64) {
         let accel = self.given.0 + self.missing_mps2;
         self.speed_mps = (self.speed_mps + accel * dt).max(0.0);
+        // Speeds of a pulse every 0.1 s and every 0.034 s: between them a measured speed gains its weight.
+        let (low, high) = (
+            self.measuring.pulse_m / PULSE_S.1,
+            self.measuring.pulse_m / PULSE_S.0,
+        );
         if measured_mps <= 0.0 {
-            self.speed_mps = self.speed_mps.min(MEASURABLE_MPS.0);
+            self.speed_mps = self.speed_mps.min(low);
         }
-        let age_s = MEASURED_S + HALF_PULSE_M / self.speed_mps.max(MEASURABLE_MPS.0);
+        let since_edge_s = self.measuring.pulse_m / 2.0 / self.speed_mps.max(low);
+        let age_s = self.measuring.window_s / 2.0 + FRAME_S + since_edge_s;
         let expected = self.speed_mps - accel * age_s;
         if self.slides(measured_mps - expected, dt) {
             self.slid_m = (expected - measured_mps) * dt;
             return;
         }
         self.slid_m = 0.0;
-        let (low, high) = MEASURABLE_MPS;
         let sure = ((measured_mps.max(self.speed_mps) - low) / (high - low)).clamp(0.0, 1.0);
-        let (against, along) = ERROR_MPS;
+        let (against, along) = (self.config.against_mps, self.config.along_mps);
         let (least, most) = if self.given.0 < 0.0 {
             (-along, against)
         } else {
             (-against, along)
         };
         let error = (measured_mps - expected).clamp(least, most) * sure;
-        self.speed_mps += CORRECTION.0 * error;
-        self.missing_mps2 = (self.missing_mps2 + CORRECTION.1 * error * sure)
-            .clamp(-MOST_MISSING_MPS2, MOST_MISSING_MPS2);
+        // Both poles of the error at 1 − q.
+        let q = (self.config.pole_per_s * dt).min(1.0);
+        self.speed_mps += 2.0 * q * error;
+        let bound = self.config.missing_mps2;
+        self.missing_mps2 = (self.missing_mps2 + q * q / dt * error * sure).clamp(-bound, bound);
     }
 
     /// The wheel that is measured slides under the brake: it says nothing of the train. It is not
     /// believed to for long, since a protection ends a slide.
     fn slides(&mut self, error_mps: f64, dt: f64) -> bool {
-        let slides =
-            self.given.0 < 0.0 && error_mps < -SLIDE_MPS && self.slides_s < LONGEST_SLIDE_S;
+        let slides = self.given.0 < 0.0
+            && error_mps < -self.config.slide_mps
+            && self.slides_s < self.config.slide_s;
         self.slides_s = if slides {
             self.slides_s + dt
-        } else if error_mps < -SLIDE_MPS {
+        } else if error_mps < -self.config.slide_mps {
             self.slides_s
         } else {
             0.0
@@ -187,6 +206,6 @@ impl Observer {
 
     /// The train stands.
     pub fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self::new(&self.config, self.measuring);
     }
 }

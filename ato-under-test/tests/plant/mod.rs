@@ -131,6 +131,7 @@ impl<'a> Train<'a> {
             to_stop_m: self.run.way_m.map(|way| way - position),
             markers_to_stop_m: [0.0; 4],
             mass_kg: self.mass_kg(),
+            brake_mps2: 3.5 / 3.6 - known,
             granted_n: (self.granted_mps2 + known) * self.mass_kg(),
         }
     }
@@ -223,6 +224,7 @@ pub fn s1_errors(controller: &mut dyn SpeedController) -> Vec<f64> {
                 to_stop_m: None,
                 markers_to_stop_m: [0.0; 4],
                 mass_kg: MASS_KG,
+                brake_mps2: 3.5 / 3.6,
                 granted_n,
             });
             let error = demand.target_mps - speed;

@@ -95,6 +95,42 @@ pub struct ServoConfig {
     pub psm4_mps: f64,
     /// Pull toward the profile's own position, 1/s.
     pub position_gain_per_s: f64,
+    /// Greatest pull: this share of the profile's speed …
+    pub pull_share: f64,
+    /// … and this much more, m/s.
+    pub pull_mps: f64,
+    /// Greatest difference of what is asked for from the profile's own acceleration, m/s².
+    pub correction_mps2: f64,
+    /// Share of the brake that is there which the way from PSM2 to PSM4 may ask for.
+    pub brake_share: f64,
+    /// Speed by which a train that was braked too much may be below the profile before the profile
+    /// begins anew from the train, m/s.
+    pub left_behind_mps: f64,
+    /// Rate at which the last of the speed is taken away at least, m/s².
+    pub rest_mps2: f64,
+    /// How a train moves up that came to rest too early: acceleration, m/s².
+    pub creep_mps2: f64,
+    /// The same: greatest speed, m/s.
+    pub creep_mps: f64,
+}
+
+/// What the observer believes of a measured speed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObserverConfig {
+    /// How fast an error of the model is taken away, 1/s.
+    pub pole_per_s: f64,
+    /// Greatest error taken for one of the model when wheels turn faster than a braked train by it, or
+    /// slower than a powered one, m/s.
+    pub against_mps: f64,
+    /// The same for slower than a braked train or faster than a powered one: wheels that slide or slip.
+    pub along_mps: f64,
+    /// Greatest acceleration the model may lack, m/s².
+    pub missing_mps2: f64,
+    /// Speed below the model's at which a braked wheel slides, m/s.
+    pub slide_mps: f64,
+    /// Longest slide, s.
+    pub slide_s: f64,
 }
 
 /// Jerk-limited profile [S1].
@@ -236,8 +272,12 @@ pub struct AtoConfig {
     pub accel_kmh_per_s: f64,
     /// See `accel_kmh_per_s`.
     pub decel_kmh_per_s: f64,
+    /// Acceleration at which a train is moved up from beyond PSM2 at most, m/s².
+    pub gently_mps2: f64,
     /// What the unit knows of its train.
     pub train: AtoTrainConfig,
+    /// What the observer believes.
+    pub observer: ObserverConfig,
     /// Servo.
     pub servo: ServoConfig,
     /// Jerk-limited profile of `pi` and `fuzzy`.
@@ -277,7 +317,7 @@ impl AtoConfig {
     }
 
     fn ranges(&self) -> Vec<(&'static str, f64, f64, f64)> {
-        let (t, s, p) = (&self.train, &self.servo, &self.profile);
+        let (t, s, p, o) = (&self.train, &self.servo, &self.profile, &self.observer);
         let (pi, f, pss, w) = (&self.pi, &self.fuzzy, &self.pss, &self.watch);
         Vec::from([
             ("ato.below_limit_kmh", self.below_limit_kmh, 0.0, 20.0),
@@ -288,8 +328,8 @@ impl AtoConfig {
                 20.0,
             ),
             ("ato.arrived_m", self.arrived_m, 0.1, 5.0),
-            ("ato.accel_kmh_per_s", self.accel_kmh_per_s, 0.5, 5.0),
-            ("ato.decel_kmh_per_s", self.decel_kmh_per_s, 0.5, 5.0),
+            ("ato.accel_kmh_per_s", self.accel_kmh_per_s, 1.0, 5.0),
+            ("ato.decel_kmh_per_s", self.decel_kmh_per_s, 2.0, 5.0),
             ("ato.train.empty_kg", t.empty_kg, 1e3, 1e7),
             ("ato.train.rotating_kg", t.rotating_kg, 0.0, 1e6),
             ("ato.train.length_m", t.length_m, 5.0, 500.0),
@@ -324,13 +364,28 @@ impl AtoConfig {
             ),
             ("ato.servo.s_curve_s", s.s_curve_s, 0.5, 60.0),
             ("ato.servo.psm1_kmh", s.psm1_kmh, 10.0, 80.0),
-            ("ato.servo.psm4_mps", s.psm4_mps, 0.3, 5.0),
+            ("ato.servo.psm4_mps", s.psm4_mps, 0.3, 2.4),
             (
                 "ato.servo.position_gain_per_s",
                 s.position_gain_per_s,
                 0.0,
                 2.0,
             ),
+            ("ato.servo.pull_share", s.pull_share, 0.0, 0.5),
+            ("ato.servo.pull_mps", s.pull_mps, 0.0, 1.0),
+            ("ato.servo.correction_mps2", s.correction_mps2, 0.1, 2.0),
+            ("ato.servo.brake_share", s.brake_share, 0.3, 1.0),
+            ("ato.servo.left_behind_mps", s.left_behind_mps, 0.1, 5.0),
+            ("ato.servo.rest_mps2", s.rest_mps2, 0.05, 1.0),
+            ("ato.servo.creep_mps2", s.creep_mps2, 0.05, 1.0),
+            ("ato.servo.creep_mps", s.creep_mps, 0.1, 1.5),
+            ("ato.gently_mps2", self.gently_mps2, 0.05, 1.0),
+            ("ato.observer.pole_per_s", o.pole_per_s, 0.1, 10.0),
+            ("ato.observer.against_mps", o.against_mps, 0.01, 5.0),
+            ("ato.observer.along_mps", o.along_mps, 0.01, 5.0),
+            ("ato.observer.missing_mps2", o.missing_mps2, 0.0, 2.0),
+            ("ato.observer.slide_mps", o.slide_mps, 0.05, 5.0),
+            ("ato.observer.slide_s", o.slide_s, 0.0, 20.0),
             ("ato.profile.accel_mps2", p.accel_mps2, 0.1, 2.0),
             ("ato.profile.decel_mps2", p.decel_mps2, 0.1, 2.0),
             ("ato.profile.jerk_mps3", p.jerk_mps3, 0.1, 5.0),

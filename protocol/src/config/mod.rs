@@ -12,8 +12,8 @@ use thiserror::Error;
 mod ato;
 
 pub use ato::{
-    AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit, PiConfig,
-    ProfileConfig, PssConfig, ServoConfig,
+    AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit,
+    ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
 };
 
 /// Why a configuration or line file is refused.

@@ -41,6 +41,8 @@ pub struct Situation {
     pub markers_to_stop_m: [f64; 4],
     /// Mass to be accelerated, kg.
     pub mass_kg: f64,
+    /// Deceleration the full brake has on the steepest descent of the approach, m/s².
+    pub brake_mps2: f64,
     /// Force granted for the last demand, N, feed-forward taken off again.
     pub granted_n: f64,
 }

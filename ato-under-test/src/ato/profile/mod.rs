@@ -12,4 +12,4 @@ pub use guide::{Guide, GuideInputs};
 pub use jerk_limited::JerkLimited;
 pub use pss::StopCurve;
 pub use s_curve::{SCurve, Setpoint};
-pub use station_stop::{LastMetres, MarkerApproach};
+pub use station_stop::{LastMetres, LastRates, MarkerApproach};

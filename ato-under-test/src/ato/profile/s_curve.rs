@@ -2,9 +2,6 @@
 
 /// What of an acceleration at the beginning is carried over, and for how long at least, s.
 const CARRY_S: f64 = 1.0;
-/// Jerk with which it is taken away, m/s³ [S1: 0.8].
-const CARRY_JERK: f64 = 0.8;
-
 /// A target speed and how it changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Setpoint {
@@ -28,9 +25,10 @@ pub struct SCurve {
 }
 
 impl SCurve {
-    /// From a reference to a speed in `seconds` [S0: t_a = 5/6·|Δv| + 11].
-    pub fn new(from: Setpoint, to_mps: f64, seconds: f64) -> Self {
-        let carried_s = (2.0 * libm::fabs(from.accel_mps2) / CARRY_JERK).max(CARRY_S);
+    /// From a reference to a speed in `seconds` [S0: t_a = 5/6·|Δv| + 11]; an acceleration it begins with
+    /// is taken away at about `jerk_mps3`.
+    pub fn new(from: Setpoint, to_mps: f64, seconds: f64, jerk_mps3: f64) -> Self {
+        let carried_s = (2.0 * libm::fabs(from.accel_mps2) / jerk_mps3).max(CARRY_S);
         Self {
             from_mps: from.speed_mps,
             to_mps,
@@ -47,7 +45,7 @@ impl SCurve {
             speed_mps,
             accel_mps2: 0.0,
         };
-        let mut curve = Self::new(from, speed_mps, 1.0);
+        let mut curve = Self::new(from, speed_mps, 1.0, 1.0);
         curve.elapsed_s = f64::INFINITY;
         curve
     }
@@ -112,7 +110,7 @@ mod tests {
     fn it_is_the_printed_curve() {
         let top = 60.0 / 3.6;
         let seconds = 5.0 / 6.0 * top + 11.0;
-        let mut curve = SCurve::new(Setpoint::default(), top, seconds);
+        let mut curve = SCurve::new(Setpoint::default(), top, seconds, 0.8);
         let speeds = run(&mut curve, 30.0);
         let at = |s: f64| speeds[(s / DT) as usize - 1];
         assert!((at(seconds / 2.0).speed_mps - top / 2.0).abs() < 0.06);
@@ -125,10 +123,10 @@ mod tests {
     /// jerk stays bounded, and the new target is reached.
     #[test]
     fn a_new_target_in_the_middle_of_a_ramp_is_continuous() {
-        let mut curve = SCurve::new(Setpoint::default(), 16.0, 24.0);
+        let mut curve = SCurve::new(Setpoint::default(), 16.0, 24.0, 0.8);
         let mut last = *run(&mut curve, 10.0).last().unwrap();
         assert!(last.accel_mps2 > 0.85);
-        let mut curve = SCurve::new(last, 11.1, 15.0);
+        let mut curve = SCurve::new(last, 11.1, 15.0, 0.8);
         for next in run(&mut curve, 20.0) {
             assert!((next.speed_mps - last.speed_mps).abs() < 1.0 * DT);
             assert!((next.accel_mps2 - last.accel_mps2).abs() < 1.9 * DT);

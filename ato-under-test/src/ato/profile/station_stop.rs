@@ -32,6 +32,15 @@ impl MarkerApproach {
         }
     }
 
+    /// Greatest speed from which it asks for no more than `most_mps2`: 1.6·(v − v_end)/t_a.
+    pub fn fastest_mps(to_mps: f64, way_m: f64, most_mps2: f64) -> f64 {
+        // 1.6·(v − e)·(0.55·e + 0.45·v) = a·way, solved for v.
+        let (square, linear) = (0.45, (0.55 - 0.45) * to_mps);
+        let rest = 0.55 * to_mps * to_mps + most_mps2.max(0.0) * way_m.max(0.0) / 1.6;
+        let root = libm::sqrt(linear * linear + 4.0 * square * rest);
+        ((root - linear) / (2.0 * square)).max(to_mps)
+    }
+
     /// Moves on by `dt_s`; gives the target and the way it has left, m.
     pub fn step(&mut self, dt_s: f64) -> (Setpoint, f64) {
         self.elapsed_s += dt_s;
@@ -74,25 +83,31 @@ fn share(x: f64) -> (f64, f64, f64) {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LastMetres {
     setpoint: Setpoint,
-    jerk_mps3: f64,
+    rates: LastRates,
     creeping: bool,
 }
 
 /// Way to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
 const HOLD_M: f64 = 0.1;
-/// Rate at which the last of the speed is taken away at least, m/s² [default].
-const REST_MPS2: f64 = 0.25;
-/// Rate that is never asked to be exceeded, m/s² [S0 §4: 3.5 km/h/s].
-const MOST_MPS2: f64 = 3.5 / 3.6;
-/// How a train begins anew that came to rest too early, m/s² and m/s [default].
-const CREEP: (f64, f64) = (0.25, 0.5);
+/// Bounds of the last metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastRates {
+    /// Jerk at which the rate changes, m/s³.
+    pub jerk_mps3: f64,
+    /// Rate that is never asked to be exceeded, m/s².
+    pub most_mps2: f64,
+    /// Rate at which the last of the speed is taken away at least, m/s².
+    pub rest_mps2: f64,
+    /// How a train moves up that came to rest too early, m/s² and m/s.
+    pub creep: (f64, f64),
+}
 
 impl LastMetres {
-    /// From a setpoint; the rate is built up at `jerk_mps3`.
-    pub fn new(from: Setpoint, jerk_mps3: f64) -> Self {
+    /// From a setpoint.
+    pub fn new(from: Setpoint, rates: LastRates) -> Self {
         Self {
             setpoint: from,
-            jerk_mps3,
+            rates,
             creeping: false,
         }
     }
@@ -112,16 +127,17 @@ impl LastMetres {
     /// Moves on by `dt_s` with `to_stop_m` left.
     pub fn step(&mut self, dt_s: f64, to_stop_m: f64) -> Setpoint {
         let speed = self.setpoint.speed_mps;
-        let most = libm::sqrt(2.0 * CREEP.0 * to_stop_m.max(0.0)).min(CREEP.1);
+        let most =
+            libm::sqrt(2.0 * self.rates.creep.0 * to_stop_m.max(0.0)).min(self.rates.creep.1);
         self.creeping &= speed < most;
         let wanted = if self.creeping {
-            CREEP.0
+            self.rates.creep.0
         } else if to_stop_m > HOLD_M {
-            -(speed * speed / (2.0 * to_stop_m)).min(MOST_MPS2)
+            -(speed * speed / (2.0 * to_stop_m)).min(self.rates.most_mps2)
         } else {
-            self.setpoint.accel_mps2.min(-REST_MPS2)
+            self.setpoint.accel_mps2.min(-self.rates.rest_mps2)
         };
-        let step = self.jerk_mps3 * dt_s;
+        let step = self.rates.jerk_mps3 * dt_s;
         let change = (wanted - self.setpoint.accel_mps2).clamp(-step, step);
         self.setpoint.accel_mps2 += change;
         self.setpoint.speed_mps = (speed + self.setpoint.accel_mps2 * dt_s).max(0.0);
@@ -155,6 +171,18 @@ mod tests {
         assert!((peak - 3.07).abs() < 0.01, "{peak}");
     }
 
+    /// S0's own: 11.1 m/s over 105 m asks for 3.07 km/h/s; with less brake the speed must be lower.
+    #[test]
+    fn a_weaker_brake_allows_a_lower_speed() {
+        let printed = MarkerApproach::fastest_mps(1.5, 105.0, 3.066 / 3.6);
+        assert!((printed - 11.1).abs() < 0.02, "{printed}");
+        let downhill = MarkerApproach::fastest_mps(1.5, 105.0, 0.57);
+        let mut approach = MarkerApproach::new(downhill, 1.5, 105.0);
+        let rates = (0..4000).map(|_| -approach.step(0.01).0.accel_mps2);
+        let peak = rates.fold(0.0, f64::max);
+        assert!((peak - 0.57).abs() < 0.005, "{peak}");
+    }
+
     /// A train on the reference from PSM4 on: it stops at the stop point, at the rate of eq. (3) made
     /// exact, 1.5²/(2·3.5) = 0.321 m/s², also when it is told half a metre later that it is further.
     #[test]
@@ -165,7 +193,13 @@ mod tests {
                 speed_mps: 1.5,
                 accel_mps2: 0.0,
             };
-            let mut last = LastMetres::new(from, 0.8);
+            let rates = LastRates {
+                jerk_mps3: 0.8,
+                most_mps2: 3.5 / 3.6,
+                rest_mps2: 0.25,
+                creep: (0.25, 0.5),
+            };
+            let mut last = LastMetres::new(from, rates);
             let (mut way, mut peak) = (begins, 0.0f64);
             for cycle in 0..400 {
                 let before = from.speed_mps.min(last.setpoint.speed_mps);
