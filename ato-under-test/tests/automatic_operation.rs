@@ -250,6 +250,22 @@ fn wheels_that_no_service_wears_are_told_once() {
     );
 }
 
+/// Wheels so far from the configured ones that PSM1 is not believed: known to be further on when it came
+/// early, and PSM1 and PSM2 together tell the wheel.
+#[test]
+fn wheels_of_quite_another_size_do_not_run_past_the_platform() {
+    for rolls in [0.92, 1.08] {
+        let mut journey = Journey::new(&[]);
+        journey.wheels_tell = 1.0 / rolls;
+        let mut journey = journey.run();
+        let error_m = journey.stop_error_m();
+        assert!(error_m.abs() < 0.3, "{rolls}: {error_m}");
+        let faults = journey.faults();
+        assert!(faults.contains(&"marker_position"), "{rolls}: {faults:?}");
+        assert!(faults.contains(&"wheel_diameter"), "{rolls}: {faults:?}");
+    }
+}
+
 #[test]
 fn a_missing_marker_costs_no_centimetre_once_the_next_has_come() {
     let mut journey = Journey::new(&[]);

@@ -4,10 +4,18 @@
 //! since the last fix: a share of the way run, small once markers have calibrated them, and what
 //! they are thought to have slid. A pulse outside its window
 //! corrects nothing. Two such pulses in order, as far apart as their places, are believed
-//! together: then not the markers were wrong but the position.
+//! together: then not the markers were wrong but the position. One alone that comes early, by no
+//! more than uncalibrated wheels of the wrong size make of the way, tells how much further the train
+//! may be ([`further_m`]).
 
 use protocol::config::MarkerConfig;
 use protocol::line::Section;
+
+/// Share of the way by which wheels of another size than the configured one may be wrong, so that two
+/// sightings still agree [default]: a wheel changed without telling the unit, with something to spare.
+const WRONG_WHEEL: f64 = 0.15;
+/// Way for which a sighting away from its place is remembered, m [default].
+const REMEMBERED_M: f64 = 600.0;
 
 /// A place at which the train is known to have been.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +35,8 @@ pub struct Sighting {
     pub marker: u8,
     /// m.
     pub way_m: f64,
+    /// Way run on sliding wheels from the fix until then, m.
+    pub slid_m: f64,
 }
 
 /// How the way told is related to the way run since the last fix.
@@ -69,12 +79,21 @@ pub fn window_m(fix: &Fix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -
     least + share * libm::fabs(run_m) + wheels.slid_m
 }
 
-/// Judges a sighting; `doubtful` is the last sighting that was away from its place.
+/// The sighting that was away from its place before this one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Doubtful {
+    /// It, none since the fix.
+    pub sighting: Option<Sighting>,
+    /// A marker is overdue: even the fix may have been wrong.
+    pub unsure: bool,
+}
+
+/// Judges a sighting.
 pub fn judge(
     section: &Section,
     fix: &Fix,
     sighting: Sighting,
-    doubtful: Option<Sighting>,
+    doubtful: Doubtful,
     wheels: &Wheels,
     config: &MarkerConfig,
 ) -> Judgement {
@@ -92,7 +111,9 @@ pub fn judge(
             Judgement::OutOfOrder
         };
     }
-    if doubtful.is_some_and(|first| agree(section, first, sighting, wheels.scale, config)) {
+    let onward = sighting.marker > fix.marker || doubtful.unsure;
+    let agrees = |first| agree(section, first, sighting, wheels, config);
+    if onward && doubtful.sighting.is_some_and(agrees) {
         return Judgement::Believed;
     }
     if self::place_m(section, fix.marker + 1).is_some_and(near) {
@@ -101,20 +122,43 @@ pub fn judge(
     Judgement::Away(at_m - place_m)
 }
 
+/// How much further than it seems the train may be after a sighting `error_m` from its place, m: wheels
+/// greater than configured hear every marker early. Calibrated wheels do not, and the next marker alone
+/// tells it.
+pub fn further_m(
+    fix: &Fix,
+    sighting: Sighting,
+    error_m: f64,
+    wheels: &Wheels,
+    config: &MarkerConfig,
+) -> f64 {
+    let run_m = wheels.run_m(sighting.way_m - fix.way_m);
+    let calibrated = wheels.doubt < config.window_share;
+    let possible = sighting.marker == fix.marker + 1 && -error_m <= WRONG_WHEEL * run_m;
+    if possible && !calibrated {
+        (-error_m).max(0.0)
+    } else {
+        0.0
+    }
+}
+
 /// Two sightings in order and as far apart as their places.
 fn agree(
     section: &Section,
     first: Sighting,
     second: Sighting,
-    scale: f64,
+    wheels: &Wheels,
     config: &MarkerConfig,
 ) -> bool {
     let places = place_m(section, first.marker).zip(place_m(section, second.marker));
+    let told_m = second.way_m - first.way_m;
+    let slid_m = second.slid_m - first.slid_m;
     first.marker < second.marker
+        && libm::fabs(told_m) <= REMEMBERED_M
         && places.is_some_and(|(from_m, to_m)| {
             let apart_m = to_m - from_m;
-            let run_m = (second.way_m - first.way_m) * scale;
-            libm::fabs(run_m - apart_m) <= config.window_m + config.window_share * apart_m
+            let run_m = told_m * wheels.scale + slid_m;
+            libm::fabs(run_m - apart_m) <= config.window_m + WRONG_WHEEL * apart_m + slid_m
         })
 }
 
@@ -148,15 +192,24 @@ mod tests {
         let at = |marker, position_m: f64| Sighting {
             marker,
             way_m: position_m - second,
+            slid_m: 0.0,
         };
-        let judged_with = |wheels, sighting| judge(section, &fix, sighting, None, &wheels, &config);
+        let judged_with = |wheels, sighting| {
+            let doubtful = Doubtful::default();
+            judge(section, &fix, sighting, doubtful, &wheels, &config)
+        };
         let wheels = Wheels {
             scale: 1.0,
             doubt: 0.004,
             slid_m: 0.0,
         };
-        let judged =
-            |sighting, doubtful| judge(section, &fix, sighting, doubtful, &wheels, &config);
+        let judged = |sighting, doubtful| {
+            let doubtful = Doubtful {
+                sighting: doubtful,
+                unsure: false,
+            };
+            judge(section, &fix, sighting, doubtful, &wheels, &config)
+        };
         assert_eq!(judged(at(3, third + 0.8), None), Judgement::Believed);
         // Wheels that nothing has calibrated can be wrong by more, and so can those that slid.
         let late = at(3, third + 2.0);
@@ -181,5 +234,55 @@ mod tests {
         assert!(matches!(judged(slid, None), Judgement::Away(_)));
         let next = at(4, fourth - 12.2);
         assert_eq!(judged(next, Some(slid)), Judgement::Believed);
+        // What slid between the two was run, too.
+        let tells_less = Sighting {
+            slid_m: 8.0,
+            ..at(4, fourth - 20.2)
+        };
+        assert_eq!(judged(tells_less, Some(slid)), Judgement::Believed);
+        assert!(matches!(
+            judged(at(4, fourth - 20.2), Some(slid)),
+            Judgement::Away(_)
+        ));
+    }
+
+    /// PSM1 and PSM2 heard in order after PSM3 was believed, and in one that lies 600 m back.
+    #[test]
+    fn a_pair_takes_no_fix_back_and_is_not_remembered_for_ever() {
+        let text = include_str!("../../../scripts/units/sg100.toml");
+        let config = UnitConfig::from_toml(text).unwrap().marker;
+        let line = include_str!("../../../scripts/lines/line8.toml");
+        let line = Line::from_toml(line).unwrap();
+        let section = line.section(61).unwrap();
+        let wheels = Wheels {
+            scale: 1.0,
+            doubt: 0.004,
+            slid_m: 0.0,
+        };
+        let at = |marker, way_m| Sighting {
+            marker,
+            way_m,
+            slid_m: 0.0,
+        };
+        let judged = |section: &Section, believed: u8, unsure| {
+            let [first, second, ..] = section.markers_m;
+            let fix = Fix {
+                place_m: section.markers_m[2],
+                way_m: 0.0,
+                marker: believed,
+            };
+            let doubtful = Doubtful {
+                sighting: Some(at(1, 40.0)),
+                unsure,
+            };
+            let pair = at(2, 40.0 + second - first);
+            judge(section, &fix, pair, doubtful, &wheels, &config)
+        };
+        assert!(matches!(judged(section, 3, false), Judgement::Away(_)));
+        assert_eq!(judged(section, 3, true), Judgement::Believed);
+        assert_eq!(judged(section, 1, false), Judgement::Believed);
+        let mut long = section.clone();
+        long.markers_m[0] -= 200.0;
+        assert!(matches!(judged(&long, 1, false), Judgement::Away(_)));
     }
 }

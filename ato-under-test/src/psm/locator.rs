@@ -4,7 +4,7 @@
 //! that must have come by now and has not leaves the position unsure: from there on
 //! [`Locator::ahead_m`] grows, the way by which the train may be further than it seems. ATO stops by
 //! the most advanced position that can be believed, so that a train without markers stops short
-//! rather than beyond the platform.
+//! rather than beyond the platform. So it does after a marker that came too early to be believed.
 
 use protocol::Instant;
 use protocol::config::{MarkerConfig, UnitConfig};
@@ -12,7 +12,9 @@ use protocol::event::Event;
 use protocol::line::{Line, Section};
 use protocol::message::TwcWayside;
 
-use super::belief::{Fix, Judgement, Sighting, Wheels, judge, place_m, window_m};
+use super::belief::{
+    Doubtful, Fix, Judgement, Sighting, Wheels, further_m, judge, place_m, window_m,
+};
 use super::{Movement, Odometer, WheelCalibration};
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
@@ -22,6 +24,9 @@ const MARKERS: u8 = 4;
 /// Greatest share of the way run by which [`Locator::ahead_m`] grows, so that the stop point comes
 /// nearer gently [default].
 const AHEAD_SHARE: f64 = 0.5;
+/// Time without a tachometer pulse after which the wheels stand, s: ATP's standstill is up to 0.3 m/s, at
+/// which a train that is stopping still passes a marker.
+const STANDS_S: f64 = 0.5;
 
 /// Section, position and marker order.
 #[derive(Debug)]
@@ -38,6 +43,8 @@ pub struct Locator {
     slid_m: f64,
     /// Way told when the position became unsure, m.
     unsure_since_m: Option<f64>,
+    /// Way by which a marker that was not believed came early, m.
+    early_m: f64,
     wheel_reported: bool,
     last_marker: u8,
     count: u8,
@@ -68,6 +75,7 @@ impl Locator {
             doubtful: None,
             slid_m: 0.0,
             unsure_since_m: None,
+            early_m: 0.0,
             wheel_reported: false,
             last_marker: 0,
             count: 0,
@@ -96,6 +104,7 @@ impl Locator {
             self.doubtful = None;
             self.slid_m = 0.0;
             self.unsure_since_m = None;
+            self.early_m = 0.0;
             self.wheel_reported = false;
         }
     }
@@ -112,13 +121,15 @@ impl Locator {
         if let Some(pulse) = pulse {
             self.last_marker = pulse.marker;
             self.count = self.count.wrapping_add(1);
-            if movement.standstill || self.section.is_none() {
+            let stands = movement.edge_age_s > STANDS_S || !movement.driven;
+            if movement.standstill && stands || self.section.is_none() {
                 self.take_standing(now, pulse.marker, log);
             } else {
                 let age_s = f64::from(pulse.age_us) / 1e6;
                 let sighting = Sighting {
                     marker: pulse.marker,
                     way_m: self.odometer.way_ago_m(age_s),
+                    slid_m: self.slid_m,
                 };
                 self.pass_marker(now, sighting, log);
             }
@@ -143,7 +154,11 @@ impl Locator {
     /// A pulse on the way. One that is not believed is reported and changes nothing.
     fn pass_marker(&mut self, now: Instant, sighting: Sighting, log: &mut EventLog) {
         let Some(section) = &self.section else { return };
-        let (wheels, doubtful) = (self.wheels(), self.doubtful);
+        let wheels = self.wheels();
+        let doubtful = Doubtful {
+            sighting: self.doubtful,
+            unsure: self.unsure_since_m.is_some(),
+        };
         let config = &self.config;
         match judge(section, &self.fix, sighting, doubtful, &wheels, config) {
             Judgement::Believed => self.believe(now, sighting, log),
@@ -153,6 +168,8 @@ impl Locator {
             Judgement::Away(error_m) => {
                 let error_cm = libm::round(error_m * 100.0) as i32;
                 log.push(now, Event::MarkerPosition, error_cm);
+                let further_m = further_m(&self.fix, sighting, error_m, &wheels, config);
+                self.early_m = self.early_m.max(further_m);
                 self.doubtful = Some(sighting);
             }
         }
@@ -169,13 +186,10 @@ impl Locator {
                 log.push(now, Event::MarkerMissing, i32::from(missing));
             }
         }
-        if self.fix.marker != 0 {
-            let track_m = place_m - self.fix.place_m;
-            // A span on sliding wheels tells nothing of their diameter.
-            if self.slid_m == 0.0 {
-                self.wheel.learn(track_m, sighting.way_m - self.fix.way_m);
-                self.report_wheel(now, log);
-            }
+        // A span on sliding wheels tells nothing of their diameter.
+        if let Some((from_m, way_m)) = self.span_from(&sighting).filter(|_| self.slid_m == 0.0) {
+            self.wheel.learn(place_m - from_m, sighting.way_m - way_m);
+            self.report_wheel(now, log);
         }
         self.fix = Fix {
             place_m,
@@ -186,6 +200,19 @@ impl Locator {
         self.doubtful = None;
         self.slid_m = 0.0;
         self.unsure_since_m = None;
+        self.early_m = 0.0;
+    }
+
+    /// Where a span that ends at a believed marker begins, place and way told, m: at the marker of the
+    /// fix, or, where only the way from the section's start is known, at a marker that waits for
+    /// a second one to agree with.
+    fn span_from(&self, end: &Sighting) -> Option<(f64, f64)> {
+        if self.fix.marker != 0 {
+            return Some((self.fix.place_m, self.fix.way_m));
+        }
+        let first = self.doubtful.filter(|first| first.marker < end.marker)?;
+        let place_m = place_m(self.section.as_ref()?, first.marker)?;
+        Some((place_m, first.way_m))
     }
 
     fn report_wheel(&mut self, now: Instant, log: &mut EventLog) {
@@ -256,14 +283,15 @@ impl Locator {
         }
     }
 
-    /// How much further the train may be, m; 0 as long as markers come.
+    /// How much further the train may be, m; 0 as long as markers come when they should.
     pub fn ahead_m(&self) -> f64 {
-        self.unsure_since_m.map_or(0.0, |since_m| {
+        let unsure_m = self.unsure_since_m.map_or(0.0, |since_m| {
             let way_m = self.odometer.way_m();
             let run_m = libm::fabs(way_m - self.fix.way_m);
             let grown_m = libm::fabs(way_m - since_m) * AHEAD_SHARE;
             (run_m * self.wheel.uncertainty()).min(grown_m)
-        })
+        });
+        unsure_m.max(self.early_m)
     }
 
     /// Last marker detected, 0 = none.
@@ -274,5 +302,50 @@ impl Locator {
     /// Markers detected, wrapping.
     pub fn count(&self) -> u8 {
         self.count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Position after PSM1 was heard at 0.2 m/s, ATP's standstill, 0.5 m before its place by the wheels.
+    fn position_after_psm1(driven: bool, edge_age_s: f64) -> (f64, f64) {
+        let text = include_str!("../../../scripts/units/sg100.toml");
+        let config = UnitConfig::from_toml(text).unwrap();
+        let line = include_str!("../../../scripts/lines/line8.toml");
+        let line = Line::from_toml(line).unwrap();
+        let section = line.section(61).unwrap();
+        let mut locator = Locator::new(&config);
+        let departing = TwcWayside {
+            section: section.section,
+            loop_id: section.from_loop,
+            ..TwcWayside::default()
+        };
+        locator.locate(&departing, &line, true);
+        let mut log = EventLog::default();
+        let pulse = Some(MarkerPulse {
+            marker: 1,
+            age_us: 0,
+        });
+        let movement = Movement {
+            moved_m: section.markers_m[0] - section.start_m - 0.5,
+            edge_age_s,
+            speed_mps: 0.2,
+            standstill: true,
+            driven,
+        };
+        locator.step(Instant::ZERO, movement, pulse, &mut log);
+        (locator.position_m(), section.markers_m[0])
+    }
+
+    #[test]
+    fn a_marker_passed_slowly_counts_and_a_test_marker_does_not() {
+        let (position_m, place_m) = position_after_psm1(true, 0.1);
+        assert!(libm::fabs(position_m - place_m) < 0.05, "{position_m}");
+        for (driven, edge_age_s) in [(false, 0.1), (true, 0.6)] {
+            let (position_m, place_m) = position_after_psm1(driven, edge_age_s);
+            assert!(position_m < place_m - 0.45, "{driven} {position_m}");
+        }
     }
 }
