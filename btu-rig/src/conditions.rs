@@ -1,5 +1,8 @@
 //! How the train and track of one run differ from what the unit is told.
 
+/// Greatest factor on dead times and time constants that may be asked for.
+pub const MAX_DELAY_FACTOR: f64 = 5.0;
+
 /// A force that works against the train besides its resistance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Disturbance {

@@ -3,7 +3,7 @@
 use protocol::config::ConfigError;
 use serde::Deserialize;
 
-use crate::conditions::{Conditions, Disturbance};
+use crate::conditions::{Conditions, Disturbance, MAX_DELAY_FACTOR};
 use crate::rig::random::Random;
 
 /// A quantity that differs from run to run.
@@ -101,7 +101,7 @@ impl Scatter {
                 50.0,
             ),
             ("adhesion", self.adhesion, 0.02, 0.6),
-            ("delay_factor", self.delay_factor, 0.0, 5.0),
+            ("delay_factor", self.delay_factor, 0.0, MAX_DELAY_FACTOR),
             ("brake_factor", self.brake_factor, 0.2, 2.0),
             ("wheel_factor", self.wheel_factor, 0.8, 1.2),
             ("marker_offset_m", self.marker_offset_m, -5.0, 5.0),

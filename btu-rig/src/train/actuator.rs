@@ -1,9 +1,11 @@
 //! Effort that follows its demand: dead time, then a first-order lag.
 
+use super::check::MAX_TIME_S;
 use super::{MAX_CARS, PerCar};
+use crate::conditions::MAX_DELAY_FACTOR;
 
-/// Longest dead time in steps: 2.5 s of 5 ms; longer ones are cut to it.
-const MAX_DELAY_STEPS: usize = 500;
+/// Longest dead time that a checked train on a checked day can have, s: bounds what is kept.
+const MAX_DEAD_S: f64 = MAX_TIME_S * MAX_DELAY_FACTOR;
 
 /// Times of an actuator, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +97,7 @@ impl Actuators {
         self.rise = share_per_step(dt_s, self.times.rise_s);
         self.fall = share_per_step(dt_s, self.times.fall_s);
         let steps = if dt_s > 0.0 {
-            ((self.times.dead_s / dt_s).round() as usize).min(MAX_DELAY_STEPS)
+            (self.times.dead_s.min(MAX_DEAD_S) / dt_s).round() as usize
         } else {
             0
         };
@@ -142,5 +144,19 @@ mod tests {
         assert!((after(8.0, 100.0) - 100.0).abs() < 1e-3);
         let released = after(1.0, 0.0);
         assert!((released - 36.8).abs() < 0.1, "{released}");
+    }
+
+    /// The longest dead time the checks admit, on the slowest day they admit, is kept whole.
+    #[test]
+    fn the_longest_dead_time_is_not_cut() {
+        let longest = Times {
+            dead_s: MAX_TIME_S,
+            rise_s: 0.0,
+            fall_s: 0.0,
+        };
+        let mut actuators = Actuators::new(longest.scaled(MAX_DELAY_FACTOR));
+        let steps = (MAX_TIME_S * MAX_DELAY_FACTOR / DT).round() as usize;
+        let moved = (0..steps + 9).position(|_| actuators.step(DT, &[1.0; MAX_CARS])[0] > 0.0);
+        assert_eq!(moved, Some(steps));
     }
 }

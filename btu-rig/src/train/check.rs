@@ -6,7 +6,7 @@ use super::MAX_CARS;
 use super::data::{CarData, CarsData, IdealData, Role};
 
 /// Longest dead time or time constant, s.
-const MAX_TIME_S: f64 = 5.0;
+pub(super) const MAX_TIME_S: f64 = 5.0;
 
 /// Checks a point mass.
 pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
