@@ -173,6 +173,31 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
     }
 }
 
+/// On rails of 0.08 wheels slide in full service: cycles say so, and the speed plot shows where.
+#[test]
+fn a_slide_is_seen_in_rows_and_in_the_speed_plot() {
+    let place = Place::new();
+    let slippery = [
+        "--adhesion",
+        "0.08",
+        "--report",
+        "run.html",
+        "--report",
+        "run.csv",
+    ];
+    driven(&place, &[&PSS[..], &slippery].concat());
+    let rows = place.read("run.csv");
+    assert!(
+        rows.lines()
+            .next()
+            .is_some_and(|head| head.ends_with(",sliding")),
+        "{rows}"
+    );
+    assert!(rows.lines().any(|row| row.ends_with(",1.000000")));
+    let page = place.read("run.html");
+    assert!(page.contains("rect class=\"shaded\"") && page.contains("a car slips or slides"));
+}
+
 #[test]
 fn reports_stand_alone_and_their_rows_end_where_the_train_does() {
     let place = Place::new();

@@ -13,7 +13,7 @@ use crate::drive::monte_carlo::MonteCarlo;
 type Of = fn(&Row) -> f64;
 
 /// Columns of a cycle.
-const COLUMNS: [(&str, Of); 14] = [
+const COLUMNS: [(&str, Of); 15] = [
     ("t_s", |r| r.t_s),
     ("x_m", |r| r.x_m),
     ("speed_kmh", |r| r.speed_kmh),
@@ -28,6 +28,7 @@ const COLUMNS: [(&str, Of); 14] = [
     ("electric_brake_n", |r| r.electric_brake_n),
     ("air_brake_n", |r| r.air_brake_n),
     ("power_w", |r| r.power_w),
+    ("sliding", |r| f64::from(u8::from(r.sliding))),
 ];
 
 /// All of it.

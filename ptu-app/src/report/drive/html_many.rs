@@ -101,7 +101,7 @@ fn histogram(many: &MonteCarlo) -> Plot {
 type Of = fn(&Drawn) -> f64;
 
 /// What is drawn, against which stop errors are shown.
-const DRAWN: [(&str, Of); 6] = [
+const DRAWN: [(&str, Of); 7] = [
     ("passengers, t", |d| d.load_kg / 1000.0),
     ("gradients added, ‰", |d| {
         d.conditions.gradient_offset_permille
@@ -109,6 +109,9 @@ const DRAWN: [(&str, Of); 6] = [
     ("adhesion", |d| d.conditions.adhesion),
     ("delays, of nominal", |d| d.conditions.delay_factor),
     ("brakes, of nominal", |d| d.conditions.brake_factor),
+    ("wheel diameter, of configured", |d| {
+        d.conditions.wheel_factor
+    }),
     ("PSM4 off by, cm", |d| {
         d.conditions.marker_offsets_m[3] * 100.0
     }),

@@ -37,6 +37,7 @@ pub fn plots(runs: &[Driven]) -> Vec<Plot> {
                 y_reach,
                 series,
                 places: places(runs, along == "time"),
+                shaded: Vec::new(),
             });
         };
         add("Speed", "km/h", speed(runs, x), Some((0.0, 1.0)));
@@ -63,10 +64,28 @@ pub fn plots(runs: &[Driven]) -> Vec<Plot> {
         );
     }
     if let [run] = runs {
+        for (plot, x) in plots
+            .iter_mut()
+            .filter(|plot| plot.title.starts_with("Speed"))
+            .zip([TIME, PLACE])
+        {
+            plot.shaded = slides(&run.outcome.rows, x);
+            if !plot.shaded.is_empty() {
+                plot.title += " (shaded: a car slips or slides)";
+            }
+        }
         plots.push(forces(run));
     }
     plots.extend(last_metres(runs));
     plots
+}
+
+/// Where cars slip or slide.
+fn slides(rows: &[Row], x: Of) -> Vec<(f64, f64)> {
+    rows.chunk_by(|a, b| a.sliding == b.sliding)
+        .filter(|stretch| stretch[0].sliding)
+        .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
+        .collect()
 }
 
 /// The unavoidable jerk of the standstill itself is left out, as in the figures.
@@ -215,6 +234,7 @@ fn last_metres(runs: &[Driven]) -> Option<Plot> {
         })
         .chain(at)
         .collect(),
+        ..Plot::default()
     })
 }
 

@@ -20,6 +20,8 @@ const BOTTOM: f64 = 42.0;
 const ROW: f64 = 12.0;
 /// Share of an axis left free beyond what is shown.
 const FREE: f64 = 0.04;
+/// Width of the thinnest stretch that can be seen.
+const THINNEST: f64 = 1.0;
 /// Room a letter of a name takes.
 const LETTER: f64 = 6.4;
 
@@ -75,6 +77,8 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// Places.
     pub places: Vec<Place>,
+    /// Stretches of the horizontal axis that are shaded, each from its first end to its second.
+    pub shaded: Vec<(f64, f64)>,
 }
 
 impl Plot {
@@ -87,6 +91,7 @@ impl Plot {
             svg viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img" aria-label=(self.title) {
                 text.title x=(LEFT) y="13" { (self.title) }
                 (self.legend())
+                (self.shades(&x))
                 (grid(&x, &y))
                 (self.named_places(&x))
                 @for series in &self.series { (curve::drawn(series, &x, &y)) }
@@ -132,6 +137,18 @@ impl Plot {
             @for (at, series) in placed {
                 line class=(curve::class(series)) x1=(at) y1="9" x2=(at + 20.0) y2="9" {}
                 text.legend x=(at + 25.0) y="13" { (series.name) }
+            }
+        }
+    }
+
+    fn shades(&self, x: &Scale) -> Markup {
+        let seen = self
+            .shaded
+            .iter()
+            .filter(|(from, to)| x.holds(*from) && x.holds(*to));
+        html! {
+            @for (from, to) in seen.map(|(from, to)| (x.at(*from), x.at(*to))) {
+                rect.shaded x=(num(from)) y=(TOP) width=(num((to - from).max(THINNEST))) height=(HEIGHT - BOTTOM - TOP) {}
             }
         }
     }
