@@ -1,14 +1,15 @@
 //! How trains, tracks and days differ: what is drawn for each of many runs.
 
+use std::collections::BTreeMap;
+
 use protocol::config::ConfigError;
-use serde::Deserialize;
+use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::conditions::{Conditions, Disturbance, MAX_DELAY_FACTOR};
 use crate::rig::random::Random;
 
 /// A quantity that differs from run to run.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(untagged, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
     /// Any value of a range as likely as any other.
     Uniform {
@@ -24,6 +25,22 @@ pub enum Spread {
         /// Standard deviation.
         sigma: f64,
     },
+}
+
+impl<'de> Deserialize<'de> for Spread {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let wrong = || D::Error::custom("use { low, high } or { mean, sigma }, all numbers");
+        let table = BTreeMap::<String, f64>::deserialize(from).map_err(|_| wrong())?;
+        let pairs: Vec<_> = table
+            .iter()
+            .map(|(key, value)| (key.as_str(), *value))
+            .collect();
+        match pairs[..] {
+            [("high", high), ("low", low)] => Ok(Self::Uniform { low, high }),
+            [("mean", mean), ("sigma", sigma)] => Ok(Self::Normal { mean, sigma }),
+            _ => Err(wrong()),
+        }
+    }
 }
 
 impl Spread {
@@ -51,7 +68,7 @@ fn standard_normal(first: f64, second: f64) -> f64 {
 }
 
 /// All that differs; see `scripts/scatter.toml`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {
     /// Passengers, kg; what the train cannot carry stays behind.
@@ -163,6 +180,24 @@ mod tests {
         let (_, third) = spread(|d| d.conditions.marker_offsets_m[2]);
         assert!((third - 0.02).abs() < 1e-3, "{third}");
         assert_eq!(scatter.draw(77, 160_000.0), drawn[77]);
+    }
+
+    #[test]
+    fn a_wrong_spread_is_told_what_is_right_and_where() {
+        for instead in [
+            "0.03",
+            "{ spread = 0.03 }",
+            "{ low = 1 }",
+            "{ low = 1, sigma = 2 }",
+        ] {
+            let text = FILE.replace("{ mean = 1.0, sigma = 0.03 }", instead);
+            let error = Scatter::from_toml(&text).unwrap_err().to_string();
+            assert!(
+                error.contains("use { low, high } or { mean, sigma }"),
+                "{error}"
+            );
+            assert!(error.contains("brake_factor = "), "{error}");
+        }
     }
 
     #[test]
