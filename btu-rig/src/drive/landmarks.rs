@@ -9,6 +9,10 @@ use crate::procedure::UnitEvent;
 
 /// Share of the highest target that counts as reached.
 const REACHED: f64 = 0.99;
+/// Holding a target for so many rows, 1 s, is driving at it.
+const HOLDS_ROWS: usize = 20;
+/// Targets up to here are the approach's own, km/h.
+const APPROACH_KMH: f64 = 10.0;
 /// Difference of speeds that is more than how frames round, km/h.
 const DIFFERS_KMH: f64 = 0.1;
 
@@ -66,10 +70,31 @@ fn passing(rows: &[Row], x_m: f64, what: String) -> Option<Landmark> {
     Some(Landmark { t_s, x_m, what })
 }
 
-/// Where the target leaves what the limit allows, less `below_limit_kmh`, for good.
+/// Where the target begins to fall for good, below what the limit allows less `below_limit_kmh`:
+/// after it, the target neither rises nor holds any more. A target still on its way up to the limit
+/// is not the stop, nor is a slow-down to a speed that is then held, as to PSM1's; one that goes
+/// over into the stop without being held begins it.
 fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
     let cruises = |row: &Row| row.target_kmh >= row.limit_kmh - below_limit_kmh - DIFFERS_KMH;
-    let last = rows.iter().rposition(cruises)?;
+    // From each row on, the highest target still to come: equal to one a second later where the
+    // target holds, and where it only dips before it rises again.
+    let mut highest = 0.0;
+    let mut to_come: Vec<f64> = rows
+        .iter()
+        .rev()
+        .map(|row| {
+            highest = row.target_kmh.max(highest);
+            highest
+        })
+        .collect();
+    to_come.reverse();
+    let holds =
+        |pair: &[f64]| pair[HOLDS_ROWS] > APPROACH_KMH && pair[0] - pair[HOLDS_ROWS] <= DIFFERS_KMH;
+    let held = to_come.windows(HOLDS_ROWS + 1).rposition(holds)? + HOLDS_ROWS;
+    let last = rows
+        .iter()
+        .rposition(cruises)
+        .map_or(held, |at| at.max(held));
     let row = rows.get(last + 1).filter(|row| row.speed_kmh > 0.0)?;
     Some(Landmark::at(row, "stop curve takes over".into()))
 }
@@ -139,6 +164,22 @@ mod tests {
         let rows = triangle();
         let begins = stop_curve(&rows, 5.0).unwrap();
         assert!((begins.t_s - 10.05).abs() < 0.051, "{begins:?}");
-        assert_eq!(stop_curve(&rows, 0.0), None, "never at the limit itself");
+    }
+
+    /// The limit rises from 41 to 61 km/h at 4 s, so that the target of 36 lies far below it; from
+    /// 6 s on it is 30, held until 13 s when the train runs 7 m/s. Neither is the stop.
+    #[test]
+    fn a_rising_limit_and_a_slow_down_that_is_held_are_not_the_stop() {
+        let mut rows = triangle();
+        for row in &mut rows {
+            if row.t_s > 4.0 {
+                row.limit_kmh = 61.0;
+            }
+            if row.t_s > 6.0 {
+                row.target_kmh = row.target_kmh.min(25.2);
+            }
+        }
+        let begins = stop_curve(&rows, 5.0).unwrap();
+        assert!((begins.t_s - 13.0).abs() < 0.11, "{begins:?}");
     }
 }
