@@ -1,9 +1,8 @@
 //! What happened where on a run.
 
 use protocol::Instant;
-use protocol::event::Event;
-use protocol::message::Mode;
 
+use super::words::described;
 use super::{DrivePlan, Row};
 use crate::procedure::UnitEvent;
 
@@ -119,28 +118,11 @@ pub fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) -> Vec<La
             Landmark {
                 t_s,
                 x_m: row.x_m,
-                what: format!("unit: {}", described(event)),
+                what: format!("unit: {}", described(event.code, event.parameter)),
             }
         })
         .filter(|landmark| landmark.t_s >= first.t_s)
         .collect()
-}
-
-fn described(event: &UnitEvent) -> String {
-    let Some(known) = Event::from_code(event.code) else {
-        return format!("event {}, parameter {}", event.code, event.parameter);
-    };
-    let definition = known.definition();
-    if known == Event::ModeChanged {
-        return format!("mode {}", Mode::from_code(event.parameter as u8).label());
-    }
-    if definition.parameter.is_empty() {
-        return definition.name.into();
-    }
-    format!(
-        "{}, {} = {}",
-        definition.name, definition.parameter, event.parameter
-    )
 }
 
 #[cfg(test)]

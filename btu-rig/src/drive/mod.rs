@@ -16,6 +16,7 @@ mod plan;
 mod recording;
 mod row;
 pub mod scatter;
+mod words;
 
 use protocol::message::{EbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
@@ -98,7 +99,7 @@ pub enum Ending {
 }
 
 fn lacking(refusals: Option<u16>) -> String {
-    refusals.map_or_else(String::new, |bits| format!(" (refusals {bits:#06x})"))
+    refusals.map_or_else(String::new, |bits| format!(": {}", words::refusals(bits)))
 }
 
 fn because(cause: Option<EbCause>) -> String {
