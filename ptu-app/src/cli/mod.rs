@@ -40,9 +40,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Run check procedures
+    // A comment for users here would hide exit codes and examples, which these two tell themselves.
     Run(Box<run::RunArguments>),
-    /// Drive from station to station and measure the stop
     Drive(Box<drive::DriveArguments>),
     /// Show faults, signals, speed codes, lines or parts
     Catalog(catalog::CatalogArguments),
