@@ -135,9 +135,20 @@ fn the_ideal_train_has_the_mass_it_is_given() {
 }
 
 #[test]
+fn help_tells_exit_codes_and_examples() {
+    let place = Place::new();
+    for verb in ["drive", "run"] {
+        let said = place.ptu(&[verb, "--help"]).exits(0);
+        assert!(said.out.contains("Examples:\n  ptu"), "{}", said.out);
+    }
+    let said = place.ptu(&["drive", "--help"]);
+    assert!(said.out.contains("Exit code 0 when"), "{}", said.out);
+}
+
+#[test]
 fn wrong_commands_are_refused_and_say_what_is_known() {
     let place = Place::new();
-    let cases: [(&[&str], &[&str]); 13] = [
+    let cases: [(&[&str], &[&str]); 15] = [
         (
             &["--section", "99"],
             &["line line8 has no section 99", "61"],
@@ -153,6 +164,8 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
             &["--mass of train line6", "428807 kg"],
         ),
         (&["--mass", "nan"], &["--mass"]),
+        (&["--mass", "-1"], &["--mass of train line6", "-1 kg"]),
+        (&["--load", "-5"], &["--load -5 kg", "0 kg .. 160000 kg"]),
         (&["--load", "200000"], &["--load 200000 kg", "160000 kg"]),
         (&["--train", "lin6"], &["no train \"lin6\"", "\"line6\""]),
         (

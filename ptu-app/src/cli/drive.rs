@@ -48,10 +48,15 @@ pub struct DriveArguments {
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
     /// Total mass: of the ideal train, which the unit is told, or of a train of cars, as load
-    #[arg(long, value_name = "KG", conflicts_with = "load")]
+    #[arg(
+        long,
+        value_name = "KG",
+        conflicts_with = "load",
+        allow_negative_numbers = true
+    )]
     mass: Option<f64>,
     /// Passengers: a mass, empty or full [default: empty]
-    #[arg(long, value_name = "KG|empty|full")]
+    #[arg(long, value_name = "KG|empty|full", allow_negative_numbers = true)]
     load: Option<LoadChoice>,
     /// Force against the train: none, s1 or AMP@HZ in N·s/m and Hz
     #[arg(long, value_name = "NAME", value_parser = disturbance)]
@@ -60,10 +65,10 @@ pub struct DriveArguments {
     #[arg(long, value_name = "PERMILLE", allow_negative_numbers = true)]
     gradient: Option<f64>,
     /// Wheel–rail adhesion coefficient at standstill
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
     adhesion: Option<f64>,
     /// True wheel diameter over the configured one
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
     wheel: Option<f64>,
     /// Speed code from start to end, in place of the line's
     #[arg(long, value_name = "NAME")]
