@@ -148,7 +148,7 @@ fn help_tells_exit_codes_and_examples() {
 #[test]
 fn wrong_commands_are_refused_and_say_what_is_known() {
     let place = Place::new();
-    let cases: [(&[&str], &[&str]); 15] = [
+    let cases: [(&[&str], &[&str]); 16] = [
         (
             &["--section", "99"],
             &["line line8 has no section 99", "61"],
@@ -173,6 +173,10 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
             &["no key \"ato.servo.polse\"", "\"ato.servo.poles\""],
         ),
         (&["--set", "ato.arrived_m=90"], &["ato.arrived_m", "90"]),
+        (
+            &["--set", "ato.controller=pss", "--compare", "servo,pi"],
+            &["--set ato.controller=pss", "--compare"],
+        ),
         (&["--adhesion", "7"], &["--adhesion 7"]),
         (&["--disturbance", "s2"], &["\"s2\" is no disturbance"]),
         (&["--report", "drive.pdf"], &[".html, .json or .csv"]),

@@ -15,6 +15,9 @@ use crate::data::{DataFile, ScriptsDirectory, sha256};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
+/// Key of the controller in the unit configuration.
+const CONTROLLER_KEY: &str = "ato.controller";
+
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub struct Request {
@@ -72,6 +75,7 @@ impl Request {
     /// A name that is not known, or a value out of range.
     pub fn cases(&self, directory: &ScriptsDirectory) -> Result<Vec<Case>, Failure> {
         self.fixed.check()?;
+        self.one_controller_setting()?;
         let mut train = train::train(directory, &self.train)?;
         let load_kg = train::load(&mut train, self.mass_kg, self.load)?;
         let fixed = Fixed {
@@ -101,6 +105,20 @@ impl Request {
         Ok(cases)
     }
 
+    /// The key would win over the option without a word.
+    fn one_controller_setting(&self) -> Result<(), Failure> {
+        let set = self
+            .settings
+            .iter()
+            .find(|setting| setting.key() == CONTROLLER_KEY);
+        match set.filter(|_| !self.controllers.is_empty()) {
+            Some(setting) => Err(Failure::usage(format!(
+                "--set {setting} beside --controller or --compare: give one of them"
+            ))),
+            None => Ok(()),
+        }
+    }
+
     fn line(
         &self,
         directory: &ScriptsDirectory,
@@ -128,7 +146,7 @@ impl Request {
     ) -> Result<Vec<Arc<DriveBench>>, Failure> {
         let told = train::told(train);
         let bench = |controller: Option<&ControllerKind>| {
-            let chosen = controller.map(|kind| Setting::new("ato.controller", kind.name()));
+            let chosen = controller.map(|kind| Setting::new(CONTROLLER_KEY, kind.name()));
             let settings: Vec<_> = chosen
                 .into_iter()
                 .chain(told.iter().cloned())

@@ -35,6 +35,11 @@ impl Setting {
         }
     }
 
+    /// The key that is set.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
     fn apply(&self, table: &mut Table) -> Result<(), String> {
         let known = keys(table);
         let unknown = || {
