@@ -18,8 +18,9 @@ use super::{AtoInputs, art};
 const FASTEST_MPS: f64 = 150.0 / 3.6;
 /// Greatest change of speed within a cycle, also of a sliding wheel, m/s [default].
 const JUMP_MPS: f64 = 1.0;
-/// Acceleration asked for at which something must happen, m/s² [default].
-const ASKED_MPS2: f64 = 0.3;
+/// Acceleration asked for at which the speed cannot stay the same, m/s² [default]: more than the
+/// gradient of 35 ‰ and the resistance that a unit with a wrong track database may not know of.
+const ASKED_MPS2: f64 = 0.6;
 /// Change of speed in a cycle below which a tachometer says the same, m/s: what edge times in whole
 /// microseconds can make of one speed.
 const SAME_MPS: f64 = 5e-4;
@@ -120,10 +121,7 @@ impl Watch {
             return false;
         }
         self.frozen_s += CYCLE.as_secs();
-        let span_s = f64::from(config.watch.following_ms) / 1000.0;
-        // A departure waits for brakes to release; on the way nothing keeps a speed the same.
-        let share = if inputs.standstill { 1.0 } else { 0.5 };
-        self.frozen_s >= span_s * share
+        self.frozen_s >= f64::from(config.watch.following_ms) / 1000.0
     }
 
     /// Compares the change of speed with what the efforts should have made, both fading with the
@@ -217,4 +215,60 @@ fn sound(section: &Section) -> bool {
         && curves
             .iter()
             .all(|c| finite(&[c.at_m]) && (0.0..=1e6).contains(&c.radius_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::line::Line;
+    use protocol::message::{Mode, RunningMode};
+
+    use super::super::{Checks, tests::config};
+    use super::*;
+
+    /// Time after which a speed that stays the same is found absurd, within 30 s.
+    fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
+        let line = include_str!("../../../scripts/lines/line8.toml");
+        let line = Line::from_toml(line).unwrap();
+        let inputs = AtoInputs {
+            mode: Mode::AutomaticRun,
+            limit: Speed::from_mps(18.0),
+            fixed_speed: None,
+            running_mode: RunningMode::Normal,
+            section: line.section(61),
+            position_m: 100.0,
+            ahead_m: 0.0,
+            aligned_m: 0.3,
+            speed: Speed::from_mps(10.0),
+            standstill: false,
+            power_cut: false,
+            load_kg: 0.0,
+            checks: Checks::Passed,
+        };
+        let on = Watched {
+            state: AtoState::Run,
+            asked_mps2,
+            may_go: true,
+            stands: false,
+            arrived: false,
+        };
+        let mut watch = Watch::default();
+        let mut steps = 1..=600;
+        let found = steps.find(|_| {
+            let findings = watch.step(&inputs, on, &config());
+            assert_eq!(findings.not_following_mps, None);
+            findings.absurd == AbsurdInputs::FROZEN_SPEED
+        });
+        found.map(|step| f64::from(step) * CYCLE.as_secs())
+    }
+
+    #[test]
+    fn a_frozen_tachometer_is_found_and_a_grade_nobody_knows_of_is_none() {
+        // 35 ‰ are 0.34 m/s²: what the effort asks beyond the known costs of the track just holds it.
+        assert_eq!(frozen_after_s(0.34), None);
+        assert_eq!(frozen_after_s(-0.34), None);
+        for asked_mps2 in [0.7, -0.8] {
+            let after_s = frozen_after_s(asked_mps2);
+            assert!(after_s.is_some_and(|s| s < 4.1), "{after_s:?}");
+        }
+    }
 }
