@@ -80,6 +80,7 @@ impl Unit {
             lacking,
             departure: self.twc.data().is_some_and(|data| data.departure == 1),
             start: lines.contains(TrainLines::START),
+            acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
         }
     }

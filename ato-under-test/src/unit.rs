@@ -332,11 +332,19 @@ impl Unit {
         self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
     }
 
+    /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
+    fn holds(&self) -> bool {
+        let left_alone = self.atp.sequence().failed()
+            && self.atp.tachometers().standstill()
+            && self.inputs.controller == 0;
+        self.ato_outputs.holding_brake || left_alone
+    }
+
     /// Drives the contacts and tells the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
         let healthy = self.self_tester.vital_passed() && self.inputs.alive;
         let mut wanted = self.atp.outputs(healthy);
-        wanted.set(Outputs::HOLDING_BRAKE, self.ato_outputs.holding_brake);
+        wanted.set(Outputs::HOLDING_BRAKE, self.holds());
         self.contacts = self.output_stage.drive(now, wanted, &self.faults);
         let output = IoOutput {
             outputs: self.contacts,

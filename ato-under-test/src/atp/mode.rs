@@ -1,5 +1,9 @@
 //! Operating modes and the automatic-mode sequence [S2 §3.1]: conditions → Automatic → Automatic
 //! Run, with the reason for every refusal.
+//!
+//! When ATO has failed in a run there is no Automatic until the failure is acknowledged or the mode
+//! switch has left its automatic positions. A driverless train then waits for a departure that is
+//! given anew, or for the start button: the one that was still given began the run that failed.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -35,6 +39,8 @@ pub struct ModeInputs {
     pub departure: bool,
     /// Start button pressed.
     pub start: bool,
+    /// Acknowledge button pressed.
+    pub acknowledge: bool,
     /// The train has reached the stop point and stands.
     pub arrived: bool,
 }
@@ -44,6 +50,12 @@ pub struct ModeInputs {
 pub struct ModeSequence {
     mode: Mode,
     start: Edge,
+    acknowledge: Edge,
+    departure: Edge,
+    /// ATO has failed in a run and nobody has acknowledged it.
+    failed: bool,
+    /// The next run needs a departure of its own.
+    departs_anew: bool,
     refusals: Refusals,
 }
 
@@ -51,10 +63,13 @@ impl ModeSequence {
     /// One cycle.
     pub fn step(&mut self, now: Instant, inputs: ModeInputs, log: &mut EventLog) {
         let pressed = self.start.rises(inputs.start);
-        let departing = match inputs.switch {
-            ModeSwitch::Driverless => inputs.departure,
-            _ => inputs.departure && pressed,
-        };
+        self.keep_failure(&inputs);
+        let mut inputs = inputs;
+        if self.failed {
+            inputs.lacking.insert(Refusals::ATO_NOT_READY);
+        }
+        let departing = inputs.departure
+            && (pressed || inputs.switch == ModeSwitch::Driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
         let next = next(self.mode, &inputs, departing);
@@ -65,15 +80,43 @@ impl ModeSequence {
                 i32::from(self.refusals.bits()),
             );
         }
+        if next == Mode::AutomaticRun && self.mode != next {
+            self.departs_anew = false;
+        }
         if next != self.mode {
             self.mode = next;
             log.push(now, Event::ModeChanged, i32::from(next.code()));
         }
     }
 
+    /// Latches a failure of ATO in a run, and gives it up.
+    fn keep_failure(&mut self, inputs: &ModeInputs) {
+        let acknowledged = self.acknowledge.rises(inputs.acknowledge);
+        let departs = self.departure.rises(inputs.departure);
+        let left = !matches!(
+            inputs.switch,
+            ModeSwitch::Automatic | ModeSwitch::Driverless
+        );
+        let runs = self.mode == Mode::AutomaticRun;
+        if runs && inputs.lacking.contains(Refusals::ATO_NOT_READY) {
+            self.failed = true;
+            self.departs_anew = true;
+            return;
+        }
+        if left || acknowledged && !runs {
+            self.failed = false;
+        }
+        self.departs_anew &= !departs;
+    }
+
     /// The mode.
     pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// ATO has failed in a run and nobody has acknowledged it.
+    pub fn failed(&self) -> bool {
+        self.failed
     }
 
     /// Preconditions that do not hold.
@@ -124,8 +167,60 @@ mod tests {
         lacking: Refusals::empty(),
         departure: true,
         start: false,
+        acknowledge: false,
         arrived: false,
     };
+
+    #[test]
+    fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
+        let mut sequence = ModeSequence::default();
+        let mut log = EventLog::default();
+        let driverless = ModeInputs {
+            switch: ModeSwitch::Driverless,
+            ..GOOD
+        };
+        let mut after = |inputs| {
+            (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+            (sequence.mode(), sequence.refusals())
+        };
+        let none = Refusals::empty();
+        assert_eq!(after(driverless), (Mode::AutomaticRun, none));
+        let failed = ModeInputs {
+            lacking: Refusals::ATO_NOT_READY,
+            ..driverless
+        };
+        let refused = (Mode::Manual, Refusals::ATO_NOT_READY);
+        assert_eq!(after(failed), refused);
+        assert_eq!(after(driverless), refused, "ready again, not acknowledged");
+        let acknowledged = ModeInputs {
+            acknowledge: true,
+            ..driverless
+        };
+        assert_eq!(after(acknowledged), (Mode::Automatic, none));
+        assert_eq!(
+            after(driverless),
+            (Mode::Automatic, none),
+            "the old departure"
+        );
+        let waits = ModeInputs {
+            departure: false,
+            ..driverless
+        };
+        assert_eq!(after(waits).0, Mode::Automatic);
+        assert_eq!(after(driverless).0, Mode::AutomaticRun);
+        assert_eq!(after(failed), refused);
+        let manual = ModeInputs {
+            switch: ModeSwitch::Manual,
+            ..GOOD
+        };
+        assert_eq!(after(manual).0, Mode::Manual);
+        assert_eq!(after(driverless).0, Mode::Automatic);
+        let pressed = ModeInputs {
+            start: true,
+            ..driverless
+        };
+        assert_eq!(after(pressed).0, Mode::AutomaticRun);
+    }
 
     #[test]
     fn the_sequence_is_this_table() {
