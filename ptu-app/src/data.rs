@@ -11,6 +11,11 @@ use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, did_you_mean};
 
+/// Folder of unit configurations and the fault catalogue.
+const UNITS: &str = "units";
+/// The fault catalogue's name there.
+const FAULTS: &str = "faults";
+
 /// Where all data files are.
 #[derive(Clone, Debug)]
 pub struct ScriptsDirectory(PathBuf);
@@ -75,7 +80,7 @@ impl ScriptsDirectory {
     /// # Errors
     /// There is none of that name, or it is wrong.
     pub fn unit_config(&self, name: &str) -> Result<DataFile<UnitConfig>, Failure> {
-        self.load("units", name, "unit configuration", UnitConfig::from_toml)
+        self.load(UNITS, name, "unit configuration", UnitConfig::from_toml)
     }
 
     /// The line `lines/NAME.toml`.
@@ -99,9 +104,7 @@ impl ScriptsDirectory {
     /// The file is missing or wrong.
     pub fn faults(&self) -> Result<FaultCatalogue, Failure> {
         let load = |text: &str| FaultCatalogue::from_toml(text);
-        Ok(self
-            .load("units", "faults", "fault catalogue", load)?
-            .content)
+        Ok(self.load(UNITS, FAULTS, "fault catalogue", load)?.content)
     }
 
     /// The fault modes of these names.
@@ -130,6 +133,7 @@ impl ScriptsDirectory {
         self.names("lines")
     }
 
+    /// Names of what `folder` holds; the fault catalogue among unit configurations is none of them.
     fn names(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.join(folder))
             .into_iter()
@@ -138,6 +142,7 @@ impl ScriptsDirectory {
         let mut names: Vec<_> = entries
             .filter_map(|entry| entry.file_name().into_string().ok())
             .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+            .filter(|name| (folder, name.as_str()) != (UNITS, FAULTS))
             .collect();
         names.sort();
         names

@@ -148,7 +148,7 @@ fn help_tells_exit_codes_and_examples() {
 #[test]
 fn wrong_commands_are_refused_and_say_what_is_known() {
     let place = Place::new();
-    let cases: [(&[&str], &[&str]); 16] = [
+    let cases: [(&[&str], &[&str]); 17] = [
         (
             &["--section", "99"],
             &["line line8 has no section 99", "61"],
@@ -176,6 +176,10 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
         (
             &["--set", "ato.controller=pss", "--compare", "servo,pi"],
             &["--set ato.controller=pss", "--compare"],
+        ),
+        (
+            &["--unit-config", "nope"],
+            &["no unit configuration \"nope\"; known: sg100\n"],
         ),
         (&["--adhesion", "7"], &["--adhesion 7"]),
         (&["--disturbance", "s2"], &["\"s2\" is no disturbance"]),
