@@ -7,7 +7,7 @@ use protocol::injection::{Effect, Place};
 use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
 use protocol::{Instant, Speed};
 
-use crate::ato::{AtoInputs, Checks};
+use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings};
 use crate::atp::{Atp, Code, ModeInputs};
 use crate::kernel::RunCycle;
 use crate::report;
@@ -110,12 +110,32 @@ impl Unit {
             load_kg: self.tcms.load_kg(),
             checks: self.ato_checks(),
         };
-        self.ato_outputs = self.ato.step(inputs, &self.setup.config.ato);
-        self.locator.slide(self.ato_outputs.slid_m);
         let fault = self.faults.at(Place::AtoCpu);
-        self.ato_outputs.effort = self.effort_output.give(self.ato_outputs.effort, fault);
+        if matches!(fault, Some(Effect::Dead)) {
+            // A processor that has stopped leaves its outputs as they were; nothing happens anew.
+            self.ato_outputs.findings = Findings::default();
+            self.ato_outputs.slid_m = 0.0;
+        } else {
+            self.ato_outputs = self.ato.step(inputs, &self.setup.config.ato);
+            self.ato_cycles = self.ato_cycles.wrapping_add(1);
+            let effort = self.ato_outputs.effort;
+            self.ato_outputs.effort = self.effort_output.give(effort, fault);
+        }
+        self.watch_processor();
+        self.locator.slide(self.ato_outputs.slid_m);
         self.report_ato(now, was_ready);
         self.record_run(now, Speed::from_mps(speed));
+    }
+
+    /// A stopped processor is reset and its outputs are taken from it; ATP brakes in its place.
+    fn watch_processor(&mut self) {
+        if self.ato_watchdog.step(self.ato_cycles) {
+            self.ato = Ato::new(&self.setup.config);
+            self.ato_outputs = AtoOutputs {
+                failure: AtoFailure::Processor,
+                ..AtoOutputs::default()
+            };
+        }
     }
 
     fn record_run(&mut self, now: Instant, speed: Speed) {
@@ -131,15 +151,11 @@ impl Unit {
         self.run_record.step(now, running, cycle);
     }
 
-    /// KRN's checks of what ATO needs [S0 §1, §3.3].
+    /// KRN's checks of what ATO needs [S0 §1, §3.3]; its processor is under the watchdog.
     fn ato_checks(&self) -> Checks {
         let failed = self.self_tester.failed();
         let run = self.atp.sequence().mode() == Mode::AutomaticRun;
         let causes = [
-            (
-                matches!(self.faults.at(Place::AtoCpu), Some(Effect::Dead)),
-                AtoFailure::Processor,
-            ),
             (
                 failed.intersects(SelfTest::CONFIGURATION | SelfTest::TRACK_DATABASE),
                 AtoFailure::StoredData,

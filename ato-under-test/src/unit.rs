@@ -15,7 +15,7 @@ use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ScanContext};
 use crate::com::{ArmConditions, IoImage, Maintenance, RejectWatch, TcmsLink};
 use crate::front_end::{EffortOutput, Faults, FrontEnd, OutputStage, spoil_stored_data};
-use crate::kernel::{EventLog, FreezeFrame, RunRecord, SelfTestInputs, SelfTester};
+use crate::kernel::{EventLog, FreezeFrame, RunRecord, SelfTestInputs, SelfTester, Watchdog};
 use crate::psm::{Locator, Movement, Tra};
 use crate::report;
 use crate::signals::{AntennaSignal, Inputs};
@@ -63,6 +63,9 @@ pub struct Unit {
     pub(crate) inputs: Inputs,
     pub(crate) image: IoImage,
     pub(crate) ato: Ato,
+    /// Cycles ATO's processor has run, wrapping.
+    pub(crate) ato_cycles: u8,
+    pub(crate) ato_watchdog: Watchdog,
     pub(crate) run_record: RunRecord,
     pub(crate) faults: Faults,
     front_end: FrontEnd,
@@ -99,6 +102,8 @@ impl Unit {
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms)),
             ato: Ato::new(config),
+            ato_cycles: 0,
+            ato_watchdog: Watchdog::default(),
             run_record: RunRecord::default(),
             ato_outputs: AtoOutputs::default(),
             effort_output: EffortOutput::default(),

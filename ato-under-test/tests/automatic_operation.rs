@@ -375,6 +375,26 @@ fn full_power_that_does_not_end_is_noticed() {
     assert!(journey.stop_error_m() < 0.0, "{}", journey.stop_error_m());
 }
 
+/// Its outputs stay as they were until the watchdog bites; then ATP brakes and ATO says why.
+#[test]
+fn a_processor_that_stops_on_the_way_is_noticed_by_the_watchdog() {
+    let dead = fault(Place::AtoCpu, Effect::Dead, 20.0);
+    let mut journey = Journey::new(&[dead]);
+    while journey.bench.now.as_us() < 20_000_000 {
+        journey.step();
+    }
+    assert!(journey.v_mps > 5.0, "{}", journey.v_mps);
+    (0..30).for_each(|_| journey.step());
+    let status = journey.bench.status;
+    assert!(!status.bits.contains(StatusBits::ATO_READY));
+    assert_eq!((status.effort, status.ato_state), (0, AtoState::Inspection));
+    assert!(journey.bench.has(Outputs::FSB));
+    let mut journey = journey.run();
+    journey.faults();
+    let processor = i32::from(AtoFailure::Processor.code());
+    assert_eq!(journey.parameters("ato_failed"), [processor]);
+}
+
 /// Both tachometers keep saying the same while ATO powers.
 #[test]
 fn a_frozen_speed_stops_the_train() {
