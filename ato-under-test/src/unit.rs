@@ -258,13 +258,10 @@ impl Unit {
         if self.self_tester.finished() {
             return;
         }
-        let modem_dead = [Place::FskReceiver, Place::FskTransmitter]
-            .iter()
-            .any(|place| matches!(self.faults.at(*place), Some(Effect::Dead)));
         let seen = SelfTestInputs {
             receiver_decoded: matches!(self.atp.decoder().candidate(), Code::Known(_)),
             tra_answered: self.inputs.tra_answers,
-            modem_heard: !modem_dead,
+            modem_heard: self.loop_back(),
             test_board_answers: self.board.answers(),
             brake_line_energised: self.inputs.lines.contains(TrainLines::EB_LOOP),
         };
@@ -276,6 +273,13 @@ impl Unit {
                     .push(now, Event::SelfTestFailed, i32::from(failed.bits()));
             }
         }
+    }
+
+    /// The modem's test frame, through its transmitter back into its receiver. One that arrives
+    /// damaged is no bad frame of the link.
+    fn loop_back(&mut self) -> bool {
+        let sent = !self.faults.loses_frame(Place::FskTransmitter);
+        sent && !self.faults.loses_frame(Place::FskReceiver)
     }
 
     /// One scan of ATP.
