@@ -116,6 +116,14 @@ fn several_runs_come_as_a_list_in_order() {
         .map(|run| number(&run["section"]))
         .collect();
     assert_eq!(numbers, [54.0, 55.0, 56.0]);
+    for asked in [["--section", "61-61"], ["--compare", "pss"]] {
+        let one = driven(&place, &[&["drive", "--json"], &asked[..]].concat());
+        assert_eq!(
+            list(&one["runs"]).len(),
+            1,
+            "a list was asked for: {asked:?}"
+        );
+    }
 }
 
 /// The unit is told of a heavier ideal train, so that it drives it as well.
@@ -148,7 +156,7 @@ fn help_tells_exit_codes_and_examples() {
 #[test]
 fn wrong_commands_are_refused_and_say_what_is_known() {
     let place = Place::new();
-    let cases: [(&[&str], &[&str]); 17] = [
+    let cases: [(&[&str], &[&str]); 20] = [
         (
             &["--section", "99"],
             &["line line8 has no section 99", "61"],
@@ -180,6 +188,15 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
         (
             &["--unit-config", "nope"],
             &["no unit configuration \"nope\"; known: sg100\n"],
+        ),
+        (&["--section", "61-54"], &["runs backward", "54-61"]),
+        (
+            &["--compare", "servo,pi,servo"],
+            &["--compare names servo twice"],
+        ),
+        (
+            &["--scattered", "--monte-carlo", "2"],
+            &["--scattered", "--monte-carlo"],
         ),
         (&["--adhesion", "7"], &["--adhesion 7"]),
         (&["--disturbance", "s2"], &["\"s2\" is no disturbance"]),

@@ -14,7 +14,7 @@ use crate::drive::{
     monte_carlo,
 };
 use crate::failure::{Exit, Failure, did_you_mean};
-use crate::report::drive::{self as report, Results, Target};
+use crate::report::drive::{self as report, Outcomes, Results, Target};
 use crate::stop::Stop;
 
 /// Drive from station to station and measure the stop
@@ -83,7 +83,7 @@ pub struct DriveArguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Draw train and day from scatter.toml by the seed, as one run of --monte-carlo does
-    #[arg(long)]
+    #[arg(long, conflicts_with = "monte_carlo")]
     scattered: bool,
     /// So many runs with train and day drawn from scatter.toml, seeds from --seed on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -108,15 +108,15 @@ impl DriveArguments {
         for target in &self.report {
             target.check()?;
         }
-        let mut cases = self.request().cases(&directory)?;
+        let mut cases = self.request()?.cases(&directory)?;
         let stop = Stop::default();
         stop.listen();
         let jobs = self.jobs.map_or_else(cores, |jobs| jobs as usize);
-        let results = match self.monte_carlo {
+        let outcomes = match self.monte_carlo {
             Some(count) => {
                 let scatter = scatter(&directory)?;
                 let many = |case| monte_carlo::run(case, count as usize, &scatter, jobs, &stop);
-                Results::Many(cases.into_iter().map(many).collect())
+                Outcomes::Many(cases.into_iter().map(many).collect())
             }
             None => {
                 if self.scattered {
@@ -126,20 +126,26 @@ impl DriveArguments {
                         .map(|case| case.drawn(&scatter, self.seed))
                         .collect();
                 }
-                Results::Single(drive_all(cases, jobs, &stop))
+                Outcomes::Single(drive_all(cases, jobs, &stop))
             }
+        };
+        let results = Results {
+            outcomes,
+            list: !self.compare.is_empty() || !matches!(self.section, SectionChoice::One(_)),
         };
         self.answer(&results, &stop)
     }
 
-    fn request(&self) -> Request {
+    fn request(&self) -> Result<Request, Failure> {
         let mut controllers: Vec<_> = self.controller.into_iter().collect();
         for &kind in &self.compare {
-            if !controllers.contains(&kind) {
-                controllers.push(kind);
+            if controllers.contains(&kind) {
+                let name = kind.name();
+                return Err(Failure::usage(format!("--compare names {name} twice")));
             }
+            controllers.push(kind);
         }
-        Request {
+        Ok(Request {
             line: self.line.clone(),
             sections: self.section,
             controllers,
@@ -157,7 +163,7 @@ impl DriveArguments {
             unit_config: self.unit_config.clone(),
             settings: self.set.clone(),
             seed: self.seed,
-        }
+        })
     }
 
     fn answer(&self, results: &Results, stop: &Stop) -> Result<Exit, Failure> {
@@ -172,10 +178,10 @@ impl DriveArguments {
         if stop.presses() > 0 {
             return Ok(Exit::Aborted);
         }
-        match results {
-            Results::Many(many) if many.iter().all(|one| one.passed()) => Ok(Exit::Passed),
-            Results::Many(_) => Ok(Exit::Failed),
-            Results::Single(runs) => verdict(runs),
+        match &results.outcomes {
+            Outcomes::Many(many) if many.iter().all(|one| one.passed()) => Ok(Exit::Passed),
+            Outcomes::Many(_) => Ok(Exit::Failed),
+            Outcomes::Single(runs) => verdict(runs),
         }
     }
 }

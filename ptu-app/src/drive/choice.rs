@@ -12,6 +12,8 @@ use crate::failure::Failure;
 pub enum SectionChoice {
     /// Every section of the line.
     All,
+    /// One.
+    One(u16),
     /// From one to another, both included.
     Range(u16, u16),
 }
@@ -26,8 +28,13 @@ impl FromStr for SectionChoice {
         };
         match text.split_once('-') {
             None if text == "all" => Ok(Self::All),
-            None => number(text).map(|n| Self::Range(n, n)),
-            Some((from, to)) => Ok(Self::Range(number(from)?, number(to)?)),
+            None => number(text).map(Self::One),
+            Some((from, to)) => match (number(from)?, number(to)?) {
+                (from, to) if from > to => {
+                    Err(format!("\"{text}\" runs backward: use {to}-{from}"))
+                }
+                (from, to) => Ok(Self::Range(from, to)),
+            },
         }
     }
 }
@@ -39,8 +46,10 @@ impl SectionChoice {
     /// The line has none of them, or not both ends.
     pub fn numbers(self, line: &Line) -> Result<Vec<u16>, Failure> {
         let all = line.sections.iter().map(|section| section.section);
-        let Self::Range(from, to) = self else {
-            return Ok(all.collect());
+        let (from, to) = match self {
+            Self::All => return Ok(all.collect()),
+            Self::One(number) => (number, number),
+            Self::Range(from, to) => (from, to),
         };
         for end in [from, to] {
             if line.section(end).is_none() {
@@ -52,9 +61,7 @@ impl SectionChoice {
                 )));
             }
         }
-        Ok(all
-            .filter(|number| (from.min(to)..=from.max(to)).contains(number))
-            .collect())
+        Ok(all.filter(|number| (from..=to).contains(number)).collect())
     }
 }
 

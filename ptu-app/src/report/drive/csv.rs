@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use btu_rig::drive::Row;
 
-use super::Results;
 use super::figures::FIGURES;
+use super::{Outcomes, Results};
 use crate::drive::Driven;
 use crate::drive::monte_carlo::MonteCarlo;
 
@@ -33,9 +33,9 @@ const COLUMNS: [(&str, Of); 15] = [
 
 /// All of it.
 pub fn csv(results: &Results) -> String {
-    match results {
-        Results::Single(runs) => cycles(runs),
-        Results::Many(many) => trials(many),
+    match &results.outcomes {
+        Outcomes::Single(runs) => cycles(runs),
+        Outcomes::Many(many) => trials(many),
     }
 }
 

@@ -5,18 +5,18 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::figures::{FIGURES, conditions, ending, title};
 use super::plots::plots;
-use super::{Results, html_many};
+use super::{Outcomes, Results, html_many};
 use crate::clock;
 use crate::drive::{Case, Driven};
 
 /// The page.
 pub fn html(results: &Results) -> String {
-    let (heading, body) = match results {
-        Results::Single(runs) => (
+    let (heading, body) = match &results.outcomes {
+        Outcomes::Single(runs) => (
             "Station-to-station run",
             html! { @for group in groups(runs) { (section(group)) } },
         ),
-        Results::Many(many) => (
+        Outcomes::Many(many) => (
             "Monte Carlo of station-to-station runs",
             html! { @for one in many { (html_many::section(one)) } },
         ),

@@ -1,11 +1,11 @@
-//! Runs as JSON: one object for one run, `{"runs": [...]}` for several; with Monte Carlo one object
-//! for one case, `{"cases": [...]}` for several.
+//! Runs as JSON: one object for one run, `{"runs": [...]}` where several were asked for; with Monte
+//! Carlo one object for one case, `{"cases": [...]}` where several were.
 
 use btu_rig::conditions::{Conditions, Disturbance};
 use serde_json::{Map, Value, json};
 
-use super::Results;
 use super::figures::FIGURES;
+use super::{Outcomes, Results};
 use crate::drive::monte_carlo::{MonteCarlo, Trial, percentile};
 use crate::drive::{Case, Driven};
 
@@ -22,13 +22,13 @@ const PERCENTILES: [(&str, f64); 7] = [
 
 /// All of it.
 pub fn json(results: &Results) -> Value {
-    match results {
-        Results::Single(runs) => match runs.as_slice() {
-            [run] => run_json(run),
+    match &results.outcomes {
+        Outcomes::Single(runs) => match runs.as_slice() {
+            [run] if !results.list => run_json(run),
             runs => json!({"runs": runs.iter().map(run_json).collect::<Vec<_>>()}),
         },
-        Results::Many(many) => match many.as_slice() {
-            [one] => many_json(one),
+        Outcomes::Many(many) => match many.as_slice() {
+            [one] if !results.list => many_json(one),
             many => json!({"cases": many.iter().map(many_json).collect::<Vec<_>>()}),
         },
     }

@@ -20,8 +20,16 @@ use crate::drive::Driven;
 use crate::drive::monte_carlo::MonteCarlo;
 use crate::failure::Failure;
 
+/// What was driven, and how JSON tells it.
+pub struct Results {
+    /// What it came to.
+    pub outcomes: Outcomes,
+    /// Several were asked for, so that there is a list even of one.
+    pub list: bool,
+}
+
 /// What was driven.
-pub enum Results {
+pub enum Outcomes {
     /// Cases, each once.
     Single(Vec<Driven>),
     /// Cases, each many times.

@@ -1,7 +1,7 @@
 //! Runs as text for people.
 
-use super::Results;
 use super::figures::{FIGURES, centimetres, conditions, ending, title};
+use super::{Outcomes, Results};
 use crate::drive::Driven;
 use crate::drive::monte_carlo::{MonteCarlo, percentile};
 use crate::table::Table;
@@ -11,13 +11,13 @@ pub const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
 
 /// All of it.
 pub fn text(results: &Results) -> String {
-    let blocks: Vec<_> = match results {
-        Results::Single(runs) => match runs.as_slice() {
+    let blocks: Vec<_> = match &results.outcomes {
+        Outcomes::Single(runs) => match runs.as_slice() {
             [] => vec!["stopped before anything was driven".into()],
             [run] => vec![one(run)],
             runs => vec![several(runs)],
         },
-        Results::Many(many) => many.iter().map(monte_carlo).collect(),
+        Outcomes::Many(many) => many.iter().map(monte_carlo).collect(),
     };
     blocks.join("\n\n")
 }
