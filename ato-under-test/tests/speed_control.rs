@@ -1,5 +1,6 @@
 //! The speed controllers by themselves: S1's comparison, closed loops with a train whose effort comes
-//! late, S2's run, and any input whatsoever. The servo's own figures stand with the whole unit.
+//! late, S2's run, and any input whatsoever. How the servo stops stands with the whole unit; everything
+//! else is asked of it, too.
 
 mod plant;
 
@@ -8,6 +9,7 @@ use plant::{KMH, Row, Run, config, drive, rms, s1_errors};
 use proptest::prelude::*;
 use protocol::config::{AtoConfig, ControllerKind, GainUnit};
 
+/// The controllers that stop along one braking curve, wherever markers lie.
 const FOLLOWERS: [ControllerKind; 3] = [
     ControllerKind::Pi,
     ControllerKind::Fuzzy,
@@ -126,10 +128,11 @@ fn assert_stopped(rows: &[Row], way_m: f64, allowed_m: f64, kind: ControllerKind
 
 /// Goal: no windup. A full train on 35 ‰ has 0.5 m/s² where the profile has 0.83; a train whose
 /// powering is cut for 20 s has none; both then reach the new speed without passing it by 1 km/h, and so
-/// they do when the limit falls on the way up.
+/// they do when the limit falls on the way up; the servo, whose S-curve has run ahead of the train, by
+/// 1.5 km/h, of the 5 km/h that the speed is below the limit.
 #[test]
 fn what_was_withheld_is_not_made_up_for_by_overshoot() {
-    for kind in FOLLOWERS {
+    for kind in ControllerKind::ALL {
         for (load_kg, known_permille, cut_until_s) in [
             (160e3, 35.0, 0.0),
             (0.0, 0.0, 20.0),
@@ -151,8 +154,12 @@ fn what_was_withheld_is_not_made_up_for_by_overshoot() {
             let falls = |at_m: f64| if at_m < 60.0 { 60.0 * KMH } else { 40.0 * KMH };
             let rows = run(kind, conditions, 150.0, falls);
             let top_kmh = top_mps(&rows) / KMH;
+            let most_kmh = match kind {
+                ControllerKind::Servo => 41.5,
+                _ => 41.0,
+            };
             assert!(
-                top_kmh < 41.0,
+                top_kmh < most_kmh,
                 "{kind:?} {conditions:?}: {top_kmh} after the fall"
             );
         }
@@ -162,7 +169,7 @@ fn what_was_withheld_is_not_made_up_for_by_overshoot() {
 /// Goal: no limit cycle. Once the cruising speed is reached, nothing moves, empty or full, up or down.
 #[test]
 fn cruising_is_quiet() {
-    for kind in FOLLOWERS {
+    for kind in ControllerKind::ALL {
         for load_kg in [0.0, 160e3] {
             for known_permille in [0.0, 35.0, -35.0] {
                 let conditions = Run {
@@ -266,7 +273,7 @@ proptest! {
     /// that is no number is braked; and a reset forgets it all.
     #[test]
     fn any_input_gives_a_force(situations in prop::collection::vec(any_situation(), 1..40)) {
-        for kind in FOLLOWERS {
+        for kind in ControllerKind::ALL {
             let mut config = config();
             config.controller = kind;
             let mut tried = controller(&config);
@@ -287,19 +294,6 @@ proptest! {
         }
     }
 
-    /// The servo has its own ways; what it gives is a force, or no number, which REG brakes.
-    #[test]
-    fn any_input_leaves_the_servo_usable(situations in prop::collection::vec(any_situation(), 1..40)) {
-        let mut config = config();
-        config.controller = ControllerKind::Servo;
-        let mut tried = controller(&config);
-        for situation in &situations {
-            tried.step(situation);
-        }
-        tried.reset();
-        prop_assert_eq!(tried.step(&sound()), controller(&config).step(&sound()));
-    }
-
     /// One cycle of nonsense brakes and leaves no trace in the next one.
     #[test]
     fn one_bad_cycle_is_forgotten(bad in any_situation(), field in 0..4_usize) {
@@ -310,7 +304,7 @@ proptest! {
             2 => bad.to_stop_m = Some(f64::INFINITY),
             _ => bad.cruise_mps = 1e12,
         }
-        for kind in FOLLOWERS {
+        for kind in ControllerKind::ALL {
             let mut config = config();
             config.controller = kind;
             let (mut with, mut without) = (controller(&config), controller(&config));

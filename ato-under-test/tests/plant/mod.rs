@@ -7,6 +7,8 @@ use protocol::config::{AtoConfig, UnitConfig};
 pub const CYCLE_S: f64 = 0.05;
 pub const KMH: f64 = 1.0 / 3.6;
 const G: f64 = 9.80665;
+/// Way from the markers of section 61 to its stop point, m.
+pub const MARKERS_TO_STOP_M: [f64; 4] = [546.0, 108.5, 21.0, 3.5];
 /// Way of one tachometer pulse, m.
 const PULSE_M: f64 = 0.027;
 
@@ -129,7 +131,7 @@ impl<'a> Train<'a> {
             speed_mps: speed.max(0.0),
             accel_mps2: accel,
             to_stop_m: self.run.way_m.map(|way| way - position),
-            markers_to_stop_m: [0.0; 4],
+            markers_to_stop_m: MARKERS_TO_STOP_M,
             mass_kg: self.mass_kg(),
             brake_mps2: 3.5 / 3.6 - known,
             granted_n: (self.granted_mps2 + known) * self.mass_kg(),
@@ -222,7 +224,7 @@ pub fn s1_errors(controller: &mut dyn SpeedController) -> Vec<f64> {
                 speed_mps: speed,
                 accel_mps2: accel,
                 to_stop_m: None,
-                markers_to_stop_m: [0.0; 4],
+                markers_to_stop_m: MARKERS_TO_STOP_M,
                 mass_kg: MASS_KG,
                 brake_mps2: 3.5 / 3.6,
                 granted_n,
