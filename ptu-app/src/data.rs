@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
+use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 
 use protocol::config::{UnitConfig, checksum};
@@ -194,6 +195,31 @@ pub fn sha256(text: &str) -> String {
 pub fn read(file: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(file)
         .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))
+}
+
+/// Finds out whether a file can be written, leaving what is there as it is.
+///
+/// # Errors
+/// It cannot, and why.
+pub fn check_writable(file: &Path) -> Result<(), Failure> {
+    let cannot = |why: String| Failure::usage(format!("cannot write {}: {why}", file.display()));
+    if file.is_dir() {
+        return Err(cannot("it is a folder".into()));
+    }
+    let folder = file
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return Err(cannot(format!("there is no folder {}", folder.display())));
+    }
+    let existed = file.exists();
+    let opened = OpenOptions::new().create(true).append(true).open(file);
+    opened.map_err(|error| cannot(error.to_string()))?;
+    if !existed {
+        // Nothing is left behind should the run not come to its report.
+        std::fs::remove_file(file).map_err(|error| cannot(error.to_string()))?;
+    }
+    Ok(())
 }
 
 /// Writes a file, or says which one could not be written.

@@ -156,7 +156,7 @@ fn help_tells_exit_codes_and_examples() {
 #[test]
 fn wrong_commands_are_refused_and_say_what_is_known() {
     let place = Place::new();
-    let cases: [(&[&str], &[&str]); 20] = [
+    let cases: [(&[&str], &[&str]); 23] = [
         (
             &["--section", "99"],
             &["line line8 has no section 99", "61"],
@@ -200,8 +200,21 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
         ),
         (&["--adhesion", "7"], &["--adhesion 7"]),
         (&["--disturbance", "s2"], &["\"s2\" is no disturbance"]),
+        (
+            &["--report", "nowhere/x.html"],
+            &["cannot write nowhere/x.html: there is no folder nowhere"],
+        ),
+        (
+            &["--report", ".html", "--report", "folder.html"],
+            &["cannot write folder.html: it is a folder"],
+        ),
+        (
+            &["--report", "/proc/x.html"],
+            &["cannot write /proc/x.html: "],
+        ),
         (&["--report", "drive.pdf"], &[".html, .json or .csv"]),
     ];
+    std::fs::create_dir(place.path("folder.html")).expect("a folder in the way");
     for (arguments, words) in cases {
         let said = place
             .ptu(&[&["drive"], arguments].concat())
@@ -209,6 +222,7 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
             .explains(words);
         assert_eq!(said.out, "", "{}", said.all());
     }
+    assert!(!place.path(".html").exists(), "an empty report is left");
 }
 
 /// On rails of 0.08 wheels slide in full service: cycles say so, and the speed plot shows where.

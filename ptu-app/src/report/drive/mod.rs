@@ -73,17 +73,7 @@ impl Target {
     /// # Errors
     /// It cannot.
     pub fn check(&self) -> Result<(), Failure> {
-        let folder = self
-            .path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        if folder.is_some_and(|folder| !folder.is_dir()) || self.path.is_dir() {
-            return Err(Failure::usage(format!(
-                "cannot write the report {}: its folder does not exist, or it is one",
-                self.path.display()
-            )));
-        }
-        Ok(())
+        data::check_writable(&self.path)
     }
 
     /// Writes the report.
