@@ -482,7 +482,12 @@ fn the_run_can_be_read_back() {
 
 #[test]
 fn a_failed_start_up_check_keeps_ato_in_inspection() {
-    for place in [Place::Tra, Place::FskReceiver, Place::AtoCpu] {
+    for place in [
+        Place::Tra,
+        Place::FskReceiver,
+        Place::FskTransmitter,
+        Place::AtoCpu,
+    ] {
         let mut bench = Bench::new(&[fault(place, Effect::Dead, 0.0)]);
         bench.code("65");
         bench.input.mode_switch = ModeSwitch::Automatic;
