@@ -83,14 +83,23 @@ pub const FIGURES: [Figure; 9] = [
 impl Figure {
     /// Its value of a run for people, without unit.
     pub fn shown(&self, metrics: &Metrics) -> String {
+        self.told((self.of)(metrics))
+    }
+
+    /// A value of it for people, without unit.
+    pub fn told(&self, value: f64) -> String {
         let scale = if self.unit == "%" { 100.0 } else { 1.0 };
-        format!("{:.*}", self.decimals, (self.of)(metrics) * scale)
+        format!("{:.*}", self.decimals, value * scale)
     }
 }
 
-/// A stop error for people: signed centimetres.
-pub fn centimetres(metres: f64) -> String {
-    format!("{:+.1} cm", metres * 100.0)
+/// A stop error for people, signed: centimetres, from 1 m on metres.
+pub fn off(metres: f64) -> String {
+    if metres.abs() < 1.0 {
+        format!("{:+.1} cm", metres * 100.0)
+    } else {
+        format!("{metres:+.2} m")
+    }
 }
 
 /// How a run ended, for people.
@@ -106,8 +115,8 @@ pub fn ending(run: &Driven) -> String {
             let side = if *error > 0.0 { "past" } else { "before" };
             let verdict = if run.aligned() { "within" } else { "outside" };
             format!(
-                "{ending}, {:.1} cm {side} the stop point, {verdict} ±{tolerance_cm:.0} cm",
-                error.abs() * 100.0
+                "{ending}, {} {side} the stop point, {verdict} ±{tolerance_cm:.0} cm",
+                off(error.abs()).trim_start_matches('+')
             )
         }
         None => ending.to_string(),
@@ -191,4 +200,15 @@ pub fn conditions(case: &Case) -> Vec<(&'static str, String)> {
         ));
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_metres_are_told_in_metres() {
+        let told = [-0.015, 0.9994, 1.0, -847.22].map(off);
+        assert_eq!(told, ["-1.5 cm", "+99.9 cm", "+1.00 m", "-847.22 m"]);
+    }
 }

@@ -3,7 +3,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::figures::{FIGURES, conditions, ending, title};
+use super::figures::{FIGURES, conditions, ending, off, title};
 use super::plots::plots;
 use super::{Outcomes, Results, html_many};
 use crate::clock;
@@ -87,9 +87,9 @@ fn figures(runs: &[Driven]) -> Markup {
             tr {
                 th { "Stop error" }
                 @for run in runs {
-                    td.number { (run.outcome.stop_error_m.map_or("–".into(), |e| format!("{:+.1}", e * 100.0))) }
+                    td.number { (run.outcome.stop_error_m.map_or("–".into(), off)) }
                 }
-                td { "cm" }
+                td {}
             }
             @for figure in &FIGURES {
                 tr {

@@ -3,7 +3,7 @@
 use btu_rig::drive::Drawn;
 use maud::{Markup, html};
 
-use super::figures::{FIGURES, centimetres, conditions, title};
+use super::figures::{FIGURES, conditions, off, title};
 use super::html::facts;
 use super::plot::{Place, Plot, Series, Style};
 use super::text::PERCENTILES;
@@ -33,11 +33,8 @@ pub fn section(many: &MonteCarlo) -> Markup {
 }
 
 fn figures(many: &MonteCarlo) -> Markup {
-    let cells = |values: &[f64], decimals: usize, scale: f64| -> Vec<String> {
-        let shown = |percent| {
-            percentile(values, percent)
-                .map_or("–".into(), |v| format!("{:.decimals$}", v * scale))
-        };
+    let cells = |values: &[f64], of: &dyn Fn(f64) -> String| -> Vec<String> {
+        let shown = |percent| percentile(values, percent).map_or("–".into(), of);
         PERCENTILES
             .iter()
             .copied()
@@ -45,18 +42,17 @@ fn figures(many: &MonteCarlo) -> Markup {
             .map(shown)
             .collect()
     };
-    let scale = |unit: &str| if unit == "%" { 100.0 } else { 1.0 };
     html! {
         table {
             tr { th {} @for percent in PERCENTILES { th.number { (percent) " %" } } th.number { "least" } th.number { "most" } }
             tr {
-                th { "Stop error, cm" }
-                @for cell in cells(&many.stop_errors_m(), 1, 100.0) { td.number { (cell) } }
+                th { "Stop error" }
+                @for cell in cells(&many.stop_errors_m(), &off) { td.number { (cell) } }
             }
             @for figure in &FIGURES {
                 tr {
                     th { (figure.name) ", " (figure.unit) }
-                    @for cell in cells(&many.figures(figure.of), figure.decimals, scale(figure.unit)) { td.number { (cell) } }
+                    @for cell in cells(&many.figures(figure.of), &|value| figure.told(value)) { td.number { (cell) } }
                 }
             }
         }
@@ -143,7 +139,7 @@ fn worst(many: &MonteCarlo) -> Markup {
             @for trial in many.worst() {
                 tr {
                     td.number { (trial.seed) }
-                    td { (trial.stop_error_m.filter(|_| trial.stopped()).map_or_else(|| trial.ending.to_string(), centimetres)) }
+                    td { (trial.stop_error_m.filter(|_| trial.stopped()).map_or_else(|| trial.ending.to_string(), off)) }
                     td { (day(many, &trial.drawn)) }
                 }
             }

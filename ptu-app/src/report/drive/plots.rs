@@ -2,7 +2,7 @@
 
 use btu_rig::drive::Row;
 
-use super::figures::centimetres;
+use super::figures::off;
 use super::plot::{Place, Plot, Series, Style};
 use crate::drive::Driven;
 
@@ -213,13 +213,13 @@ fn last_metres(runs: &[Driven]) -> Option<Plot> {
         one.points.iter_mut().for_each(|point| point.0 -= stop_m);
         series.push(one);
     }
-    let off = runs.iter().filter_map(|run| run.outcome.stop_error_m);
-    let past = off
+    let errors = runs.iter().filter_map(|run| run.outcome.stop_error_m);
+    let past = errors
         .clone()
         .fold(PAST_M, |most, error| most.max(error + 0.5));
-    let at = off.map(|error| Place {
+    let at = errors.map(|error| Place {
         x: error,
-        name: centimetres(error),
+        name: off(error),
     });
     Some(Plot {
         title: "The last metres".into(),

@@ -1,6 +1,6 @@
 //! Runs as text for people.
 
-use super::figures::{FIGURES, centimetres, conditions, ending, title};
+use super::figures::{FIGURES, conditions, ending, off, title};
 use super::{Outcomes, Results};
 use crate::drive::Driven;
 use crate::drive::monte_carlo::{MonteCarlo, percentile};
@@ -34,11 +34,7 @@ fn one(run: &Driven) -> String {
     if let Some(metrics) = &run.outcome.metrics {
         let mut table = Table::new(&["FIGURE", "VALUE", ""]);
         if let Some(error) = run.outcome.stop_error_m {
-            table.row([
-                "Stop error".into(),
-                format!("{:+.1}", error * 100.0),
-                "cm".into(),
-            ]);
+            table.row(["Stop error".into(), off(error), String::new()]);
         }
         for figure in &FIGURES {
             table.row([
@@ -65,7 +61,7 @@ fn several(runs: &[Driven]) -> String {
     let mut table = Table::new(&[
         "SECTION",
         "CONTROLLER",
-        "STOP cm",
+        "STOP",
         "TIME s",
         "km/h/s +",
         "−",
@@ -78,10 +74,7 @@ fn several(runs: &[Driven]) -> String {
     ]);
     for run in runs {
         let case = &run.case;
-        let error = run
-            .outcome
-            .stop_error_m
-            .map_or("-".into(), |e| format!("{:+.1}", e * 100.0));
+        let error = run.outcome.stop_error_m.map_or("-".into(), off);
         let figures = FIGURES
             .iter()
             .filter(|figure| figure.key != "peak_speed_kmh");
@@ -120,18 +113,15 @@ fn monte_carlo(many: &MonteCarlo) -> String {
     let mut table = Table::new(&[
         "FIGURE", "0.1 %", "2.5 %", "50 %", "97.5 %", "99.9 %", "LEAST", "MOST",
     ]);
-    let mut row = |name: String, values: &[f64], decimals: usize, scale: f64| {
-        let cell = |percent| {
-            percentile(values, percent).map_or("-".into(), |v| format!("{:.decimals$}", v * scale))
-        };
+    let mut row = |name: String, values: &[f64], of: &dyn Fn(f64) -> String| {
+        let cell = |percent| percentile(values, percent).map_or("-".into(), of);
         let cells = PERCENTILES.iter().copied().chain([0.0, 100.0]).map(cell);
         table.row(std::iter::once(name).chain(cells));
     };
-    row("Stop error, cm".into(), &many.stop_errors_m(), 1, 100.0);
+    row("Stop error".into(), &many.stop_errors_m(), &off);
     for figure in &FIGURES {
-        let scale = if figure.unit == "%" { 100.0 } else { 1.0 };
         let name = format!("{}, {}", figure.name, figure.unit);
-        row(name, &many.figures(figure.of), figure.decimals, scale);
+        row(name, &many.figures(figure.of), &|value| figure.told(value));
     }
     lines.push(table.render());
     lines.push(format!(
@@ -149,7 +139,7 @@ fn monte_carlo(many: &MonteCarlo) -> String {
             .map(|(name, value)| format!("{} {value}", name.to_lowercase()))
             .collect();
         let stop = match trial.stop_error_m.filter(|_| trial.stopped()) {
-            Some(error) => centimetres(error),
+            Some(error) => off(error),
             None => trial.ending.to_string(),
         };
         table.row([trial.seed.to_string(), stop, day.join("; ")]);
