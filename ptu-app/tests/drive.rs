@@ -81,6 +81,7 @@ fn many_runs_are_the_same_on_any_number_of_threads_and_one_by_one() {
     for key in ["within_10cm", "within_30cm"] {
         assert!((0.0..=1.0).contains(&number(&all[key])), "{key} in {all}");
     }
+    assert_eq!(number(&all["past_1m"]), 0.0, "{all}");
     let worst = &list(&all["worst"])[0];
     let seed = number(&worst["seed"]).to_string();
     let again = driven(
@@ -95,6 +96,34 @@ fn many_runs_are_the_same_on_any_number_of_threads_and_one_by_one() {
         "conditions",
     ] {
         assert_eq!(again[key], worst[key], "{key}");
+    }
+}
+
+/// Goal: wherever a train came to stand counts, however it did. Method: wheels a tenth larger than
+/// the unit is told, and rails of 0.08 on which no train leaves in order.
+#[test]
+fn every_standstill_is_in_the_percentiles_and_those_far_past_are_counted() {
+    let place = Place::new();
+    for (option, value, past, ending) in [
+        ("--wheel", "1.1", 3.0, "stopped"),
+        ("--adhesion", "0.08", 0.0, "left Automatic Run"),
+    ] {
+        let all = driven(
+            &place,
+            &[&PSS[..], &[option, value, "--monte-carlo", "3"]].concat(),
+        );
+        let worst = list(&all["worst"]);
+        assert!(
+            worst
+                .iter()
+                .all(|run| text(&run["ending"]).starts_with(ending)),
+            "{all}"
+        );
+        assert_eq!(number(&all["past_1m"]), past, "{all}");
+        let errors = worst.iter().map(|run| number(&run["stop_error_m"]));
+        let most = errors.fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(number(&all["stop_error_m"]["max"]), most);
+        assert_eq!(all["passed"], false);
     }
 }
 

@@ -3,6 +3,7 @@
 use btu_rig::conditions::{Conditions, Disturbance};
 use btu_rig::drive::{Metrics, Outcome};
 
+use crate::drive::monte_carlo::Trial;
 use crate::drive::{Case, Driven};
 
 /// A figure of a run.
@@ -99,6 +100,15 @@ pub fn off(metres: f64) -> String {
         format!("{:+.1} cm", metres * 100.0)
     } else {
         format!("{metres:+.2} m")
+    }
+}
+
+/// Where a run of many came to stand, and why if it was not at its stop.
+pub fn stop(trial: &Trial) -> String {
+    match trial.stop_error_m {
+        Some(error) if trial.stopped() => off(error),
+        Some(error) => format!("{}, {}", trial.ending, off(error)),
+        None => trial.ending.to_string(),
     }
 }
 

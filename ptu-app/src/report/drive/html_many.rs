@@ -3,7 +3,7 @@
 use btu_rig::drive::Drawn;
 use maud::{Markup, html};
 
-use super::figures::{FIGURES, conditions, off, title};
+use super::figures::{FIGURES, conditions, off, stop, title};
 use super::html::facts;
 use super::plot::{Place, Plot, Series, Style};
 use super::text::PERCENTILES;
@@ -22,7 +22,7 @@ pub fn section(many: &MonteCarlo) -> Markup {
             h2 { (title(&many.case)) ", " (many.trials.len()) " of " (many.asked) " runs" }
             p.verdict.good[passed].bad[!passed] {
                 (format!("within ±10 cm {:.2} %, within ±30 cm {:.2} %", many.within(0.1) * 100.0, many.within(0.3) * 100.0))
-                ", did not stop " (many.failures().count())
+                ", more than 1 m past " (many.past_1m()) ", did not stop " (many.failures().count())
             }
             div.tables { (figures(many)) (facts(&many.case)) }
             (histogram(many).svg())
@@ -114,8 +114,8 @@ const DRAWN: [(&str, Of); 7] = [
 ];
 
 fn against(many: &MonteCarlo, name: &str, of: Of) -> Plot {
-    let stopped = many.trials.iter().filter(|trial| trial.stopped());
-    let points = stopped.filter_map(|trial| Some((of(&trial.drawn), trial.stop_error_m? * 100.0)));
+    let trials = many.trials.iter();
+    let points = trials.filter_map(|trial| Some((of(&trial.drawn), trial.stop_error_m? * 100.0)));
     Plot {
         title: format!("Stop error by {name}"),
         x_label: name.into(),
@@ -139,7 +139,7 @@ fn worst(many: &MonteCarlo) -> Markup {
             @for trial in many.worst() {
                 tr {
                     td.number { (trial.seed) }
-                    td { (trial.stop_error_m.filter(|_| trial.stopped()).map_or_else(|| trial.ending.to_string(), off)) }
+                    td { (stop(trial)) }
                     td { (day(many, &trial.drawn)) }
                 }
             }

@@ -108,6 +108,7 @@ fn many_json(many: &MonteCarlo) -> Value {
     object.insert("stop_error_m".into(), percentiles(&many.stop_errors_m()));
     object.insert("within_10cm".into(), many.within(0.1).into());
     object.insert("within_30cm".into(), many.within(0.3).into());
+    object.insert("past_1m".into(), many.past_1m().into());
     object.insert("passed".into(), many.passed().into());
     object.insert("failures".into(), many.failures().map(trial_json).collect());
     for figure in &FIGURES {

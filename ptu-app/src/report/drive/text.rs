@@ -1,6 +1,6 @@
 //! Runs as text for people.
 
-use super::figures::{FIGURES, conditions, ending, off, title};
+use super::figures::{FIGURES, conditions, ending, off, stop, title};
 use super::{Outcomes, Results};
 use crate::drive::Driven;
 use crate::drive::monte_carlo::{MonteCarlo, percentile};
@@ -125,9 +125,10 @@ fn monte_carlo(many: &MonteCarlo) -> String {
     }
     lines.push(table.render());
     lines.push(format!(
-        "\nwithin ±10 cm: {:.2} %   within ±30 cm: {:.2} %   did not stop: {}",
+        "\nwithin ±10 cm: {:.2} %   within ±30 cm: {:.2} %   more than 1 m past: {}   did not stop: {}",
         many.within(0.1) * 100.0,
         many.within(0.3) * 100.0,
+        many.past_1m(),
         many.failures().count()
     ));
     let mut table = Table::new(&["WORST: SEED", "STOP", "TRAIN AND DAY"]);
@@ -138,11 +139,7 @@ fn monte_carlo(many: &MonteCarlo) -> String {
         let day: Vec<_> = day
             .map(|(name, value)| format!("{} {value}", name.to_lowercase()))
             .collect();
-        let stop = match trial.stop_error_m.filter(|_| trial.stopped()) {
-            Some(error) => off(error),
-            None => trial.ending.to_string(),
-        };
-        table.row([trial.seed.to_string(), stop, day.join("; ")]);
+        table.row([trial.seed.to_string(), stop(trial), day.join("; ")]);
     }
     lines.push(table.render());
     lines.push("repeat one of them with --scattered --seed SEED".into());
