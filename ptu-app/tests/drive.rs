@@ -182,10 +182,36 @@ fn help_tells_exit_codes_and_examples() {
     assert!(said.out.contains("Exit code 0 when"), "{}", said.out);
 }
 
+/// Gradients, adhesion and delays do not act on the ideal train, so no report says they differed.
+#[test]
+fn many_runs_of_the_ideal_train_differ_in_what_acts_on_it() {
+    let place = Place::new();
+    let ideal = [
+        "--train",
+        "ideal",
+        "--monte-carlo",
+        "2",
+        "--report",
+        "many.html",
+    ];
+    let all = driven(&place, &[&PSS[..], &ideal].concat());
+    let of = |key: &str| -> Vec<_> {
+        let worst = list(&all["worst"]).iter();
+        worst.map(|run| number(&run["conditions"][key])).collect()
+    };
+    assert_eq!(of("adhesion"), [0.33; 2]);
+    assert_eq!(of("delay_factor"), [1.0; 2]);
+    assert_eq!(of("gradient_offset_permille"), [0.0; 2]);
+    let brakes = of("brake_factor");
+    assert_ne!(brakes[0], brakes[1]);
+    let page = place.read("many.html");
+    assert!(page.contains("Stop error by brakes") && !page.contains("Stop error by adhesion"));
+}
+
 #[test]
 fn wrong_commands_are_refused_and_say_what_is_known() {
     let place = Place::new();
-    let cases: [(&[&str], &[&str]); 23] = [
+    let cases: [(&[&str], &[&str]); 25] = [
         (
             &["--section", "99"],
             &["line line8 has no section 99", "61"],
@@ -226,6 +252,14 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
         (
             &["--scattered", "--monte-carlo", "2"],
             &["--scattered", "--monte-carlo"],
+        ),
+        (
+            &["--train", "ideal", "--gradient", "3"],
+            &["--gradient does not act on train ideal", "--train line6"],
+        ),
+        (
+            &["--train", "ideal", "--adhesion", "0.1"],
+            &["--adhesion does not act on train ideal", "--train line6"],
         ),
         (&["--adhesion", "7"], &["--adhesion 7"]),
         (&["--disturbance", "s2"], &["\"s2\" is no disturbance"]),

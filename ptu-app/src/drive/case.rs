@@ -77,6 +77,7 @@ impl Request {
         self.fixed.check()?;
         self.one_controller_setting()?;
         let mut train = train::train(directory, &self.train)?;
+        train::check_acts(&train, &self.fixed)?;
         let load_kg = train::load(&mut train, self.mass_kg, self.load)?;
         let fixed = Fixed {
             load_kg,
@@ -172,7 +173,10 @@ impl Case {
     /// The same with train and day drawn by `seed`, but for what is held fixed.
     pub fn drawn(&self, scatter: &Scatter, seed: u64) -> Self {
         let drawn = scatter.draw(seed, self.plan.train.full_load_kg());
-        let (load_kg, conditions) = self.fixed.hold(drawn.load_kg, drawn.conditions);
+        let (load_kg, conditions) = self.fixed.hold(
+            drawn.load_kg,
+            train::acting(&self.plan.train, drawn.conditions),
+        );
         Self {
             plan: DrivePlan {
                 load_kg,

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use btu_rig::conditions::Conditions;
 use btu_rig::train::{IdealData, TrainData};
 
-use super::{LoadChoice, Setting};
+use super::{Fixed, LoadChoice, Setting};
 use crate::data::{ScriptsDirectory, read};
 use crate::failure::Failure;
 
@@ -103,6 +104,44 @@ fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
     ]
     .map(|(key, value)| Setting::new(&format!("ato.train.{key}"), format!("{value:?}")))
     .into()
+}
+
+/// Refuses conditions that would not act on this train.
+///
+/// # Errors
+/// Names the option, and a train on which it acts.
+pub fn check_acts(train: &TrainData, fixed: &Fixed) -> Result<(), Failure> {
+    let TrainData::Ideal(ideal) = train else {
+        return Ok(());
+    };
+    let gradient = fixed.gradient_permille.filter(|_| !ideal.gradients);
+    for (option, value) in [("--gradient", gradient), ("--adhesion", fixed.adhesion)] {
+        if value.is_some() {
+            return Err(Failure::usage(format!(
+                "{option} does not act on train {}; use --train line6",
+                ideal.name
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// `drawn` with what does not act on this train as usual, so that no report says it did.
+pub fn acting(train: &TrainData, drawn: Conditions) -> Conditions {
+    let usual = Conditions::default();
+    match train {
+        TrainData::Cars(_) => drawn,
+        TrainData::Ideal(ideal) => Conditions {
+            gradient_offset_permille: if ideal.gradients {
+                drawn.gradient_offset_permille
+            } else {
+                usual.gradient_offset_permille
+            },
+            adhesion: usual.adhesion,
+            delay_factor: usual.delay_factor,
+            ..drawn
+        },
+    }
 }
 
 /// Gradients and curves do not act on this train, so its track has none.

@@ -26,7 +26,9 @@ pub fn section(many: &MonteCarlo) -> Markup {
             }
             div.tables { (figures(many)) (facts(&many.case)) }
             (histogram(many).svg())
-            @for (name, of) in DRAWN { (against(many, name, of).svg()) }
+            @for (name, of) in DRAWN.into_iter().filter(|(_, of)| differs(many, *of)) {
+                (against(many, name, of).svg())
+            }
             (worst(many))
         }
     }
@@ -112,6 +114,13 @@ const DRAWN: [(&str, Of); 7] = [
         d.conditions.marker_offsets_m[3] * 100.0
     }),
 ];
+
+/// Whether it was drawn at all: what is held fixed, or does not act on the train, was not.
+fn differs(many: &MonteCarlo, of: Of) -> bool {
+    many.trials
+        .windows(2)
+        .any(|pair| of(&pair[0].drawn) != of(&pair[1].drawn))
+}
 
 fn against(many: &MonteCarlo, name: &str, of: Of) -> Plot {
     let trials = many.trials.iter();
