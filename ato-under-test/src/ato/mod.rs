@@ -2,7 +2,7 @@
 //!
 //! One cycle, in order [S0 §3]: what the inputs are worth (`watch`), operating state ([`AtoState`],
 //! ART), speed to run at (`cruise`), where the train will be when the effort acts (`observer`), the
-//! speed controller ([`controller`], SPR), what the track costs (`feed_forward`), and the share of
+//! speed controller ([`mod@controller`], SPR), what the track costs (`feed_forward`), and the share of
 //! available effort for TCMS (`reg`, REG).
 
 mod art;

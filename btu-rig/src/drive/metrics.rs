@@ -23,7 +23,7 @@ pub struct Metrics {
     pub peak_jerk_m_s3: f64,
     /// Root mean square of jerk, m/s³.
     pub rms_jerk_m_s3: f64,
-    /// Share of the time with jerk above 0.8 m/s³ [S1].
+    /// Share of the time with jerk above 0.8 m/s³ (S1).
     pub rough_share: f64,
     /// Root mean square of true speed less ATO's target, km/h.
     pub rms_speed_error_kmh: f64,

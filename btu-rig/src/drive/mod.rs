@@ -4,11 +4,11 @@
 //!
 //! It knows of the unit what frames say. Truth (position, speed, acceleration) is the rig's own.
 //!
-//! * [`plan`]: what is run;
-//! * [`row`]: what is recorded each cycle;
-//! * [`metrics`]: figures of a run, from its rows;
-//! * [`landmarks`]: what happened where, from its rows and the unit's log;
-//! * [`scatter`]: how trains and days differ, drawn for many runs.
+//! * `plan`: what is run;
+//! * `row`: what is recorded each cycle;
+//! * `metrics`: figures of a run, from its rows;
+//! * `landmarks`: what happened where, from its rows and the unit's log;
+//! * `scatter`: how trains and days differ, drawn for many runs.
 
 pub mod landmarks;
 pub mod metrics;

@@ -1,4 +1,4 @@
-//! From a command to demands on each car's inverter and air brake, as TCMS shares them out [S3].
+//! From a command to demands on each car's inverter and air brake, as TCMS shares them out (S3).
 //!
 //! Powering is shared by the motor cars. Braking is shared by brake units; in each, the electric
 //! brake takes what it can at this speed, air on the trailers makes up for the rest, and air on the

@@ -39,7 +39,7 @@ pub struct IdealData {
     pub service_kmh_per_s: f64,
     /// Emergency brake, km/h/s.
     pub emergency_kmh_per_s: f64,
-    /// Holding brake, share of full service [S4].
+    /// Holding brake, share of full service (S4).
     pub holding_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
@@ -77,9 +77,9 @@ pub struct CarsData {
 pub struct Traction {
     /// Force of the whole train at full power and full load, N [S3 eq. 1].
     pub full_load_n: f64,
-    /// Speed up to which it is there, km/h; constant power beyond [S3].
+    /// Speed up to which it is there, km/h; constant power beyond (S3).
     pub base_speed_kmh: f64,
-    /// Greatest change of powering and service braking effort, m/s³ [S1].
+    /// Greatest change of powering and service braking effort, m/s³ (S1).
     pub jerk_mps3: f64,
     /// Command to the inverters' first answer, s.
     pub dead_time_s: f64,
@@ -95,7 +95,7 @@ pub struct ElectricBrake {
     pub adhesion_limit: f64,
     /// Speed up to which it is there, km/h; constant power beyond.
     pub full_to_kmh: f64,
-    /// Speed below which it fades, km/h [S3].
+    /// Speed below which it fades, km/h (S3).
     pub fade_from_kmh: f64,
     /// Speed at which nothing is left, km/h.
     pub fade_to_kmh: f64,
@@ -107,7 +107,7 @@ pub struct ElectricBrake {
 pub struct AirBrake {
     /// Full service brake, km/h/s [S3: B7].
     pub kmh_per_s: f64,
-    /// Holding brake, share of full service [S4].
+    /// Holding brake, share of full service (S4).
     pub holding_share: f64,
     /// Demand to the first force of air, s.
     pub dead_time_s: f64,
@@ -117,7 +117,7 @@ pub struct AirBrake {
     pub release_s: f64,
 }
 
-/// Emergency brake, by air alone [S3].
+/// Emergency brake, by air alone (S3).
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmergencyBrake {
@@ -174,7 +174,7 @@ pub struct CarData {
     /// Motored or not.
     pub role: Role,
     /// Cars of one brake unit share a demand: electric first, then air on trailers, then on motor
-    /// cars [S3].
+    /// cars (S3).
     pub brake_unit: usize,
     /// Length, m.
     pub length_m: f64,
@@ -227,7 +227,7 @@ impl TrainData {
         Ok(data)
     }
 
-    /// The train of eight cars of line 6 [S3].
+    /// The train of eight cars of line 6 (S3).
     ///
     /// # Panics
     /// Never: a test reads the same text.

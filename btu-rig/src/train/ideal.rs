@@ -1,4 +1,4 @@
-//! The papers' train: dv/dt = −r·v + u/M [S0 eq. 8], M·dv/dt + f_d(t)·v = u [S1].
+//! The papers' train: dv/dt = −r·v + u/M [S0 eq. 8], M·dv/dt + f_d(t)·v = u (S1).
 //!
 //! Exact for constant effort over a step [S0 eq. 9]: v′ = A·v + B·u with A = e^(−rT) and
 //! B = (1 − e^(−rT))/(M·r). Effort is a share of an acceleration, so the mass cancels but for f_d.

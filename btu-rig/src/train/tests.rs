@@ -4,9 +4,9 @@ use super::*;
 use crate::conditions::Conditions;
 
 const DT: f64 = 0.005;
-/// Full load [S3].
+/// Full load (S3).
 const FULL_KG: f64 = 160_000.0;
-/// Braking mass, empty [S3].
+/// Braking mass, empty (S3).
 const EMPTY_INERTIA_KG: f64 = 296_368.0;
 
 /// A train and the steps it has made.
@@ -98,7 +98,7 @@ fn full_power_accelerates_as_printed_empty_and_full() {
     }
 }
 
-/// B7 is braking mass × 3.5 km/h/s [S3] at all speeds, whoever gives it: electric at 50 km/h with
+/// B7 is braking mass × 3.5 km/h/s (S3) at all speeds, whoever gives it: electric at 50 km/h with
 /// air on top, air alone below 5 km/h. Resistance comes on top of it.
 #[test]
 fn full_service_brakes_as_printed_empty_and_full() {

@@ -12,9 +12,9 @@ use super::{ConfigError, conflict, within};
 pub enum ControllerKind {
     /// S-curve profile and servo tracking controller [S0 §3.1].
     Servo,
-    /// Jerk-limited profile and proportional-integral controller [S1].
+    /// Jerk-limited profile and proportional-integral controller (S1).
     Pi,
-    /// Jerk-limited profile and Mamdani fuzzy controller [S1].
+    /// Jerk-limited profile and Mamdani fuzzy controller (S1).
     Fuzzy,
     /// Limit less a margin until the station stop's own curve is lower [S2 §3.2].
     Pss,
@@ -45,9 +45,9 @@ impl ControllerKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AtoTrainConfig {
-    /// Empty mass, kg [S3].
+    /// Empty mass, kg (S3).
     pub empty_kg: f64,
-    /// Rotating parts as mass, kg [S3].
+    /// Rotating parts as mass, kg (S3).
     pub rotating_kg: f64,
     /// Length, m.
     pub length_m: f64,
@@ -83,7 +83,7 @@ pub struct AtoTrainConfig {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ServoConfig {
-    /// Chosen closed-loop poles in the z-plane, real and imaginary part [S0].
+    /// Chosen closed-loop poles in the z-plane, real and imaginary part (S0).
     pub poles: [[f64; 2]; 4],
     /// Lengthening of the S-curve per change of speed, s/(m/s) [S0 eq. 1: 5/6 printed].
     pub s_curve_s_per_mps: f64,
@@ -133,7 +133,7 @@ pub struct ObserverConfig {
     pub slide_s: f64,
 }
 
-/// Jerk-limited profile [S1].
+/// Jerk-limited profile (S1).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProfileConfig {
@@ -150,7 +150,7 @@ pub struct ProfileConfig {
     pub feed_forward: bool,
 }
 
-/// Proportional-integral controller [S1].
+/// Proportional-integral controller (S1).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PiConfig {
@@ -174,7 +174,7 @@ pub enum GainUnit {
     Kmh,
 }
 
-/// Mamdani controller [S1]. Places of the sets are not printed; isosceles triangles that overlap by
+/// Mamdani controller (S1). Places of the sets are not printed; isosceles triangles that overlap by
 /// half lie evenly, so the outermost peak fixes all of a variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -2,7 +2,7 @@
 //!
 //! Each makes its own target speed from the cruising target and the way to the stop point, and a
 //! force that brings the train there. What gravity and resistance by the track database cost is
-//! added outside ([`super::feed_forward`]); REG limits the sum and tells the controller what was
+//! added outside (`feed_forward`); REG limits the sum and tells the controller what was
 //! granted.
 
 mod doubt;
