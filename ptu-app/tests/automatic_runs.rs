@@ -45,7 +45,9 @@ fn a_setting_changes_the_controller() {
 #[test]
 fn every_controller_stops_when_something_is_not_as_it_should_be() {
     for controller in CONTROLLERS {
-        passes("ato/stop_degraded", "line8", controller);
+        for line in ["line8", "line6"] {
+            passes("ato/stop_degraded", line, controller);
+        }
     }
 }
 
