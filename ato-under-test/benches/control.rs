@@ -43,6 +43,9 @@ fn control_cycle(bencher: Bencher, name: &str) {
     let mut next = 0;
     bencher.counter(1usize).bench_local(|| {
         next = (next + 1) % situations.len();
+        if next == 0 {
+            controller.reset();
+        }
         controller.step(black_box(&situations[next]))
     });
 }
