@@ -58,7 +58,8 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         tasks: loaded
             .procedures
             .into_iter()
-            .map(|p: Arc<Procedure>| task(p))
+            .filter(|p: &Arc<Procedure>| !p.on_request)
+            .map(task)
             .collect(),
         jobs: 1,
         stop_on_fail: false,
