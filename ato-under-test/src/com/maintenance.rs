@@ -13,7 +13,7 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant};
 
-use crate::kernel::{EventLog, RunRecord};
+use crate::kernel::{EventLog, Ring, RunRecord};
 use crate::random::Random;
 use crate::test_board::TestBoard;
 
@@ -255,45 +255,62 @@ impl Maintenance {
 
     /// Log entries to send in this cycle.
     pub fn read_log(&mut self, log: &EventLog, replies: &mut Vec<Message>) {
-        let Some(next) = &mut self.reader else {
-            return;
-        };
-        for _ in 0..ENTRIES_PER_CYCLE {
-            let Some(entry) = log.at_or_after(*next) else {
-                break;
-            };
-            *next = entry.index + 1;
-            replies.push((*entry).into());
-        }
-        if log.at_or_after(*next).is_none() {
+        let per_cycle = ENTRIES_PER_CYCLE;
+        if send(
+            &mut self.reader,
+            log.entries(),
+            per_cycle,
+            |e| e.index,
+            replies,
+        ) {
             let end = LogEnd {
                 next_index: log.next_index(),
-                oldest_index: log.oldest_index(),
+                oldest_index: log.entries().oldest_index(),
             };
             replies.push(end.into());
-            self.reader = None;
         }
     }
 
     /// Rows of the run record to send in this cycle.
     pub fn read_run(&mut self, record: &RunRecord, replies: &mut Vec<Message>) {
-        let Some(next) = &mut self.run_reader else {
-            return;
-        };
-        for _ in 0..ROWS_PER_CYCLE {
-            let Some(row) = record.at_or_after(*next) else {
-                break;
-            };
-            *next = row.index + 1;
-            replies.push((*row).into());
-        }
-        if record.at_or_after(*next).is_none() {
+        let (rows, per_cycle) = (record.rows(), ROWS_PER_CYCLE);
+        if send(
+            &mut self.run_reader,
+            rows,
+            per_cycle,
+            |row| row.index,
+            replies,
+        ) {
             let end = RunEnd {
-                next_index: record.next_index(),
-                oldest_index: record.oldest_index(),
+                next_index: rows.next_index(),
+                oldest_index: rows.oldest_index(),
             };
             replies.push(end.into());
-            self.run_reader = None;
         }
     }
+}
+
+/// Sends what a reader has not had yet, at most `per_cycle` of it; true when that was the last.
+fn send<T: Copy + Into<Message>, const N: usize>(
+    reader: &mut Option<u32>,
+    ring: &Ring<T, N>,
+    per_cycle: usize,
+    index: fn(&T) -> u32,
+    replies: &mut Vec<Message>,
+) -> bool {
+    let Some(next) = reader else {
+        return false;
+    };
+    for _ in 0..per_cycle {
+        let Some(entry) = ring.at_or_after(*next) else {
+            break;
+        };
+        *next = index(entry) + 1;
+        replies.push((*entry).into());
+    }
+    let ends = ring.at_or_after(*next).is_none();
+    if ends {
+        *reader = None;
+    }
+    ends
 }

@@ -1,10 +1,10 @@
 //! The event log: a bounded ring whose indices are never reused, each entry with a freeze frame.
 
-use alloc::collections::VecDeque;
-
 use protocol::event::Event;
 use protocol::message::{EbCause, LogEntry, Mode};
 use protocol::{Instant, Speed};
+
+use super::Ring;
 
 /// Entries kept; older ones fall off and their indices stay used.
 pub const LOG_CAPACITY: usize = 256;
@@ -27,8 +27,7 @@ pub struct FreezeFrame {
 /// The log.
 #[derive(Debug, Default)]
 pub struct EventLog {
-    entries: VecDeque<LogEntry>,
-    next_index: u32,
+    entries: Ring<LogEntry, LOG_CAPACITY>,
     frame: FreezeFrame,
 }
 
@@ -40,11 +39,8 @@ impl EventLog {
 
     /// Logs an event.
     pub fn push(&mut self, now: Instant, event: Event, parameter: i32) {
-        if self.entries.len() == LOG_CAPACITY {
-            self.entries.pop_front();
-        }
-        self.entries.push_back(LogEntry {
-            index: self.next_index,
+        self.entries.push(LogEntry {
+            index: self.entries.next_index(),
             code: event.definition().code,
             at_ms: now.stamp_ms(),
             parameter,
@@ -54,25 +50,16 @@ impl EventLog {
             mode: self.frame.mode,
             eb_cause: self.frame.eb_cause,
         });
-        self.next_index += 1;
     }
 
-    /// The first kept entry with an index of at least `index`.
-    pub fn at_or_after(&self, index: u32) -> Option<&LogEntry> {
-        let skip = index.saturating_sub(self.oldest_index()) as usize;
-        self.entries.get(skip)
+    /// Its entries.
+    pub fn entries(&self) -> &Ring<LogEntry, LOG_CAPACITY> {
+        &self.entries
     }
 
     /// Index the next event will get.
     pub fn next_index(&self) -> u32 {
-        self.next_index
-    }
-
-    /// Oldest index kept.
-    pub fn oldest_index(&self) -> u32 {
-        self.entries
-            .front()
-            .map_or(self.next_index, |entry| entry.index)
+        self.entries.next_index()
     }
 
     /// Forgets all entries; indices go on.
@@ -91,11 +78,11 @@ mod tests {
         for _ in 0..LOG_CAPACITY + 5 {
             log.push(Instant::ZERO, Event::PowerUp, 0);
         }
-        assert_eq!(log.oldest_index(), 5);
-        assert_eq!(log.at_or_after(0).unwrap().index, 5);
-        assert_eq!(log.at_or_after(7).unwrap().index, 7);
+        assert_eq!(log.entries().oldest_index(), 5);
+        assert_eq!(log.entries().at_or_after(0).unwrap().index, 5);
+        assert_eq!(log.entries().at_or_after(7).unwrap().index, 7);
         log.clear();
-        assert!(log.at_or_after(0).is_none());
-        assert_eq!(log.oldest_index(), LOG_CAPACITY as u32 + 5);
+        assert!(log.entries().at_or_after(0).is_none());
+        assert_eq!(log.entries().oldest_index(), LOG_CAPACITY as u32 + 5);
     }
 }

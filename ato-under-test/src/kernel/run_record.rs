@@ -1,9 +1,9 @@
 //! The record of automatic runs: what ATO saw and did, every cycle, in a bounded ring [S0 §2, §3.1].
 
-use alloc::collections::VecDeque;
-
 use protocol::Instant;
 use protocol::message::{AtoState, RunRow};
+
+use super::Ring;
 
 /// Rows kept, 4 min of driving; older ones fall off and their indices stay used.
 pub const RUN_ROWS: usize = 4800;
@@ -28,8 +28,7 @@ pub struct RunCycle {
 /// The ring.
 #[derive(Debug, Default)]
 pub struct RunRecord {
-    rows: VecDeque<RunRow>,
-    next_index: u32,
+    rows: Ring<RunRow, RUN_ROWS>,
     run: u16,
     state: AtoState,
     markers: u8,
@@ -48,7 +47,7 @@ impl RunRecord {
             return;
         }
         let row = RunRow {
-            index: self.next_index,
+            index: self.rows.next_index(),
             run: self.run,
             at_ms: now.stamp_ms(),
             position_cm: libm::round(cycle.position_m * 100.0) as i32,
@@ -58,30 +57,15 @@ impl RunRecord {
             marker: if passed { cycle.marker.0 } else { 0 },
             ato_state: cycle.state,
         };
-        if self.rows.back().is_some_and(|last| repeats(last, &row)) {
+        if self.rows.newest().is_some_and(|last| repeats(last, &row)) {
             return;
         }
-        if self.rows.len() == RUN_ROWS {
-            self.rows.pop_front();
-        }
-        self.rows.push_back(row);
-        self.next_index += 1;
+        self.rows.push(row);
     }
 
-    /// The first kept row with an index of at least `index`.
-    pub fn at_or_after(&self, index: u32) -> Option<&RunRow> {
-        let skip = index.saturating_sub(self.oldest_index()) as usize;
-        self.rows.get(skip)
-    }
-
-    /// Index the next row will get.
-    pub fn next_index(&self) -> u32 {
-        self.next_index
-    }
-
-    /// Oldest index kept.
-    pub fn oldest_index(&self) -> u32 {
-        self.rows.front().map_or(self.next_index, |row| row.index)
+    /// Its rows.
+    pub fn rows(&self) -> &Ring<RunRow, RUN_ROWS> {
+        &self.rows
     }
 }
 
@@ -111,18 +95,18 @@ mod tests {
     fn runs_are_numbered_and_old_rows_fall_off() {
         let mut record = RunRecord::default();
         record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
-        assert!(record.at_or_after(0).is_none(), "nothing but runs");
+        assert!(record.rows().at_or_after(0).is_none(), "nothing but runs");
         for run in 1..=2 {
             record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
             for _ in 0..RUN_ROWS - 1 {
                 record.step(Instant::ZERO, true, cycle(500, AtoState::Run));
             }
             record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
-            let rows = record.next_index() - record.oldest_index();
+            let rows = record.rows().next_index() - record.rows().oldest_index();
             assert_eq!(rows as usize, RUN_ROWS);
-            assert_eq!(record.at_or_after(0).map(|row| row.run), Some(run));
+            assert_eq!(record.rows().at_or_after(0).map(|row| row.run), Some(run));
         }
-        assert_eq!(record.oldest_index() as usize, RUN_ROWS);
+        assert_eq!(record.rows().oldest_index() as usize, RUN_ROWS);
     }
 
     #[test]
@@ -131,12 +115,12 @@ mod tests {
         for _ in 0..100 {
             record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
         }
-        assert_eq!(record.next_index(), 1);
+        assert_eq!(record.rows().next_index(), 1);
         let mut moving = cycle(500, AtoState::Run);
         moving.marker = (2, 1);
         record.step(Instant::ZERO, true, moving);
         record.step(Instant::ZERO, true, moving);
-        let markers = [1, 2].map(|i| record.at_or_after(i).map(|row| row.marker));
+        let markers = [1, 2].map(|i| record.rows().at_or_after(i).map(|row| row.marker));
         assert_eq!(markers, [Some(2), Some(0)]);
     }
 }
