@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::Bench;
+use common::{Bench, fault};
 use protocol::SCAN;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Section;
@@ -146,17 +146,10 @@ impl Journey {
     }
 }
 
-fn fault(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
+fn fault_from(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
     FaultMode {
-        id: "part.mode".into(),
-        lru: "part".into(),
-        mode: String::new(),
-        severity: "major".into(),
-        weight: 1.0,
-        unsafe_: false,
-        place,
-        effect,
         onset_s,
+        ..fault(place, effect)
     }
 }
 
@@ -338,7 +331,7 @@ fn swapped_markers_are_out_of_order_and_correct_nothing() {
 #[test]
 fn with_a_dead_tra_the_train_stops_short_of_the_platforms_end() {
     for wheels_tell in [0.985, 1.0] {
-        let dead = fault(Place::Tra, Effect::Dead, 10.0);
+        let dead = fault_from(Place::Tra, Effect::Dead, 10.0);
         let mut journey = Journey::new(&[dead]);
         journey.wheels_tell = wheels_tell;
         let mut journey = journey.run();
@@ -367,7 +360,7 @@ fn a_train_that_does_not_answer_its_brake_is_noticed_and_atp_brakes() {
 
 #[test]
 fn full_power_that_does_not_end_is_noticed() {
-    let stuck = fault(Place::AtoCpu, Effect::StuckOn, 20.0);
+    let stuck = fault_from(Place::AtoCpu, Effect::StuckOn, 20.0);
     let mut journey = Journey::new(&[stuck]).run();
     let faults = journey.faults();
     assert!(faults.contains(&"ato_not_following"), "{faults:?}");
@@ -378,7 +371,7 @@ fn full_power_that_does_not_end_is_noticed() {
 /// Its outputs stay as they were until the watchdog bites; then ATP brakes and ATO says why.
 #[test]
 fn a_processor_that_stops_on_the_way_is_noticed_by_the_watchdog() {
-    let dead = fault(Place::AtoCpu, Effect::Dead, 20.0);
+    let dead = fault_from(Place::AtoCpu, Effect::Dead, 20.0);
     let mut journey = Journey::new(&[dead]);
     while journey.bench.now.as_us() < 20_000_000 {
         journey.step();
@@ -488,7 +481,7 @@ fn a_failed_start_up_check_keeps_ato_in_inspection() {
         Place::FskTransmitter,
         Place::AtoCpu,
     ] {
-        let mut bench = Bench::new(&[fault(place, Effect::Dead, 0.0)]);
+        let mut bench = Bench::new(&[fault(place, Effect::Dead)]);
         bench.code("65");
         bench.input.mode_switch = ModeSwitch::Automatic;
         bench.run(2.0);

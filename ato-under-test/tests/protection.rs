@@ -2,23 +2,9 @@
 
 mod common;
 
-use common::Bench;
-use protocol::injection::{Effect, FaultMode, Place};
+use common::{Bench, fault};
+use protocol::injection::{Effect, Place};
 use protocol::message::{EbCause, FsbCause, Mode, ModeSwitch, Outputs, Refusals, TrainLines};
-
-fn fault(place: Place, effect: Effect) -> FaultMode {
-    FaultMode {
-        id: "part.mode".into(),
-        lru: "part".into(),
-        mode: String::new(),
-        severity: "major".into(),
-        weight: 1.0,
-        unsafe_: false,
-        place,
-        effect,
-        onset_s: 0.0,
-    }
-}
 
 #[test]
 fn a_healthy_unit_at_rest_logs_no_fault() {

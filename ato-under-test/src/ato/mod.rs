@@ -192,7 +192,12 @@ impl Ato {
     /// Acceleration the last effort asks for, what the track costs taken off, m/s².
     fn net_mps2(&self, inputs: &AtoInputs<'_>, config: &AtoConfig) -> f64 {
         let mass_kg = config.train.empty_kg + inputs.load_kg + config.train.rotating_kg;
-        (self.granted.force_n - self.feed_forward_n) / mass_kg
+        self.net_n() / mass_kg
+    }
+
+    /// Force of the last effort, what the track costs taken off, N.
+    fn net_n(&self) -> f64 {
+        self.granted.force_n - self.feed_forward_n
     }
 
     /// Drives for one cycle.
@@ -206,8 +211,10 @@ impl Ato {
         let train = &config.train;
         let weight_kg = train.empty_kg + inputs.load_kg;
         let mass_kg = weight_kg + train.rotating_kg;
-        let net_mps2 = self.net_mps2(inputs, config);
-        let ahead = self.observer.step(inputs.speed.mps(), net_mps2, train);
+        let granted_n = self.net_n();
+        let ahead = self
+            .observer
+            .step(inputs.speed.mps(), granted_n / mass_kg, train);
         let markers_to_stop_m = inputs
             .section
             .map_or([0.0; 4], |s| s.markers_m.map(|at| s.stop_m - at));
@@ -220,7 +227,7 @@ impl Ato {
             markers_to_stop_m,
             mass_kg,
             brake_mps2,
-            granted_n: self.granted.force_n - self.feed_forward_n,
+            granted_n,
         });
         self.feed_forward_n =
             feed_forward::holding_force_n(inputs.section, inputs.position_m, weight_kg, train);

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use ato_under_test::{Setup, Unit};
 use protocol::config::UnitConfig;
-use protocol::injection::FaultMode;
+use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{
@@ -15,6 +15,21 @@ use protocol::message::{
     TcmsToAtc, TcmsToAtcBits, TrainLines, TwcWayside,
 };
 use protocol::{Instant, SCAN};
+
+/// A fault of some part, from power-up on.
+pub fn fault(place: Place, effect: Effect) -> FaultMode {
+    FaultMode {
+        id: "part.mode".into(),
+        lru: "part".into(),
+        mode: String::new(),
+        severity: "major".into(),
+        weight: 1.0,
+        unsafe_: false,
+        place,
+        effect,
+        onset_s: 0.0,
+    }
+}
 
 pub struct Bench {
     pub unit: Unit,

@@ -1,6 +1,6 @@
 //! Ranges of a train's data, and what must fit together.
 
-use protocol::config::ConfigError;
+use protocol::config::{ConfigError, within};
 
 use super::MAX_CARS;
 use super::data::{CarData, CarsData, IdealData, Role};
@@ -136,17 +136,4 @@ fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 29] {
         ("wheels.release_s", w.release_s, 0.01, 10.0),
         ("wheels.restore_s", w.restore_s, 0.01, 60.0),
     ]
-}
-
-fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
-    // Not a number is in no range.
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(ConfigError::Range {
-        key: key.to_owned(),
-        value: value.to_string(),
-        low: low.to_string(),
-        high: high.to_string(),
-    })
 }

@@ -342,7 +342,11 @@ pub(crate) fn conflict(text: &str) -> ConfigError {
     ConfigError::Conflict(text.to_string())
 }
 
-pub(crate) fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
+/// Whether a value lies in its range; not a number lies in none.
+///
+/// # Errors
+/// [`ConfigError::Range`], with the key.
+pub fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
     // A negated comparison so that not-a-number is refused, too.
     if value >= low && value <= high {
         return Ok(());

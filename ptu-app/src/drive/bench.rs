@@ -9,7 +9,7 @@ use protocol::line::Line;
 
 use super::Setting;
 use crate::data::DataFile;
-use crate::link::SimLink;
+use crate::link::{SIM_SERIAL, SimLink};
 
 /// What the bench of a run is made of.
 #[derive(Clone)]
@@ -25,7 +25,7 @@ pub struct DriveBench {
 /// Drives `plan` once, in virtual time.
 pub fn drive(bench: &DriveBench, plan: DrivePlan, seed: u64) -> Outcome {
     let setup = Setup {
-        serial: "SIM-0001".into(),
+        serial: SIM_SERIAL.into(),
         config: bench.config.content.clone(),
         config_crc: bench.config.crc,
         line: bench.line.content.clone(),

@@ -5,5 +5,5 @@ mod sim;
 mod wire;
 
 pub use pace::Pace;
-pub use sim::SimLink;
+pub use sim::{SIM_SERIAL, SimLink};
 pub use wire::{Endpoint, WireLink};

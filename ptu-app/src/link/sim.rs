@@ -4,6 +4,9 @@ use ato_under_test::{Setup, Unit};
 use btu_rig::rig::{LinkFailure, UnitLink};
 use protocol::Instant;
 
+/// Serial number of the embedded unit when none is asked for.
+pub const SIM_SERIAL: &str = "SIM-0001";
+
 /// A unit that is powered up at a chosen time.
 pub struct SimLink {
     setup: Option<Setup>,

@@ -20,7 +20,7 @@ use super::session::{Session, SessionEvent};
 use super::{RunPlan, Task, fault_watch::FaultSeen, stream};
 use crate::data::DataFile;
 use crate::failure::Failure;
-use crate::link::{Endpoint, Pace, SimLink, WireLink};
+use crate::link::{Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
 use crate::stop::Stop;
 
 /// Time a unit may take from power-up, or from first contact, until it is ready.
@@ -59,7 +59,7 @@ impl BenchSetup {
     /// Serial number before the unit has said its own.
     pub fn expected_serial(&self) -> String {
         self.serial.clone().unwrap_or_else(|| match self.endpoint {
-            Endpoint::Sim => "SIM-0001".into(),
+            Endpoint::Sim => SIM_SERIAL.into(),
             _ => "unknown".into(),
         })
     }
