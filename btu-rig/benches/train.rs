@@ -1,8 +1,9 @@
-//! How long the train models take: `cargo bench -p btu-rig --bench train`. One item is the two
+//! How long the train models and TCMS's sharing out of effort take: `cargo bench -p btu-rig --bench train`. One item is the two
 //! steps of 5 ms of a scan.
 
 use btu_rig::conditions::Conditions;
-use btu_rig::train::{Train, TrainData, TrainInputs, TrainState};
+use btu_rig::tcms::{Consist, Effort, Order};
+use btu_rig::train::{CarSet, Train, TrainData, TrainInputs, TrainState};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 
@@ -14,11 +15,23 @@ fn main() {
 }
 
 /// Power to 60 km/h, coasting, braking to a stop: the three things a train does.
-fn run(train: &mut Train) -> TrainState {
+fn run((train, effort): &mut (Train, Effort)) -> TrainState {
     let mut state = TrainState::default();
     for scan in 0..SCANS {
+        let share = [1.0, 0.05, -0.6][(scan / 2500).min(2)];
+        let order = Order {
+            share,
+            holding: false,
+            no_inverters: false,
+            speed_mps: train.velocity_mps().abs(),
+            inverters_out: CarSet::NONE,
+            brakes_out: CarSet::NONE,
+        };
+        let demands = effort.step(0.01, &order, Some(&train.equipment()));
         let inputs = TrainInputs {
-            demand: [1.0, 0.05, -0.6][(scan / 2500).min(2)],
+            demand: share,
+            motor_n: demands.motor_n,
+            air_n: demands.air_n,
             gradient_permille: -3.0,
             ..TrainInputs::default()
         };
@@ -39,8 +52,12 @@ fn section_run(bencher: Bencher<'_, '_>, name: &str) {
         conditions.adhesion = 0.06;
     }
     let train = Train::new(&data, &conditions);
+    let TrainData::Cars(cars) = TrainData::line6() else {
+        return;
+    };
+    let effort = Effort::new(Consist::new(&cars));
     bencher
         .counter(ItemsCount::new(SCANS))
-        .with_inputs(|| train.clone())
+        .with_inputs(|| (train.clone(), effort.clone()))
         .bench_refs(run);
 }

@@ -2,6 +2,8 @@
 //!
 //! * [`conditions`]: how train and track differ from what the unit is told;
 //! * [`stimulus`]: what a procedure may do to the unit, as typed values;
+//! * [`lever`]: positions of the master controller;
+//! * [`tcms`]: train control and monitoring system, from cabs and unit to each car's demands;
 //! * [`train`]: the train models;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
 //!   the unit only through frames;
@@ -13,7 +15,9 @@
 
 pub mod conditions;
 pub mod drive;
+pub mod lever;
 pub mod procedure;
 pub mod rig;
 pub mod stimulus;
+pub mod tcms;
 pub mod train;

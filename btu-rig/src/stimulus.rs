@@ -3,6 +3,8 @@
 use protocol::Speed;
 use protocol::message::{DoorSide, ModeSwitch, RunningMode};
 
+use crate::lever::Lever;
+
 /// Condition of one tachometer channel's generator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TachoCondition {
@@ -42,6 +44,61 @@ pub enum TcmsCondition {
     Silent,
     /// Sends with a standing alive counter.
     Stale,
+}
+
+/// A switch, contact or valve of the train that is on or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrainSwitch {
+    /// Head control relay of the other cab.
+    OtherCab,
+    /// Dead man held down.
+    DeadMan,
+    /// Emergency push button of the first cab, the one the unit is in.
+    Button1,
+    /// Emergency push button of the other cab.
+    Button2,
+    /// Emergency brake cut out.
+    EbCutOut,
+    /// Main reservoir pressure low.
+    MainReservoirLow,
+    /// Security brake.
+    SecurityBrake,
+    /// Parking brake.
+    ParkingBrake,
+    /// Button for release of the brakes by force.
+    ForcedRelease,
+    /// Driverless initialisation or turn-back.
+    TurnBack,
+    /// The line takes regenerated power.
+    Regeneration,
+}
+
+impl TrainSwitch {
+    /// As people call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::OtherCab => "head control relay of the other cab",
+            Self::DeadMan => "dead man held",
+            Self::Button1 => "emergency button of the first cab",
+            Self::Button2 => "emergency button of the other cab",
+            Self::EbCutOut => "emergency brake cut-out",
+            Self::MainReservoirLow => "main reservoir low",
+            Self::SecurityBrake => "security brake",
+            Self::ParkingBrake => "parking brake",
+            Self::ForcedRelease => "forced release",
+            Self::TurnBack => "driverless turn-back",
+            Self::Regeneration => "line takes regenerated power",
+        }
+    }
+}
+
+/// Equipment of a car that can be cut out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CutOut {
+    /// Its brake.
+    Brake,
+    /// Its inverter.
+    Inverter,
 }
 
 /// Station data for the wayside or the TWC TEST module.
@@ -172,10 +229,41 @@ pub enum Stimulus {
     },
     /// Mode switch.
     ModeSwitch(ModeSwitch),
-    /// Master controller notch, -8..=4.
+    /// Master controller.
     Controller {
-        /// The notch.
-        notch: i8,
+        /// Its position.
+        lever: Lever,
+    },
+    /// Voltage of the master controller's potentiometer, whatever its position.
+    ControllerVolts {
+        /// V, 0..=10; `None` = as the position has it.
+        volts: Option<f64>,
+    },
+    /// Contacts of the master controller, whatever its position.
+    ControllerContacts {
+        /// P and B; `None` = as the position has them.
+        contacts: Option<(bool, bool)>,
+    },
+    /// Switch of the train.
+    Switch {
+        /// Which.
+        switch: TrainSwitch,
+        /// On.
+        on: bool,
+    },
+    /// Equipment of a car is cut out or in.
+    CutOut {
+        /// What.
+        what: CutOut,
+        /// Car, counted from 1 at the head.
+        car: u8,
+        /// Cut out.
+        on: bool,
+    },
+    /// Gradient added to the track's.
+    Gradient {
+        /// ‰, uphill positive; `None` = that of the run's conditions.
+        permille: Option<f64>,
     },
     /// Reverser: 1 forward, 0 neutral, -1 backward.
     Reverser {

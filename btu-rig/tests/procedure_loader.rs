@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use btu_rig::procedure::loader::{Loaded, Scripts, load};
+use btu_rig::train::TrainData;
 use proptest::prelude::*;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
@@ -18,7 +19,7 @@ fn load_all(scripts: &Scripts) -> Loaded {
     let read = |path: &str| std::fs::read_to_string(root().join("..").join(path)).unwrap();
     let unit = UnitConfig::from_toml(&read("scripts/units/sg100.toml")).unwrap();
     let line = Line::from_toml(&read("scripts/lines/line8.toml")).unwrap();
-    load(scripts, &unit, &line)
+    load(scripts, &unit, &line, &TrainData::line6())
 }
 
 fn folder(name: &str) -> Scripts {

@@ -10,6 +10,7 @@ use btu_rig::procedure::{
     UnitEvent, Verdict,
 };
 use btu_rig::stimulus::Stimulus;
+use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::line::Line;
@@ -26,7 +27,7 @@ fn procedure(script: &str) -> Arc<Procedure> {
     let unit = UnitConfig::from_toml(&read("units/sg100.toml")).unwrap();
     let line = Line::from_toml(&read("lines/line8.toml")).unwrap();
     let scripts = BTreeMap::from([("test.star".to_owned(), script.to_owned())]);
-    let loaded = load(&scripts, &unit, &line);
+    let loaded = load(&scripts, &unit, &line, &TrainData::line6());
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
     Arc::clone(&loaded.procedures[0])
 }
@@ -80,6 +81,7 @@ impl World<'_> {
 
     fn log(&mut self, event: Event) {
         self.events.push(UnitEvent {
+            source: btu_rig::procedure::EventSource::Unit,
             index: 0,
             code: event.definition().code,
             at_ms: 0,

@@ -48,7 +48,7 @@ pub struct Definition {
 
 macro_rules! events {
     ($( $variant:ident = $code:literal $name:literal $severity:ident $lru:literal $text:literal $ko:literal $parameter:literal; )*) => {
-        /// Events the unit logs.
+        /// Events the unit and TCMS log.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Event { $( #[doc = $text] $variant ),* }
 
@@ -122,6 +122,20 @@ events! {
     AtoInputAbsurd = 604 "ato_input_absurd" Major "-" "ATO was given what no train can do" "ATO 입력 이상" "inputs as bits, `AbsurdInputs`";
     ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
+    InverterFailed = 800 "inverter_failed" Major "inverter" "TCMS: inverter does not answer" "추진장치 고장" "car";
+    BrakeUnitFailed = 801 "brake_unit_failed" Major "brake_unit" "TCMS: brake control unit does not answer" "제동장치 고장" "car";
+    BrakeCylinderFailed = 802 "brake_cylinder_failed" Major "brake_cylinder" "TCMS: brake cylinders do not follow the demand" "제동통 압력 이상" "car";
+    RegenerationCutOut = 803 "regeneration_cut_out" Minor "inverter" "TCMS: inverter cut its electric brake out" "회생제동 차단" "car; 0 = all, the line takes nothing";
+    BrakeNotReleased = 804 "brake_not_released" Major "brake_cylinder" "TCMS: brake not released" "제동 불완해" "car";
+    ControllerFailed = 805 "controller_failed" Major "master_controller" "TCMS: master controller value in its failure range" "주간제어기 고장" "mV";
+    ControllerContradicts = 806 "controller_contradicts" Minor "master_controller" "TCMS: power and brake contacts both on" "역행/제동 동시 입력" "";
+    TwoCabsActive = 807 "two_cabs_active" Critical "head_control_relay" "TCMS: two head control relays energised" "전두계전기 중복" "";
+    AtoOrderContradicts = 808 "ato_order_contradicts" Minor "ato_cpu" "TCMS: power, brake and effort of ATO contradict each other" "ATO 지령 모순" "effort";
+    AtcSilent = 809 "atc_silent" Major "rs485_link" "TCMS: no frames from the unit" "ATC 통신 두절" "";
+    AtcRestored = 810 "atc_restored" Info "-" "TCMS: frames from the unit again" "ATC 통신 복귀" "";
+    AtcFramesRefused = 811 "atc_frames_refused" Minor "rs485_link" "TCMS: frames of the unit refused" "ATC 수신 프레임 폐기" "how many so far";
+    MainReservoirLow = 812 "main_reservoir_low" Major "air_supply" "TCMS: main reservoir pressure low" "주공기압 저하" "";
+    DeadMan = 813 "dead_man" Info "-" "TCMS: dead man released too long" "데드맨 동작" "";
 }
 
 impl Event {

@@ -52,6 +52,47 @@ pub enum Place {
     TrackDatabase,
     /// Wheel diameter the unit is set to.
     WheelParameter,
+    /// A car's inverter.
+    Inverter,
+    /// Electric brake of a car's inverter.
+    Regeneration,
+    /// A car's brake control unit.
+    BrakeUnit,
+    /// A car's brake cylinders.
+    BrakeCylinder,
+    /// Potentiometer of the master controller.
+    ControllerPot,
+    /// Contact that proves the doors closed.
+    DoorContact,
+    /// Head control relay of the cab.
+    HeadControlRelay,
+    /// What TCMS sends on RS-485.
+    Tcms,
+}
+
+impl Place {
+    /// On the train around the unit, where the bench applies it; else in the unit.
+    pub const fn on_train(self) -> bool {
+        matches!(
+            self,
+            Self::Inverter
+                | Self::Regeneration
+                | Self::BrakeUnit
+                | Self::BrakeCylinder
+                | Self::ControllerPot
+                | Self::DoorContact
+                | Self::HeadControlRelay
+                | Self::Tcms
+        )
+    }
+
+    /// On one of the train's cars, which the mode must name.
+    pub const fn on_car(self) -> bool {
+        matches!(
+            self,
+            Self::Inverter | Self::Regeneration | Self::BrakeUnit | Self::BrakeCylinder
+        )
+    }
 }
 
 /// What happens at a place.
@@ -125,6 +166,9 @@ pub struct FaultMode {
     /// When it begins, s after power-up.
     #[serde(default)]
     pub onset_s: f64,
+    /// Car it is on, counted from the head of the train; only at places that are on cars.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub car: Option<u8>,
 }
 
 /// A part that can be replaced.

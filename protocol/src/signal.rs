@@ -80,6 +80,14 @@ const SWITCHED: Kind = Kind::Enum(&["released", "applied"]);
 const MARKERS: Kind = Kind::Enum(&["none", "psm1", "psm2", "psm3", "psm4"]);
 const DOORS: Kind = Kind::Enum(&["open", "closed"]);
 const WAYSIDE: Kind = Kind::Enum(&["silent", "good", "corrupt"]);
+const TCMS_MODES: Kind = Kind::Enum(&[
+    "none",
+    "emergency",
+    "yard",
+    "manual",
+    "automatic",
+    "driverless",
+]);
 const TACHO: Kind = Kind::Enum(&["good", "dead", "noisy", "scaled"]);
 
 signals! {
@@ -107,6 +115,37 @@ signals! {
     ModeSwitch "mode_switch" "" Kind::Enum(ModeSwitch::LABELS), 0 ..= 5, Rig, "Mode switch";
     Controller "controller" "" UNITY, -8 ..= 4, Rig, "Master controller notch";
     EbLoop "eb_loop" "" SWITCHED, 0 ..= 1, Rig, "Emergency brake train line of the train";
+    TcmsAlive "tcms_alive" "" Kind::Bit, 0 ..= 1, Rig, "TCMS sends on RS-485 and its alive counter moves";
+    ControllerVolts "controller_volts" "V" CENTI, 0 ..= 10, Rig, "Voltage of the master controller's potentiometer";
+    TcmsMode "tcms_mode" "" TCMS_MODES, 0 ..= 5, Rig, "Mode TCMS drives in";
+    TcmsPower "tcms_power" "" Kind::Bit, 0 ..= 1, Rig, "TCMS orders powering (DRYINP)";
+    TcmsBrake "tcms_brake" "" Kind::Bit, 0 ..= 1, Rig, "TCMS orders braking (DRYINB)";
+    TcmsCoast "tcms_coast" "" Kind::Bit, 0 ..= 1, Rig, "TCMS orders coasting (DRYINCOA)";
+    TcmsValue "tcms_value" "" UNITY, -1024 ..= 1023, Rig, "Powering and braking value TCMS orders (DRYTEBE)";
+    TcmsFsb "tcms_fsb" "" SWITCHED, 0 ..= 1, Rig, "Full service brake ordered by TCMS (BCYINFSB)";
+    TcmsMsb "tcms_msb" "" SWITCHED, 0 ..= 1, Rig, "Maximum service brake ordered by TCMS (BCYMSB)";
+    TcmsHolding "tcms_holding" "" SWITCHED, 0 ..= 1, Rig, "Holding brake ordered by TCMS";
+    PowerCutCauses "power_cut_causes" "" UNITY, 0 ..= 65535, Rig, "Why TCMS cuts powering, as bits; 0 = it does not";
+    EbSources "eb_sources" "" UNITY, 0 ..= 65535, Rig, "What opens the emergency brake train line, as bits";
+    Lamps "lamps" "" UNITY, 0 ..= 65535, Rig, "Lamps in the cabs, as bits";
+    NotReleased "not_released" "" UNITY, 0 ..= 65535, Rig, "Cars whose brake is not released, bit 0 = the first";
+    MotorDemand "motor_demand" "N" UNITY, -1000000 ..= 1000000, Rig, "Demand of TCMS on all inverters, electric brake negative";
+    Motor1 "motor_1" "N" UNITY, -300000 ..= 300000, Rig, "Demand on the inverters of MT pair 1, electric brake negative";
+    Motor2 "motor_2" "N" UNITY, -300000 ..= 300000, Rig, "Demand on the inverters of MT pair 2, electric brake negative";
+    Motor3 "motor_3" "N" UNITY, -300000 ..= 300000, Rig, "Demand on the inverters of MT pair 3, electric brake negative";
+    Motor4 "motor_4" "N" UNITY, -300000 ..= 300000, Rig, "Demand on the inverters of MT pair 4, electric brake negative";
+    AirTrailer1 "air_t_1" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the trailers of MT pair 1";
+    AirTrailer2 "air_t_2" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the trailers of MT pair 2";
+    AirTrailer3 "air_t_3" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the trailers of MT pair 3";
+    AirTrailer4 "air_t_4" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the trailers of MT pair 4";
+    AirMotor1 "air_m_1" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the motor cars of MT pair 1";
+    AirMotor2 "air_m_2" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the motor cars of MT pair 2";
+    AirMotor3 "air_m_3" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the motor cars of MT pair 3";
+    AirMotor4 "air_m_4" "N" UNITY, 0 ..= 300000, Rig, "Air demanded of the motor cars of MT pair 4";
+    BrakeDemand "brake_demand" "N" UNITY, 0 ..= 1000000, Rig, "Braking effort TCMS wants of the train, electric and air together";
+    Traction "traction" "N" UNITY, 0 ..= 1000000, Rig, "Traction the train gives";
+    ElectricBrake "electric_brake" "N" UNITY, 0 ..= 1000000, Rig, "Electric brake the train gives";
+    AirBrake "air_brake" "N" UNITY, 0 ..= 1000000, Rig, "Air brake the train gives";
     Eb "eb" "" SWITCHED, 0 ..= 1, Unit, "Emergency brake: applied when the EB relay is de-energised";
     Fsb "fsb" "" SWITCHED, 0 ..= 1, Unit, "Full service brake request";
     PowerCut "power_cut" "" Kind::Bit, 0 ..= 1, Unit, "Powering cut";

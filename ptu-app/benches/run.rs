@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{Procedure, RunOptions};
+use btu_rig::train::TrainData;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fault_db::Store;
@@ -38,6 +39,7 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
         endpoint: Endpoint::Sim,
         config: directory.unit_config("sg100").expect("unit configuration"),
         line: directory.line("line8").expect("line"),
+        train: TrainData::line6(),
         faults: Vec::new(),
         seed: 1,
         serial: None,
@@ -48,7 +50,12 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
 
 /// Loads, runs and records `texts` in a new database under `folder`.
 fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> Outcome {
-    let loaded = load(texts, &setup.config.content, &setup.line.content);
+    let loaded = load(
+        texts,
+        &setup.config.content,
+        &setup.line.content,
+        &setup.train,
+    );
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
     let task = |procedure| Task {
         procedure,

@@ -28,6 +28,7 @@ pub fn fault(place: Place, effect: Effect) -> FaultMode {
         place,
         effect,
         onset_s: 0.0,
+        car: None,
     }
 }
 
@@ -168,6 +169,7 @@ impl Bench {
                 bits,
                 load_100kg: 0,
                 alive: (self.scans / 5) as u8,
+                effort: 0,
             });
         }
         if self.scans.is_multiple_of(20) && self.keep_alive {

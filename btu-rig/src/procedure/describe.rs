@@ -8,7 +8,7 @@ use super::plan::{
     Action, Comparison, Condition, Connection, Expectation, Measure, Operand, Procedure, Step,
     TimeFrom, What,
 };
-use crate::stimulus::Stimulus;
+use crate::stimulus::{CutOut, Stimulus};
 
 impl Procedure {
     /// The whole plan, one line for each thing done, expected or measured.
@@ -254,7 +254,33 @@ fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::Hcr { on } => format!("cab active (HCR) {}", on_off(on)),
         Stimulus::MaintenanceKey { on } => format!("maintenance key {}", on_off(on)),
         Stimulus::ModeSwitch(mode) => format!("mode switch to {}", mode.label()),
-        Stimulus::Controller { notch } => format!("master controller to notch {notch}"),
+        Stimulus::Controller { lever } => format!("master controller to {lever}"),
+        Stimulus::ControllerVolts { volts: Some(volts) } => {
+            format!("master controller gives {} V", number(volts))
+        }
+        Stimulus::ControllerVolts { volts: None } => "master controller's own voltage".into(),
+        Stimulus::ControllerContacts {
+            contacts: Some((power, brake)),
+        } => format!(
+            "master controller contacts P {}, B {}",
+            on_off(power),
+            on_off(brake)
+        ),
+        Stimulus::ControllerContacts { contacts: None } => {
+            "master controller's own contacts".into()
+        }
+        Stimulus::Switch { switch, on } => format!("{} {}", switch.label(), on_off(on)),
+        Stimulus::CutOut { what, car, on } => {
+            let part = match what {
+                CutOut::Brake => "brake",
+                CutOut::Inverter => "inverter",
+            };
+            format!("{part} of car {car} cut {}", if on { "out" } else { "in" })
+        }
+        Stimulus::Gradient {
+            permille: Some(permille),
+        } => format!("gradient {} ‰", number(permille)),
+        Stimulus::Gradient { permille: None } => "gradient as always".into(),
         Stimulus::Reverser { position } => format!("reverser to {position}"),
         Stimulus::Acknowledge => "press acknowledge".into(),
         Stimulus::Start => "press ATO start".into(),

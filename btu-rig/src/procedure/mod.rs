@@ -58,14 +58,25 @@ pub trait Driver {
 #[error("{0}")]
 pub struct Refusal(pub String);
 
-/// An entry of the unit's event log, as received.
+/// Whose log an event stands in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventSource {
+    /// The unit under test.
+    Unit,
+    /// TCMS.
+    Tcms,
+}
+
+/// An entry of the unit's event log as received, or of TCMS's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitEvent {
-    /// Place in the unit's log.
+    /// Whose log it stands in.
+    pub source: EventSource,
+    /// Place in the log.
     pub index: u32,
     /// Number in the event dictionary, kept even if this version does not know it.
     pub code: u16,
-    /// The unit's own time, ms since its power-up.
+    /// Own time of whoever logged it, ms since its start.
     pub at_ms: u32,
     /// What the dictionary says it is.
     pub parameter: i32,

@@ -3,7 +3,7 @@
 use protocol::Instant;
 
 use crate::procedure::Refusal;
-use crate::stimulus::{Stimulus, TachoCondition, WaysideCondition};
+use crate::stimulus::{CutOut, Stimulus, TachoCondition, WaysideCondition};
 
 use super::antenna::MAX_RATE_HZ;
 use super::exchange::Request;
@@ -22,6 +22,8 @@ const MAX_MOVE_M: f64 = 100.0;
 const MAX_NOISE_PER_S: f64 = 5_000.0;
 /// Greatest factor between a channel and its wheel.
 const MAX_FACTOR: f64 = 10.0;
+/// Steepest gradient, ‰.
+const MAX_GRADIENT_PERMILLE: f64 = 100.0;
 /// Fastest drift: what the whole range in a second would take.
 const MAX_DRIFT_PER_S: f64 = U16_MAX;
 
@@ -91,6 +93,7 @@ impl Rig {
             Stimulus::Tacho { channel, condition } => self.set_tacho(channel, condition)?,
             Stimulus::TrainDriven { on } => self.drive_train(on),
             Stimulus::Adhesion { coefficient } => self.set_adhesion(coefficient)?,
+            Stimulus::Gradient { permille } => self.set_gradient(permille)?,
             Stimulus::Marker { psm } => {
                 in_range("marker", f64::from(psm), 1.0, 4.0, "")?;
                 self.markers.pulse(psm)?;
@@ -116,21 +119,26 @@ impl Rig {
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
             Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
-            Stimulus::Controller { notch } => {
-                in_range("controller notch", f64::from(notch), -8.0, 4.0, "")?;
-                self.desk.controller = notch;
+            Stimulus::Controller { lever } => self.desk.lever = lever,
+            Stimulus::ControllerVolts { volts } => {
+                self.desk.volts = volts
+                    .map(|volts| in_range("controller voltage", volts, 0.0, 10.0, "V"))
+                    .transpose()?;
             }
+            Stimulus::ControllerContacts { contacts } => self.desk.contacts = contacts,
+            Stimulus::Switch { switch, on } => self.desk.switch(switch, on),
+            Stimulus::CutOut { what, car, on } => self.cut_out(what, car, on)?,
             Stimulus::Reverser { position } => {
                 in_range("reverser position", f64::from(position), -1.0, 1.0, "")?;
                 self.desk.reverser = position;
             }
             Stimulus::Acknowledge => self.desk.press_acknowledge(now),
             Stimulus::Start => self.desk.press_start(now),
-            Stimulus::Tcms(condition) => self.tcms.condition = condition,
-            Stimulus::AtoEnable { on } => self.tcms.ato_enable = on,
+            Stimulus::Tcms(condition) => self.tcms_port.condition = condition,
+            Stimulus::AtoEnable { on } => self.tcms_port.ato_enable = on,
             Stimulus::Load { passengers_kg } => {
                 let full_kg = self.train.full_load_kg();
-                self.tcms.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
+                self.tcms_port.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
             }
             _ => return self.apply_ptu(now, stimulus),
         }
@@ -185,7 +193,7 @@ impl Rig {
         self.antenna.drift(0.0, 0.0);
         self.markers.clear();
         self.desk.doors_closed = true;
-        self.tcms.reset();
+        self.tcms_port.reset();
         self.wayside.set_condition(WaysideCondition::Good);
         self.tester.make_safe(now);
         self.making_safe = true;
@@ -255,8 +263,29 @@ impl Rig {
         Ok(())
     }
 
+    fn set_gradient(&mut self, permille: Option<f64>) -> Result<(), Refusal> {
+        let mut conditions = self.conditions;
+        if let Some(permille) = permille {
+            let limit = MAX_GRADIENT_PERMILLE;
+            conditions.gradient_offset_permille =
+                in_range("gradient", permille, -limit, limit, "‰")?;
+        }
+        self.train.set_conditions(&conditions);
+        Ok(())
+    }
+
+    fn cut_out(&mut self, what: CutOut, car: u8, on: bool) -> Result<(), Refusal> {
+        let cars = self.cars.len();
+        let place = usize::from(car).checked_sub(1).filter(|at| *at < cars);
+        let place = place
+            .ok_or_else(|| Refusal(format!("there is no car {car}: the train has 1 to {cars}")))?;
+        self.desk.cut_out(what, place, on);
+        Ok(())
+    }
+
     fn drive_train(&mut self, on: bool) {
         if on && !self.train_driven {
+            self.tcms.rest();
             self.train.place(self.wheel.velocity_mps());
         }
         if self.train_driven && !on {

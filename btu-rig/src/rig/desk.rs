@@ -1,14 +1,19 @@
-//! Cab desk and train lines: what a driver, the doors and the brake loop give the unit.
+//! Cab desks and train lines: what drivers, doors and the brake loop give TCMS and the unit.
 
-use protocol::message::{ModeSwitch, Outputs, TrainLines};
+use protocol::message::{ModeSwitch, TrainLines};
 use protocol::{Duration, Instant};
+
+use crate::lever::Lever;
+use crate::stimulus::{CutOut, TrainSwitch};
+use crate::tcms::{CabInputs, ControllerInputs, TcmsData};
+use crate::train::CarSet;
+
+use super::train_faults::DeskFaults;
 
 /// How long a button stays pressed.
 const PRESSED: Duration = Duration::from_ms(500);
-/// Master controller position that opens the emergency brake loop.
-const EMERGENCY_NOTCH: i8 = -8;
 
-/// Contacts and levers of one cab.
+/// Contacts and levers of both cabs and of the train; the unit is in the first cab.
 #[derive(Debug)]
 pub struct Desk {
     /// Doors proved closed.
@@ -19,13 +24,50 @@ pub struct Desk {
     pub maintenance_key: bool,
     /// Mode switch.
     pub mode_switch: ModeSwitch,
-    /// Master controller notch, −8..=4.
-    pub controller: i8,
+    /// Master controller.
+    pub lever: Lever,
+    /// Voltage of its potentiometer, whatever its position.
+    pub volts: Option<f64>,
+    /// Its P and B contacts, whatever its position.
+    pub contacts: Option<(bool, bool)>,
     /// Reverser: 1, 0 or −1.
     pub reverser: i8,
+    /// What is wrong with desk and train lines.
+    pub faults: DeskFaults,
+    /// Brakes that are cut out.
+    pub brakes_cut_out: CarSet,
+    /// Inverters that are cut out.
+    pub inverters_cut_out: CarSet,
+    switches: Switches,
     acknowledge_until: Instant,
     start_until: Instant,
     eb_loop: bool,
+    eb_loop_fed: bool,
+}
+
+/// Switches that are on.
+#[derive(Clone, Copy, Debug)]
+struct Switches(u16);
+
+impl Default for Switches {
+    /// The dead man is held and the line takes power.
+    fn default() -> Self {
+        let mut switches = Self(0);
+        switches.set(TrainSwitch::DeadMan, true);
+        switches.set(TrainSwitch::Regeneration, true);
+        switches
+    }
+}
+
+impl Switches {
+    fn set(&mut self, switch: TrainSwitch, on: bool) {
+        let bit = 1 << switch as u16;
+        self.0 = if on { self.0 | bit } else { self.0 & !bit };
+    }
+
+    fn on(self, switch: TrainSwitch) -> bool {
+        self.0 & (1 << switch as u16) != 0
+    }
 }
 
 impl Default for Desk {
@@ -36,20 +78,29 @@ impl Default for Desk {
             hcr: true,
             maintenance_key: false,
             mode_switch: ModeSwitch::Manual,
-            controller: 0,
+            lever: Lever::Neutral,
+            volts: None,
+            contacts: None,
             reverser: 1,
+            faults: DeskFaults::default(),
+            brakes_cut_out: CarSet::NONE,
+            inverters_cut_out: CarSet::NONE,
+            switches: Switches::default(),
             acknowledge_until: Instant::ZERO,
             start_until: Instant::ZERO,
             eb_loop: false,
+            eb_loop_fed: false,
         }
     }
 }
 
 impl Desk {
-    /// Everything back to where [`Self::default`] has it; the loop is the train's and stays.
+    /// Everything back to where [`Self::default`] has it; loop and faults are the train's and stay.
     pub fn reset(&mut self) {
         *self = Self {
             eb_loop: self.eb_loop,
+            eb_loop_fed: self.eb_loop_fed,
+            faults: self.faults,
             ..Self::default()
         };
     }
@@ -64,27 +115,85 @@ impl Desk {
         self.start_until = now + PRESSED;
     }
 
-    /// One scan: the loop follows the relay as last heard, which is one scan old, as a train's
-    /// relays would be. A unit that is not heard holds no relay.
-    pub fn step(&mut self, outputs: Option<Outputs>) {
-        let relay = outputs.is_some_and(|o| o.contains(Outputs::EB_RELAY));
-        self.eb_loop = relay && self.controller != EMERGENCY_NOTCH;
+    /// Turns a switch of the train.
+    pub fn switch(&mut self, switch: TrainSwitch, on: bool) {
+        self.switches.set(switch, on);
     }
 
-    /// The emergency brake loop is energised: brake released.
-    pub fn eb_loop(&self) -> bool {
-        self.eb_loop
+    /// Whether a switch of the train is on.
+    pub fn is_on(&self, switch: TrainSwitch) -> bool {
+        self.switches.on(switch)
+    }
+
+    /// Cuts equipment of a car, by its place from 0, out or in.
+    pub fn cut_out(&mut self, what: CutOut, car: usize, on: bool) {
+        match what {
+            CutOut::Brake => self.brakes_cut_out.set(car, on),
+            CutOut::Inverter => self.inverters_cut_out.set(car, on),
+        }
+    }
+
+    /// The loop as TCMS's relays have it.
+    pub fn set_loop(&mut self, energised: bool, fed: bool) {
+        self.eb_loop = energised;
+        self.eb_loop_fed = fed;
+    }
+
+    /// The door line: proved closed as far as its contact says.
+    pub fn doors_proved(&self) -> bool {
+        self.faults.doors.unwrap_or(self.doors_closed)
+    }
+
+    /// The head control relay of the first cab.
+    pub fn hcr_energised(&self) -> bool {
+        self.faults.hcr.unwrap_or(self.hcr)
+    }
+
+    /// Both cabs as TCMS sees them.
+    pub fn cabs(&self, tcms: &TcmsData) -> [CabInputs; 2] {
+        let mut controller = tcms.at(self.lever);
+        if let Some((power, brake)) = self.contacts {
+            controller = ControllerInputs {
+                power,
+                brake,
+                neutral: !power && !brake,
+                ..controller
+            };
+        }
+        controller.volts = self.volts.unwrap_or(controller.volts);
+        controller.volts = self.faults.volts.unwrap_or(controller.volts);
+        let first = CabInputs {
+            hcr: self.hcr_energised(),
+            reverser: self.reverser,
+            mode_switch: self.mode_switch,
+            controller,
+            dead_man: self.is_on(TrainSwitch::DeadMan),
+            emergency_button: self.is_on(TrainSwitch::Button1),
+            forced_release: self.is_on(TrainSwitch::ForcedRelease),
+        };
+        // Nobody drives from there: its desk is as it was left.
+        let other = CabInputs {
+            hcr: self.is_on(TrainSwitch::OtherCab),
+            reverser: 0,
+            mode_switch: ModeSwitch::Off,
+            controller: tcms.at(Lever::Neutral),
+            dead_man: false,
+            emergency_button: self.is_on(TrainSwitch::Button2),
+            forced_release: false,
+        };
+        [first, other]
     }
 
     /// Train lines at this scan.
     pub fn lines(&self, now: Instant) -> TrainLines {
         let mut lines = TrainLines::empty();
-        lines.set(TrainLines::DOORS_CLOSED, self.doors_closed);
-        lines.set(TrainLines::HCR, self.hcr);
+        lines.set(TrainLines::DOORS_CLOSED, self.doors_proved());
+        lines.set(TrainLines::HCR, self.hcr_energised());
         lines.set(TrainLines::MAINTENANCE_KEY, self.maintenance_key);
         lines.set(TrainLines::ACKNOWLEDGE, now < self.acknowledge_until);
         lines.set(TrainLines::START, now < self.start_until);
         lines.set(TrainLines::EB_LOOP, self.eb_loop);
+        lines.set(TrainLines::EB_LOOP_FED, self.eb_loop_fed);
         lines.set(TrainLines::FORWARD, self.reverser > 0);
         lines.set(TrainLines::BACKWARD, self.reverser < 0);
         lines
@@ -94,22 +203,6 @@ impl Desk {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn loop_needs_relay_and_lever() {
-        let mut desk = Desk::default();
-        for (outputs, controller, energised) in [
-            (None, 0, false),
-            (Some(Outputs::empty()), 0, false),
-            (Some(Outputs::EB_RELAY), 0, true),
-            (Some(Outputs::EB_RELAY), -7, true),
-            (Some(Outputs::EB_RELAY), -8, false),
-        ] {
-            desk.controller = controller;
-            desk.step(outputs);
-            assert_eq!(desk.eb_loop(), energised, "{outputs:?} {controller}");
-        }
-    }
 
     #[test]
     fn buttons_spring_back() {
@@ -129,5 +222,15 @@ mod tests {
                 .lines(Instant::from_ms(590))
                 .contains(TrainLines::ACKNOWLEDGE)
         );
+    }
+
+    /// A broken contact says what it says, whatever the doors do, and making safe does not mend it.
+    #[test]
+    fn a_broken_contact_outlives_a_reset() {
+        let mut desk = Desk::default();
+        desk.faults.doors = Some(false);
+        desk.reset();
+        assert!(desk.doors_closed && !desk.doors_proved());
+        assert!(!desk.lines(Instant::ZERO).contains(TrainLines::DOORS_CLOSED));
     }
 }

@@ -6,7 +6,7 @@ use protocol::link::Link;
 use protocol::message::{LogEnd, LogEntry, ReadLog};
 use protocol::{Duration, Instant, Speed};
 
-use crate::procedure::UnitEvent;
+use crate::procedure::{EventSource, UnitEvent};
 
 /// Entries kept until they are taken; reading pauses beyond, and the unit keeps the rest.
 pub const MAX_EVENTS: usize = 512;
@@ -106,6 +106,7 @@ impl LogReader {
 
 fn unit_event(entry: &LogEntry) -> UnitEvent {
     UnitEvent {
+        source: EventSource::Unit,
         index: entry.index,
         code: entry.code,
         at_ms: entry.at_ms,

@@ -25,17 +25,20 @@ mod sample;
 mod step_profile;
 mod tacho;
 mod tcms;
+mod tcms_port;
 mod test_signals;
 mod tester;
 #[cfg(test)]
 mod tests;
 mod track;
+mod train_faults;
 mod truth;
 mod wayside;
 mod wheel;
 
 use protocol::Instant;
 use protocol::config::{SpeedCode, UnitConfig};
+use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
 use protocol::message::{Identity, IoInput, Message};
@@ -44,6 +47,7 @@ use protocol::signal::{Sample, Signal};
 use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::{TachoCondition, WaysideCondition};
+use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
@@ -57,9 +61,11 @@ use random::Random;
 use rolling::weight_shares;
 use sample::Recorder;
 use tacho::Tacho;
-use tcms::Tcms;
+use tcms::{PairCars, pair_cars};
+use tcms_port::TcmsPort;
 use tester::Tester;
 use track::Track;
+use train_faults::{Injected, TrainFaults};
 use truth::SpeedHistory;
 use wayside::Wayside;
 use wheel::Wheel;
@@ -94,6 +100,13 @@ pub struct Rig {
     markers: Markers,
     wayside: Wayside,
     tcms: Tcms,
+    tcms_port: TcmsPort,
+    pair_cars: PairCars,
+    /// Events of TCMS that were not taken yet, and how many there were.
+    tcms_events: Vec<UnitEvent>,
+    tcms_logged: u32,
+    injected: Injected,
+    faults: TrainFaults,
     desk: Desk,
     tester: Tester,
     /// Slowing down to a standstill, after which the rest is made quiescent.
@@ -133,6 +146,13 @@ impl Rig {
             train: Train::new(&train_data, &conditions),
             cars: weight_shares(&train_data, 0.0),
             cars_load_kg: 0.0,
+            tcms: Tcms::new(&train_data),
+            tcms_port: TcmsPort::default(),
+            pair_cars: pair_cars(&train_data),
+            tcms_events: Vec::new(),
+            tcms_logged: 0,
+            injected: Injected::default(),
+            faults: TrainFaults::default(),
             train_data,
             train_state: TrainState::default(),
             speeds: SpeedHistory::default(),
@@ -140,7 +160,6 @@ impl Rig {
             track: None,
             markers: Markers::default(),
             wayside,
-            tcms: Tcms::default(),
             desk: Desk::default(),
             tester: Tester::new(session),
             making_safe: false,
@@ -155,13 +174,19 @@ impl Rig {
         rig
     }
 
+    /// Faults of the train and its wiring, each from its time after `power_at`; those of the unit are
+    /// its own affair.
+    pub fn inject(&mut self, modes: &[FaultMode], power_at: Instant) {
+        self.injected = Injected::new(modes, power_at);
+    }
+
     /// One scan: generators advance, frames that are due are appended to `out`.
     pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.now = now;
         self.watch.step(now);
         self.recorder.step(now);
-        self.desk.step(self.recorder.outputs());
-        self.roll();
+        let told = self.run_tcms();
+        self.roll(told);
         self.follow_codes();
         self.antenna.step();
         for tacho in &mut self.tachos {
@@ -171,7 +196,7 @@ impl Rig {
         self.finish_making_safe();
 
         self.link.send(now, &self.io_input(now).into(), out);
-        if let Some(message) = self.tcms.step(now, self.braking) {
+        if let Some(message) = self.tcms_port.step(now, self.tcms.view(), self.braking) {
             self.link.send(now, &message.into(), out);
         }
         self.wayside.step(now, &mut self.link, out);
@@ -188,7 +213,9 @@ impl Rig {
             match &received.message {
                 Message::IoOutput(io) => self.recorder.hear_io(now, io),
                 Message::AtcToTcms(command) => {
-                    self.tcms.hear(now, command);
+                    if !self.tcms_port.silent() {
+                        self.tcms.hear(now, command);
+                    }
                     self.recorder.hear_tcms(now, command);
                 }
                 Message::TwcTrain(answer) => {
@@ -210,10 +237,12 @@ impl Rig {
         &self.recorder.sample
     }
 
-    /// New entries of the unit's log in the order of their indices, each once. Indices begin anew
-    /// when the unit is started again.
+    /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
+    /// of the unit begin anew when it is started again.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        self.tester.take_events()
+        let mut events = self.tester.take_events();
+        events.extend(self.tcms_events.drain(..));
+        events
     }
 
     /// Entries the log had when the unit was first heard: those with a lower index are older than
@@ -275,7 +304,7 @@ impl Rig {
             marker_edge_us: self.markers.age_us(),
             lines: self.desk.lines(now),
             mode_switch: self.desk.mode_switch,
-            controller: self.desk.controller,
+            controller: self.desk.lever.wire(),
         }
     }
 
@@ -305,7 +334,7 @@ impl Rig {
             (Signal::WaysideMode, f64::from(data.running_mode.code())),
             (Signal::Departure, f64::from(u8::from(data.departure))),
             (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
-            (Signal::Controller, f64::from(self.desk.controller)),
+            (Signal::Controller, f64::from(self.desk.lever.wire())),
             (Signal::TwcAnswers, f64::from(self.wayside.answers())),
         ] {
             sample.set(signal, value);
@@ -317,6 +346,7 @@ impl Rig {
             }
             None => sample.forget(Signal::ToStop),
         }
+        self.record_tcms();
     }
 }
 

@@ -3,8 +3,10 @@
 use protocol::{Duration, SCAN};
 
 use crate::conditions::Conditions;
+use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
+use super::tcms::pair_cars;
 use super::{Rig, Truth};
 
 /// The train is integrated in two steps a scan: 5 ms each.
@@ -15,8 +17,11 @@ impl Rig {
     pub fn set_train(&mut self, data: TrainData) {
         let mut train = Train::new(&data, &self.conditions);
         train.place(self.train.velocity_mps());
+        train.set_faults(self.faults.equipment);
         self.train = train;
         self.cars = weight_shares(&data, self.cars_load_kg);
+        self.tcms = Tcms::new(&data);
+        self.pair_cars = pair_cars(&data);
         self.train_data = data;
     }
 
@@ -51,8 +56,8 @@ impl Rig {
     }
 
     /// Turns the wheels through one scan.
-    pub(super) fn roll(&mut self) {
-        let inputs = self.train_inputs();
+    pub(super) fn roll(&mut self, told: TrainInputs) {
+        let inputs = self.on_track(told);
         if self.train_driven {
             let dt = TRAIN_STEP.as_secs();
             // Written out: each state is then made where it stays, which is worth a twentieth of a
@@ -64,15 +69,13 @@ impl Rig {
         } else {
             self.wheel.step();
             self.train_state = TrainState::default();
-            self.braking = inputs.full_service || inputs.emergency || inputs.demand < 0.0;
+            self.braking = inputs.emergency || inputs.security || inputs.demand < 0.0;
         }
         self.speeds.push(self.wheel.velocity_mps());
     }
 
-    fn train_inputs(&mut self) -> TrainInputs {
-        let mut inputs = self
-            .tcms
-            .train_inputs(self.now, &self.desk, self.recorder.outputs());
+    /// What acts on the train besides what it is told.
+    fn on_track(&mut self, mut inputs: TrainInputs) -> TrainInputs {
         if inputs.load_kg != self.cars_load_kg {
             self.cars_load_kg = inputs.load_kg;
             self.cars = weight_shares(&self.train_data, inputs.load_kg);

@@ -1,202 +1,155 @@
-//! As much TCMS as the unit needs: an alive counter, ATO enable and load, and the commands it
-//! hands on to the train.
+//! TCMS on the bench: what it is given in a scan, and what it shows as signals.
 
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, Outputs, TcmsToAtc, TcmsToAtcBits};
-use protocol::{CYCLE, Duration, Instant};
+use protocol::Speed;
+use protocol::message::{EbCause, Mode};
+use protocol::signal::{Sample, Signal};
 
-use crate::stimulus::TcmsCondition;
-use crate::train::TrainInputs;
+use crate::procedure::{EventSource, UnitEvent};
+use crate::stimulus::TrainSwitch;
+use crate::tcms::{TcmsEvent, TcmsInputs, TcmsView};
+use crate::train::{CarSet, PerCar, Role, TrainData, TrainInputs};
 
-use super::desk::Desk;
+use super::Rig;
+use super::log_reader::MAX_EVENTS;
 
-/// Age at which ATO's commands no longer count [default].
-const COMMAND_TIMEOUT: Duration = Duration::from_ms(300);
-/// Powering by notch P1..P4, share of full effort (S3).
-const POWER_SHARES: [f64; 4] = [0.30, 0.50, 0.75, 1.00];
-/// Braking by notch B1..B7, share of full service (S3).
-const BRAKE_SHARES: [f64; 7] = [0.135, 0.275, 0.42, 0.565, 0.71, 0.855, 1.00];
+/// Signals of an MT pair: inverters, air of trailers, air of motor cars.
+const PAIRS: [[Signal; 3]; 4] = [
+    [Signal::Motor1, Signal::AirTrailer1, Signal::AirMotor1],
+    [Signal::Motor2, Signal::AirTrailer2, Signal::AirMotor2],
+    [Signal::Motor3, Signal::AirTrailer3, Signal::AirMotor3],
+    [Signal::Motor4, Signal::AirTrailer4, Signal::AirMotor4],
+];
 
-/// The train control and monitoring system.
-#[derive(Debug)]
-pub struct Tcms {
-    /// Condition of the link to the unit.
-    pub condition: TcmsCondition,
-    /// ATO is permitted.
-    pub ato_enable: bool,
-    /// Passengers, kg.
-    pub load_kg: f64,
-    alive: u8,
-    next_due: Instant,
-    command: Option<(Instant, AtcToTcms)>,
-}
+/// Cars whose demands make up each signal of [`PAIRS`].
+pub(super) type PairCars = [(CarSet, CarSet); 4];
 
-impl Default for Tcms {
-    /// In order, ATO permitted, nobody aboard.
-    fn default() -> Self {
-        Self {
-            condition: TcmsCondition::Good,
-            ato_enable: true,
-            load_kg: 0.0,
-            alive: 0,
-            next_due: Instant::ZERO,
-            command: None,
-        }
-    }
-}
-
-impl Tcms {
-    /// Good, ATO permitted, empty; the alive counter goes on.
-    pub fn reset(&mut self) {
-        self.condition = TcmsCondition::Good;
-        self.ato_enable = true;
-        self.load_kg = 0.0;
-    }
-
-    /// The message that is due this scan, if any.
-    pub fn step(&mut self, now: Instant, braking: bool) -> Option<TcmsToAtc> {
-        if now < self.next_due {
-            return None;
-        }
-        self.next_due = now + CYCLE;
-        if self.condition == TcmsCondition::Silent {
-            return None;
-        }
-        if self.condition == TcmsCondition::Good {
-            self.alive = self.alive.wrapping_add(1);
-        }
-        let mut bits = TcmsToAtcBits::empty();
-        bits.set(TcmsToAtcBits::ATO_ENABLE, self.ato_enable);
-        bits.set(TcmsToAtcBits::SERVICE_BRAKE_APPLIED, braking);
-        let load_100kg = (self.load_kg / 100.0).round() as u16;
-        Some(TcmsToAtc {
-            bits,
-            load_100kg,
-            alive: self.alive,
-        })
-    }
-
-    /// Takes the unit's commands. A silent link is one nothing comes through, either way.
-    pub fn hear(&mut self, now: Instant, command: &AtcToTcms) {
-        if self.condition != TcmsCondition::Silent {
-            self.command = Some((now, *command));
-        }
-    }
-
-    /// What the train is told: ATO's effort in automatic run, the master controller otherwise,
-    /// power only with doors closed, cab active and nothing that cuts it (S4).
-    pub fn train_inputs(&self, now: Instant, desk: &Desk, outputs: Option<Outputs>) -> TrainInputs {
-        let contacts = outputs.unwrap_or(Outputs::empty());
-        let command = self
-            .command
-            .filter(|(heard, _)| now.since(*heard) <= COMMAND_TIMEOUT)
-            .map(|(_, command)| command);
-        let ato = command.filter(|c| c.mode == Mode::AutomaticRun);
-        let holds = ato.is_some_and(|c| c.bits.contains(AtcToTcmsBits::HOLDING_BRAKE));
-        let holding = contacts.contains(Outputs::HOLDING_BRAKE) || holds;
-        let may_power = desk.doors_closed
-            && desk.hcr
-            && desk.reverser != 0
-            && outputs.is_some()
-            && !contacts.contains(Outputs::POWER_CUT)
-            && !holding;
-        TrainInputs {
-            demand: ato.map_or_else(|| notch_share(desk.controller), |c| ato_share(&c)),
-            full_service: contacts.contains(Outputs::FSB),
-            emergency: !desk.eb_loop(),
-            holding,
-            power_cut: !may_power,
-            backward: desk.reverser < 0,
-            load_kg: self.load_kg,
-            ..TrainInputs::default()
-        }
-    }
-}
-
-/// Share of full effort of ATO's command; P and B both on: B wins and the value is B's (S4).
-fn ato_share(command: &AtcToTcms) -> f64 {
-    let effort = f64::from(command.effort);
-    if command.bits.contains(AtcToTcmsBits::BRAKE) {
-        -effort.abs() / 1024.0
-    } else if command.bits.contains(AtcToTcmsBits::POWER) {
-        effort.max(0.0) / 1023.0
-    } else {
-        0.0
-    }
-}
-
-/// Share of full effort of a master controller notch.
-fn notch_share(notch: i8) -> f64 {
-    let place = usize::from(notch.unsigned_abs()).min(7);
-    match notch {
-        0 => 0.0,
-        1.. => POWER_SHARES[place.min(4) - 1],
-        _ => -BRAKE_SHARES[place - 1],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn alive_counts_stands_or_is_not_sent() {
-        let mut tcms = Tcms::default();
-        let sent = |tcms: &mut Tcms, from_ms: u64| -> Vec<u8> {
-            (0..10)
-                .filter_map(|i| tcms.step(Instant::from_ms(from_ms + 10 * i), false))
-                .map(|m| m.alive)
-                .collect()
-        };
-        assert_eq!(sent(&mut tcms, 0), [1, 2]);
-        tcms.condition = TcmsCondition::Stale;
-        assert_eq!(sent(&mut tcms, 100), [2, 2]);
-        tcms.condition = TcmsCondition::Silent;
-        assert!(sent(&mut tcms, 200).is_empty());
-    }
-
-    #[test]
-    fn commands_reach_the_train_as_the_tables_say() {
-        let (power, brake) = (AtcToTcmsBits::POWER, AtcToTcmsBits::BRAKE);
-        for (bits, effort, share) in [
-            (power, 1023, 1.0),
-            (power, -500, 0.0),
-            (brake, -512, -0.5),
-            (power | brake, 512, -0.5),
-            (AtcToTcmsBits::empty(), 1023, 0.0),
-        ] {
-            let command = AtcToTcms {
-                bits,
-                effort,
-                ..AtcToTcms::default()
+/// Motor cars and trailers of the first MT pairs.
+pub(super) fn pair_cars(train: &TrainData) -> PairCars {
+    let mut pairs = PairCars::default();
+    if let TrainData::Cars(data) = train {
+        for (i, car) in data.cars.iter().enumerate() {
+            let Some((motors, trailers)) = pairs.get_mut(car.pair - 1) else {
+                continue;
             };
-            assert_eq!(ato_share(&command), share, "{bits:?} {effort}");
+            match car.role {
+                Role::Motor => motors.set(i, true),
+                Role::Trailer => trailers.set(i, true),
+            }
         }
-        assert_eq!(
-            [-8, -7, -1, 0, 1, 4].map(notch_share),
-            [-1.0, -1.0, -0.135, 0.0, 0.3, 1.0]
-        );
+    }
+    pairs
+}
+
+impl Rig {
+    /// One scan of TCMS: what the train is told.
+    pub(super) fn run_tcms(&mut self) -> TrainInputs {
+        if self.injected.set_in(self.now, &mut self.faults) {
+            self.train.set_faults(self.faults.equipment);
+            self.desk.faults = self.faults.desk;
+            self.tcms_port.fault = self.faults.tcms;
+        }
+        let desk = &self.desk;
+        let on = |switch| desk.is_on(switch);
+        let inputs = TcmsInputs {
+            cabs: desk.cabs(self.tcms.data()),
+            doors_closed: desk.doors_proved(),
+            main_reservoir_low: on(TrainSwitch::MainReservoirLow),
+            eb_cut_out: on(TrainSwitch::EbCutOut),
+            security_brake: on(TrainSwitch::SecurityBrake),
+            parking_brake: on(TrainSwitch::ParkingBrake),
+            turn_back: on(TrainSwitch::TurnBack),
+            brakes_cut_out: desk.brakes_cut_out,
+            inverters_cut_out: desk.inverters_cut_out,
+            contacts: self.recorder.outputs(),
+            load_kg: self.tcms_port.load_kg,
+            equipment: self.train_driven.then(|| self.train.equipment()),
+            speed_mps: self.wheel.velocity_mps().abs(),
+            frames_refused: 0,
+        };
+        let mut told = self.tcms.step(self.now, &inputs);
+        told.regeneration_refused = !on(TrainSwitch::Regeneration);
+        self.log_tcms();
+        let line = self.tcms.view().line;
+        self.desk.set_loop(line.energised, line.fed);
+        told
     }
 
-    #[test]
-    fn power_needs_every_permission() {
-        let now = Instant::ZERO;
-        let (tcms, released) = (Tcms::default(), Some(Outputs::EB_RELAY));
-        let desk = |change: fn(&mut Desk)| {
-            let mut desk = Desk::default();
-            desk.controller = 4;
-            change(&mut desk);
-            desk.step(Some(Outputs::EB_RELAY));
-            desk
-        };
-        let cut = |desk: &Desk, outputs| tcms.train_inputs(now, desk, outputs).power_cut;
-        assert!(!cut(&desk(|_| ()), released));
-        assert!(cut(&desk(|d| d.doors_closed = false), released));
-        assert!(cut(&desk(|d| d.hcr = false), released));
-        assert!(cut(&desk(|d| d.reverser = 0), released));
-        assert!(cut(
-            &desk(|_| ()),
-            Some(Outputs::EB_RELAY | Outputs::POWER_CUT)
-        ));
-        assert!(cut(&desk(|_| ()), None));
+    /// Keeps TCMS's new events with what stood around them.
+    fn log_tcms(&mut self) {
+        let events = self.tcms.take_events();
+        let sample = &self.recorder.sample;
+        let value = |signal| sample.get(signal).unwrap_or(0.0);
+        for TcmsEvent { event, parameter } in events {
+            // Nobody takes them while no procedure runs; the newest are of no use without the first.
+            if self.tcms_events.len() >= MAX_EVENTS {
+                return;
+            }
+            self.tcms_events.push(UnitEvent {
+                source: EventSource::Tcms,
+                index: self.tcms_logged,
+                code: event.definition().code,
+                at_ms: self.now.stamp_ms(),
+                parameter,
+                speed: Speed::from_kmh(value(Signal::TrainSpeed)),
+                limit: Speed::from_kmh(value(Signal::Limit)),
+                position_m: value(Signal::TrainPosition),
+                mode: Mode::from_code(value(Signal::Mode) as u8),
+                eb_cause: EbCause::from_code(value(Signal::EbCause) as u8),
+            });
+            self.tcms_logged += 1;
+        }
+    }
+
+    /// Records what TCMS does.
+    pub(super) fn record_tcms(&mut self) {
+        let view = self.tcms.view();
+        let sample = &mut self.recorder.sample;
+        let sum = |of: &PerCar, cars: CarSet| cars.iter().map(|car| of[car]).sum::<f64>();
+        for ([motor, trailer_air, motor_air], (motors, trailers)) in
+            PAIRS.iter().zip(self.pair_cars)
+        {
+            sample.set(*motor, sum(&view.demands.motor_n, motors));
+            sample.set(*trailer_air, sum(&view.demands.air_n, trailers));
+            sample.set(*motor_air, sum(&view.demands.air_n, motors));
+        }
+        record_words(sample, view);
+        sample.set(Signal::BrakeDemand, view.demands.brake_n);
+        sample.set(
+            Signal::MotorDemand,
+            view.demands.motor_n.iter().sum::<f64>(),
+        );
+        let state = &self.train_state;
+        sample.set(Signal::Traction, state.traction_n);
+        sample.set(Signal::ElectricBrake, state.electric_brake_n);
+        sample.set(Signal::AirBrake, state.air_brake_n);
+        let alive = self.tcms_port.alive(self.now);
+        sample.set_bit(Signal::TcmsAlive, alive);
+    }
+}
+
+fn record_words(sample: &mut Sample, view: &TcmsView) {
+    for (signal, on) in [
+        (Signal::TcmsPower, view.driving.dryinp),
+        (Signal::TcmsBrake, view.driving.dryinb),
+        (Signal::TcmsCoast, view.driving.dryincoa),
+        (Signal::TcmsFsb, view.brake.bcyinfsb),
+        (Signal::TcmsMsb, view.brake.bcymsb),
+        (Signal::TcmsHolding, view.holding),
+    ] {
+        sample.set_bit(signal, on);
+    }
+    for (signal, value) in [
+        (Signal::TcmsMode, f64::from(view.mode.code())),
+        (Signal::TcmsValue, f64::from(view.driving.drytebe)),
+        (Signal::ControllerVolts, view.volts),
+        (Signal::PowerCutCauses, f64::from(view.power_cuts.bits())),
+        (Signal::EbSources, f64::from(view.eb_sources().bits())),
+        (Signal::Lamps, f64::from(view.lamps.bits())),
+        (
+            Signal::NotReleased,
+            f64::from(view.found.not_released.bits()),
+        ),
+    ] {
+        sample.set(signal, value);
     }
 }

@@ -9,7 +9,7 @@ const MAX_DEAD_S: f64 = MAX_TIME_S * MAX_DELAY_FACTOR;
 
 /// Times of an actuator, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Times {
+pub(crate) struct Times {
     /// Before anything follows.
     pub dead_s: f64,
     /// Time constant while effort rises.
@@ -31,7 +31,7 @@ impl Times {
 
 /// The actuators of one kind, one on each car.
 #[derive(Clone, Debug)]
-pub(super) struct Actuators {
+pub(crate) struct Actuators {
     times: Times,
     dt_s: f64,
     rise: f64,
@@ -65,6 +65,11 @@ impl Actuators {
     pub fn reset(&mut self) {
         self.line.fill([0.0; MAX_CARS]);
         self.effort_n = [0.0; MAX_CARS];
+    }
+
+    /// Effort at the end of the last step.
+    pub fn effort_n(&self) -> &PerCar {
+        &self.effort_n
     }
 
     /// One step toward the demand of a dead time ago.

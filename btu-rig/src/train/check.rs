@@ -28,7 +28,7 @@ pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
     ] {
         within(key, value, low, high)?;
     }
-    Ok(())
+    data.tcms.check()
 }
 
 /// Checks a train of cars.
@@ -61,14 +61,17 @@ pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
             "cars: a train needs a motor car".to_owned(),
         ));
     }
-    check_air(data)
+    check_pairs(data)?;
+    check_air(data)?;
+    data.tcms.check()
 }
 
 fn check_car(number: usize, car: &CarData) -> Result<(), ConfigError> {
     for (key, value, low, high) in [
-        ("brake_unit", car.brake_unit as f64, 1.0, MAX_CARS as f64),
+        ("pair", car.pair as f64, 1.0, MAX_CARS as f64),
         ("length_m", car.length_m, 5.0, 40.0),
         ("empty_kg", car.empty_kg, 1e3, 2e5),
+        ("bogies_kg", car.bogies_kg, 0.0, car.empty_kg),
         ("rotating_kg", car.rotating_kg, 1.0, 5e4),
         ("full_load_kg", car.full_load_kg, 0.0, 1e5),
         ("air_n", car.air_n, 0.0, 1e6),
@@ -79,24 +82,38 @@ fn check_car(number: usize, car: &CarData) -> Result<(), ConfigError> {
     Ok(())
 }
 
-/// Air alone must be able to give full service braking of a full train.
-fn check_air(data: &CarsData) -> Result<(), ConfigError> {
-    for unit in 1..=MAX_CARS {
-        let cars = || data.cars.iter().filter(|car| car.brake_unit == unit);
-        let inertia_kg = |car: &CarData| car.empty_kg + car.rotating_kg + car.full_load_kg;
-        let needs_n = cars().map(inertia_kg).sum::<f64>() * data.service_brake.kmh_per_s / 3.6;
-        let has_n = cars().map(|car| car.air_n).sum::<f64>();
-        // S3's table is rounded to newtons.
-        if has_n < 0.999 * needs_n {
+/// Pairs are numbered without a gap, and each has a motor car.
+fn check_pairs(data: &CarsData) -> Result<(), ConfigError> {
+    let last = data.cars.iter().map(|car| car.pair).max().unwrap_or(0);
+    for pair in 1..=last {
+        let mut cars = data.cars.iter().filter(|car| car.pair == pair);
+        if !cars.any(|car| car.role == Role::Motor) {
             return Err(ConfigError::Conflict(format!(
-                "brake_unit {unit}: air_n of {has_n:.0} N in all is less than full service of the full train, {needs_n:.0} N"
+                "pair {pair}: a pair needs a motor car"
             )));
         }
     }
     Ok(())
 }
 
-fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 29] {
+/// Air alone must be able to give full service braking of a full train.
+fn check_air(data: &CarsData) -> Result<(), ConfigError> {
+    for pair in 1..=MAX_CARS {
+        let cars = || data.cars.iter().filter(|car| car.pair == pair);
+        let inertia_kg = |car: &CarData| car.empty_kg + car.rotating_kg + car.full_load_kg;
+        let needs_n = cars().map(inertia_kg).sum::<f64>() * data.service_brake.kmh_per_s / 3.6;
+        let has_n = cars().map(|car| car.air_n).sum::<f64>();
+        // S3's table is rounded to newtons.
+        if has_n < 0.999 * needs_n {
+            return Err(ConfigError::Conflict(format!(
+                "pair {pair}: air_n of {has_n:.0} N in all is less than full service of the full train, {needs_n:.0} N"
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 31] {
     let (t, el, s) = (&data.traction, &data.electric_brake, &data.service_brake);
     let (em, r, w) = (&data.emergency_brake, &data.resistance, &data.wheels);
     let time = MAX_TIME_S;
@@ -112,6 +129,8 @@ fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 29] {
         ("electric_brake.fade_to_kmh", el.fade_to_kmh, 0.0, 200.0),
         ("service_brake.kmh_per_s", s.kmh_per_s, 0.1, 10.0),
         ("service_brake.holding_share", s.holding_share, 0.0, 1.0),
+        ("service_brake.security_share", s.security_share, 0.0, 1.3),
+        ("service_brake.parking_share", s.parking_share, 0.0, 1.0),
         ("service_brake.dead_time_s", s.dead_time_s, 0.0, time),
         ("service_brake.build_up_s", s.build_up_s, 0.0, time),
         ("service_brake.release_s", s.release_s, 0.0, time),

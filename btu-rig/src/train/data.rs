@@ -1,9 +1,11 @@
 //! Data of a train as files have it; see `scripts/trains/`.
 
 use protocol::config::ConfigError;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
+use super::actuator::Times;
 use super::check;
+use crate::tcms::TcmsData;
 
 /// Data of a train, checked when it comes from a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +17,7 @@ pub enum TrainData {
 }
 
 /// The papers' point mass [S0 eq. 8].
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct IdealData {
     /// Name of the train.
@@ -43,10 +45,12 @@ pub struct IdealData {
     pub holding_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
+    /// Its TCMS.
+    pub tcms: TcmsData,
 }
 
 /// A train of cars.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CarsData {
     /// Name of the train.
@@ -67,12 +71,14 @@ pub struct CarsData {
     pub resistance: Resistance,
     /// Slip, slide and the protection against it.
     pub wheels: Wheels,
+    /// Its TCMS.
+    pub tcms: TcmsData,
     /// The cars from the head.
     pub cars: Vec<CarData>,
 }
 
 /// Powering.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
     /// Force of the whole train at full power and full load, N [S3 eq. 1].
@@ -88,7 +94,7 @@ pub struct Traction {
 }
 
 /// Electric brake of the motor cars.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElectricBrake {
     /// Its greatest force over the car's weight [S3 eq. 6].
@@ -102,7 +108,7 @@ pub struct ElectricBrake {
 }
 
 /// Service brake.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct AirBrake {
     /// Full service brake, km/h/s [S3: B7].
@@ -115,10 +121,14 @@ pub struct AirBrake {
     pub build_up_s: f64,
     /// Time constant while it is released, s.
     pub release_s: f64,
+    /// Security brake, share of full service; hard-wired, air on all cars.
+    pub security_share: f64,
+    /// Parking brake, share of full service; springs on all cars.
+    pub parking_share: f64,
 }
 
 /// Emergency brake, by air alone (S3).
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmergencyBrake {
     /// Its deceleration, km/h/s.
@@ -132,7 +142,7 @@ pub struct EmergencyBrake {
 }
 
 /// What resists motion.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Resistance {
     /// Resistance when starting from rest, kgf/t.
@@ -152,7 +162,7 @@ pub struct Resistance {
 }
 
 /// Slip, slide and the protection against it.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wheels {
     /// Friction of a sliding wheel over adhesion.
@@ -166,20 +176,22 @@ pub struct Wheels {
 }
 
 /// One car.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CarData {
     /// Name, for instance `M1`.
     pub name: String,
     /// Motored or not.
     pub role: Role,
-    /// Cars of one brake unit share a demand: electric first, then air on trailers, then on motor
-    /// cars (S3).
-    pub brake_unit: usize,
+    /// MT pair it belongs to, counted from 1. Cars of a pair share a demand: electric first, then air
+    /// on trailers, then on motor cars (S3).
+    pub pair: usize,
     /// Length, m.
     pub length_m: f64,
     /// Empty mass, kg.
     pub empty_kg: f64,
+    /// Of that its bogies, kg.
+    pub bogies_kg: f64,
     /// Rotating parts as mass, kg.
     pub rotating_kg: f64,
     /// Greatest passenger load, kg.
@@ -189,7 +201,7 @@ pub struct CarData {
 }
 
 /// Whether a car is driven.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// With motors and electric brake.
@@ -259,6 +271,14 @@ impl TrainData {
         }
     }
 
+    /// Its TCMS.
+    pub fn tcms(&self) -> &TcmsData {
+        match self {
+            Self::Ideal(data) => &data.tcms,
+            Self::Cars(data) => &data.tcms,
+        }
+    }
+
     /// Length and weight of each car from the head, m and kg, with these passengers spread over
     /// the train.
     pub fn cars(&self, load_kg: f64) -> Vec<(f64, f64)> {
@@ -270,6 +290,17 @@ impl TrainData {
                 cars.map(|c| (c.length_m, c.empty_kg + share * c.full_load_kg))
                     .collect()
             }
+        }
+    }
+}
+
+impl CarsData {
+    /// How inverters follow a demand.
+    pub(crate) fn motor_times(&self) -> Times {
+        Times {
+            dead_s: self.traction.dead_time_s,
+            rise_s: self.traction.lag_s,
+            fall_s: self.traction.lag_s,
         }
     }
 }
@@ -338,10 +369,7 @@ mod tests {
                 LINE6.replace("role = \"motor\"", "role = \"trailer\""),
                 "motor car",
             ),
-            (
-                LINE6.replace("air_n = 54022", "air_n = 5402"),
-                "brake_unit 1",
-            ),
+            (LINE6.replace("air_n = 54022", "air_n = 5402"), "pair 1"),
         ] {
             let error = TrainData::from_toml(&text).unwrap_err().to_string();
             assert!(error.contains(words), "{words}: {error}");

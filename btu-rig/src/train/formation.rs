@@ -3,21 +3,32 @@
 use crate::conditions::Conditions;
 
 use super::actuator::{Actuators, Times, share_per_step};
-use super::blending::{Blending, Command};
 use super::data::CarsData;
 use super::resistance::RunningResistance;
 use super::wheels::{Efforts, Rolling, WheelSets, adhesion_share, direction};
-use super::{KGF_PER_T, MAX_CARS, PerCar, Piece, TrainInputs, TrainState};
+use super::{
+    CarSet, Equipment, EquipmentFaults, KGF_PER_T, MAX_CARS, PerCar, Piece, Role, TrainInputs,
+    TrainState,
+};
 
 /// Brake force per mass that counts as applied, m/s² [default].
 const BRAKING_MPS2: f64 = 0.02;
+
+/// Share of its pressure that a weak brake's cylinders get [default].
+const WEAK_SHARE: f64 = 0.5;
+
+/// What is cut out, and other brakes, as the last step had it.
+#[derive(Clone, Copy, Debug, Default)]
+struct CutOut {
+    regeneration: CarSet,
+    others: bool,
+}
 
 /// A train of cars.
 #[derive(Clone, Debug)]
 pub(super) struct Formation {
     data: CarsData,
     conditions: Conditions,
-    blending: Blending,
     motors: Actuators,
     air: Actuators,
     emergency: Emergency,
@@ -28,6 +39,14 @@ pub(super) struct Formation {
     weight_kg: f64,
     /// Force of each car's emergency brake, N.
     emergency_n: PerCar,
+    /// Full service of each car, N.
+    service_n: PerCar,
+    motor_cars: CarSet,
+    faults: EquipmentFaults,
+    /// Pressure in each car's cylinders as force, N.
+    cylinders_n: PerCar,
+    /// What the inputs of the last step mean for reports.
+    cut_out: CutOut,
     efforts: Efforts,
     velocity_mps: f64,
     accel_mps2: f64,
@@ -63,8 +82,7 @@ impl Formation {
         }
         let mut train = Self {
             conditions: *conditions,
-            blending: Blending::new(data),
-            motors: Actuators::new(motor_times(data)),
+            motors: Actuators::new(data.motor_times()),
             air: Actuators::new(air_times(data)),
             emergency: Emergency {
                 times: emergency_times(data),
@@ -76,6 +94,11 @@ impl Formation {
             load_kg: 0.0,
             weight_kg: 0.0,
             emergency_n: none,
+            service_n: none,
+            motor_cars: motor_cars(data),
+            faults: EquipmentFaults::default(),
+            cylinders_n: none,
+            cut_out: CutOut::default(),
             efforts: Efforts {
                 traction_n: none,
                 electric_n: none,
@@ -95,17 +118,17 @@ impl Formation {
         self.conditions = *conditions;
         let factor = conditions.delay_factor;
         self.motors
-            .set_times(motor_times(&self.data).scaled(factor));
+            .set_times(self.data.motor_times().scaled(factor));
         self.air.set_times(air_times(&self.data).scaled(factor));
         self.emergency.times = emergency_times(&self.data).scaled(factor);
     }
 
     pub fn place(&mut self, velocity_mps: f64) {
-        self.blending.reset();
         self.motors.reset();
         self.air.reset();
         self.emergency.open_s = 0.0;
         self.emergency.share = 0.0;
+        self.cylinders_n = [0.0; MAX_CARS];
         self.wheels.reset();
         self.velocity_mps = velocity_mps;
         self.accel_mps2 = 0.0;
@@ -116,12 +139,33 @@ impl Formation {
         self.velocity_mps
     }
 
+    pub fn set_faults(&mut self, faults: EquipmentFaults) {
+        self.faults = faults;
+    }
+
+    pub fn equipment(&self) -> Equipment {
+        let speed_mps = self.velocity_mps.abs();
+        let left = |i: usize| self.wheels.left(i);
+        let factor = self.conditions.brake_factor;
+        Equipment {
+            axle_mps: std::array::from_fn(|i| self.wheels.rim_mps(i).map_or(speed_mps, f64::abs)),
+            traction_n: std::array::from_fn(|i| left(i) * self.efforts.traction_n[i]),
+            // An inverter knows its motors' torque, not what becomes of it at the rims.
+            electric_n: std::array::from_fn(|i| left(i) * self.efforts.electric_n[i] / factor),
+            air_n: self.cylinders_n,
+            inverters_silent: self.faults.inverters_dead,
+            regeneration_cut_out: self.cut_out.regeneration,
+            brake_units_silent: self.faults.brake_units_dead,
+            other_brakes: self.cut_out.others,
+        }
+    }
+
     pub fn step(&mut self, dt_s: f64, inputs: &TrainInputs) -> TrainState {
         if inputs.load_kg != self.load_kg {
             self.weigh(inputs.load_kg);
         }
         let speed_mps = self.velocity_mps.abs();
-        self.follow_commands(dt_s, speed_mps, inputs);
+        self.follow_demands(dt_s, inputs);
         let rolling = Rolling {
             velocity_mps: self.velocity_mps,
             accel_mps2: self.accel_mps2,
@@ -184,25 +228,60 @@ impl Formation {
         }
     }
 
-    /// Commands become demands on each car, those efforts.
-    fn follow_commands(&mut self, dt_s: f64, speed_mps: f64, inputs: &TrainInputs) {
-        let lost_n = self.wheels.electric_lost_n(&self.efforts);
-        let command = Command {
-            share: inputs.share(self.data.service_brake.holding_share),
-            emergency: inputs.emergency,
-            speed_mps,
-            electric_lost_n: lost_n.as_ref(),
+    /// Demands become efforts, as far as the equipment is sound and not cut out.
+    fn follow_demands(&mut self, dt_s: f64, inputs: &TrainInputs) {
+        let faults = &self.faults;
+        let no_motor = faults.inverters_dead.with(inputs.inverters_cut_out);
+        let refused = if inputs.regeneration_refused {
+            self.motor_cars
+        } else {
+            CarSet::NONE
         };
-        let demands = self.blending.step(dt_s, command);
-        let motor_n = self.motors.step(dt_s, &demands.motor_n);
-        let air_n = self.air.step(dt_s, &demands.air_n);
+        let no_electric = faults.regeneration_lost.with(refused);
+        let no_service = faults.brake_units_dead.with(inputs.brakes_cut_out);
+        self.cut_out = CutOut {
+            regeneration: no_electric.without(no_motor),
+            others: inputs.emergency || inputs.security || inputs.parking,
+        };
+        let (mut motor_n, mut air_n) = (inputs.motor_n, inputs.air_n);
+        let full = self.data.service_brake.security_share;
+        for i in 0..MAX_CARS {
+            if no_motor.contains(i) || motor_n[i] < 0.0 && no_electric.contains(i) {
+                motor_n[i] = 0.0;
+            }
+            if no_service.contains(i) {
+                air_n[i] = 0.0;
+            }
+            if faults.brakes_weak.contains(i) {
+                air_n[i] *= WEAK_SHARE;
+            }
+            if inputs.security && !inputs.brakes_cut_out.contains(i) {
+                air_n[i] = air_n[i].max(full * self.service_n[i]);
+            }
+        }
+        let motor_n = self.motors.step(dt_s, &motor_n);
+        let air_n = self.air.step(dt_s, &air_n);
         let emergency = self.emergency.step(dt_s, inputs.emergency);
+        let parking = if inputs.parking {
+            self.data.service_brake.parking_share
+        } else {
+            0.0
+        };
         let factor = self.conditions.brake_factor;
         let efforts = &mut self.efforts;
         for i in 0..MAX_CARS {
+            let cut_out = inputs.brakes_cut_out.contains(i);
+            let mut cylinder_n = air_n[i];
+            if !cut_out {
+                cylinder_n = cylinder_n.max(emergency * self.emergency_n[i]);
+                if self.faults.brakes_stuck.contains(i) && !inputs.forced_release {
+                    cylinder_n = cylinder_n.max(self.cylinders_n[i]);
+                }
+            }
+            self.cylinders_n[i] = cylinder_n;
             efforts.traction_n[i] = motor_n[i].max(0.0);
             efforts.electric_n[i] = factor * (-motor_n[i]).max(0.0);
-            efforts.air_n[i] = factor * air_n[i].max(emergency * self.emergency_n[i]);
+            efforts.air_n[i] = factor * cylinder_n.max(parking * self.service_n[i]);
         }
     }
 
@@ -216,21 +295,22 @@ impl Formation {
         for (i, car) in self.data.cars.iter().enumerate() {
             weight_kg[i] = car.empty_kg + share * car.full_load_kg;
             inertia_kg[i] = weight_kg[i] + car.rotating_kg;
+            self.service_n[i] = inertia_kg[i] * self.data.service_brake.kmh_per_s / 3.6;
             self.emergency_n[i] = inertia_kg[i] * self.data.emergency_brake.kmh_per_s / 3.6;
         }
         self.weight_kg = weight_kg.iter().sum();
-        self.blending.weigh(&weight_kg, &inertia_kg);
         self.resistance.weigh(&weight_kg);
         self.wheels.weigh(&weight_kg);
     }
 }
 
-fn motor_times(data: &CarsData) -> Times {
-    Times {
-        dead_s: data.traction.dead_time_s,
-        rise_s: data.traction.lag_s,
-        fall_s: data.traction.lag_s,
+/// Cars with inverters.
+fn motor_cars(data: &CarsData) -> CarSet {
+    let mut cars = CarSet::NONE;
+    for (i, car) in data.cars.iter().enumerate() {
+        cars.set(i, car.role == Role::Motor);
     }
+    cars
 }
 
 fn air_times(data: &CarsData) -> Times {

@@ -6,7 +6,7 @@
 use crate::conditions::{Conditions, Disturbance};
 
 use super::data::IdealData;
-use super::{KGF_PER_T, Piece, TrainInputs, TrainState};
+use super::{Equipment, KGF_PER_T, Piece, TrainInputs, TrainState};
 
 /// A point mass with ideal drive and brakes.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub(super) struct Ideal {
     disturbance: Disturbance,
     velocity_mps: f64,
     seconds: f64,
+    /// Efforts of the last step, N: traction and brake.
+    efforts_n: (f64, f64),
     /// The step and damping the discretisation is for.
     discrete: Discrete,
 }
@@ -56,6 +58,7 @@ impl Ideal {
             disturbance: Disturbance::None,
             velocity_mps: 0.0,
             seconds: 0.0,
+            efforts_n: (0.0, 0.0),
             discrete: Discrete::default(),
         };
         train.set_conditions(conditions);
@@ -71,10 +74,19 @@ impl Ideal {
     pub(super) fn place(&mut self, velocity_mps: f64) {
         self.velocity_mps = velocity_mps;
         self.seconds = 0.0;
+        self.efforts_n = (0.0, 0.0);
     }
 
     pub(super) fn velocity_mps(&self) -> f64 {
         self.velocity_mps
+    }
+
+    /// One car with the whole train's effort.
+    pub(super) fn equipment(&self) -> Equipment {
+        let mut equipment = Equipment::default();
+        equipment.axle_mps[0] = self.velocity_mps.abs();
+        (equipment.traction_n[0], equipment.air_n[0]) = self.efforts_n;
+        equipment
     }
 
     pub(super) fn step(&mut self, dt_s: f64, inputs: &TrainInputs) -> TrainState {
@@ -88,6 +100,7 @@ impl Ideal {
         }
         let speed_mps = self.velocity_mps;
         let (power, brake) = self.efforts_mps2(inputs);
+        self.efforts_n = (power * mass_kg, brake * mass_kg);
         let gradient = if self.data.gradients {
             (inputs.gradient_permille + self.gradient_offset_permille) * KGF_PER_T
         } else {
@@ -125,7 +138,7 @@ impl Ideal {
 
     /// Powering and braking, m/s², both sizes.
     fn efforts_mps2(&self, inputs: &TrainInputs) -> (f64, f64) {
-        let share = inputs.share(self.data.holding_share);
+        let share = inputs.demand.clamp(-1.0, 1.0);
         let fade = self.data.base_speed_kmh.map_or(1.0, |base_kmh| {
             let base_mps = base_kmh / 3.6;
             base_mps / self.velocity_mps.abs().max(base_mps)

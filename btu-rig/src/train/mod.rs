@@ -1,16 +1,18 @@
 //! The train: what it does with the commands it gets, as forces on rails.
 //!
 //! Two models behind [`Train::step`]: the papers' ideal point mass (`ideal`), and a train of cars
-//! (`formation`): command → demands for each car (`blending`) → effort that is there (`actuator`) →
-//! what the rails carry (`wheels`) → motion against `resistance`. Its data is [`TrainData`].
+//! (`formation`): demands of TCMS for each car → what its inverters and brakes give (`equipment`,
+//! `actuator`) → what the rails carry (`wheels`) → motion against `resistance`. Its data is
+//! [`TrainData`].
 //!
 //! Terms: *weight* is the mass gravity acts on, *inertia* that and the rotating parts (S3's braking
 //! mass); an *axle* is the one the tachometers sit on. Forward is positive, efforts are sizes.
 
 mod actuator;
-mod blending;
+mod car_set;
 mod check;
 mod data;
+mod equipment;
 mod formation;
 mod ideal;
 mod piece;
@@ -21,10 +23,13 @@ mod wheels;
 
 use crate::conditions::{Conditions, Disturbance};
 
+pub(crate) use actuator::Actuators;
+pub use car_set::CarSet;
 pub use data::{
     AirBrake, CarData, CarsData, ElectricBrake, EmergencyBrake, IdealData, Resistance, Role,
     Traction, TrainData, Wheels,
 };
+pub use equipment::{Equipment, EquipmentFaults};
 pub use piece::Piece;
 
 use formation::Formation;
@@ -42,16 +47,26 @@ pub const KGF_PER_T: f64 = 9.80665e-3;
 /// What acts on the train.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainInputs {
-    /// Share of full effort, −1 full service brake .. 1 full power.
+    /// Share of full effort, −1 full service brake .. 1 full power: what the point mass goes by.
     pub demand: f64,
-    /// Full service brake, whatever the demand.
-    pub full_service: bool,
-    /// Emergency brake; no power and no electric brake while it is on (S3).
+    /// Demand of TCMS on each car's inverter, N: powering above 0, electric brake below.
+    pub motor_n: PerCar,
+    /// Demand of TCMS on each car's air brake, N.
+    pub air_n: PerCar,
+    /// Emergency brake: its train line is de-energised. Hard-wired, air on all cars (S3).
     pub emergency: bool,
-    /// Holding brake.
-    pub holding: bool,
-    /// No power.
-    pub power_cut: bool,
+    /// Security brake, hard-wired (S3).
+    pub security: bool,
+    /// Parking brake: springs.
+    pub parking: bool,
+    /// Brakes are released by force (S4).
+    pub forced_release: bool,
+    /// The line takes no regenerated power.
+    pub regeneration_refused: bool,
+    /// Cars whose brake is cut out.
+    pub brakes_cut_out: CarSet,
+    /// Cars whose inverter is cut out.
+    pub inverters_cut_out: CarSet,
     /// The reverser points backward.
     pub backward: bool,
     /// Passengers, kg.
@@ -60,26 +75,6 @@ pub struct TrainInputs {
     pub gradient_permille: f64,
     /// Curvature under the train, mean over its weight, 1/m.
     pub curvature_per_m: f64,
-}
-
-impl TrainInputs {
-    /// Share of full effort that the commands come to.
-    fn share(&self, holding_share: f64) -> f64 {
-        if self.full_service {
-            return -1.0;
-        }
-        let most = if self.power_cut || self.emergency {
-            0.0
-        } else {
-            1.0
-        };
-        let most = if self.holding { -holding_share } else { most };
-        // Not a number is no order at all, and a train without one coasts.
-        if self.demand.is_nan() {
-            return most.min(0.0);
-        }
-        self.demand.clamp(-1.0, most)
-    }
 }
 
 /// What the train did in one step.
@@ -160,6 +155,21 @@ impl Train {
     /// Passengers it can carry, kg.
     pub fn full_load_kg(&self) -> f64 {
         self.full_load_kg
+    }
+
+    /// Lets equipment fail, or be sound again. A point mass has none.
+    pub fn set_faults(&mut self, faults: EquipmentFaults) {
+        if let Model::Cars(train) = &mut self.model {
+            train.set_faults(faults);
+        }
+    }
+
+    /// What its equipment reports at the end of the last step. A point mass is one sound car.
+    pub fn equipment(&self) -> Equipment {
+        match &self.model {
+            Model::Ideal(train) => train.equipment(),
+            Model::Cars(train) => train.equipment(),
+        }
     }
 
     /// One step of `dt_s`, at most 5 ms.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::conditions::Conditions;
+use crate::tcms::{Consist, Demands, Effort, Order};
 
 const DT: f64 = 0.005;
 /// Full load (S3).
@@ -9,9 +10,13 @@ const FULL_KG: f64 = 160_000.0;
 /// Braking mass, empty (S3).
 const EMPTY_INERTIA_KG: f64 = 296_368.0;
 
-/// A train and the steps it has made.
+/// A train, TCMS's sharing out of effort, and the steps it has made.
 struct Ride {
     train: Train,
+    effort: Effort,
+    /// Ordered once in two steps, as TCMS does.
+    demands: Demands,
+    holding: bool,
     inputs: TrainInputs,
     state: TrainState,
     speeds_mps: Vec<f64>,
@@ -22,8 +27,14 @@ impl Ride {
     fn new(conditions: Conditions, kmh: f64, inputs: TrainInputs) -> Self {
         let mut train = Train::new(&TrainData::line6(), &conditions);
         train.place(kmh / 3.6);
+        let TrainData::Cars(cars) = TrainData::line6() else {
+            panic!("a train of cars");
+        };
         Self {
             train,
+            effort: Effort::new(Consist::new(&cars)),
+            demands: Demands::default(),
+            holding: false,
             inputs,
             state: TrainState::default(),
             speeds_mps: vec![kmh / 3.6],
@@ -36,9 +47,29 @@ impl Ride {
     }
 
     fn step(&mut self) {
+        if self.speeds_mps.len() % 2 == 1 {
+            self.order();
+        }
+        (self.inputs.motor_n, self.inputs.air_n) = (self.demands.motor_n, self.demands.air_n);
         self.state = self.train.step(DT, &self.inputs);
         self.way_m += self.state.pieces.iter().map(Piece::distance_m).sum::<f64>();
         self.speeds_mps.push(self.train.velocity_mps());
+    }
+
+    fn order(&mut self) {
+        if self.effort.consist.load_kg() != self.inputs.load_kg {
+            self.effort.consist.weigh(self.inputs.load_kg);
+        }
+        let order = Order {
+            share: self.inputs.demand,
+            holding: self.holding,
+            no_inverters: self.inputs.emergency,
+            speed_mps: self.train.velocity_mps().abs(),
+            inverters_out: CarSet::NONE,
+            brakes_out: CarSet::NONE,
+        };
+        let equipment = self.train.equipment();
+        self.demands = self.effort.step(2.0 * DT, &order, Some(&equipment));
     }
 
     fn run(&mut self, seconds: f64) {
@@ -221,7 +252,7 @@ fn the_holding_brake_holds_where_it_would_roll() {
         let mut free = Ride::new(Conditions::default(), 0.0, inputs);
         free.run(2.0);
         assert!(free.way_m * gradient_permille < 0.0, "{}", free.way_m);
-        free.inputs.holding = true;
+        free.holding = true;
         free.run(10.0);
         assert_eq!(free.kmh(), 0.0);
         let stood_m = free.way_m;

@@ -108,10 +108,9 @@ impl WheelSets {
         self.breaks_away[car].then(|| self.rim_mps[car])
     }
 
-    /// Electric brake that the protection took off, N.
-    pub fn electric_lost_n(&self, efforts: &Efforts) -> Option<PerCar> {
-        self.disturbed
-            .then(|| std::array::from_fn(|i| efforts.electric_n[i] * (1.0 - self.left[i])))
+    /// Share of a car's effort the protection leaves.
+    pub fn left(&self, car: usize) -> f64 {
+        self.left[car]
     }
 
     /// Brake force with which rails hold a standing train, N.

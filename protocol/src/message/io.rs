@@ -22,6 +22,9 @@ wire_bits! {
         FORWARD = 6,
         /// Reverser backward.
         BACKWARD = 7,
+        /// The emergency brake train line is fed as far as the unit's own relay contact: nothing else
+        /// on the train opens it.
+        EB_LOOP_FED = 8,
     }
 }
 

@@ -13,6 +13,14 @@ wire_bits! {
         BRAKE_NOT_RELEASED = 1,
         /// The service brake is applied.
         SERVICE_BRAKE_APPLIED = 2,
+        /// The emergency brake train line is de-energised.
+        EMERGENCY_BRAKE_APPLIED = 3,
+        /// The holding brake is ordered.
+        HOLDING_BRAKE_APPLIED = 4,
+        /// TCMS cuts powering, for whatever cause.
+        POWERING_CUT = 5,
+        /// TCMS orders the full service brake, for whatever cause.
+        FULL_SERVICE_BRAKE = 6,
     }
 }
 
@@ -41,6 +49,9 @@ layout! {
         load_100kg: u16,
         /// Alive counter, one up each cycle, wrapping; a counter that stands still is stale.
         alive: u8,
+        /// Effort the train gives: -1024 full brake .. 1023 full power, of what is available at this
+        /// speed.
+        effort: i16,
     }
 }
 

@@ -13,6 +13,7 @@ use serde_json::json;
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
 use crate::data::{ScriptsDirectory, sha256};
+use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, did_you_mean};
 use crate::link::Endpoint;
@@ -44,6 +45,9 @@ pub struct RunArguments {
     /// Unit configuration, units/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
+    /// Train around the unit, trains/NAME.toml or a file ending in .toml
+    #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
+    train: String,
     /// Unit configuration key to change, as ato.controller=pi; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
@@ -53,7 +57,7 @@ pub struct RunArguments {
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
     operator: String,
-    /// Faults to inject into the embedded unit, see `ptu catalog faults`
+    /// Faults to inject into the embedded unit or the train, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Seed of everything random
@@ -103,7 +107,12 @@ impl RunArguments {
             procedures,
             errors,
             printed,
-        } = load(&texts, &setup.config.content, &setup.line.content);
+        } = load(
+            &texts,
+            &setup.config.content,
+            &setup.line.content,
+            &setup.train,
+        );
         for line in &printed {
             eprintln!("{line}");
         }
@@ -144,11 +153,12 @@ impl RunArguments {
     }
 
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
+        let faults = directory.chosen_faults(&self.inject)?;
         if self.unit != Endpoint::Sim {
             let misplaced = [
                 (
-                    !self.inject.is_empty(),
-                    "--inject works on the embedded unit only; inject into a served one with `ato-under-test --inject`",
+                    faults.iter().any(|fault| !fault.place.on_train()),
+                    "--inject puts faults of a unit into the embedded one only; inject into a served one with `ato-under-test --inject`",
                 ),
                 (
                     self.jobs > 1,
@@ -171,7 +181,8 @@ impl RunArguments {
             endpoint: self.unit.clone(),
             config: unit_config(directory, &self.unit_config, &self.set)?,
             line: directory.line(&self.line)?,
-            faults: directory.chosen_faults(&self.inject)?,
+            train: train(directory, &self.train)?,
+            faults,
             seed: self.seed,
             serial: self.serial_no.clone(),
             realtime: self.realtime,

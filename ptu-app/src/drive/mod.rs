@@ -12,7 +12,7 @@ pub mod monte_carlo;
 mod pool;
 mod progress;
 mod settings;
-mod train;
+pub mod train;
 
 pub use bench::{DriveBench, drive};
 pub use case::{Case, Driven, Request, drive_all};

@@ -8,6 +8,7 @@ use std::thread::Scope;
 use ato_under_test::Setup;
 use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::stimulus::Stimulus;
+use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::injection::FaultMode;
 use protocol::line::Line;
@@ -37,7 +38,9 @@ pub struct BenchSetup {
     pub config: DataFile<UnitConfig>,
     /// Track database.
     pub line: DataFile<Line>,
-    /// Faults injected into the embedded unit.
+    /// Train around the unit.
+    pub train: TrainData,
+    /// Faults injected into the embedded unit, and into the train around any.
     pub faults: Vec<FaultMode>,
     /// Seed of everything random.
     pub seed: u64,
@@ -79,15 +82,18 @@ impl BenchSetup {
             return Ok(Connected::Sim(Box::new(self.clone())));
         }
         let link = WireLink::open(&self.endpoint)?;
-        let bench = Bench::new(self.rig(self.seed), link);
+        let bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
         let mut session = Session::new(bench, Pace::real(), stop.clone(), false);
         let identity = self.bring_up(&mut session)?;
         self.check_identity(&identity)?;
         Ok(Connected::Port(Box::new(session), identity))
     }
 
-    fn rig(&self, seed: u64) -> Rig {
-        Rig::new(&self.config.content, &self.line.content, seed)
+    fn rig(&self, seed: u64, power_at: Instant) -> Rig {
+        let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
+        rig.set_train(self.train.clone());
+        rig.inject(&self.faults, power_at);
+        rig
     }
 
     /// Contact, identity, the old log read, and a brake left from before acknowledged.
@@ -161,16 +167,23 @@ impl BenchSetup {
             line: self.line.content.clone(),
             tdb_crc: self.line.crc,
             seed,
-            faults: self.faults.clone(),
+            faults: of_unit(&self.faults),
         };
         let link = SimLink::new(setup, Instant::ZERO + BEFORE);
+        let rig = self.rig(seed, Instant::ZERO + BEFORE);
         let pace = if self.realtime {
             Pace::real()
         } else {
             Pace::Virtual
         };
-        Session::new(Bench::new(self.rig(seed), link), pace, stop.clone(), true)
+        Session::new(Bench::new(rig, link), pace, stop.clone(), true)
     }
+}
+
+/// Those the unit itself has; it knows nothing of the train's.
+fn of_unit(faults: &[FaultMode]) -> Vec<FaultMode> {
+    let own = faults.iter().filter(|fault| !fault.place.on_train());
+    own.cloned().collect()
 }
 
 impl Connected {
@@ -312,13 +325,19 @@ mod tests {
             endpoint: Endpoint::Sim,
             config: directory.unit_config("sg100").expect("configuration"),
             line: directory.line("line8").expect("line"),
+            train: TrainData::line6(),
             faults: Vec::new(),
             seed: 1,
             serial: None,
             realtime: false,
         };
         let texts = directory.procedures().expect("procedures");
-        let loaded = load(&texts, &setup.config.content, &setup.line.content);
+        let loaded = load(
+            &texts,
+            &setup.config.content,
+            &setup.line.content,
+            &setup.train,
+        );
         let stop = Stop::default();
         let mut session = setup.sim_session("all in a row", &stop);
         session.judge_bring_up(BEFORE + READY_WITHIN, settled());

@@ -1,7 +1,7 @@
 //! Turns what happens in a run into faults: events of the unit nobody provoked, a brake nobody
 //! asked for, a check that failed.
 
-use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
+use btu_rig::procedure::{EventSource, Procedure, StepResult, UnitEvent, Verdict};
 use protocol::Instant;
 use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
@@ -56,10 +56,14 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
         at,
         step: None,
         message: format!(
-            "{text} (parameter {}) at {:.1} km/h, limit {:.1} km/h, unit time {:.3} s",
+            "{text} (parameter {}) at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
             entry.parameter,
             entry.speed.kmh(),
             entry.limit.kmh(),
+            match entry.source {
+                EventSource::Unit => "unit",
+                EventSource::Tcms => "TCMS",
+            },
             f64::from(entry.at_ms) / 1000.0
         ),
         freeze: freeze_frame(sample),

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use btu_rig::procedure::{Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent};
+use btu_rig::procedure::{
+    EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent,
+};
 use btu_rig::rig::{Bench, UnitLink};
 use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
@@ -117,7 +119,7 @@ impl<L: UnitLink> Session<L> {
         if rig.unit_restarts() == 0
             && let Some(first) = rig.events_at_contact().filter(|_| !self.fresh_unit)
         {
-            events.retain(|entry| entry.index >= first);
+            events.retain(|entry| entry.source != EventSource::Unit || entry.index >= first);
         }
         events
     }

@@ -5,6 +5,9 @@ use std::sync::Arc;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
 
+use crate::tcms::{EbSources, Lamps, PowerCuts};
+use crate::train::TrainData;
+
 use super::item::{Item, Record};
 use super::quantity::{Dimension, Quantity};
 use super::suggest::hint;
@@ -14,11 +17,12 @@ use super::suggest::hint;
 pub(super) struct Context {
     pub unit: UnitConfig,
     pub line: Line,
+    train: TrainData,
     codes: Vec<Item>,
 }
 
 impl Context {
-    pub(super) fn new(unit: UnitConfig, line: Line) -> Self {
+    pub(super) fn new(unit: UnitConfig, line: Line, train: TrainData) -> Self {
         let codes = (unit.codes.iter().enumerate())
             .map(|(index, code)| {
                 let limit = Quantity::new(Dimension::Speed, code.limit_kmh);
@@ -35,7 +39,12 @@ impl Context {
                 )
             })
             .collect();
-        Self { unit, line, codes }
+        Self {
+            unit,
+            line,
+            train,
+            codes,
+        }
     }
 
     /// The predeclared names that are neither verbs nor signals.
@@ -44,7 +53,37 @@ impl Context {
             ("codes", Item::List(self.codes.clone())),
             ("unit", tree("unit configuration", &self.unit)),
             ("line", tree("line", &self.line)),
+            ("consist", self.consist()),
+            (
+                "cuts",
+                bits(
+                    "cuts",
+                    PowerCuts::ALL.iter().map(|(one, name)| (*name, one.bits())),
+                ),
+            ),
+            (
+                "eb_by",
+                bits(
+                    "eb_by",
+                    EbSources::ALL.iter().map(|(one, name)| (*name, one.bits())),
+                ),
+            ),
+            (
+                "lamp",
+                bits(
+                    "lamp",
+                    Lamps::ALL.iter().map(|(one, name)| (*name, one.bits())),
+                ),
+            ),
         ]
+    }
+
+    /// The train's file.
+    fn consist(&self) -> Item {
+        match &self.train {
+            TrainData::Ideal(data) => tree("train", data),
+            TrainData::Cars(data) => tree("train", data),
+        }
     }
 
     /// The code called `name`.
@@ -60,6 +99,16 @@ impl Context {
 fn record(kind: &'static str, fields: Vec<(&str, Item)>) -> Item {
     let fields = fields.into_iter().map(|(n, v)| (n.to_owned(), v)).collect();
     Item::Record(Arc::new(Record { kind, fields }))
+}
+
+/// Bits of a signal by their names.
+fn bits<'a>(kind: &'static str, named: impl Iterator<Item = (&'a str, u16)>) -> Item {
+    record(
+        kind,
+        named
+            .map(|(name, bit)| (name, Item::Int(i64::from(bit))))
+            .collect(),
+    )
 }
 
 /// Configuration data as nested records, by way of their names in configuration files.

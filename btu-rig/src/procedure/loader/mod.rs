@@ -34,6 +34,7 @@ use starlark::codemap::FileSpan;
 use thiserror::Error;
 
 use super::plan::Procedure;
+use crate::train::TrainData;
 use context::Context;
 use evaluate::Evaluation;
 
@@ -70,11 +71,11 @@ pub struct Loaded {
     pub printed: Vec<String>,
 }
 
-/// Loads all `scripts` for a unit of type `unit` on `line`.
+/// Loads all `scripts` for a unit of type `unit` on `line` in `train`.
 ///
 /// Files whose names start with `_` are libraries for `load()`; every other is one procedure.
-pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line) -> Loaded {
-    let context = Context::new(unit.clone(), line.clone());
+pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData) -> Loaded {
+    let context = Context::new(unit.clone(), line.clone(), train.clone());
     let predeclared = globals::predeclared(&context);
     let globals = globals::build(&predeclared);
     let names = globals::names(&globals);

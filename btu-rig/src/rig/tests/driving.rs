@@ -1,7 +1,7 @@
 //! The closed loop of train, TCMS and desk, and the way back to the quiescent state.
 
 use protocol::Speed;
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, Outputs};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch, Outputs};
 use protocol::signal::Signal;
 
 use super::{FakeUnit, bench};
@@ -26,6 +26,7 @@ fn the_train_obeys_ato_passes_its_markers_and_stops_for_the_relay() {
     let mut bench = bench(FakeUnit::default());
     bench.apply(Stimulus::MarkersAlong { section: Some(61) });
     bench.apply(Stimulus::TrainDriven { on: true });
+    bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench.link_mut().to_tcms = order(AtcToTcmsBits::POWER, 1023);
     bench.run_ms(25_000);
     assert!((50.0..75.0).contains(&speed(&bench)), "{}", speed(&bench));
@@ -109,7 +110,10 @@ fn what_cannot_be_is_refused_in_words() {
             Stimulus::MarkersAlong { section: Some(99) },
             "no section 99; it has 54, 55",
         ),
-        (Stimulus::Controller { notch: 5 }, "controller notch 5"),
+        (
+            Stimulus::ControllerVolts { volts: Some(11.0) },
+            "controller voltage 11",
+        ),
         (Stimulus::Marker { psm: 0 }, "marker 0"),
         (
             Stimulus::Speed {

@@ -6,6 +6,7 @@ use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 
 use super::{FakeUnit, config, rig};
+use crate::lever::Lever;
 use crate::rig::Bench;
 use crate::stimulus::{Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
 
@@ -59,7 +60,9 @@ fn other() -> impl Strategy<Value = Stimulus> {
         prop::option::of(number()).prop_map(|coefficient| Stimulus::Adhesion { coefficient }),
         (any::<u8>(), prop::option::of(number()))
             .prop_map(|(psm, by_m)| Stimulus::MarkerMoved { psm, by_m }),
-        (-9i8..6).prop_map(|notch| Stimulus::Controller { notch }),
+        (0..Lever::ALL.len()).prop_map(|i| Stimulus::Controller {
+            lever: Lever::ALL[i]
+        }),
         (-2i8..3).prop_map(|position| Stimulus::Reverser { position }),
         number().prop_map(|passengers_kg| Stimulus::Load { passengers_kg }),
         any::<bool>().prop_map(|closed| Stimulus::Doors { closed }),

@@ -5,6 +5,7 @@ use protocol::message::{Answer, ArmRefusal, Channel, Message};
 use protocol::signal::Signal;
 
 use super::{FakeUnit, bench};
+use crate::procedure::EventSource;
 use crate::procedure::Refusal;
 use crate::rig::log_reader::MAX_EVENTS;
 use crate::stimulus::Stimulus;
@@ -206,6 +207,7 @@ fn a_restart_is_noticed_and_the_new_log_read_from_its_beginning() {
         .rig_mut()
         .take_events()
         .iter()
+        .filter(|e| e.source == EventSource::Unit)
         .map(|e| (e.index, e.code))
         .collect();
     assert_eq!(codes, [(0, 100), (1, 101)]);

@@ -2,7 +2,7 @@
 //! what the rig says is true.
 
 use protocol::line::{CodeFrom, Gradient, Line};
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
 use protocol::signal::Signal;
 
 use super::{FakeUnit, config, line};
@@ -26,6 +26,7 @@ fn at_departure(line: &Line, conditions: Conditions) -> Bench<FakeUnit> {
     bench.rig_mut().set_conditions(conditions);
     bench.apply(Stimulus::MarkersAlong { section: Some(61) });
     bench.apply(Stimulus::TrainDriven { on: true });
+    bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench
 }
 

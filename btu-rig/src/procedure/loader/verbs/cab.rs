@@ -1,12 +1,13 @@
-//! Cab desk, doors and TCMS.
+//! Cab desk, doors and TCMS's link; for the train's switches see `consist`.
 
 use protocol::message::ModeSwitch;
 
 use super::at_once;
+use crate::lever::Lever;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::verb::{Verb, needs};
+use crate::procedure::loader::verb::{Verb, needs, takes};
 use crate::procedure::loader::want::Want;
 use crate::stimulus::{Stimulus, TcmsCondition};
 
@@ -49,8 +50,33 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "cab.controller",
-        params: &[needs("notch", Want::Int(-8, 4))],
+        params: &[needs("notch", Want::Number)],
         make: controller,
+    },
+    Verb {
+        name: "cab.volts",
+        params: &[takes("volts", Want::Number)],
+        make: |args| {
+            let volts = args
+                .get("volts")
+                .map(|_| args.number("volts"))
+                .transpose()?;
+            if volts.is_some_and(|volts| !(0.0..=10.0).contains(&volts)) {
+                return Err("`volts` must be from 0 to 10".into());
+            }
+            at_once(Stimulus::ControllerVolts { volts })
+        },
+    },
+    Verb {
+        name: "cab.contacts",
+        params: &[takes("power", Want::Bool), takes("brake", Want::Bool)],
+        make: |args| {
+            let given = args.get("power").is_some() || args.get("brake").is_some();
+            let contacts = (args.flag("power", false), args.flag("brake", false));
+            at_once(Stimulus::ControllerContacts {
+                contacts: given.then_some(contacts),
+            })
+        },
     },
     plain!("cab.forward", Stimulus::Reverser { position: 1 }),
     plain!("cab.neutral", Stimulus::Reverser { position: 0 }),
@@ -75,6 +101,9 @@ pub(super) static VERBS: &[Verb] = &[
 ];
 
 fn controller(args: &Args<'_>) -> Result<Item, String> {
-    let notch = i8::try_from(args.int("notch")?).map_err(|e| e.to_string())?;
-    at_once(Stimulus::Controller { notch })
+    let notch = args.number("notch")?;
+    let lever = Lever::from_number(notch).ok_or_else(|| {
+        format!("`notch` {notch} is none of -8 (emergency), -7 to -1, 0, 0.5, 1 to 4")
+    })?;
+    at_once(Stimulus::Controller { lever })
 }

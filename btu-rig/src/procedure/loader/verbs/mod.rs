@@ -3,6 +3,7 @@
 mod bench;
 mod cab;
 mod conditions;
+mod consist;
 mod declare;
 mod measures;
 mod tester;
@@ -15,11 +16,12 @@ use crate::procedure::plan::Action;
 use crate::stimulus::Stimulus;
 
 /// All tables.
-pub(super) static TABLES: [&[Verb]; 8] = [
+pub(super) static TABLES: [&[Verb]; 9] = [
     units::VERBS,
     bench::VERBS,
     track::VERBS,
     cab::VERBS,
+    consist::VERBS,
     tester::VERBS,
     conditions::VERBS,
     measures::VERBS,

@@ -1,0 +1,97 @@
+//! The RS-485 link to the unit as TCMS sees it: orders that are fresh and make sense.
+
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode};
+use protocol::{Duration, Instant};
+
+use super::controller::{FULL_BRAKE, FULL_POWER};
+
+/// Orders of ATO as TCMS takes them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AtoOrder {
+    /// Powering (DRXAOP).
+    pub power: bool,
+    /// Braking (DRXAOB).
+    pub brake: bool,
+    /// Value (DRXTEBE), −1024..1023.
+    pub value: i16,
+    /// Holding brake asked for.
+    pub holding: bool,
+    /// The unit drives, or is about to: Automatic or Automatic Run, as last heard.
+    pub automatic: bool,
+    /// ATO has failed, or the unit is silent.
+    pub failed: bool,
+}
+
+/// The link.
+#[derive(Clone, Debug)]
+pub struct AtcLink {
+    timeout: Duration,
+    heard: Option<(Instant, AtcToTcms)>,
+    order: AtoOrder,
+    silent: bool,
+    contradictions: u32,
+    contradicts: bool,
+}
+
+impl AtcLink {
+    /// A link on which nothing was heard yet; orders count for `timeout`.
+    pub fn new(timeout: Duration) -> Self {
+        Self {
+            timeout,
+            heard: None,
+            order: AtoOrder::default(),
+            silent: true,
+            contradictions: 0,
+            contradicts: false,
+        }
+    }
+
+    /// Takes a frame.
+    pub fn hear(&mut self, now: Instant, frame: &AtcToTcms) {
+        let power = frame.bits.contains(AtcToTcmsBits::POWER);
+        let brake = frame.bits.contains(AtcToTcmsBits::BRAKE);
+        let beyond = !(FULL_BRAKE..=FULL_POWER).contains(&frame.effort);
+        let against = power && (brake || frame.effort < 0) || brake && frame.effort > 0;
+        let contradicts = beyond || against;
+        if contradicts && !self.contradicts {
+            self.contradictions = self.contradictions.saturating_add(1);
+        }
+        self.contradicts = contradicts;
+        self.heard = Some((now, *frame));
+    }
+
+    /// Moves on to the present.
+    pub fn step(&mut self, now: Instant) -> AtoOrder {
+        let fresh = self
+            .heard
+            .filter(|(heard, _)| now.since(*heard) <= self.timeout);
+        self.silent = fresh.is_none();
+        let mode = self.heard.map_or(Mode::Off, |(_, frame)| frame.mode);
+        let runs = fresh.filter(|(_, frame)| frame.mode == Mode::AutomaticRun);
+        let bits = fresh.map_or(AtcToTcmsBits::empty(), |(_, frame)| frame.bits);
+        self.order = AtoOrder {
+            power: runs.is_some() && bits.contains(AtcToTcmsBits::POWER),
+            brake: runs.is_some() && bits.contains(AtcToTcmsBits::BRAKE),
+            value: runs.map_or(0, |(_, frame)| frame.effort),
+            holding: bits.contains(AtcToTcmsBits::HOLDING_BRAKE),
+            automatic: matches!(mode, Mode::Automatic | Mode::AutomaticRun),
+            failed: self.silent || bits.contains(AtcToTcmsBits::ATO_FAILED),
+        };
+        self.order
+    }
+
+    /// No frames for too long.
+    pub fn silent(&self) -> bool {
+        self.silent
+    }
+
+    /// Times the unit began to contradict itself.
+    pub fn contradictions(&self) -> u32 {
+        self.contradictions
+    }
+
+    /// Effort last ordered, for the event.
+    pub fn effort(&self) -> i16 {
+        self.heard.map_or(0, |(_, frame)| frame.effort)
+    }
+}

@@ -1,0 +1,130 @@
+//! The car table as TCMS calculates with it: MT pairs, their masses, what cars can give (S3 table 1).
+
+use crate::train::{CarSet, CarsData, MAX_CARS, PerCar, Role};
+
+/// Acceleration of gravity as S3 calculates with, m/s².
+pub const GRAVITY_MPS2: f64 = 9.8;
+
+/// Masses of an MT pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pair {
+    /// Braking mass with the present load, kg.
+    pub inertia_kg: f64,
+    /// Braking mass full, kg.
+    pub full_inertia_kg: f64,
+    /// Its motor cars.
+    pub motors: CarSet,
+    /// Its trailers.
+    pub trailers: CarSet,
+}
+
+impl Pair {
+    /// Load compensation: TE_w, BE_w of S3.
+    pub fn load_factor(&self) -> f64 {
+        if self.full_inertia_kg > 0.0 {
+            self.inertia_kg / self.full_inertia_kg
+        } else {
+            0.0
+        }
+    }
+}
+
+/// A train's cars.
+#[derive(Clone, Debug)]
+pub struct Consist {
+    /// Its data.
+    pub data: CarsData,
+    /// MT pairs from the head.
+    pub pairs: Vec<Pair>,
+    /// Motor cars.
+    pub motors: CarSet,
+    /// Greatest electric brake of each car at the present load, N [S3 eq. 6].
+    pub electric_n: PerCar,
+    /// Full service of each car at the present load, N (FBE of S3).
+    pub full_service_n: PerCar,
+    /// Greatest service brake by air of each car, N.
+    pub air_n: PerCar,
+    load_kg: f64,
+}
+
+impl Consist {
+    /// An empty train.
+    pub fn new(data: &CarsData) -> Self {
+        let count = data.cars.iter().map(|car| car.pair).max().unwrap_or(0);
+        let mut consist = Self {
+            data: data.clone(),
+            pairs: vec![Pair::default(); count],
+            motors: CarSet::NONE,
+            electric_n: [0.0; MAX_CARS],
+            full_service_n: [0.0; MAX_CARS],
+            air_n: [0.0; MAX_CARS],
+            load_kg: 0.0,
+        };
+        for (i, car) in data.cars.iter().enumerate() {
+            let pair = &mut consist.pairs[car.pair - 1];
+            pair.full_inertia_kg += car.empty_kg + car.rotating_kg + car.full_load_kg;
+            match car.role {
+                Role::Motor => {
+                    pair.motors.set(i, true);
+                    consist.motors.set(i, true);
+                }
+                Role::Trailer => pair.trailers.set(i, true),
+            }
+            consist.air_n[i] = car.air_n;
+        }
+        consist.weigh(0.0);
+        consist
+    }
+
+    /// Takes the passengers aboard as the brake control units report them, kg.
+    pub fn weigh(&mut self, load_kg: f64) {
+        self.load_kg = load_kg;
+        let full_kg: f64 = self.data.cars.iter().map(|car| car.full_load_kg).sum();
+        // `max` also takes what is not a number for an empty train.
+        let share = load_kg.max(0.0) / full_kg.max(1.0);
+        let service_mps2 = self.service_mps2();
+        for pair in &mut self.pairs {
+            pair.inertia_kg = 0.0;
+        }
+        for (i, car) in self.data.cars.iter().enumerate() {
+            let weight_kg = car.empty_kg + share * car.full_load_kg;
+            let inertia_kg = weight_kg + car.rotating_kg;
+            self.pairs[car.pair - 1].inertia_kg += inertia_kg;
+            self.full_service_n[i] = inertia_kg * service_mps2;
+            if car.role == Role::Motor {
+                let limit = self.data.electric_brake.adhesion_limit;
+                self.electric_n[i] = weight_kg * limit * GRAVITY_MPS2;
+            }
+        }
+    }
+
+    /// Passengers it is weighed with, kg.
+    pub fn load_kg(&self) -> f64 {
+        self.load_kg
+    }
+
+    /// Full service brake, m/s².
+    pub fn service_mps2(&self) -> f64 {
+        self.data.service_brake.kmh_per_s / 3.6
+    }
+
+    /// Full power, m/s², of the train's braking mass.
+    pub fn power_mps2(&self) -> f64 {
+        self.data.traction.full_load_n / self.full_inertia_kg()
+    }
+
+    /// Braking mass of the full train, kg.
+    pub fn full_inertia_kg(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.full_inertia_kg).sum()
+    }
+
+    /// Greatest braking effort of the full train, N [S3 eq. 4-1, without its rounding].
+    pub fn full_brake_n(&self) -> f64 {
+        self.full_inertia_kg() * self.service_mps2()
+    }
+
+    /// Greatest traction of one motor car, N.
+    pub fn traction_n(&self) -> f64 {
+        self.data.traction.full_load_n / self.motors.iter().count().max(1) as f64
+    }
+}

@@ -1,0 +1,75 @@
+//! The master controller: what its positions put on contacts and potentiometer, and what its voltage
+//! means (S4 figure 2).
+
+use crate::lever::Lever;
+
+use super::data::TcmsData;
+
+/// Full brake as a value.
+pub const FULL_BRAKE: i16 = -1024;
+/// Full power as a value.
+pub const FULL_POWER: i16 = 1023;
+/// How far inside the break points the end positions lie, V: outside of them the controller counts
+/// as failed.
+const INSIDE_V: f64 = 0.001;
+
+/// What a master controller gives TCMS.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControllerInputs {
+    /// P contact.
+    pub power: bool,
+    /// B contact.
+    pub brake: bool,
+    /// Neutral contact.
+    pub neutral: bool,
+    /// Potentiometer, V.
+    pub volts: f64,
+    /// Its contact in the emergency brake train line is open.
+    pub emergency: bool,
+}
+
+impl TcmsData {
+    /// What the master controller gives at a position.
+    pub fn at(&self, lever: Lever) -> ControllerInputs {
+        let [a, b, c, d] = self.controller_v;
+        let volts = match lever {
+            Lever::Emergency => a,
+            Lever::Brake(notch) => {
+                let percent = self.brake_notches[usize::from(notch.clamp(1, 7)) - 1];
+                b - percent / 100.0 * (b - a)
+            }
+            Lever::Neutral => 0.5 * (b + c),
+            Lever::HalfPower => c + self.power_notches[0] / 100.0 * (d - c),
+            Lever::Power(notch) => {
+                c + self.power_notches[usize::from(notch.clamp(1, 4))] / 100.0 * (d - c)
+            }
+        };
+        ControllerInputs {
+            power: matches!(lever, Lever::HalfPower | Lever::Power(_)),
+            brake: matches!(lever, Lever::Emergency | Lever::Brake(_)),
+            neutral: lever == Lever::Neutral,
+            volts: volts.clamp(a + INSIDE_V, d - INSIDE_V),
+            emergency: lever == Lever::Emergency,
+        }
+    }
+
+    /// Value of a voltage, −1024..1023: both failure ranges are a full brake, and so is no number.
+    pub fn value(&self, volts: f64) -> i16 {
+        let [a, b, c, d] = self.controller_v;
+        if self.controller_failed(volts) {
+            FULL_BRAKE
+        } else if volts < b {
+            (-(b - volts) / (b - a) * f64::from(-FULL_BRAKE)).round() as i16
+        } else if volts <= c {
+            0
+        } else {
+            ((volts - c) / (d - c) * f64::from(FULL_POWER)).round() as i16
+        }
+    }
+
+    /// The voltage is in a failure range, or none at all.
+    pub fn controller_failed(&self, volts: f64) -> bool {
+        let [a, _, _, d] = self.controller_v;
+        !(volts > a && volts < d)
+    }
+}

@@ -1,0 +1,82 @@
+//! Driving-control module of the standard EMU (S4 §3.1): from the master controller or ATO to the
+//! powering and braking value for inverters and brake control units.
+
+use super::controller::{FULL_BRAKE, FULL_POWER};
+
+/// Inputs, by the paper's names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DrivingInputs {
+    /// DRXEMOD: emergency mode.
+    pub drxemod: bool,
+    /// DRXYMOD: yard mode.
+    pub drxymod: bool,
+    /// DRXMMOD: manual mode.
+    pub drxmmod: bool,
+    /// DRXAMOD: automatic mode.
+    pub drxamod: bool,
+    /// DRXDMOD: driverless mode.
+    pub drxdmod: bool,
+    /// DRXMCRV: value of the master controller, −1024..1023, from its voltage.
+    pub drxmcrv: i16,
+    /// DRXP: powering contact of the master controller.
+    pub drxp: bool,
+    /// DRXB: braking contact.
+    pub drxb: bool,
+    /// DRXCOA: neutral contact.
+    pub drxcoa: bool,
+    /// DRXPCUT: powering cut.
+    pub drxpcut: bool,
+    /// DRXTEBE: value of ATO, −1024..1023.
+    pub drxtebe: i16,
+    /// DRXAOP: ATO orders powering.
+    pub drxaop: bool,
+    /// DRXAOB: ATO orders braking.
+    pub drxaob: bool,
+}
+
+/// Outputs, by the paper's names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DrivingOutputs {
+    /// DRYINB7: the master controller is at B7.
+    pub dryinb7: bool,
+    /// DRYINP: powering.
+    pub dryinp: bool,
+    /// DRYINB: braking.
+    pub dryinb: bool,
+    /// DRYINCOA: coasting.
+    pub dryincoa: bool,
+    /// DRYTEBE: the value, −1024..1023.
+    pub drytebe: i16,
+}
+
+/// One cycle of the module. It keeps nothing.
+///
+/// Automatic and driverless: P, B and value of ATO. Manual, yard and emergency: contacts and value of
+/// the master controller. P and B both: B, and the value is taken as B's. Powering with powering cut
+/// is coasting. A value against its contact counts by its safe side. No mode, or more than one, is a
+/// full brake.
+pub fn driving_control(inputs: &DrivingInputs) -> DrivingOutputs {
+    let by_hand = [inputs.drxemod, inputs.drxymod, inputs.drxmmod];
+    let by_ato = [inputs.drxamod, inputs.drxdmod];
+    let count = |modes: &[bool]| modes.iter().filter(|on| **on).count();
+    let (power, brake, value, hand) = match (count(&by_hand), count(&by_ato)) {
+        (1, 0) => (inputs.drxp, inputs.drxb, inputs.drxmcrv, true),
+        (0, 1) => (inputs.drxaop, inputs.drxaob, inputs.drxtebe, false),
+        _ => (false, true, FULL_BRAKE, false),
+    };
+    let value = value.clamp(FULL_BRAKE, FULL_POWER);
+    let drytebe = match (power, brake) {
+        (_, true) => -value.saturating_abs().min(-FULL_BRAKE),
+        (true, false) if inputs.drxpcut => value.min(0),
+        (true, false) => value,
+        // Neither contact: a value that brakes is believed, one that powers is not.
+        (false, false) => value.min(0),
+    };
+    DrivingOutputs {
+        dryinb7: hand && drytebe == FULL_BRAKE,
+        dryinp: drytebe > 0,
+        dryinb: drytebe < 0,
+        dryincoa: drytebe == 0,
+        drytebe,
+    }
+}

@@ -1,0 +1,64 @@
+//! The holding brake: 70 % of full service at standstill, so that no train rolls back (S4).
+
+use protocol::{Duration, Instant};
+
+use super::data::TcmsData;
+use super::timer::Lasting;
+
+/// What the holding brake looks at in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HoldingInputs {
+    /// Automatic or driverless mode.
+    pub by_ato: bool,
+    /// ATO asks for it, by contact or by message.
+    pub requested: bool,
+    /// The train brakes by the driver's or ATO's order (DRYINB).
+    pub braking: bool,
+    /// Speed, m/s, a size.
+    pub speed_mps: f64,
+    /// Greatest traction of any motor car, share of the greatest it can give; stands for motor
+    /// current.
+    pub traction: f64,
+    /// Driverless initialisation or turn-back.
+    pub turn_back: bool,
+}
+
+/// The holding brake.
+#[derive(Clone, Debug)]
+pub struct HoldingBrake {
+    below_mps: f64,
+    after: Duration,
+    release: f64,
+    lasts: Lasting,
+    applied: bool,
+}
+
+impl HoldingBrake {
+    /// Released.
+    pub fn new(data: &TcmsData) -> Self {
+        Self {
+            below_mps: data.holding_below_kmh / 3.6,
+            after: Duration::from_secs(data.holding_after_s),
+            release: data.holding_release / 100.0,
+            lasts: Lasting::default(),
+            applied: false,
+        }
+    }
+
+    /// One scan: whether it is ordered.
+    ///
+    /// On by ATO's request, by driverless initialisation or turn-back, or by hand when a brake has
+    /// lasted at low speed. Off when nothing asks for it and one motor car at least pulls.
+    pub fn step(&mut self, now: Instant, inputs: &HoldingInputs) -> bool {
+        let slow = inputs.speed_mps <= self.below_mps;
+        let by_hand = !inputs.by_ato && inputs.braking && slow;
+        let lasts = self.lasts.update(now, by_hand, self.after);
+        let asked = inputs.requested || inputs.turn_back || lasts;
+        if asked {
+            self.applied = true;
+        } else if inputs.traction >= self.release {
+            self.applied = false;
+        }
+        self.applied
+    }
+}

@@ -1,0 +1,76 @@
+//! A set of cars.
+
+use super::MAX_CARS;
+
+/// Cars of a train by their place from 0, the first at the head.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CarSet(u16);
+
+impl CarSet {
+    /// None of them.
+    pub const NONE: Self = Self(0);
+
+    /// The car at a place; none for a place no train has.
+    pub fn one(car: usize) -> Self {
+        let mut set = Self::NONE;
+        set.set(car, true);
+        set
+    }
+
+    /// Puts the car at a place in or takes it out. Places no train has are left out.
+    pub fn set(&mut self, car: usize, on: bool) {
+        if car < MAX_CARS {
+            let bit = 1 << car;
+            self.0 = if on { self.0 | bit } else { self.0 & !bit };
+        }
+    }
+
+    /// Whether a car is in it.
+    pub fn contains(self, car: usize) -> bool {
+        car < MAX_CARS && self.0 & (1 << car) != 0
+    }
+
+    /// Nobody is.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Cars of either.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Cars of this and not of the other.
+    #[must_use]
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// Bit 0 = the first car.
+    pub fn bits(self) -> u16 {
+        self.0
+    }
+
+    /// Its cars' places, from the head.
+    pub fn iter(self) -> impl Iterator<Item = usize> {
+        (0..MAX_CARS).filter(move |&car| self.contains(car))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cars_go_in_and_out() {
+        let mut set = CarSet::one(3).with(CarSet::one(7));
+        assert_eq!(set.iter().collect::<Vec<_>>(), [3, 7]);
+        assert_eq!(set.bits(), 0b1000_1000);
+        set.set(3, false);
+        assert!(!set.contains(3) && set.contains(7));
+        assert!(set.without(CarSet::one(7)).is_empty());
+        assert!(CarSet::one(MAX_CARS).is_empty());
+        assert!(!set.contains(400));
+    }
+}

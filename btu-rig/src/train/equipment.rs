@@ -1,0 +1,40 @@
+//! What stands between TCMS and the rails: inverters and brake control units, what they report back,
+//! and what can be wrong with them.
+
+use super::{CarSet, PerCar};
+
+/// What the train's equipment reports to TCMS each scan. Efforts are sizes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Equipment {
+    /// Speed of the rims of each motor car, m/s, a size.
+    pub axle_mps: PerCar,
+    /// Traction of each inverter, N.
+    pub traction_n: PerCar,
+    /// Electric brake of each inverter, N (EFM of S3).
+    pub electric_n: PerCar,
+    /// Air brake of each car by its cylinders' pressure, N; spring brakes do not show in it.
+    pub air_n: PerCar,
+    /// Inverters that do not answer.
+    pub inverters_silent: CarSet,
+    /// Inverters that have cut their electric brake out.
+    pub regeneration_cut_out: CarSet,
+    /// Brake control units that do not answer.
+    pub brake_units_silent: CarSet,
+    /// Security, emergency or parking brake is applied on the train.
+    pub other_brakes: bool,
+}
+
+/// What is wrong with the train's equipment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EquipmentFaults {
+    /// Inverters that do nothing and say nothing.
+    pub inverters_dead: CarSet,
+    /// Inverters without electric brake.
+    pub regeneration_lost: CarSet,
+    /// Brake control units that do nothing and say nothing; the emergency brake's valve still works.
+    pub brake_units_dead: CarSet,
+    /// Cars whose cylinders keep the pressure they have had.
+    pub brakes_stuck: CarSet,
+    /// Cars whose cylinders get only part of their pressure.
+    pub brakes_weak: CarSet,
+}
