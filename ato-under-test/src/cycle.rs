@@ -2,12 +2,12 @@
 
 use alloc::vec::Vec;
 
-use protocol::event::Event;
+use protocol::event::{COUNTER_STANDS, Event};
 use protocol::injection::{Effect, Place};
 use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
 use protocol::{Instant, Speed};
 
-use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings};
+use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
 use crate::atp::{Atp, Code, ModeInputs};
 use crate::kernel::RunCycle;
 use crate::report;
@@ -37,7 +37,14 @@ impl Unit {
     fn report_tcms(&mut self, now: Instant) {
         match self.tcms.takes_change() {
             Some(true) => self.log.push(now, Event::TcmsRestored, 0),
-            Some(false) => self.log.push(now, Event::TcmsLost, 0),
+            Some(false) => {
+                let how = if self.tcms.stands(now) {
+                    COUNTER_STANDS
+                } else {
+                    0
+                };
+                self.log.push(now, Event::TcmsLost, how);
+            }
             None => {}
         }
     }
@@ -106,7 +113,12 @@ impl Unit {
             aligned_m: self.setup.config.doors.aligned_m,
             speed: Speed::from_mps(speed),
             standstill: tachometers.standstill(),
-            power_cut: self.atp.power_cut(),
+            power_cut: self.atp.power_cut() || self.tcms.cuts_power(),
+            train: TrainReport {
+                hinders: self.tcms.hinders(),
+                sent: self.ato_outputs.effort,
+                given: self.tcms.given(),
+            },
             load_kg: self.tcms.load_kg(),
             checks: self.ato_checks(),
         };
@@ -190,6 +202,7 @@ impl Unit {
         }
         let findings = [
             (Event::AtoNotFollowing, found.not_following_mps),
+            (Event::TrainWithholds, found.withheld_mps),
             (Event::StopOverrun, found.overrun_m),
             (Event::StopShort, found.short_m),
         ];

@@ -8,7 +8,9 @@ use protocol::event::Event;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link, Received};
-use protocol::message::{Channel, IoOutput, Message, Mode, Outputs, TrainLines, TwcWayside};
+use protocol::message::{
+    Channel, IoOutput, Message, Mode, Outputs, TcmsToAtc, TrainLines, TwcWayside,
+};
 use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
@@ -100,7 +102,7 @@ impl Unit {
             twc: Twc::new(ms(link.twc_timeout_ms)),
             locator: Locator::new(config),
             tra: Tra::new(ms(config.marker.tra_test_ms)),
-            tcms: TcmsLink::new(ms(link.tcms_timeout_ms)),
+            tcms: TcmsLink::new(ms(link.tcms_timeout_ms), config.ato.train.empty_kg),
             ato: Ato::new(config),
             ato_cycles: 0,
             ato_watchdog: Watchdog::default(),
@@ -145,9 +147,7 @@ impl Unit {
         while let Some(Received { header, message }) = self.link.poll(now) {
             match message {
                 Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
-                Message::TcmsToAtc(frame) if !self.loses(Place::TcmsReceiver) => {
-                    self.tcms.take(now, frame);
-                }
+                Message::TcmsToAtc(frame) => self.hear_tcms(now, frame),
                 Message::TwcWayside(data) => self.take_station(now, Some(header.seq), data, out),
                 Message::Identify(_) => {
                     let identity = report::identity(self, now);
@@ -183,6 +183,12 @@ impl Unit {
             _ => {}
         }
         lost
+    }
+
+    fn hear_tcms(&mut self, now: Instant, frame: TcmsToAtc) {
+        if !self.loses(Place::TcmsReceiver) && !self.tcms.take(now, frame) {
+            self.reject_watch.count_lost(Channel::Tcms);
+        }
     }
 
     /// Station data from the loop (`seq` given, answered) or from the TWC TEST module.

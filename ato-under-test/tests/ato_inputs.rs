@@ -1,7 +1,7 @@
 //! Whatever ATO is given: the effort stays within its 10 bits and sign, nothing powers that must
 //! not, and what cannot be believed brakes.
 
-use ato_under_test::ato::{Ato, AtoInputs, AtoOutputs, Checks};
+use ato_under_test::ato::{Ato, AtoInputs, AtoOutputs, Checks, TrainReport};
 use proptest::prelude::*;
 use protocol::Speed;
 use protocol::config::{AtoConfig, ControllerKind, UnitConfig};
@@ -20,6 +20,7 @@ struct Drawn {
     speed_mps: f64,
     standstill: bool,
     power_cut: bool,
+    train: TrainReport,
     load_kg: f64,
     checks: Checks,
 }
@@ -87,6 +88,11 @@ fn drawn() -> impl Strategy<Value = Drawn> {
         value(-50.0..900.0),
         value(0.0..30.0),
         value(0.0..160e3),
+        (
+            prop::bool::weighted(0.2),
+            any::<i16>(),
+            any::<Option<i16>>(),
+        ),
     );
     (state, speeds, places).prop_map(
         |((mode, checks, standstill, power_cut), (limit_mps, fixed_mps, speed_mps), place)| Drawn {
@@ -99,6 +105,11 @@ fn drawn() -> impl Strategy<Value = Drawn> {
             speed_mps,
             standstill,
             power_cut,
+            train: TrainReport {
+                hinders: place.4.0,
+                sent: place.4.1,
+                given: place.4.2,
+            },
             load_kg: place.3,
             checks,
         },
@@ -118,6 +129,7 @@ fn step(ato: &mut Ato, drawn: &Drawn, config: &AtoConfig) -> AtoOutputs {
         speed: Speed::from_mps(drawn.speed_mps),
         standstill: drawn.standstill,
         power_cut: drawn.power_cut,
+        train: drawn.train,
         load_kg: drawn.load_kg,
         checks: drawn.checks,
     };
@@ -136,6 +148,7 @@ fn departing() -> Drawn {
         speed_mps: 0.0,
         standstill: true,
         power_cut: false,
+        train: TrainReport::default(),
         load_kg: 0.0,
         checks: Checks::Passed,
     }

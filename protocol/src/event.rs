@@ -113,13 +113,14 @@ events! {
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";
-    TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "";
+    TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "1 = frames come, their alive counter stands";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason, `AtoFailure`";
     AtoNotFollowing = 601 "ato_not_following" Major "ato_cpu" "The train does not do what ATO's effort asks" "목표속도 추종 불량" "speed less what effort should have made, cm/s";
     StopOverrun = 602 "stop_overrun" Major "ato_cpu" "Passed the stop point" "정위치 초과" "distance, cm";
     StopShort = 603 "stop_short" Minor "ato_cpu" "Stopped short of the stop point" "정위치 미달" "distance, cm";
     AtoInputAbsurd = 604 "ato_input_absurd" Major "-" "ATO was given what no train can do" "ATO 입력 이상" "inputs as bits, `AbsurdInputs`";
+    TrainWithholds = 605 "train_withholds" Minor "-" "The train gives less than it was sent, as TCMS itself says" "차량 출력 부족" "speed less what effort should have made, cm/s";
     ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
     InverterFailed = 800 "inverter_failed" Major "inverter" "TCMS: inverter does not answer" "추진장치 고장" "car";
@@ -138,6 +139,9 @@ events! {
     DeadMan = 813 "dead_man" Info "-" "TCMS: dead man released too long" "데드맨 동작" "";
 }
 
+/// Parameter of [`Event::TcmsLost`] when frames still come and their alive counter stands.
+pub const COUNTER_STANDS: i32 = 1;
+
 impl Event {
     /// The part under suspicion, given the event's parameter; `-` = none.
     pub fn suspect(self, parameter: i32) -> &'static str {
@@ -150,10 +154,13 @@ impl Event {
             Self::AtoFailed if parameter == i32::from(AtoFailure::Tra.code()) => return "tra",
             Self::AtoFailed
                 if parameter == i32::from(AtoFailure::Tachometers.code())
-                    || parameter == i32::from(AtoFailure::Inputs.code()) =>
+                    || parameter == i32::from(AtoFailure::Inputs.code())
+                    || parameter == i32::from(AtoFailure::TrainWithholds.code()) =>
             {
                 return "-";
             }
+            // Frames arrive: what stands is who makes them.
+            Self::TcmsLost if parameter == COUNTER_STANDS => return "tcms",
             Self::FramesRejected if parameter != i32::from(Channel::Tcms.code()) => {
                 return "io_board";
             }

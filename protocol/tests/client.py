@@ -6,6 +6,7 @@ import argparse, collections, contextlib, os, random, re, select, struct, sys, t
 UNIT, PTU, IO, TCMS = 0x20, 1, 2, 3
 PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40}                             # channel: address
 DOORS_CLOSED, HCR, MAINTENANCE_KEY, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x20, 0x40
+EB_LOOP_FED = 0x100
 EB_RELAY, CODE_VALID, ARMED, UP, MANUAL = 0x001, 0x080, 0x001, 0x180, 2  # UP: STARTED and INPUTS_OK
 ANSWERS = dict(enumerate("accepted not_armed out_of_range board_failed".split()))
 REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up".split()))
@@ -125,6 +126,6 @@ if __name__ == "__main__":
     parser.add_argument("--no-key", dest="key", action="store_const", const=0, default=MAINTENANCE_KEY)
     options = parser.parse_args()
     try:
-        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | options.key), *options.code)
+        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | EB_LOOP_FED | options.key), *options.code)
     except (OSError, struct.error) as error:
         sys.exit(f"failed: {error}")

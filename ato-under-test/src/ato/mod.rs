@@ -28,7 +28,7 @@ use reg::{Bounds, Granted, Regulator};
 use watch::{Watch, Watched};
 
 pub use art::{ArtInputs, Checks};
-pub use watch::Findings;
+pub use watch::{Findings, TrainReport};
 
 /// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
 /// train that is stopping still has a second to go.
@@ -67,6 +67,8 @@ pub struct AtoInputs<'a> {
     pub standstill: bool,
     /// ATP or TCMS cuts powering.
     pub power_cut: bool,
+    /// What TCMS says of the train.
+    pub train: TrainReport,
     /// Passenger load TCMS reports, kg.
     pub load_kg: f64,
     /// What KRN's checks say.
@@ -146,7 +148,7 @@ impl Ato {
         let stands = inputs.standstill && inputs.speed <= STOPPED && !self.observer.sliding();
         let watched = Watched {
             state: self.state,
-            may_go: cruise > Speed::ZERO && !inputs.power_cut,
+            may_go: cruise > Speed::ZERO && !inputs.power_cut && !inputs.train.hinders,
             asked_mps2: self.net_mps2(&inputs, config),
             stands,
             arrived,
@@ -185,6 +187,8 @@ impl Ato {
             (_, failure) if failure != AtoFailure::None && kept => failure,
             _ if run && !findings.absurd.is_empty() => AtoFailure::Inputs,
             _ if findings.not_following_mps.is_some() => AtoFailure::NotFollowing,
+            // Power that is withheld makes a late train, brake that is withheld a dangerous one.
+            _ if findings.withheld_mps.is_some_and(|more| more > 0.0) => AtoFailure::TrainWithholds,
             _ => AtoFailure::None,
         }
     }

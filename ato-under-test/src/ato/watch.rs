@@ -5,6 +5,9 @@
 //! * A train that does not do what the effort asks is not driven any longer. What counts is not the
 //!   distance to the target, which is great in every departure, but the speed the efforts should
 //!   have made within the last seconds against the speed there is.
+//! * What the train did not give is not ATO's: what TCMS says it gives is held against what it was sent.
+//!   While TCMS brakes by itself or cuts powering nothing is judged; a deviation that at least half of
+//!   what it withheld explains is told as the train's, and only one in braking ends the run.
 //! * The end of a run away from the stop point is told.
 
 use protocol::config::AtoConfig;
@@ -12,6 +15,7 @@ use protocol::line::Section;
 use protocol::message::{AbsurdInputs, AtoState};
 use protocol::{CYCLE, Speed};
 
+use super::reg::power_mps2;
 use super::{AtoInputs, art};
 
 /// Speed beyond any train's of these lines, m/s: 150 km/h [default].
@@ -32,6 +36,17 @@ const LONGEST_M: f64 = 50e3;
 const FAR_PAST_M: f64 = 10.0;
 /// Time standing short of the stop point after which nothing more is expected, s [default].
 const STANDS_S: f64 = 5.0;
+
+/// What TCMS says of the train. Efforts are −1024 full brake .. 1023 full power.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TrainReport {
+    /// TCMS brakes by itself, or gives no power.
+    pub hinders: bool,
+    /// Effort last sent to it.
+    pub sent: i16,
+    /// Effort the train gives; `None` = not known.
+    pub given: Option<i16>,
+}
 
 /// What the watch looks at besides ATO's inputs.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +70,8 @@ pub struct Findings {
     pub absurd: AbsurdInputs,
     /// Speed less the speed effort should have made, m/s.
     pub not_following_mps: Option<f64>,
+    /// The same of a train that withholds effort, by TCMS's own word; told once until it is over.
+    pub withheld_mps: Option<f64>,
     /// Way past the stop point, m; told once a run.
     pub overrun_m: Option<f64>,
     /// Way short of the stop point, m; told once a run.
@@ -67,6 +84,11 @@ pub struct Watch {
     before_mps: Option<f64>,
     expected_mps2: f64,
     deviation_mps: f64,
+    /// What the effort sent should come to by now, m/s².
+    sent_mps2: f64,
+    /// Speed that the train's own effort did not make of it, m/s.
+    withheld_mps: f64,
+    told_withheld: bool,
     frozen_s: f64,
     stands_s: f64,
     told: bool,
@@ -82,6 +104,9 @@ impl Watch {
         if !art::drives(on.state) {
             self.expected_mps2 = 0.0;
             self.deviation_mps = 0.0;
+            self.sent_mps2 = 0.0;
+            self.withheld_mps = 0.0;
+            self.told_withheld = false;
             self.frozen_s = 0.0;
             return Findings {
                 absurd,
@@ -94,13 +119,15 @@ impl Watch {
         absurd.set(AbsurdInputs::SPEED_JUMP, libm::fabs(change_mps) > JUMP_MPS);
         let frozen = self.frozen(change_mps, inputs, on.asked_mps2, config);
         absurd.set(AbsurdInputs::FROZEN_SPEED, frozen);
-        let not_following_mps = absurd
+        let deviation_mps = absurd
             .is_empty()
             .then(|| self.follow(change_mps, inputs, on.asked_mps2, config))
             .flatten();
+        let (not_following_mps, withheld_mps) = self.whose(deviation_mps);
         Findings {
             absurd,
             not_following_mps,
+            withheld_mps,
             overrun_m,
             short_m,
         }
@@ -115,7 +142,7 @@ impl Watch {
         config: &AtoConfig,
     ) -> bool {
         let stands_braked = inputs.standstill && asked_mps2 < 0.0;
-        let asked = libm::fabs(asked_mps2) > ASKED_MPS2 && !inputs.power_cut && !stands_braked;
+        let asked = libm::fabs(asked_mps2) > ASKED_MPS2 && !cut(inputs) && !stands_braked;
         if !asked || libm::fabs(change_mps) > SAME_MPS {
             self.frozen_s = 0.0;
             return false;
@@ -125,7 +152,7 @@ impl Watch {
     }
 
     /// Compares the change of speed with what the efforts should have made, both fading with the
-    /// watch's time. While ATP brakes ATO's efforts do not count.
+    /// watch's time. While ATP or TCMS brakes ATO's efforts do not count.
     fn follow(
         &mut self,
         change_mps: f64,
@@ -138,13 +165,35 @@ impl Watch {
         let share = (dt / lag_s.max(dt)).min(1.0);
         self.expected_mps2 += (asked_mps2 - self.expected_mps2) * share;
         let memory_s = f64::from(config.watch.following_ms.max(1)) / 1000.0;
-        self.deviation_mps -= self.deviation_mps * (dt / memory_s).min(1.0);
+        let fades = (dt / memory_s).min(1.0);
+        self.deviation_mps -= self.deviation_mps * fades;
+        self.withheld_mps -= self.withheld_mps * fades;
+        let effort_mps2 = |effort: i16| mps2_from_effort(effort, inputs.speed, config);
+        let train = inputs.train;
+        self.sent_mps2 += (effort_mps2(train.sent) - self.sent_mps2) * share;
         let stands_braked = inputs.standstill && self.expected_mps2 < 0.0;
-        if !inputs.power_cut && !stands_braked {
+        if !cut(inputs) && !stands_braked {
             self.deviation_mps += change_mps - self.expected_mps2 * dt;
+            let given_mps2 = train.given.map_or(self.sent_mps2, effort_mps2);
+            self.withheld_mps += (self.sent_mps2 - given_mps2) * dt;
         }
         let most_mps = config.watch.following_kmh / 3.6;
         (libm::fabs(self.deviation_mps) > most_mps).then_some(self.deviation_mps)
+    }
+
+    /// A deviation as ATO's own, or as the train's when at least half of it is what that withheld.
+    fn whose(&mut self, deviation_mps: Option<f64>) -> (Option<f64>, Option<f64>) {
+        let Some(deviation_mps) = deviation_mps else {
+            self.told_withheld = false;
+            return (None, None);
+        };
+        let left_mps = deviation_mps + self.withheld_mps;
+        if libm::fabs(left_mps) > 0.5 * libm::fabs(deviation_mps) {
+            return (Some(deviation_mps), None);
+        }
+        let first = !self.told_withheld;
+        self.told_withheld = true;
+        (None, first.then_some(deviation_mps))
     }
 
     /// Overrun and stop short, once a run.
@@ -175,6 +224,21 @@ impl Watch {
             (first && overrun).then_some(past_m),
             (first && short).then_some(to_stop_m),
         )
+    }
+}
+
+/// What the train does is not what ATO asks of it: powering is cut, or TCMS brakes by itself.
+fn cut(inputs: &AtoInputs<'_>) -> bool {
+    inputs.power_cut || inputs.train.hinders
+}
+
+/// Acceleration an effort stands for at a speed, m/s².
+fn mps2_from_effort(effort: i16, speed: Speed, config: &AtoConfig) -> f64 {
+    let effort = f64::from(effort);
+    if effort < 0.0 {
+        effort / 1024.0 * config.train.brake_kmh_per_s / 3.6
+    } else {
+        effort / 1023.0 * power_mps2(&config.train, speed.mps())
     }
 }
 
@@ -241,6 +305,7 @@ mod tests {
             speed: Speed::from_mps(10.0),
             standstill: false,
             power_cut: false,
+            train: TrainReport::default(),
             load_kg: 0.0,
             checks: Checks::Passed,
         };

@@ -8,9 +8,6 @@ use protocol::{Duration, Instant};
 use crate::kernel::EventLog;
 use crate::timer::{Edge, Lasting};
 
-/// Master controller position that opens the brake line itself.
-const CONTROLLER_EMERGENCY: i8 = -8;
-
 /// What the brake looks at in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct BrakeInputs {
@@ -24,8 +21,6 @@ pub struct BrakeInputs {
     pub lines: TrainLines,
     /// Inputs alive.
     pub alive: bool,
-    /// Master controller.
-    pub controller: i8,
 }
 
 /// The brake.
@@ -86,14 +81,13 @@ impl EmergencyBrake {
         }
     }
 
-    /// The line must die with the relay, and live with it unless something else opens it.
+    /// The line must die with the relay, and live with it as long as it is fed: a button, the master
+    /// controller, low air or a cab nobody is in opens it before the relay.
     fn watch_line(&mut self, now: Instant, inputs: BrakeInputs, log: &mut EventLog) {
         let energised = inputs.lines.contains(TrainLines::EB_LOOP);
         let welded = inputs.alive && self.applied() && energised;
-        let open = inputs.alive
-            && !self.applied()
-            && !energised
-            && inputs.controller != CONTROLLER_EMERGENCY;
+        let fed = inputs.lines.contains(TrainLines::EB_LOOP_FED);
+        let open = inputs.alive && !self.applied() && fed && !energised;
         let welded = self.welded.update(now, welded, self.feedback);
         let open = self.open.update(now, open, self.feedback);
         if (welded || open) && self.relay_sound {

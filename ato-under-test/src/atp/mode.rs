@@ -1,9 +1,11 @@
 //! Operating modes and the automatic-mode sequence [S2 §3.1]: conditions → Automatic → Automatic
 //! Run, with the reason for every refusal.
 //!
-//! When ATO has failed in a run there is no Automatic until the failure is acknowledged or the mode
-//! switch has left its automatic positions. A driverless train then waits for a departure that is
-//! given anew, or for the start button: the one that was still given began the run that failed.
+//! When ATO has failed in a run, or TCMS no longer lets it run (permission taken back, link lost, a brake
+//! not released), the service brake stops the train first: nobody may be driving. Then there is no
+//! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
+//! train then waits for a departure that is given anew, or for the start button: the one that was still
+//! given began the run that failed.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -23,6 +25,9 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::TCMS_NOT_READY)
     .union(Refusals::ATO_NOT_READY)
     .union(Refusals::SELF_TEST);
+
+/// Of these, what is kept until it is acknowledged: braking clears it, and driving on would make it anew.
+const KEPT: Refusals = Refusals::ATO_NOT_READY.union(Refusals::TCMS_NOT_READY);
 
 /// What the sequence looks at.
 #[derive(Clone, Copy, Debug)]
@@ -52,8 +57,8 @@ pub struct ModeSequence {
     start: Edge,
     acknowledge: Edge,
     departure: Edge,
-    /// ATO has failed in a run and nobody has acknowledged it.
-    failed: bool,
+    /// What ended a run and nobody has acknowledged, of [`KEPT`].
+    failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,
     refusals: Refusals,
@@ -65,9 +70,7 @@ impl ModeSequence {
         let pressed = self.start.rises(inputs.start);
         self.keep_failure(&inputs);
         let mut inputs = inputs;
-        if self.failed {
-            inputs.lacking.insert(Refusals::ATO_NOT_READY);
-        }
+        inputs.lacking.insert(self.failed);
         let departing = inputs.departure
             && (pressed || inputs.switch == ModeSwitch::Driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
@@ -89,7 +92,7 @@ impl ModeSequence {
         }
     }
 
-    /// Latches a failure of ATO in a run, and gives it up.
+    /// Latches what ends a run, and gives it up.
     fn keep_failure(&mut self, inputs: &ModeInputs) {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
         let departs = self.departure.rises(inputs.departure);
@@ -98,13 +101,14 @@ impl ModeSequence {
             ModeSwitch::Automatic | ModeSwitch::Driverless
         );
         let runs = self.mode == Mode::AutomaticRun;
-        if runs && inputs.lacking.contains(Refusals::ATO_NOT_READY) {
-            self.failed = true;
+        let ends = inputs.lacking.intersection(KEPT);
+        if runs && !ends.is_empty() {
+            self.failed.insert(ends);
             self.departs_anew = true;
             return;
         }
         if left || acknowledged && !runs {
-            self.failed = false;
+            self.failed = Refusals::empty();
         }
         self.departs_anew &= !departs;
     }
@@ -114,9 +118,14 @@ impl ModeSequence {
         self.mode
     }
 
-    /// ATO has failed in a run and nobody has acknowledged it.
+    /// ATO has failed in a run, or could not go on with it, and nobody has acknowledged it.
     pub fn failed(&self) -> bool {
-        self.failed
+        !self.failed.is_empty()
+    }
+
+    /// TCMS did not let the run go on.
+    pub fn forbidden(&self) -> bool {
+        self.failed.contains(Refusals::TCMS_NOT_READY)
     }
 
     /// Preconditions that do not hold.
@@ -141,9 +150,8 @@ fn next(mode: Mode, inputs: &ModeInputs, departing: bool) -> Mode {
 
 fn automatic(mode: Mode, inputs: &ModeInputs, departing: bool) -> Mode {
     let lacking = inputs.lacking.difference(RUN_ONLY);
-    // When ATO fails on the way the service brake stops the train first: nobody may be driving.
     let ends = if lacking.contains(Refusals::NOT_STANDSTILL) {
-        RUN_ENDS.difference(Refusals::ATO_NOT_READY)
+        RUN_ENDS.difference(KEPT)
     } else {
         RUN_ENDS
     };
@@ -265,6 +273,18 @@ mod tests {
                 lacking(Refusals::ATO_NOT_READY.union(Refusals::NOT_STANDSTILL)),
                 false,
                 Mode::AutomaticRun,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::TCMS_NOT_READY.union(Refusals::NOT_STANDSTILL)),
+                false,
+                Mode::AutomaticRun,
+            ),
+            (
+                Mode::AutomaticRun,
+                lacking(Refusals::TCMS_NOT_READY),
+                false,
+                Mode::Manual,
             ),
             (
                 Mode::AutomaticRun,

@@ -112,7 +112,6 @@ impl Atp {
             standstill,
             lines: inputs.lines,
             alive: inputs.alive,
-            controller: inputs.controller,
         };
         self.brake.step(now, brake_inputs, log);
         self.fsb_cause = self.service_cause(context);
@@ -194,6 +193,7 @@ impl Atp {
             (running && !context.twc_up, FsbCause::TwcLost),
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),
+            (running && self.sequence.forbidden(), FsbCause::NotPermitted),
         ];
         causes
             .iter()

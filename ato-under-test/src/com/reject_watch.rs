@@ -32,7 +32,7 @@ impl RejectWatch {
         }
     }
 
-    /// A frame was lost in a modem or line driver, before it could be rejected.
+    /// A frame was lost in a modem or line driver before it could be rejected, or says what cannot be.
     pub fn count_lost(&mut self, channel: Channel) {
         self.lost[place(channel)] += 1;
     }

@@ -1,48 +1,74 @@
-//! The RS-485 link to TCMS: alive while frames come and their alive counter moves.
+//! The RS-485 link to TCMS: alive while frames come that make sense and their alive counter moves.
 
 use protocol::message::{TcmsToAtc, TcmsToAtcBits};
 use protocol::{Duration, Instant};
+
+/// Effort as TCMS may say it: 10 bits and sign (S4).
+const EFFORT: core::ops::RangeInclusive<i16> = -1024..=1023;
+/// TCMS brakes by itself, or gives no power whatever it is asked for.
+const HINDERS: TcmsToAtcBits = TcmsToAtcBits::POWERING_CUT
+    .union(TcmsToAtcBits::FULL_SERVICE_BRAKE)
+    .union(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED)
+    .union(TcmsToAtcBits::HOLDING_BRAKE_APPLIED);
 
 /// What TCMS last said.
 #[derive(Debug)]
 pub struct TcmsLink {
     last: TcmsToAtc,
+    heard: Option<Instant>,
     counter_moved: Option<Instant>,
     alive: bool,
     reported: Option<bool>,
     timeout: Duration,
+    most_load_kg: f64,
 }
 
 impl TcmsLink {
-    /// A link that is lost after `timeout` without a moving alive counter.
-    pub fn new(timeout: Duration) -> Self {
+    /// A link that is lost after `timeout` without a moving alive counter, to a train that cannot carry
+    /// more than `most_load_kg`.
+    pub fn new(timeout: Duration, most_load_kg: f64) -> Self {
         Self {
             last: TcmsToAtc::default(),
+            heard: None,
             counter_moved: None,
             alive: false,
             reported: None,
             timeout,
+            most_load_kg,
         }
     }
 
-    /// Takes a frame.
-    pub fn take(&mut self, now: Instant, frame: TcmsToAtc) {
+    /// Takes a frame; whether it makes sense. One that says what no train can do is as good as lost: what
+    /// was said before stands, until the link is given up.
+    pub fn take(&mut self, now: Instant, frame: TcmsToAtc) -> bool {
+        if !EFFORT.contains(&frame.effort) || load_kg(&frame) > self.most_load_kg {
+            return false;
+        }
+        self.heard = Some(now);
         if self.counter_moved.is_none() || frame.alive != self.last.alive {
             self.counter_moved = Some(now);
         }
         self.last = frame;
+        true
     }
 
     /// Moves on to the present.
     pub fn step(&mut self, now: Instant) {
-        self.alive = self
-            .counter_moved
-            .is_some_and(|at| now.since(at) < self.timeout);
+        self.alive = self.fresh(self.counter_moved, now);
+    }
+
+    fn fresh(&self, at: Option<Instant>, now: Instant) -> bool {
+        at.is_some_and(|at| now.since(at) < self.timeout)
     }
 
     /// The link is up.
     pub fn alive(&self) -> bool {
         self.alive
+    }
+
+    /// Frames come, and it is only their alive counter that stands.
+    pub fn stands(&self, now: Instant) -> bool {
+        !self.alive && self.fresh(self.heard, now)
     }
 
     /// `Some(alive)` once after each change, the first coming up left out.
@@ -57,13 +83,137 @@ impl TcmsLink {
 
     /// Passenger load last reported, kg.
     pub fn load_kg(&self) -> f64 {
-        f64::from(self.last.load_100kg) * 100.0
+        load_kg(&self.last)
     }
 
-    /// TCMS permits automatic operation.
+    /// TCMS permits automatic operation, and the train can run.
     pub fn ready(&self) -> bool {
-        self.alive
-            && self.last.bits.contains(TcmsToAtcBits::ATO_ENABLE)
-            && !self.last.bits.contains(TcmsToAtcBits::BRAKE_NOT_RELEASED)
+        self.says(TcmsToAtcBits::ATO_ENABLE) && !self.says(TcmsToAtcBits::BRAKE_NOT_RELEASED)
+    }
+
+    /// TCMS cuts powering. What it cuts while its holding brake is on is left out: ATO asks for that
+    /// brake itself, and the train leaves it by motor current.
+    pub fn cuts_power(&self) -> bool {
+        self.says(TcmsToAtcBits::POWERING_CUT) && !self.says(TcmsToAtcBits::HOLDING_BRAKE_APPLIED)
+    }
+
+    /// TCMS brakes by itself, or gives no power: what the train does is not what ATO asks.
+    pub fn hinders(&self) -> bool {
+        self.alive && self.last.bits.intersects(HINDERS)
+    }
+
+    /// Effort the train gives, −1024..1023, while TCMS says it.
+    pub fn given(&self) -> Option<i16> {
+        self.alive.then_some(self.last.effort)
+    }
+
+    fn says(&self, bit: TcmsToAtcBits) -> bool {
+        self.alive && self.last.bits.contains(bit)
+    }
+}
+
+fn load_kg(frame: &TcmsToAtc) -> f64 {
+    f64::from(frame.load_100kg) * 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: TcmsToAtc = TcmsToAtc {
+        bits: TcmsToAtcBits::ATO_ENABLE,
+        load_100kg: 1600,
+        alive: 1,
+        effort: 1023,
+    };
+
+    fn link() -> TcmsLink {
+        TcmsLink::new(Duration::from_ms(500), 268_807.0)
+    }
+
+    /// Frames that no train can mean are passed over, and give the link up when no others come.
+    #[test]
+    fn nonsense_is_not_taken() {
+        let mut link = link();
+        assert!(link.take(Instant::ZERO, FRAME));
+        let nonsense = [
+            TcmsToAtc {
+                effort: 1024,
+                ..FRAME
+            },
+            TcmsToAtc {
+                effort: -1025,
+                ..FRAME
+            },
+            TcmsToAtc {
+                effort: i16::MIN,
+                ..FRAME
+            },
+            TcmsToAtc {
+                load_100kg: 2689,
+                ..FRAME
+            },
+            TcmsToAtc {
+                load_100kg: u16::MAX,
+                ..FRAME
+            },
+        ];
+        for ms in 1..=100 {
+            let bad = nonsense[ms as usize % nonsense.len()];
+            let frame = TcmsToAtc {
+                alive: ms as u8,
+                ..bad
+            };
+            assert!(!link.take(Instant::from_ms(10 * ms), frame));
+            link.step(Instant::from_ms(10 * ms));
+            assert_eq!(link.alive(), ms < 50);
+        }
+        assert_eq!((link.load_kg(), link.given()), (160e3, None));
+        assert!(!link.ready() && !link.stands(Instant::from_ms(1000)));
+        let borders = TcmsToAtc {
+            effort: -1024,
+            load_100kg: 2688,
+            ..FRAME
+        };
+        assert!(link.take(Instant::from_ms(1000), borders));
+    }
+
+    #[test]
+    fn a_standing_counter_is_no_silence() {
+        let mut link = link();
+        for ms in (0..1000).step_by(50) {
+            link.take(Instant::from_ms(ms), FRAME);
+            link.step(Instant::from_ms(ms));
+        }
+        assert!(!link.alive() && link.stands(Instant::from_ms(1000)));
+        assert!(!link.stands(Instant::from_ms(1500)));
+    }
+
+    #[test]
+    fn what_tcms_does_by_itself_hinders_and_counts_only_while_it_is_heard() {
+        let mut link = link();
+        for (bits, cuts, hinders) in [
+            (TcmsToAtcBits::empty(), false, false),
+            (TcmsToAtcBits::SERVICE_BRAKE_APPLIED, false, false),
+            (TcmsToAtcBits::POWERING_CUT, true, true),
+            (TcmsToAtcBits::FULL_SERVICE_BRAKE, false, true),
+            (TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED, false, true),
+            (TcmsToAtcBits::HOLDING_BRAKE_APPLIED, false, true),
+            (
+                TcmsToAtcBits::HOLDING_BRAKE_APPLIED.union(TcmsToAtcBits::POWERING_CUT),
+                false,
+                true,
+            ),
+        ] {
+            link.take(Instant::ZERO, TcmsToAtc { bits, ..FRAME });
+            link.step(Instant::ZERO);
+            assert_eq!(
+                (link.cuts_power(), link.hinders()),
+                (cuts, hinders),
+                "{bits:?}"
+            );
+        }
+        link.step(Instant::from_ms(500));
+        assert!(!link.hinders() && !link.cuts_power());
     }
 }

@@ -45,10 +45,17 @@ pub struct Bench {
     pub keep_alive: bool,
     pub output: IoOutput,
     pub status: Status,
+    /// What TCMS says each cycle, its alive counter left out; `None` = nothing.
+    pub tcms: Option<TcmsToAtc>,
+    /// Its alive counter stands still.
+    pub alive_stands: bool,
+    /// Something besides the unit's relay opens the emergency brake line.
+    pub opens_line: bool,
     pub answers: Vec<Message>,
     pub log: Vec<LogEntry>,
     turned: [f64; 2],
     scans: u64,
+    alive: u8,
 }
 
 pub fn config() -> UnitConfig {
@@ -74,6 +81,15 @@ pub fn departure(section: &protocol::line::Section) -> TwcWayside {
 
 impl Bench {
     pub fn new(faults: &[FaultMode]) -> Self {
+        Self::with_line(faults, false)
+    }
+
+    /// Powered up while something else opens the emergency brake line.
+    pub fn unfed(faults: &[FaultMode]) -> Self {
+        Self::with_line(faults, true)
+    }
+
+    fn with_line(faults: &[FaultMode], opens_line: bool) -> Self {
         let line = line();
         let station = Some(departure(&line.sections[0]));
         let unit = Unit::new(Setup {
@@ -101,10 +117,17 @@ impl Bench {
             keep_alive: true,
             output: IoOutput::default(),
             status: Status::default(),
+            tcms: Some(TcmsToAtc {
+                bits: TcmsToAtcBits::ATO_ENABLE,
+                ..TcmsToAtc::default()
+            }),
+            alive_stands: false,
+            opens_line,
             answers: Vec::new(),
             log: Vec::new(),
             turned: [0.0; 2],
             scans: 0,
+            alive: 0,
         };
         bench.run(2.0);
         bench
@@ -157,19 +180,21 @@ impl Bench {
     pub fn scan(&mut self) {
         self.now += SCAN;
         self.scans += 1;
-        let eb_loop = self.output.outputs.contains(Outputs::EB_RELAY);
+        let fed = !self.opens_line;
+        let eb_loop = fed && self.output.outputs.contains(Outputs::EB_RELAY);
+        self.input.lines.set(TrainLines::EB_LOOP_FED, fed);
         self.input.lines.set(TrainLines::EB_LOOP, eb_loop);
         self.turn_wheels();
         if self.io {
             self.send(self.input);
         }
-        if self.scans.is_multiple_of(5) {
-            let bits = TcmsToAtcBits::ATO_ENABLE;
+        if let Some(frame) = self.tcms.filter(|_| self.scans.is_multiple_of(5)) {
+            if !self.alive_stands {
+                self.alive = self.alive.wrapping_add(1);
+            }
             self.send(TcmsToAtc {
-                bits,
-                load_100kg: 0,
-                alive: (self.scans / 5) as u8,
-                effort: 0,
+                alive: self.alive,
+                ..frame
             });
         }
         if self.scans.is_multiple_of(20) && self.keep_alive {

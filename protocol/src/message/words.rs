@@ -53,6 +53,8 @@ wire_enum! {
         Inputs = 6 "inputs",
         /// The train does not do what the effort asks for.
         NotFollowing = 7 "not_following",
+        /// The train brakes less than it was sent, as TCMS itself says.
+        TrainWithholds = 8 "train_withholds",
     }
 }
 
@@ -159,6 +161,8 @@ wire_enum! {
         TcmsLost = 4 "tcms_lost",
         /// ATO failed in automatic run.
         AtoFailed = 5 "ato_failed",
+        /// In automatic run TCMS took its permission back, or said that the train cannot run.
+        NotPermitted = 6 "not_permitted",
     }
 }
 
