@@ -38,6 +38,17 @@ pub enum Comparison {
         /// Greatest distance, in the signal's unit.
         tolerance: f64,
     },
+    /// All these bits are set.
+    Has,
+    /// None of these bits is set.
+    Lacks,
+}
+
+impl Comparison {
+    /// It is about bits, not about a number's size.
+    pub fn is_bits(self) -> bool {
+        matches!(self, Self::Has | Self::Lacks)
+    }
 }
 
 /// A statement about signals that is true, false or cannot be told.
@@ -192,8 +203,15 @@ fn compare(
         Comparison::AtLeast => left >= right,
         // Half a step of grace: the tolerance is about the thing, not about its recording.
         Comparison::Near { tolerance } => (found - wanted).abs() <= tolerance + lsb / 2.0,
+        Comparison::Has => bits(found) & bits(wanted) == bits(wanted),
+        Comparison::Lacks => bits(found) & bits(wanted) == 0,
     };
     if holds { Truth::Yes } else { Truth::No }
+}
+
+/// A value as the set of bits it stands for.
+fn bits(value: f64) -> u32 {
+    value as u32
 }
 
 #[cfg(test)]
@@ -234,6 +252,28 @@ mod tests {
             for value in [f64::NAN, f64::INFINITY] {
                 let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
                 assert_eq!(truth, Truth::NoData(Lack::Signal(Signal::Limit)));
+            }
+        }
+    }
+
+    #[test]
+    fn bits_are_all_there_or_all_away() {
+        // Found, wanted, has, lacks.
+        for (found, wanted, has, lacks) in [
+            (0b0000, 0b0001, false, true),
+            (0b0101, 0b0001, true, false),
+            (0b0101, 0b0101, true, false),
+            (0b0100, 0b0101, false, false),
+            (0b1010, 0b0101, false, true),
+        ] {
+            let mut sample = Sample::default();
+            sample.set(Signal::Lamps, f64::from(found));
+            for (comparison, expected) in [(Comparison::Has, has), (Comparison::Lacks, lacks)] {
+                let condition = is(Signal::Lamps, comparison, f64::from(wanted));
+                let truth = condition.truth(&sample, &[]);
+                assert_eq!(truth == Truth::Yes, expected, "{found:b} {condition:?}");
+                let lack = Truth::NoData(Lack::Signal(Signal::Lamps));
+                assert_eq!(condition.truth(&Sample::default(), &[]), lack);
             }
         }
     }

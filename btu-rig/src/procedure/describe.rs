@@ -9,6 +9,7 @@ use super::plan::{
     TimeFrom, What,
 };
 use crate::stimulus::{CutOut, Stimulus};
+use crate::tcms::{EbSources, Lamps, PowerCuts};
 
 impl Procedure {
     /// The whole plan, one line for each thing done, expected or measured.
@@ -75,16 +76,12 @@ impl Display for Condition {
                 comparison,
                 operand,
             } => {
-                let sign = match comparison {
-                    Comparison::Equal => "=",
-                    Comparison::NotEqual => "≠",
-                    Comparison::Below => "<",
-                    Comparison::AtMost => "≤",
-                    Comparison::Above => ">",
-                    Comparison::AtLeast => "≥",
-                    Comparison::Near { .. } => "≈",
-                };
-                write!(f, "{} {sign} {}", signal.name(), value(*signal, operand))?;
+                if let (true, Operand::Literal(bits)) = (comparison.is_bits(), operand) {
+                    let bits = bit_names(*signal, *bits as u16);
+                    return write!(f, "{} {} {bits}", signal.name(), sign(*comparison));
+                }
+                let operand = value(*signal, operand);
+                write!(f, "{} {} {operand}", signal.name(), sign(*comparison))?;
                 if let Comparison::Near { tolerance } = comparison {
                     write!(f, " ± {}", number(*tolerance))?;
                 }
@@ -96,9 +93,41 @@ impl Display for Condition {
     }
 }
 
+fn sign(comparison: Comparison) -> &'static str {
+    match comparison {
+        Comparison::Equal => "=",
+        Comparison::NotEqual => "≠",
+        Comparison::Below => "<",
+        Comparison::AtMost => "≤",
+        Comparison::Above => ">",
+        Comparison::AtLeast => "≥",
+        Comparison::Near { .. } => "≈",
+        Comparison::Has => "with",
+        Comparison::Lacks => "without",
+    }
+}
+
 fn group(f: &mut Formatter<'_>, parts: &[Condition], word: &str) -> fmt::Result {
     let parts: Vec<_> = parts.iter().map(ToString::to_string).collect();
     write!(f, "({})", parts.join(word))
+}
+
+/// Bits of a signal by their names, as far as they have any.
+fn bit_names(signal: Signal, bits: u16) -> String {
+    fn of<T: Copy>(bits: u16, all: &[(T, &str)], bit: impl Fn(T) -> u16) -> Vec<String> {
+        let named = all.iter().filter(|(one, _)| bits & bit(*one) != 0);
+        named.map(|(_, name)| (*name).to_owned()).collect()
+    }
+    let names = match signal {
+        Signal::PowerCutCauses => of(bits, PowerCuts::ALL, PowerCuts::bits),
+        Signal::EbSources => of(bits, EbSources::ALL, EbSources::bits),
+        Signal::Lamps => of(bits, Lamps::ALL, Lamps::bits),
+        _ => Vec::new(),
+    };
+    if names.is_empty() {
+        return format!("bits {bits:#b}");
+    }
+    names.join(" + ")
 }
 
 /// An operand as the signal's reader knows it: a label, on or off, a number with its unit.

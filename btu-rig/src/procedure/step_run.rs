@@ -9,7 +9,7 @@ use super::expectation_run::Watch;
 use super::measure_run::Taking;
 use super::plan::Step;
 use super::report::{Measurement, RunEvent, Verdict};
-use super::{Driver, UnitEvent};
+use super::{Driver, EventSource, UnitEvent};
 
 /// A live step.
 #[derive(Debug)]
@@ -21,6 +21,8 @@ pub(super) struct StepRun {
     takings: Vec<Taking>,
     problems: Vec<Problem>,
     logged: EventSet,
+    /// Part that the first event nobody asked for names.
+    blamed: Option<&'static str>,
     /// The step was given up: its remaining expectations are not judged.
     given_up: bool,
 }
@@ -31,6 +33,8 @@ pub(super) struct StepEnd {
     pub message: String,
     pub bench_time: Duration,
     pub measurements: Vec<Measurement>,
+    /// Part that an event nobody asked for names.
+    pub blamed: Option<&'static str>,
 }
 
 impl StepRun {
@@ -43,6 +47,7 @@ impl StepRun {
             takings: vec![Taking::default(); step.measures.len()],
             problems: Vec::new(),
             logged: EventSet::default(),
+            blamed: None,
             given_up: false,
         }
     }
@@ -56,13 +61,21 @@ impl StepRun {
         self.logged.insert(event);
     }
 
-    /// Holds an event nobody asked for against the step.
+    /// Holds an event nobody asked for against the step. Whoever logged it saw what happened, so the
+    /// part it names counts for more than the one a failure of the step would point at.
     pub(super) fn blame_event(&mut self, entry: &UnitEvent) {
-        let name = Event::from_code(entry.code).map_or("unknown", |e| e.definition().name);
+        let event = Event::from_code(entry.code);
+        let name = event.map_or("unknown", |e| e.definition().name);
+        let who = match entry.source {
+            EventSource::Unit => "the unit",
+            EventSource::Tcms => "TCMS",
+        };
         let text = format!(
-            "the unit logged {name} ({}), which no step provoked",
+            "{who} logged {name} ({}), which no step provoked",
             entry.code
         );
+        let part = event.map(|event| event.suspect(entry.parameter));
+        self.blamed = self.blamed.or(part.filter(|part| *part != "-"));
         let problem = Problem::Failed(text);
         if !self.problems.contains(&problem) {
             self.problems.push(problem);
@@ -150,6 +163,7 @@ impl StepRun {
             message: message(&self.problems, step, aborted),
             bench_time,
             measurements,
+            blamed: self.blamed,
         }
     }
 

@@ -113,7 +113,7 @@ impl Runner {
             line: step.line,
             verdict: end.verdict,
             message: end.message,
-            suspect: self.suspect(step),
+            suspect: end.blamed.map_or_else(|| self.suspect(step), str::to_owned),
             started,
             bench_time: end.bench_time,
             measurements: end.measurements,

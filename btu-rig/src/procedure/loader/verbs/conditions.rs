@@ -19,13 +19,15 @@ const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 const TIME: Want = Want::Amount(Dimension::Time);
 
 /// Ways to compare, by parameter.
-const COMPARISONS: [(&str, Comparison); 6] = [
+const COMPARISONS: [(&str, Comparison); 8] = [
     ("value", Comparison::Equal),
     ("not_", Comparison::NotEqual),
     ("above", Comparison::Above),
     ("at_least", Comparison::AtLeast),
     ("below", Comparison::Below),
     ("at_most", Comparison::AtMost),
+    ("has", Comparison::Has),
+    ("lacks", Comparison::Lacks),
 ];
 
 /// A verb whose first parameters are a condition.
@@ -43,6 +45,8 @@ macro_rules! about {
                 takes("at_most", Want::Value),
                 takes("near", Want::Value),
                 takes("tol", Want::Value),
+                takes("has", Want::Value),
+                takes("lacks", Want::Value),
                 $($more),*
             ],
             make: $make,
@@ -135,7 +139,11 @@ fn condition(args: &Args<'_>) -> Result<Condition, String> {
                 signal.name()
             ));
         }
-        all.push((comparison, operand(signal, item)?));
+        let operand = match comparison.is_bits() {
+            true => bits(signal, name, item)?,
+            false => operand(signal, item)?,
+        };
+        all.push((comparison, operand));
     }
     if let Some(item) = args.get("near") {
         let tolerance = match args.get("tol").map(|tol| operand(signal, tol)) {
@@ -164,6 +172,26 @@ fn condition(args: &Args<'_>) -> Result<Condition, String> {
         )),
         1 => Ok(compares.remove(0)),
         _ => Ok(Condition::All(compares)),
+    }
+}
+
+/// Bits a signal of bits is compared with.
+fn bits(signal: Signal, name: &str, item: &Item) -> Result<Operand, String> {
+    let definition = signal.definition();
+    if definition.unit != "" || !matches!(definition.kind, Kind::Number { lsb: 1.0 }) {
+        return Err(format!(
+            "{} is not made of bits, it cannot be `{name}` something",
+            definition.name
+        ));
+    }
+    match item {
+        Item::Int(bits) if (1..=i64::from(u16::MAX)).contains(bits) => {
+            Ok(Operand::Literal(*bits as f64))
+        }
+        other => Err(format!(
+            "`{name}` is the bits to look at, as cuts.doors + cuts.hcr, found {}",
+            other.found()
+        )),
     }
 }
 
