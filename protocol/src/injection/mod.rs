@@ -1,14 +1,18 @@
-//! Fault modes as data: where in the signal path, and what happens there.
+//! Fault modes as data: where in the signal path, and what happens there (`check`: what can happen
+//! where). The parts and modes there are stand in the [`FaultCatalogue`].
 //!
 //! The unit applies those of its own places, the rig those of the train and its wiring. Nothing
 //! that judges a result ever sees them.
 
-use alloc::string::{String, ToString};
-use alloc::vec::Vec;
+mod catalogue;
+mod check;
+
+use alloc::string::String;
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::{ConfigError, conflict};
+pub use catalogue::{FaultCatalogue, Lru};
+pub use check::MAX_CARS;
 
 /// A place in the signal path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -169,64 +173,4 @@ pub struct FaultMode {
     /// Car it is on, counted from the head of the train; only at places that are on cars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub car: Option<u8>,
-}
-
-/// A part that can be replaced.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Lru {
-    /// Name used in faults.
-    pub id: String,
-    /// Name people use, English.
-    pub name: String,
-    /// Name people use, Korean.
-    pub name_ko: String,
-}
-
-/// The catalogue of parts and fault modes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FaultCatalogue {
-    /// Parts.
-    pub lrus: Vec<Lru>,
-    /// Fault modes.
-    pub faults: Vec<FaultMode>,
-}
-
-impl FaultCatalogue {
-    /// Reads and checks a catalogue file.
-    ///
-    /// # Errors
-    /// Syntax with line and column, a name used twice, or a part that is not listed.
-    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        let catalogue: Self =
-            toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
-        for (i, fault) in catalogue.faults.iter().enumerate() {
-            if catalogue.faults[..i].iter().any(|f| f.id == fault.id) {
-                return Err(conflict(&alloc::format!(
-                    "fault {} is listed twice",
-                    fault.id
-                )));
-            }
-            if !catalogue.lrus.iter().any(|l| l.id == fault.lru) {
-                return Err(conflict(&alloc::format!(
-                    "fault {} names the part {}, which is not listed under lrus",
-                    fault.id,
-                    fault.lru
-                )));
-            }
-            if !(fault.weight > 0.0 && fault.onset_s >= 0.0) {
-                return Err(conflict(&alloc::format!(
-                    "fault {}: weight must be above 0 and onset_s not negative",
-                    fault.id
-                )));
-            }
-        }
-        Ok(catalogue)
-    }
-
-    /// The fault mode called `id`.
-    pub fn fault(&self, id: &str) -> Option<&FaultMode> {
-        self.faults.iter().find(|f| f.id == id)
-    }
 }

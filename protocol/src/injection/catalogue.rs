@@ -1,0 +1,205 @@
+//! The catalogue of parts and fault modes.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::FaultMode;
+use super::check::check;
+use crate::config::{ConfigError, conflict};
+
+/// A part that can be replaced.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lru {
+    /// Name used in faults.
+    pub id: String,
+    /// Name people use, English.
+    pub name: String,
+    /// Name people use, Korean.
+    pub name_ko: String,
+}
+
+/// The catalogue of parts and fault modes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FaultCatalogue {
+    /// Parts.
+    pub lrus: Vec<Lru>,
+    /// Fault modes.
+    pub faults: Vec<FaultMode>,
+}
+
+impl FaultCatalogue {
+    /// Reads and checks a catalogue file.
+    ///
+    /// # Errors
+    /// Syntax with line and column, a name used twice, a part that is not listed, or a mode that nobody
+    /// could carry out as it stands.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let catalogue: Self =
+            toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
+        let lrus = &catalogue.lrus;
+        for (i, lru) in lrus.iter().enumerate() {
+            if lrus[..i].iter().any(|l| l.id == lru.id) {
+                return Err(conflict(&format!("part {} is listed twice", lru.id)));
+            }
+        }
+        for (i, fault) in catalogue.faults.iter().enumerate() {
+            if catalogue.faults[..i].iter().any(|f| f.id == fault.id) {
+                return Err(conflict(&format!("fault {} is listed twice", fault.id)));
+            }
+            if !lrus.iter().any(|l| l.id == fault.lru) {
+                return Err(conflict(&format!(
+                    "fault {} names the part {}, which is not listed under lrus",
+                    fault.id, fault.lru
+                )));
+            }
+            check(fault)?;
+        }
+        Ok(catalogue)
+    }
+
+    /// The fault mode called `id`.
+    pub fn fault(&self, id: &str) -> Option<&FaultMode> {
+        self.faults.iter().find(|f| f.id == id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PARTS: &str = "lrus = [{ id = \"a\", name = \"A\", name_ko = \"A\" }]\n";
+    const FAULT: &str = r#"
+[[faults]]
+id = "a.b"
+lru = "a"
+mode = "m"
+severity = "major"
+weight = 1.0
+unsafe = false
+place = "brake_cylinder"
+effect = { kind = "gain", factor = 0.5 }
+car = 5
+"#;
+
+    /// What is wrong with the catalogue when `from` in its fault is `to`; empty = nothing.
+    fn wrong(from: &str, to: &str) -> String {
+        assert!(FAULT.contains(from), "{from}");
+        let text = format!("{PARTS}{}", FAULT.replace(from, to));
+        let read = FaultCatalogue::from_toml(&text);
+        read.err()
+            .map(|error| error.to_string())
+            .unwrap_or_default()
+    }
+
+    #[test]
+    fn the_shipped_catalogue_is_sound_and_names_cars_where_the_train_has_the_part() {
+        let text = include_str!("../../../scripts/units/faults.toml");
+        let catalogue = FaultCatalogue::from_toml(text).unwrap();
+        let weak = catalogue.fault("brake_cylinder.weak").unwrap();
+        assert_eq!(weak.car, Some(5));
+        assert!(
+            catalogue
+                .faults
+                .iter()
+                .any(|f| f.place.on_train() && !f.place.on_car())
+        );
+    }
+
+    #[test]
+    fn what_nobody_could_carry_out_is_refused_with_the_reason() {
+        let cases = [
+            (
+                "major",
+                "bad",
+                "fault a.b: severity must be minor, major or critical, not bad",
+            ),
+            (
+                "weight = 1.0",
+                "weight = 0.0",
+                "fault a.b: weight = 0 is outside",
+            ),
+            (
+                "weight = 1.0",
+                "weight = nan",
+                "fault a.b: weight = NaN is outside",
+            ),
+            (
+                "car = 5",
+                "car = 0",
+                "fault a.b: car = 0 is outside 1 .. 12",
+            ),
+            (
+                "car = 5",
+                "car = 13",
+                "fault a.b: car = 13 is outside 1 .. 12",
+            ),
+            (
+                "car = 5",
+                "",
+                "fault a.b: brake_cylinder is on a car, name it with `car`",
+            ),
+            (
+                "car = 5",
+                "car = 5\nonset_s = -1.0",
+                "fault a.b: onset_s = -1 is outside",
+            ),
+            (
+                "car = 5",
+                "car = 5\nonset_s = inf",
+                "fault a.b: onset_s = inf is outside",
+            ),
+            (
+                "factor = 0.5",
+                "factor = 1.5",
+                "fault a.b: effect.factor = 1.5 is outside 0 .. 1",
+            ),
+            (
+                "factor = 0.5",
+                "factor = nan",
+                "fault a.b: effect.factor = NaN is outside",
+            ),
+            (
+                "kind = \"gain\", factor = 0.5",
+                "kind = \"dead\"",
+                "fault a.b: dead does nothing at brake_cylinder; there: stuck_on, gain",
+            ),
+            (
+                "brake_cylinder",
+                "atp_antenna",
+                "fault a.b: atp_antenna is on no car, leave `car` out",
+            ),
+            (
+                "lru = \"a\"",
+                "lru = \"b\"",
+                "fault a.b names the part b, which is not listed",
+            ),
+        ];
+        for (from, to, expected) in cases {
+            let said = wrong(from, to);
+            assert!(said.starts_with(expected), "{to}: {said}");
+        }
+        assert_eq!(wrong("a.b", "a.b"), "");
+        let twice = FaultCatalogue::from_toml(&format!("{PARTS}{FAULT}{FAULT}"));
+        assert_eq!(twice.unwrap_err().to_string(), "fault a.b is listed twice");
+        let parts = PARTS.replace("]", ", { id = \"a\", name = \"A\", name_ko = \"A\" }]");
+        let twice = FaultCatalogue::from_toml(&format!("faults = []\n{parts}"));
+        assert_eq!(twice.unwrap_err().to_string(), "part a is listed twice");
+    }
+
+    /// What the unit's memory holds is there from power-up on.
+    #[test]
+    fn a_fault_of_stored_data_has_no_onset() {
+        let text = FAULT.replace("brake_cylinder", "wheel_parameter");
+        let text = text.replace("car = 5", "onset_s = 3.0");
+        let said = FaultCatalogue::from_toml(&format!("{PARTS}{text}")).unwrap_err();
+        assert_eq!(
+            said.to_string(),
+            "fault a.b: wheel_parameter is stored data, wrong from power-up on: leave onset_s out"
+        );
+    }
+}

@@ -1,0 +1,151 @@
+//! Which effect can happen at which place, and within which bounds: what the unit and the rig really
+//! carry out. Anything else would be a fault that is injected and does nothing.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use super::{Effect, FaultMode, Place};
+use crate::config::{ConfigError, conflict, within};
+
+/// Cars a train may have.
+pub const MAX_CARS: u8 = 12;
+
+/// Longest delay of an effect, ms: what is late waits in queues of that length.
+const LONGEST_DELAY_MS: f64 = 5_000.0;
+/// Latest onset, s: a day.
+const LATEST_ONSET_S: f64 = 86_400.0;
+/// Prior weights.
+const LEAST_WEIGHT: f64 = 1e-6;
+const MOST_WEIGHT: f64 = 1e6;
+
+/// Kind of an effect, as catalogues write it, and the range of its number.
+type Allowed = (&'static str, f64, f64);
+
+const DEAD: Allowed = ("dead", 0.0, 0.0);
+const STUCK_ON: Allowed = ("stuck_on", 0.0, 0.0);
+const STUCK_OFF: Allowed = ("stuck_off", 0.0, 0.0);
+/// Twice as many, at most.
+const GAIN: Allowed = ("gain", 0.0, 2.0);
+/// Share of frames.
+const BIT_ERRORS: Allowed = ("bit_errors", 0.0, 1.0);
+/// One event a scan, at most.
+const NOISE: Allowed = ("noise", 0.0, 100.0);
+const DELAY: Allowed = ("delay", 0.0, LONGEST_DELAY_MS);
+
+/// What can happen at a place.
+fn allowed(place: Place) -> &'static [Allowed] {
+    match place {
+        Place::AtpAntenna => &[DEAD, ("gain", 0.0, 10.0)],
+        Place::AtpReceiver => &[DEAD, STUCK_ON, ("offset", -100.0, 100.0)],
+        Place::SpeedSensor1 | Place::SpeedSensor2 => &[DEAD, GAIN, NOISE],
+        Place::EbRelay => &[DEAD, STUCK_ON, STUCK_OFF, DELAY],
+        Place::FsbOutput | Place::DoorInput | Place::DoorOutput => &[DEAD, STUCK_ON, STUCK_OFF],
+        Place::MarkerAntenna => &[DEAD, ("deaf", 1.0, 4.0)],
+        Place::Tra
+        | Place::TestBoard
+        | Place::Inverter
+        | Place::Regeneration
+        | Place::BrakeUnit => &[DEAD],
+        Place::FskReceiver
+        | Place::FskTransmitter
+        | Place::TcmsReceiver
+        | Place::TcmsTransmitter => &[DEAD, BIT_ERRORS],
+        Place::TwcCpu => &[("offset", -32_768.0, 32_767.0)],
+        Place::AtoCpu => &[
+            DEAD,
+            STUCK_ON,
+            ("offset", -2048.0, 2048.0),
+            ("limit", 0.0, 1024.0),
+            DELAY,
+        ],
+        Place::TrackDatabase => &[("offset", -1000.0, 1000.0)],
+        Place::WheelParameter => &[("gain", 0.5, 2.0)],
+        Place::BrakeCylinder => &[STUCK_ON, ("gain", 0.0, 1.0)],
+        Place::ControllerPot | Place::DoorContact | Place::HeadControlRelay => {
+            &[STUCK_ON, STUCK_OFF]
+        }
+        Place::Tcms => &[DEAD, STUCK_ON],
+    }
+}
+
+/// Kind of an effect, and its number with the name it has.
+fn parts(effect: Effect) -> (&'static str, Option<(&'static str, f64)>) {
+    match effect {
+        Effect::Dead => ("dead", None),
+        Effect::StuckOn => ("stuck_on", None),
+        Effect::StuckOff => ("stuck_off", None),
+        Effect::Gain { factor } => ("gain", Some(("factor", factor))),
+        Effect::Offset { by } => ("offset", Some(("by", by))),
+        Effect::Limit { to } => ("limit", Some(("to", to))),
+        Effect::Delay { ms } => ("delay", Some(("ms", f64::from(ms)))),
+        Effect::Deaf { to_marker } => ("deaf", Some(("to_marker", f64::from(to_marker)))),
+        Effect::Noise { per_s } => ("noise", Some(("per_s", per_s))),
+        Effect::BitErrors { rate } => ("bit_errors", Some(("rate", rate))),
+    }
+}
+
+/// Checks one fault mode by itself.
+///
+/// # Errors
+/// A number out of its range, an effect that does nothing at its place, a car where there is none.
+pub(super) fn check(fault: &FaultMode) -> Result<(), ConfigError> {
+    let wrong = |what: String| conflict(&format!("fault {}: {what}", fault.id));
+    if !matches!(fault.severity.as_str(), "minor" | "major" | "critical") {
+        let severity = &fault.severity;
+        return Err(wrong(format!(
+            "severity must be minor, major or critical, not {severity}"
+        )));
+    }
+    in_range(fault, "weight", fault.weight, LEAST_WEIGHT, MOST_WEIGHT)?;
+    in_range(fault, "onset_s", fault.onset_s, 0.0, LATEST_ONSET_S)?;
+    let place = name(fault.place);
+    let stored = matches!(fault.place, Place::TrackDatabase | Place::WheelParameter);
+    if stored && fault.onset_s > 0.0 {
+        return Err(wrong(format!(
+            "{place} is stored data, wrong from power-up on: leave onset_s out"
+        )));
+    }
+    match fault.car {
+        None if fault.place.on_car() => {
+            return Err(wrong(format!("{place} is on a car, name it with `car`")));
+        }
+        Some(_) if !fault.place.on_car() => {
+            return Err(wrong(format!("{place} is on no car, leave `car` out")));
+        }
+        Some(car) => in_range(fault, "car", f64::from(car), 1.0, f64::from(MAX_CARS))?,
+        None => {}
+    }
+    let (kind, number) = parts(fault.effect);
+    let possible = allowed(fault.place);
+    let Some((_, low, high)) = possible.iter().find(|(one, ..)| *one == kind) else {
+        let kinds: Vec<_> = possible.iter().map(|(one, ..)| *one).collect();
+        return Err(wrong(format!(
+            "{kind} does nothing at {place}; there: {}",
+            kinds.join(", ")
+        )));
+    };
+    match number {
+        Some((key, value)) => in_range(fault, &format!("effect.{key}"), value, *low, *high),
+        None => Ok(()),
+    }
+}
+
+fn in_range(
+    fault: &FaultMode,
+    key: &str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<(), ConfigError> {
+    within(&format!("fault {}: {key}", fault.id), value, low, high)
+}
+
+/// A place as catalogues write it.
+fn name(place: Place) -> String {
+    // A unit variant always has a name; nothing else is possible here.
+    toml::Value::try_from(place)
+        .ok()
+        .and_then(|value| value.as_str().map(ToString::to_string))
+        .unwrap_or_default()
+}
