@@ -51,6 +51,7 @@ use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
+pub use train_faults::{Misplaced, check_places};
 pub use truth::Truth;
 
 use antenna::Antenna;

@@ -3,9 +3,10 @@
 
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::{Duration, Instant};
+use thiserror::Error;
 
 use crate::stimulus::TcmsCondition;
-use crate::train::{CarSet, EquipmentFaults};
+use crate::train::{CarSet, EquipmentFaults, Role, TrainData};
 
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,24 +63,93 @@ impl Injected {
     }
 }
 
+/// A fault that a train has no place for.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Misplaced {
+    /// A point mass has no cars.
+    #[error(
+        "fault {fault} is on a car, and this train is one point mass; choose another with --train"
+    )]
+    PointMass {
+        /// Its name.
+        fault: String,
+    },
+    /// The train is shorter.
+    #[error("fault {fault} is on car {car}, and this train has {cars}")]
+    NoSuchCar {
+        /// Its name.
+        fault: String,
+        /// Car it names.
+        car: u8,
+        /// Cars there are.
+        cars: usize,
+    },
+    /// A trailer has no inverter.
+    #[error("fault {fault} is on the inverter of car {car}, and that is a trailer")]
+    Trailer {
+        /// Its name.
+        fault: String,
+        /// Car it names.
+        car: u8,
+    },
+}
+
+/// Whether the train has what these faults are faults of.
+///
+/// # Errors
+/// The first that it has not.
+pub fn check_places(modes: &[FaultMode], train: &TrainData) -> Result<(), Misplaced> {
+    for mode in modes {
+        let Some(car) = mode.car else { continue };
+        let fault = mode.id.clone();
+        let TrainData::Cars(data) = train else {
+            return Err(Misplaced::PointMass { fault });
+        };
+        let Some(built) = place_from_car(car).and_then(|place| data.cars.get(place)) else {
+            let cars = data.cars.len();
+            return Err(Misplaced::NoSuchCar { fault, car, cars });
+        };
+        let on_inverter = matches!(mode.place, Place::Inverter | Place::Regeneration);
+        if on_inverter && built.role == Role::Trailer {
+            return Err(Misplaced::Trailer { fault, car });
+        }
+    }
+    Ok(())
+}
+
+/// Place from 0 of a car that people count from 1.
+fn place_from_car(car: u8) -> Option<usize> {
+    usize::from(car).checked_sub(1)
+}
+
+/// The catalogue lets only these effects happen at these places.
 fn add(mode: &FaultMode, faults: &mut TrainFaults) {
-    let car = mode.car.map_or(CarSet::NONE, |car| {
-        CarSet::one(usize::from(car).wrapping_sub(1))
-    });
+    let place = mode.car.and_then(place_from_car);
+    let car = place.map_or(CarSet::NONE, CarSet::one);
     let on = |set: &mut CarSet| *set = set.with(car);
-    let equipment = &mut faults.equipment;
+    let TrainFaults {
+        equipment,
+        desk,
+        tcms,
+    } = faults;
     match (mode.place, mode.effect) {
-        (Place::Inverter, _) => on(&mut equipment.inverters_dead),
-        (Place::Regeneration, _) => on(&mut equipment.regeneration_lost),
-        (Place::BrakeUnit, _) => on(&mut equipment.brake_units_dead),
+        (Place::Inverter, Effect::Dead) => on(&mut equipment.inverters_dead),
+        (Place::Regeneration, Effect::Dead) => on(&mut equipment.regeneration_lost),
+        (Place::BrakeUnit, Effect::Dead) => on(&mut equipment.brake_units_dead),
         (Place::BrakeCylinder, Effect::StuckOn) => on(&mut equipment.brakes_stuck),
-        (Place::BrakeCylinder, _) => on(&mut equipment.brakes_weak),
-        (Place::ControllerPot, Effect::StuckOn) => faults.desk.volts = Some(SUPPLY_V),
-        (Place::ControllerPot, _) => faults.desk.volts = Some(0.0),
-        (Place::DoorContact, effect) => faults.desk.doors = Some(effect == Effect::StuckOn),
-        (Place::HeadControlRelay, effect) => faults.desk.hcr = Some(effect == Effect::StuckOn),
-        (Place::Tcms, Effect::StuckOn) => faults.tcms = Some(TcmsCondition::Stale),
-        (Place::Tcms, _) => faults.tcms = Some(TcmsCondition::Silent),
+        (Place::BrakeCylinder, Effect::Gain { factor }) => {
+            if let Some(lost) = place.and_then(|at| equipment.pressure_lost.get_mut(at)) {
+                *lost = 1.0 - factor;
+            }
+        }
+        (Place::ControllerPot, Effect::StuckOn) => desk.volts = Some(SUPPLY_V),
+        (Place::ControllerPot, Effect::StuckOff) => desk.volts = Some(0.0),
+        (Place::DoorContact, Effect::StuckOn) => desk.doors = Some(true),
+        (Place::DoorContact, Effect::StuckOff) => desk.doors = Some(false),
+        (Place::HeadControlRelay, Effect::StuckOn) => desk.hcr = Some(true),
+        (Place::HeadControlRelay, Effect::StuckOff) => desk.hcr = Some(false),
+        (Place::Tcms, Effect::StuckOn) => *tcms = Some(TcmsCondition::Stale),
+        (Place::Tcms, Effect::Dead) => *tcms = Some(TcmsCondition::Silent),
         _ => {}
     }
 }

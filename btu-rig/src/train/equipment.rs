@@ -35,6 +35,6 @@ pub struct EquipmentFaults {
     pub brake_units_dead: CarSet,
     /// Cars whose cylinders keep the pressure they have had.
     pub brakes_stuck: CarSet,
-    /// Cars whose cylinders get only part of their pressure.
-    pub brakes_weak: CarSet,
+    /// Share of the service brake's pressure that is lost on the way to each car's cylinders, 0..1.
+    pub pressure_lost: PerCar,
 }

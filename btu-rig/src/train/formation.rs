@@ -14,9 +14,6 @@ use super::{
 /// Brake force per mass that counts as applied, m/s² [default].
 const BRAKING_MPS2: f64 = 0.02;
 
-/// Share of its pressure that a weak brake's cylinders get [default].
-const WEAK_SHARE: f64 = 0.5;
-
 /// What is cut out, and other brakes, as the last step had it.
 #[derive(Clone, Copy, Debug, Default)]
 struct CutOut {
@@ -252,9 +249,7 @@ impl Formation {
             if no_service.contains(i) {
                 air_n[i] = 0.0;
             }
-            if faults.brakes_weak.contains(i) {
-                air_n[i] *= WEAK_SHARE;
-            }
+            air_n[i] *= 1.0 - faults.pressure_lost[i];
             if inputs.security && !inputs.brakes_cut_out.contains(i) {
                 air_n[i] = air_n[i].max(full * self.service_n[i]);
             }

@@ -5,6 +5,7 @@ mod fake_unit;
 mod properties;
 mod session;
 mod train;
+mod train_faults;
 mod wire;
 
 use protocol::config::UnitConfig;

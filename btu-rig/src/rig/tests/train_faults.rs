@@ -1,0 +1,210 @@
+//! Faults of the train act where they sit, from their onset on, and nothing on the bench mends them.
+
+use protocol::injection::{FaultCatalogue, FaultMode};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::{FakeUnit, bench};
+use crate::rig::train_faults::TrainFaults;
+use crate::rig::{Bench, Misplaced, check_places};
+use crate::stimulus::Stimulus;
+use crate::train::{CarSet, Equipment, TrainData};
+
+/// When the faults of these tests set in after power-up, s.
+const ONSET_S: f64 = 20.0;
+/// When the unit is powered up on these benches.
+const POWER_AT: Instant = Instant::from_ms(5_000);
+
+fn catalogue() -> FaultCatalogue {
+    FaultCatalogue::from_toml(include_str!("../../../../scripts/units/faults.toml")).unwrap()
+}
+
+fn mode(id: &str) -> FaultMode {
+    let catalogue = catalogue();
+    let mode = catalogue.fault(id).expect(id).clone();
+    FaultMode {
+        onset_s: ONSET_S,
+        ..mode
+    }
+}
+
+fn signal(bench: &Bench<FakeUnit>, signal: Signal) -> f64 {
+    bench.rig().sample().get(signal).unwrap()
+}
+
+/// The train stands braked by ATO with full service, then released: its equipment at either time.
+fn braked_and_released(bench: &mut Bench<FakeUnit>) -> [Equipment; 2] {
+    bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
+    bench.apply(Stimulus::TrainDriven { on: true });
+    [(AtcToTcmsBits::BRAKE, -1024), (AtcToTcmsBits::empty(), 0)].map(|(bits, effort)| {
+        bench.link_mut().to_tcms = AtcToTcms {
+            bits,
+            effort,
+            mode: Mode::AutomaticRun,
+            ..AtcToTcms::default()
+        };
+        bench.run_ms(2_500);
+        bench.rig().train.equipment()
+    })
+}
+
+/// Air of a car when braked, over that of the car it is like.
+fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
+    equipment.air_n[car - 1] / equipment.air_n[like - 1]
+}
+
+/// Whether a fault shows now.
+type Shows = fn(&mut Bench<FakeUnit>) -> bool;
+
+const CASES: [(&str, Shows); 13] = [
+    ("inverter.dead", |bench| {
+        braked_and_released(bench);
+        bench.rig().tcms.view().found.inverters == CarSet::one(1)
+    }),
+    ("inverter.regeneration_lost", |bench| {
+        let [_, released] = braked_and_released(bench);
+        released.regeneration_cut_out == CarSet::one(2)
+    }),
+    ("brake_unit.dead", |bench| {
+        let [braked, _] = braked_and_released(bench);
+        braked.air_n[3] == 0.0 && bench.rig().tcms.view().found.brake_units == CarSet::one(3)
+    }),
+    ("brake_cylinder.not_releasing", |bench| {
+        let [braked, released] = braked_and_released(bench);
+        released.air_n[0] >= braked.air_n[0] && released.air_n[7] < 0.5 * braked.air_n[7]
+    }),
+    ("brake_cylinder.weak", |bench| {
+        let [braked, _] = braked_and_released(bench);
+        (0.45..0.55).contains(&air_share(&braked, 5, 4))
+    }),
+    ("master_controller.pot_low", |bench| {
+        signal(bench, Signal::ControllerVolts) == 0.0
+    }),
+    ("master_controller.pot_high", |bench| {
+        signal(bench, Signal::ControllerVolts) == 10.0
+    }),
+    ("door_contact.open", |bench| {
+        signal(bench, Signal::Doors) == 0.0
+    }),
+    ("door_contact.bridged", |bench| {
+        bench.apply(Stimulus::Doors { closed: false });
+        bench.run_ms(20);
+        signal(bench, Signal::Doors) == 1.0
+    }),
+    ("head_control_relay.dead", |bench| {
+        signal(bench, Signal::Hcr) == 0.0
+    }),
+    ("head_control_relay.stuck", |bench| {
+        bench.apply(Stimulus::Hcr { on: false });
+        bench.run_ms(20);
+        signal(bench, Signal::Hcr) == 1.0
+    }),
+    ("tcms.silent", |bench| {
+        signal(bench, Signal::TcmsAlive) == 0.0 && signal(bench, Signal::TcmsHears) == 1.0
+    }),
+    ("tcms.stale", |bench| {
+        signal(bench, Signal::TcmsAlive) == 0.0
+    }),
+];
+
+fn make_safe(bench: &mut Bench<FakeUnit>) {
+    let now = bench.now();
+    bench.rig_mut().make_safe(now);
+    bench.link_mut().to_tcms = AtcToTcms::default();
+    bench.run_ms(3_000);
+    assert!(bench.rig().safe());
+}
+
+#[test]
+fn every_fault_of_the_train_shows_where_it_sits_and_nothing_mends_it() {
+    for (id, shows) in CASES {
+        let mut bench = bench(FakeUnit::default());
+        bench.rig_mut().inject(&[mode(id)], POWER_AT);
+        bench.run_ms(5_000);
+        assert!(!shows(&mut bench), "{id} before its onset");
+        make_safe(&mut bench);
+        let onset = POWER_AT + Duration::from_secs(ONSET_S);
+        bench.run_ms(onset.since(bench.now()).as_ms() - 20);
+        assert_eq!(
+            bench.rig().faults,
+            TrainFaults::default(),
+            "{id}: too early"
+        );
+        bench.run_ms(1_000);
+        assert!(shows(&mut bench), "{id} after its onset");
+        make_safe(&mut bench);
+        assert!(shows(&mut bench), "{id} after making safe");
+        make_safe(&mut bench);
+        bench.rig_mut().set_train(TrainData::line6());
+        bench.run_ms(1_000);
+        assert!(shows(&mut bench), "{id} with a new train");
+    }
+}
+
+#[test]
+fn the_table_has_every_fault_of_the_train() {
+    let catalogue = catalogue();
+    let on_train = catalogue.faults.iter().filter(|f| f.place.on_train());
+    let ids: Vec<_> = on_train.map(|fault| fault.id.as_str()).collect();
+    assert_eq!(ids, CASES.map(|(id, _)| id));
+    let faults: Vec<_> = catalogue.faults.clone();
+    assert_eq!(check_places(&faults, &TrainData::line6()), Ok(()));
+}
+
+/// How weak is the catalogue's to say, and two cylinders can be weak by different shares.
+#[test]
+fn a_weak_cylinder_gets_the_share_of_its_own_mode() {
+    let text = include_str!("../../../../scripts/units/faults.toml");
+    let weaker = text.replace("factor = 0.5", "factor = 0.2");
+    let weaker = FaultCatalogue::from_toml(&weaker).unwrap();
+    let on_car_4 = FaultMode {
+        car: Some(4),
+        ..weaker.fault("brake_cylinder.weak").unwrap().clone()
+    };
+    let mut bench = bench(FakeUnit::default());
+    let on_car_5 = FaultMode {
+        onset_s: 0.0,
+        ..mode("brake_cylinder.weak")
+    };
+    bench.rig_mut().inject(&[on_car_5, on_car_4], Instant::ZERO);
+    let [braked, _] = braked_and_released(&mut bench);
+    let shares = [4, 5].map(|car| air_share(&braked, car, 1));
+    assert!(
+        (0.35..0.45).contains(&(shares[0] / shares[1])),
+        "{shares:?}"
+    );
+}
+
+#[test]
+fn a_train_without_the_place_is_refused() {
+    let train = TrainData::line6();
+    let moved = |id: &str, car| FaultMode {
+        car: Some(car),
+        ..mode(id)
+    };
+    let refused = |mode: FaultMode, train: &TrainData| check_places(&[mode], train).unwrap_err();
+    let fault = "inverter.dead".to_owned();
+    assert_eq!(
+        refused(moved("inverter.dead", 9), &train),
+        Misplaced::NoSuchCar {
+            fault: fault.clone(),
+            car: 9,
+            cars: 8
+        }
+    );
+    assert_eq!(
+        refused(moved("inverter.dead", 1), &train),
+        Misplaced::Trailer {
+            fault: fault.clone(),
+            car: 1
+        }
+    );
+    let text = include_str!("../../../../scripts/trains/ideal.toml");
+    let ideal = TrainData::from_toml(text).unwrap();
+    assert_eq!(
+        refused(mode("inverter.dead"), &ideal),
+        Misplaced::PointMass { fault }
+    );
+    assert_eq!(check_places(&[mode("door_contact.open")], &ideal), Ok(()));
+}
