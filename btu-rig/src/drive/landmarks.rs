@@ -4,7 +4,7 @@ use protocol::Instant;
 
 use super::words::described;
 use super::{DrivePlan, Row};
-use crate::procedure::UnitEvent;
+use crate::procedure::{EventSource, UnitEvent};
 
 /// Share of the highest target that counts as reached.
 const REACHED: f64 = 0.99;
@@ -98,12 +98,18 @@ fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
     Some(Landmark::at(row, "stop curve takes over".into()))
 }
 
-/// What the unit logged from the first row on, at the unit's own time. The unit's clock is the
-/// bench's less the shortest time an entry took to be read.
-pub fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) -> Vec<Landmark> {
+/// What unit and TCMS logged from the first row on, each at its own time; `rows` are times since the
+/// run's zero, s, and places, m. The unit's clock is the bench's less the shortest time an entry took
+/// to be read.
+pub(super) fn of_log(
+    log: &[(Instant, UnitEvent)],
+    zero_s: f64,
+    rows: &[(f64, f64)],
+) -> Vec<Landmark> {
     let own_s = |event: &UnitEvent| f64::from(event.at_ms) / 1000.0;
     let ahead_s = log
         .iter()
+        .filter(|(_, event)| event.source == EventSource::Unit)
         .map(|(read, event)| read.as_secs() - own_s(event))
         .fold(f64::INFINITY, f64::min);
     let Some(first) = rows.first() else {
@@ -111,17 +117,19 @@ pub fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) -> Vec<La
     };
     log.iter()
         .map(|(_, event)| {
-            let t_s = own_s(event) + ahead_s - zero_s;
-            let row = &rows[rows
-                .partition_point(|row| row.t_s < t_s)
-                .min(rows.len() - 1)];
+            let (source, clock_s) = match event.source {
+                EventSource::Unit => ("unit", ahead_s),
+                EventSource::Tcms => ("TCMS", 0.0),
+            };
+            let t_s = own_s(event) + clock_s - zero_s;
+            let row = rows[rows.partition_point(|row| row.0 < t_s).min(rows.len() - 1)];
             Landmark {
                 t_s,
-                x_m: row.x_m,
-                what: format!("unit: {}", described(event.code, event.parameter)),
+                x_m: row.1,
+                what: format!("{source}: {}", described(event.code, event.parameter)),
             }
         })
-        .filter(|landmark| landmark.t_s >= first.t_s)
+        .filter(|landmark| landmark.t_s >= first.0)
         .collect()
 }
 

@@ -8,9 +8,11 @@
 //! * `row`: what is recorded each cycle;
 //! * `metrics`: figures of a run, from its rows;
 //! * `landmarks`: what happened where, from its rows and the unit's log;
-//! * `scatter`: how trains and days differ, drawn for many runs.
+//! * `scatter`: how trains and days differ, drawn for many runs;
+//! * [`manual`]: the same train driven by hand, by a sequence of notches and switches.
 
 pub mod landmarks;
+pub mod manual;
 pub mod metrics;
 mod plan;
 mod recording;

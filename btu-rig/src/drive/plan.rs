@@ -37,6 +37,17 @@ pub enum PlanError {
     },
 }
 
+impl PlanError {
+    /// `line` has no such section.
+    pub(super) fn no_section(line: &Line, section: u16) -> Self {
+        Self::NoSection {
+            line: line.name.clone(),
+            section,
+            known: list(line.sections.iter().map(|s| s.section.to_string())),
+        }
+    }
+}
+
 /// Speed codes of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Codes {
@@ -80,11 +91,9 @@ impl DrivePlan {
         section: u16,
         code: Option<&str>,
     ) -> Result<Self, PlanError> {
-        let found = line.section(section).ok_or_else(|| PlanError::NoSection {
-            line: line.name.clone(),
-            section,
-            known: list(line.sections.iter().map(|s| s.section.to_string())),
-        })?;
+        let found = line
+            .section(section)
+            .ok_or_else(|| PlanError::no_section(line, section))?;
         let codes = match code {
             None if !found.speed_codes.is_empty() => Codes::Along,
             code => Codes::Fixed(fixed_code(config, section, code.unwrap_or(DEFAULT_CODE))?),
@@ -136,7 +145,12 @@ impl DrivePlan {
     }
 }
 
-fn fixed_code(config: &UnitConfig, section: u16, name: &str) -> Result<Stimulus, PlanError> {
+/// A code of the unit's table in the antenna, at the level its receiver is made for.
+pub(super) fn fixed_code(
+    config: &UnitConfig,
+    section: u16,
+    name: &str,
+) -> Result<Stimulus, PlanError> {
     let found = config.codes.iter().find(|code| code.name == name);
     let code = found.ok_or_else(|| PlanError::NoCode {
         section,

@@ -92,7 +92,8 @@ impl Recording {
         let run_time_s = stop.as_ref().map(|stop| stop.t_s);
         let metrics = Metrics::of(&self.rows, run_time_s);
         let mut found = landmarks::of_rows(&self.rows, plan);
-        found.extend(landmarks::of_log(&self.log, zero_s, &self.rows));
+        let places: Vec<_> = self.rows.iter().map(|row| (row.t_s, row.x_m)).collect();
+        found.extend(landmarks::of_log(&self.log, zero_s, &places));
         found.extend(stop);
         found.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
         Outcome {

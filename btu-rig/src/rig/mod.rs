@@ -52,7 +52,7 @@ use crate::train::{Train, TrainData, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use train_faults::{Misplaced, check_places};
-pub use truth::Truth;
+pub use truth::{PairEfforts, Truth};
 
 use antenna::Antenna;
 use desk::Desk;

@@ -4,10 +4,10 @@ use protocol::{Duration, SCAN};
 
 use crate::conditions::Conditions;
 use crate::tcms::Tcms;
-use crate::train::{Train, TrainData, TrainInputs, TrainState};
+use crate::train::{CarSet, PerCar, Train, TrainData, TrainInputs, TrainState};
 
 use super::tcms::pair_cars;
-use super::{Rig, Truth};
+use super::{PairEfforts, Rig, Truth};
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);
@@ -53,6 +53,22 @@ impl Rig {
             air_brake_n: state.air_brake_n,
             sliding: state.sliding,
         }
+    }
+
+    /// What the equipment of the first four MT pairs gives at the scan's end; nothing while generators
+    /// turn the wheels.
+    pub fn pair_efforts(&self) -> [PairEfforts; 4] {
+        if !self.train_driven {
+            return Default::default();
+        }
+        let equipment = self.train.equipment();
+        let sum = |of: &PerCar, cars: CarSet| cars.iter().map(|car| of[car]).sum::<f64>();
+        self.pair_cars.map(|(motors, trailers)| PairEfforts {
+            traction_n: sum(&equipment.traction_n, motors),
+            electric_n: sum(&equipment.electric_n, motors),
+            air_trailers_n: sum(&equipment.air_n, trailers),
+            air_motors_n: sum(&equipment.air_n, motors),
+        })
     }
 
     /// Turns the wheels through one scan.
