@@ -44,6 +44,8 @@ pub struct Consist {
     pub full_service_n: PerCar,
     /// Greatest service brake by air of each car, N.
     pub air_n: PerCar,
+    /// Greatest traction of each car at the present load, N: TE_w times the greatest (S3).
+    pub power_n: PerCar,
     load_kg: f64,
 }
 
@@ -58,6 +60,7 @@ impl Consist {
             electric_n: [0.0; MAX_CARS],
             full_service_n: [0.0; MAX_CARS],
             air_n: [0.0; MAX_CARS],
+            power_n: [0.0; MAX_CARS],
             load_kg: 0.0,
         };
         for (i, car) in data.cars.iter().enumerate() {
@@ -76,12 +79,13 @@ impl Consist {
         consist
     }
 
-    /// Takes the passengers aboard as the brake control units report them, kg.
+    /// Takes the passengers aboard as the brake control units report them, kg. Compensation ends at
+    /// full load, where TE_w and BE_w are 1 (S3).
     pub fn weigh(&mut self, load_kg: f64) {
         self.load_kg = load_kg;
         let full_kg: f64 = self.data.cars.iter().map(|car| car.full_load_kg).sum();
         // `max` also takes what is not a number for an empty train.
-        let share = load_kg.max(0.0) / full_kg.max(1.0);
+        let share = (load_kg.max(0.0) / full_kg.max(1.0)).min(1.0);
         let service_mps2 = self.service_mps2();
         for pair in &mut self.pairs {
             pair.inertia_kg = 0.0;
@@ -94,6 +98,12 @@ impl Consist {
             if car.role == Role::Motor {
                 let limit = self.data.electric_brake.adhesion_limit;
                 self.electric_n[i] = weight_kg * limit * GRAVITY_MPS2;
+            }
+        }
+        let each_n = self.traction_n();
+        for pair in &self.pairs {
+            for car in pair.motors.iter() {
+                self.power_n[car] = each_n * pair.load_factor();
             }
         }
     }
@@ -123,7 +133,7 @@ impl Consist {
         self.full_inertia_kg() * self.service_mps2()
     }
 
-    /// Greatest traction of one motor car, N.
+    /// Greatest traction of one motor car of the full train, N.
     pub fn traction_n(&self) -> f64 {
         self.data.traction.full_load_n / self.motors.iter().count().max(1) as f64
     }

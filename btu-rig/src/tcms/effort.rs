@@ -1,10 +1,13 @@
 //! Effort of the train: the ordered share with limited jerk, then demands on each car.
 
-use crate::train::{Actuators, CarSet, Equipment, MAX_CARS, PerCar};
+use crate::train::{Actuators, CarSet, Equipment, PerCar};
 
-use super::braking::{BrakingInputs, braking};
+use super::braking::{self, BrakingInputs, Inverters, Sharing};
 use super::consist::Consist;
-use super::powering::powering;
+use super::powering::{self, powering};
+
+/// Deceleration below which air no longer holds a train back that departs, m/s² [default].
+const RELEASED_MPS2: f64 = 0.02;
 
 /// What effort is ordered in one scan.
 #[derive(Clone, Copy, Debug)]
@@ -43,17 +46,43 @@ pub struct Effort {
     effort_mps2: f64,
     /// The same of the holding brake.
     held_mps2: f64,
-    /// What inverters should be giving by now.
-    expected: Actuators,
+    /// The holding brake was on, and its air has not gone yet.
+    departs: bool,
+    /// What inverters should be giving by now, powering above 0.
+    motors_due: Actuators,
+    /// What cylinders should hold by now.
+    air_due: Actuators,
+    /// Longer answer of air than of inverters, s.
+    air_later_s: f64,
+    sharing: Sharing,
+    shared_for: SharedFor,
+}
+
+/// What the sharing was worked out for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SharedFor {
+    load_kg: f64,
+    no_electric: CarSet,
+    no_air: CarSet,
 }
 
 impl Effort {
     /// None yet.
     pub fn new(consist: Consist) -> Self {
+        let (motors, air) = (consist.data.motor_times(), consist.data.air_times());
         Self {
-            expected: Actuators::new(consist.data.motor_times()),
+            motors_due: Actuators::new(motors),
+            air_due: Actuators::new(air),
+            air_later_s: (air.dead_s + air.rise_s - motors.dead_s - motors.rise_s).max(0.0),
             effort_mps2: 0.0,
             held_mps2: 0.0,
+            departs: false,
+            sharing: Sharing::new(&consist, CarSet::NONE, CarSet::NONE),
+            shared_for: SharedFor {
+                load_kg: consist.load_kg(),
+                no_electric: CarSet::NONE,
+                no_air: CarSet::NONE,
+            },
             consist,
         }
     }
@@ -62,19 +91,25 @@ impl Effort {
     pub fn reset(&mut self) {
         self.effort_mps2 = 0.0;
         self.held_mps2 = 0.0;
-        self.expected.reset();
+        self.departs = false;
+        self.motors_due.reset();
+        self.air_due.reset();
     }
 
     /// Traction there is at a speed with the present load, N.
     pub fn power_n(&self, speed_mps: f64) -> f64 {
-        powering(&self.consist, 1.0, speed_mps, CarSet::NONE)
-            .iter()
-            .sum()
+        let most_n: f64 = self.consist.power_n.iter().sum();
+        most_n * powering::pattern(&self.consist, speed_mps)
+    }
+
+    /// Air brake each car should have by now, N, by what it was asked for and the times it takes.
+    pub fn air_due_n(&self) -> &PerCar {
+        self.air_due.effort_n()
     }
 
     /// One scan's demands. Without equipment, inverters give what they are asked for.
     pub fn step(&mut self, dt_s: f64, order: &Order, equipment: Option<&Equipment>) -> Demands {
-        self.limit_jerk(dt_s, order);
+        self.limit_jerk(dt_s, order, equipment);
         let mut demands = Demands::default();
         let brake_mps2 = (-self.effort_mps2).max(self.held_mps2);
         if self.effort_mps2 > 0.0 {
@@ -82,33 +117,65 @@ impl Effort {
             demands.motor_n = powering(&self.consist, share, order.speed_mps, order.inverters_out);
         }
         if brake_mps2 > 0.0 {
-            let cut_out = equipment.map_or(CarSet::NONE, |e| e.regeneration_cut_out);
-            let powers = self.effort_mps2 > 0.0 || order.no_inverters;
-            let no_electric = if powers { self.consist.motors } else { cut_out };
-            let lost_n = self.lost(equipment);
-            let brakes = braking(
-                &self.consist,
-                &BrakingInputs {
-                    share: brake_mps2 / self.consist.service_mps2(),
-                    speed_mps: order.speed_mps,
-                    no_electric: no_electric.with(order.inverters_out),
-                    no_air: order.brakes_out,
-                    lost_n: &lost_n,
-                },
-            );
-            demands.air_n = brakes.air_n;
-            demands.brake_n = brakes.train_n;
-            for (motor, electric) in demands.motor_n.iter_mut().zip(&brakes.electric_n) {
-                *motor -= electric;
-            }
+            self.brake(brake_mps2, order, equipment, &mut demands);
         }
-        self.expected.step(dt_s, &demands.motor_n);
+        self.motors_due.step(dt_s, &demands.motor_n);
+        self.air_due.step(dt_s, &demands.air_n);
         demands
     }
 
+    fn brake(
+        &mut self,
+        brake_mps2: f64,
+        order: &Order,
+        equipment: Option<&Equipment>,
+        demands: &mut Demands,
+    ) {
+        let cut_out = equipment.map_or(CarSet::NONE, |e| e.regeneration_cut_out);
+        let powers = self.effort_mps2 > 0.0 || order.no_inverters;
+        let no_electric = if powers { self.consist.motors } else { cut_out };
+        self.share_between(no_electric.with(order.inverters_out), order.brakes_out);
+        // Speed goes down by what is braked: gradients and resistance change little in this time.
+        let ahead_mps = order.speed_mps - brake_mps2 * self.air_later_s;
+        let brakes = self.sharing.braking(&BrakingInputs {
+            share: brake_mps2 / self.consist.service_mps2(),
+            pattern: braking::pattern(&self.consist, order.speed_mps),
+            pattern_ahead: braking::pattern(&self.consist, ahead_mps),
+            // S3 eq. 8: DBE1 − EFM, less what is only on its way.
+            inverters: equipment.map(|equipment| Inverters {
+                due_n: self.motors_due.effort_n(),
+                electric_n: &equipment.electric_n,
+            }),
+        });
+        demands.air_n = brakes.air_n;
+        demands.brake_n = brakes.train_n;
+        for (motor, electric) in demands.motor_n.iter_mut().zip(&brakes.electric_n) {
+            *motor -= electric;
+        }
+    }
+
+    /// Works out anew who gives what when that has changed.
+    fn share_between(&mut self, no_electric: CarSet, no_air: CarSet) {
+        let wanted = SharedFor {
+            load_kg: self.consist.load_kg(),
+            no_electric,
+            no_air,
+        };
+        if wanted != self.shared_for {
+            self.sharing = Sharing::new(&self.consist, no_electric, no_air);
+            self.shared_for = wanted;
+        }
+    }
+
     /// Lets the effort asked for go to the ordered one.
-    fn limit_jerk(&mut self, dt_s: f64, order: &Order) {
-        let full = if order.share < 0.0 {
+    fn limit_jerk(&mut self, dt_s: f64, order: &Order, equipment: Option<&Equipment>) {
+        // What is not a number is no order to trust: full service.
+        let share = if order.share.is_nan() {
+            -1.0
+        } else {
+            order.share.clamp(-1.0, 1.0)
+        };
+        let full = if share < 0.0 {
             self.consist.service_mps2()
         } else {
             self.consist.power_mps2()
@@ -118,8 +185,9 @@ impl Effort {
             self.effort_mps2 = self.effort_mps2.min(0.0);
         }
         let step = self.consist.data.traction.jerk_mps3 * dt_s;
-        let change = order.share * full - self.effort_mps2;
-        self.effort_mps2 += change.clamp(-step, step);
+        let change = share * full - self.effort_mps2;
+        let rise = self.rise_at_departure(step, dt_s, order.holding, equipment);
+        self.effort_mps2 += change.clamp(-step, rise);
         if order.holding {
             let held = self.consist.data.service_brake.holding_share * self.consist.service_mps2();
             self.held_mps2 = self.held_mps2.max(-self.effort_mps2).min(held);
@@ -129,12 +197,31 @@ impl Effort {
         }
     }
 
-    /// Electric brake that should be there and is not, N (S3 eq. 8: DBE1 − EFM, less what is only on
-    /// its way).
-    fn lost(&self, equipment: Option<&Equipment>) -> PerCar {
-        let expected = self.expected.effort_n();
-        equipment.map_or([0.0; MAX_CARS], |equipment| {
-            std::array::from_fn(|i| (-expected[i] - equipment.electric_n[i]).max(0.0))
-        })
+    /// Greatest rise of effort in a scan, m/s²: while the holding brake's air goes out under traction,
+    /// what its going leaves of the jerk limit.
+    fn rise_at_departure(
+        &mut self,
+        step: f64,
+        dt_s: f64,
+        holding: bool,
+        equipment: Option<&Equipment>,
+    ) -> f64 {
+        if holding {
+            self.departs = true;
+            return step;
+        }
+        if !self.departs {
+            return step;
+        }
+        let inertia_kg: f64 = self.consist.pairs.iter().map(|pair| pair.inertia_kg).sum();
+        let air_n: f64 = equipment.map_or(0.0, |equipment| equipment.air_n.iter().sum());
+        let air_mps2 = air_n / inertia_kg;
+        self.departs = air_mps2 > RELEASED_MPS2 && self.effort_mps2 >= 0.0;
+        if self.departs {
+            let falls = air_mps2 / self.consist.data.service_brake.release_s.max(dt_s);
+            (step - falls * dt_s).max(0.0)
+        } else {
+            step
+        }
     }
 }

@@ -303,6 +303,15 @@ impl CarsData {
             fall_s: self.traction.lag_s,
         }
     }
+
+    /// How air brakes follow a demand.
+    pub(crate) fn air_times(&self) -> Times {
+        Times {
+            dead_s: self.service_brake.dead_time_s,
+            rise_s: self.service_brake.build_up_s,
+            fall_s: self.service_brake.release_s,
+        }
+    }
 }
 
 fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ConfigError> {

@@ -80,7 +80,7 @@ impl Formation {
         let mut train = Self {
             conditions: *conditions,
             motors: Actuators::new(data.motor_times()),
-            air: Actuators::new(air_times(data)),
+            air: Actuators::new(data.air_times()),
             emergency: Emergency {
                 times: emergency_times(data),
                 open_s: 0.0,
@@ -116,7 +116,7 @@ impl Formation {
         let factor = conditions.delay_factor;
         self.motors
             .set_times(self.data.motor_times().scaled(factor));
-        self.air.set_times(air_times(&self.data).scaled(factor));
+        self.air.set_times(self.data.air_times().scaled(factor));
         self.emergency.times = emergency_times(&self.data).scaled(factor);
     }
 
@@ -306,14 +306,6 @@ fn motor_cars(data: &CarsData) -> CarSet {
         cars.set(i, car.role == Role::Motor);
     }
     cars
-}
-
-fn air_times(data: &CarsData) -> Times {
-    Times {
-        dead_s: data.service_brake.dead_time_s,
-        rise_s: data.service_brake.build_up_s,
-        fall_s: data.service_brake.release_s,
-    }
 }
 
 fn emergency_times(data: &CarsData) -> Times {
