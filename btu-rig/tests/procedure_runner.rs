@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{
-    Driver, Poll, Procedure, PromptPolicy, Refusal, RunEvent, RunOptions, Runner, StepResult,
-    UnitEvent, Verdict,
+    Driver, EventSource, Poll, Procedure, PromptPolicy, Refusal, RunEvent, RunOptions, Runner,
+    StepResult, UnitEvent, Verdict,
 };
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
@@ -80,8 +80,12 @@ impl World<'_> {
     }
 
     fn log(&mut self, event: Event) {
+        self.log_by(EventSource::Unit, event);
+    }
+
+    fn log_by(&mut self, source: EventSource, event: Event) {
         self.events.push(UnitEvent {
-            source: btu_rig::procedure::EventSource::Unit,
+            source,
             index: 0,
             code: event.definition().code,
             at_ms: 0,
@@ -545,6 +549,50 @@ fn an_event_nobody_asked_for_fails_the_step() {
     // Provoked by an earlier step, it may still arrive in a later one.
     let two = format!("{HEAD}step('z', provokes = ['twc_lost'])\nstep('a', do = wait(s(1)))");
     assert_eq!(run(&two, log).finished().0, Verdict::Passed);
+}
+
+/// Whoever logs an event names its part: the unit for the step it comes in, TCMS for all that follow,
+/// since an inverter does not mend itself. What a step provokes names nothing.
+#[test]
+fn an_event_nobody_asked_for_names_the_part() {
+    let suspects = |source, event, provokes: &str| {
+        let step = "do = wait(s(1)), expect = becomes(alarm, True, within = ms(10))";
+        let script = format!(
+            "procedure(title = 'x', suspect = 'ato_cpu')\n\
+             step('a', {step})\nstep('b', {step}{provokes})\nstep('c', {step}, suspect = 'tra')"
+        );
+        let outcome = run(&script, |world| {
+            world.sample.set_bit(Signal::Alarm, false);
+            if world.ms() == 1500 {
+                world.log_by(source, event);
+            }
+        });
+        let suspects = outcome.steps().into_iter().map(|step| step.suspect.clone());
+        suspects.collect::<Vec<_>>()
+    };
+    let (unit, tcms) = (EventSource::Unit, EventSource::Tcms);
+    for (source, event, provokes, expected) in [
+        (unit, Event::TwcLost, "", ["ato_cpu", "twc_cpu", "tra"]),
+        (unit, Event::OverspeedEb, "", ["ato_cpu", "ato_cpu", "tra"]),
+        (
+            tcms,
+            Event::InverterFailed,
+            "",
+            ["ato_cpu", "inverter", "inverter"],
+        ),
+        (
+            tcms,
+            Event::InverterFailed,
+            ", provokes = ['inverter_failed']",
+            ["ato_cpu", "ato_cpu", "tra"],
+        ),
+    ] {
+        assert_eq!(
+            suspects(source, event, provokes),
+            expected,
+            "{event:?}{provokes}"
+        );
+    }
 }
 
 #[test]

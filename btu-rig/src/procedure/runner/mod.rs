@@ -64,6 +64,8 @@ pub struct Runner {
     captured: Vec<Option<f64>>,
     provoked: EventSet,
     brake_applied: Option<bool>,
+    /// Part of the train that TCMS reported first, in a step that did not provoke it.
+    train_part: Option<&'static str>,
     stop: Stop,
     answer: Option<bool>,
     link_lost: bool,
@@ -83,6 +85,7 @@ impl Runner {
             phase: Phase::NotStarted,
             provoked: EventSet::default(),
             brake_applied: None,
+            train_part: None,
             stop: Stop::No,
             answer: None,
             link_lost: false,
@@ -211,11 +214,11 @@ impl Runner {
         self.messages.push(text);
     }
 
+    /// Part to suspect when a step fails: what TCMS has reported, if anything, stays broken and shows in
+    /// every step after that, too.
     fn suspect(&self, step: &Step) -> String {
-        step.suspect
-            .as_ref()
-            .unwrap_or(&self.procedure.suspect)
-            .clone()
+        let own = step.suspect.as_ref().unwrap_or(&self.procedure.suspect);
+        self.train_part.map_or_else(|| own.clone(), str::to_owned)
     }
 
     fn operator(&self) -> Operator {
