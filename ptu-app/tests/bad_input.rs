@@ -108,6 +108,20 @@ fn a_wrong_unit_is_refused_before_anything_is_opened() {
             &["--inject", "ato-under-test --inject"],
         ),
         (
+            &[
+                "run",
+                "--unit",
+                "serial:/dev/null",
+                "--inject",
+                "inverter.dead,tra.dead",
+            ],
+            &["--inject", "ato-under-test --inject"],
+        ),
+        (
+            &["run", "--train", "ideal", "--inject", "inverter.dead"],
+            &["inverter.dead is on a car", "point mass", "--train"],
+        ),
+        (
             &["run", "--unit", "serial:/dev/null", "--jobs", "2"],
             &["--jobs", "one port is one unit"],
         ),
@@ -380,4 +394,42 @@ fn a_wrong_checksum_of_a_track_database_is_refused() {
     let told = told.expect("the file's own checksum").to_owned();
     let taken = place.json(&arguments(&track(&told)).each_ref().map(String::as_str));
     assert_eq!(taken[0]["checksum"], told.as_str());
+}
+
+/// A fault of the catalogue that nobody could carry out is named, with what there is instead.
+#[test]
+fn a_wrong_fault_catalogue_is_refused_with_the_fault_and_the_reason() {
+    let place = Place::new();
+    let mine = scripts_with_line(&place, &delivered("lines/line8.toml"));
+    let good = delivered("units/faults.toml");
+    for (entry, instead, words) in [
+        (
+            "place = \"inverter\"\neffect = { kind = \"dead\" }",
+            "place = \"inverter\"\neffect = { kind = \"stuck_on\" }",
+            "fault inverter.dead: stuck_on does nothing at inverter; there: dead",
+        ),
+        (
+            "factor = 0.5 }\ncar = 5",
+            "factor = 0.5 }",
+            "fault brake_cylinder.weak: brake_cylinder is on a car, name it with `car`",
+        ),
+        (
+            "factor = 0.5 }",
+            "factor = -1 }",
+            "fault brake_cylinder.weak: effect.factor = -1 is outside 0 .. 1",
+        ),
+        (
+            "place = \"tcms\"",
+            "place = \"tcm\"",
+            "unknown variant `tcm`",
+        ),
+    ] {
+        let damaged = good.replacen(entry, instead, 1);
+        assert_ne!(damaged, good, "{entry}");
+        place.write("mine/units/faults.toml", &damaged);
+        place
+            .ptu(&["catalog", "faults", "--scripts", &mine])
+            .exits(2)
+            .explains(&["faults.toml: ", words]);
+    }
 }

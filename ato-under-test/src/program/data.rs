@@ -64,14 +64,17 @@ fn faults(scripts: &Path, names: &[String]) -> Result<Vec<FaultMode>> {
     }
     let file = scripts.join("units/faults.toml");
     let catalogue = FaultCatalogue::from_toml(&read(&file)?).map_err(|e| wrong(&file, &e))?;
-    names
-        .iter()
-        .map(|name| {
-            catalogue.fault(name).cloned().ok_or_else(|| {
-                UsageError(format!("no fault {name}; `ptu catalog faults` lists them")).into()
-            })
-        })
-        .collect()
+    let find = |name: &String| {
+        let fault = catalogue.fault(name).cloned().ok_or_else(|| {
+            UsageError(format!("no fault {name}; `ptu catalog faults` lists them"))
+        })?;
+        if fault.place.on_train() {
+            let text = "is on the train around the unit: the bench injects it, `ptu run --inject`";
+            return Err(UsageError(format!("fault {name} {text}")).into());
+        }
+        Ok(fault)
+    };
+    names.iter().map(find).collect()
 }
 
 fn read(file: &Path) -> Result<String, UsageError> {

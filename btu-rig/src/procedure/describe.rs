@@ -77,7 +77,8 @@ impl Display for Condition {
                 operand,
             } => {
                 if let (true, Operand::Literal(bits)) = (comparison.is_bits(), operand) {
-                    let bits = bit_names(*signal, *bits as u16);
+                    let bits = *bits as u16;
+                    let bits = bit_names(*signal, bits).unwrap_or(format!("bits {bits:#b}"));
                     return write!(f, "{} {} {bits}", signal.name(), sign(*comparison));
                 }
                 let operand = value(*signal, operand);
@@ -112,8 +113,9 @@ fn group(f: &mut Formatter<'_>, parts: &[Condition], word: &str) -> fmt::Result 
     write!(f, "({})", parts.join(word))
 }
 
-/// Bits of a signal by their names, as far as they have any.
-fn bit_names(signal: Signal, bits: u16) -> String {
+/// Bits of a signal by their names: causes, lamps, cars. `None` for a signal that is no set, or
+/// bits without a name.
+pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
     fn of<T: Copy>(bits: u16, all: &[(T, &str)], bit: impl Fn(T) -> u16) -> Vec<String> {
         let named = all.iter().filter(|(one, _)| bits & bit(*one) != 0);
         named.map(|(_, name)| (*name).to_owned()).collect()
@@ -122,12 +124,20 @@ fn bit_names(signal: Signal, bits: u16) -> String {
         Signal::PowerCutCauses => of(bits, PowerCuts::ALL, PowerCuts::bits),
         Signal::EbSources => of(bits, EbSources::ALL, EbSources::bits),
         Signal::Lamps => of(bits, Lamps::ALL, Lamps::bits),
-        _ => Vec::new(),
+        Signal::NotReleased => {
+            let cars = (1..).zip(0..u16::BITS);
+            let named = cars.filter(|(_, bit)| bits & 1 << bit != 0);
+            named
+                .map(|(car, _): (u32, _)| format!("car {car}"))
+                .collect()
+        }
+        _ => return None,
     };
-    if names.is_empty() {
-        return format!("bits {bits:#b}");
+    match (bits, names.is_empty()) {
+        (0, _) => Some("none".into()),
+        (_, true) => None,
+        _ => Some(names.join(" + ")),
     }
-    names.join(" + ")
 }
 
 /// An operand as the signal's reader knows it: a label, on or off, a number with its unit.

@@ -61,6 +61,7 @@ impl CatalogArguments {
             json!({
                 "id": fault.id, "lru": fault.lru, "mode": fault.mode,
                 "severity": fault.severity, "weight": fault.weight, "unsafe": fault.unsafe_,
+                "on": if fault.place.on_train() { "train" } else { "unit" }, "car": fault.car,
             })
         };
         Ok(catalogue.faults.iter().map(entry).collect())

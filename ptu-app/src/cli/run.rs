@@ -5,6 +5,7 @@ use std::sync::Arc;
 use btu_rig::procedure::loader::{Loaded, load};
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
+use btu_rig::rig::check_places;
 use clap::Args;
 use protocol::injection::FaultCatalogue;
 use protocol::message::Identity;
@@ -57,7 +58,7 @@ pub struct RunArguments {
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
     operator: String,
-    /// Faults to inject into the embedded unit or the train, see `ptu catalog faults`
+    /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Seed of everything random
@@ -177,11 +178,15 @@ impl RunArguments {
                 )));
             }
         }
+        let config = unit_config(directory, &self.unit_config, &self.set)?;
+        let line = directory.line(&self.line)?;
+        let train = train(directory, &self.train)?;
+        check_places(&faults, &train).map_err(|wrong| Failure::usage(wrong.to_string()))?;
         Ok(BenchSetup {
             endpoint: self.unit.clone(),
-            config: unit_config(directory, &self.unit_config, &self.set)?,
-            line: directory.line(&self.line)?,
-            train: train(directory, &self.train)?,
+            config,
+            line,
+            train,
             faults,
             seed: self.seed,
             serial: self.serial_no.clone(),

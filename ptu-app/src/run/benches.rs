@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
 use ato_under_test::Setup;
+use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
@@ -13,12 +14,13 @@ use protocol::config::UnitConfig;
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::message::Identity;
-use protocol::signal::Signal;
+use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant};
 
+use super::fault_watch::{self, FaultSeen};
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
-use super::{RunPlan, Task, fault_watch::FaultSeen, stream};
+use super::{RunPlan, Task, stream};
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
@@ -54,8 +56,8 @@ pub struct BenchSetup {
 pub enum Connected {
     /// The embedded unit, made anew for each procedure.
     Sim(Box<BenchSetup>),
-    /// The unit on a port.
-    Port(Box<Session<WireLink>>, Identity),
+    /// The unit on a port, and what TCMS found before the first procedure.
+    Port(Box<Session<WireLink>>, Identity, Vec<FaultSeen>),
 }
 
 impl BenchSetup {
@@ -84,9 +86,10 @@ impl BenchSetup {
         let link = WireLink::open(&self.endpoint)?;
         let bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
         let mut session = Session::new(bench, Pace::real(), stop.clone(), false);
-        let identity = self.bring_up(&mut session)?;
+        let mut found = Vec::new();
+        let identity = self.bring_up(&mut session, &mut found)?;
         self.check_identity(&identity)?;
-        Ok(Connected::Port(Box::new(session), identity))
+        Ok(Connected::Port(Box::new(session), identity, found))
     }
 
     fn rig(&self, seed: u64, power_at: Instant) -> Rig {
@@ -96,13 +99,21 @@ impl BenchSetup {
         rig
     }
 
-    /// Contact, identity, the old log read, and a brake left from before acknowledged.
-    fn bring_up(&self, session: &mut Session<WireLink>) -> Result<Identity, Failure> {
-        let ready = session.idle(
-            READY_WITHIN,
-            |_, _, _| {},
-            |bench| bench.rig().identity().is_some() && started(bench),
-        );
+    /// Contact, identity, the old log read, and a brake left from before acknowledged. The unit's log has
+    /// a history; the train is this bench's, and what TCMS finds goes to `found`.
+    fn bring_up(
+        &self,
+        session: &mut Session<WireLink>,
+        found: &mut Vec<FaultSeen>,
+    ) -> Result<Identity, Failure> {
+        let mut seen = |entry: &UnitEvent, at, sample: &Sample| {
+            if entry.source == EventSource::Tcms && fault_watch::is_fault(entry) {
+                found.push(fault_watch::of_event(entry, at, sample));
+            }
+        };
+        let ready = session.idle(READY_WITHIN, &mut seen, |bench| {
+            bench.rig().identity().is_some() && started(bench)
+        });
         if let Some(error) = session.link_failure() {
             return Err(Failure::bench(format!(
                 "{error}; check the cable and that the unit is served there"
@@ -121,11 +132,9 @@ impl BenchSetup {
         let now = session.now();
         // A brake latched since the last tester left needs its acknowledgement.
         let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
-        session.idle(
-            BEFORE,
-            |_, _, _| {},
-            |bench| bench.now().since(Instant::ZERO) > BEFORE,
-        );
+        session.idle(BEFORE, &mut seen, |bench| {
+            bench.now().since(Instant::ZERO) > BEFORE
+        });
         Ok(identity)
     }
 
@@ -191,7 +200,7 @@ impl Connected {
     pub fn serial(&self) -> String {
         match self {
             Self::Sim(setup) => setup.expected_serial(),
-            Self::Port(_, identity) => text(&identity.serial),
+            Self::Port(_, identity, _) => text(&identity.serial),
         }
     }
 }
@@ -205,8 +214,9 @@ pub fn start<'scope>(
 ) -> Vec<Receiver<SessionEvent>> {
     let (senders, receivers): (Vec<_>, Vec<_>) = plan.tasks.iter().map(|_| stream()).unzip();
     match connected {
-        Connected::Port(mut session, _) => {
+        Connected::Port(mut session, _, found) => {
             scope.spawn(move || {
+                let mut found = found;
                 for (task, sender) in plan.tasks.iter().zip(senders) {
                     if !stop.may_begin() {
                         break;
@@ -214,7 +224,13 @@ pub fn start<'scope>(
                     let began = session.now();
                     // What the last procedure's end still makes the unit log is not the next one's.
                     session.idle(READY_WITHIN, |_, _, _| {}, settled());
-                    run_task(&mut session, task, Vec::new(), began, &sender);
+                    run_task(
+                        &mut session,
+                        task,
+                        std::mem::take(&mut found),
+                        began,
+                        &sender,
+                    );
                 }
             });
         }

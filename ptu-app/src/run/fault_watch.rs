@@ -36,6 +36,11 @@ pub struct FaultSeen {
     pub freeze: Vec<fault_db::FreezeSample>,
 }
 
+/// Whether an event that nobody provoked is a fault: all above information, and all unknown ones.
+pub fn is_fault(entry: &UnitEvent) -> bool {
+    Event::from_code(entry.code).is_none_or(|event| event.definition().severity > Severity::Info)
+}
+
 /// The event entry as a fault. An event that names no part leaves it open: the step under way need
 /// not have to do with it.
 pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
@@ -56,8 +61,8 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
         at,
         step: None,
         message: format!(
-            "{text} (parameter {}) at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
-            entry.parameter,
+            "{text} ({}) at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
+            parameter(event, entry.parameter),
             entry.speed.kmh(),
             entry.limit.kmh(),
             match entry.source {
@@ -67,6 +72,16 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
             f64::from(entry.at_ms) / 1000.0
         ),
         freeze: freeze_frame(sample),
+    }
+}
+
+/// What the parameter of an event says: the car by its word, others as they are.
+fn parameter(event: Option<Event>, value: i32) -> String {
+    let names_car = event.is_some_and(|event| event.definition().parameter.starts_with("car"));
+    if names_car && value > 0 {
+        format!("car {value}")
+    } else {
+        format!("parameter {value}")
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use btu_rig::procedure::describe::bit_names;
 use fault_db::{Channel, ChannelKind, FreezeSample, TraceData};
 use protocol::signal::{Kind, Sample, Signal};
 use protocol::{CYCLE, Duration, Instant};
@@ -162,15 +163,15 @@ pub fn freeze_frame(sample: &Sample) -> Vec<FreezeSample> {
             name: definition.name.into(),
             value,
             unit: definition.unit.into(),
-            label: value.and_then(|value| label(definition.kind, value)),
+            label: value.and_then(|value| label(*signal, value)),
         }
     };
     Signal::ALL.iter().map(freeze).collect()
 }
 
-fn label(kind: Kind, value: f64) -> Option<String> {
-    match kind {
-        Kind::Number { .. } => None,
+fn label(signal: Signal, value: f64) -> Option<String> {
+    match signal.definition().kind {
+        Kind::Number { .. } => bit_names(signal, value as u16),
         Kind::Bit => Some(if value == 0.0 { "off" } else { "on" }.into()),
         Kind::Enum(labels) => labels.get(value as usize).map(|label| (*label).to_owned()),
     }

@@ -6,7 +6,6 @@ use btu_rig::procedure::{
     EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent,
 };
 use btu_rig::rig::{Bench, UnitLink};
-use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
@@ -149,8 +148,7 @@ impl<L: UnitLink> Session<L> {
         let ready = self.idle(
             at_most,
             |entry, at, sample| {
-                let known = Event::from_code(entry.code);
-                if known.is_none_or(|event| event.definition().severity > Severity::Info) {
+                if fault_watch::is_fault(entry) {
                     faults.push(fault_watch::of_event(entry, at, sample));
                 }
             },

@@ -1,0 +1,29 @@
+//! What the served unit is told on its command line.
+
+use std::path::Path;
+use std::process::Command;
+
+/// Goal: a fault the unit cannot carry out is refused, not passed over. Method: each is asked for; the
+/// program ends at once with the reason.
+#[test]
+fn faults_that_are_not_the_units_are_refused_with_who_injects_them() {
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+    for (fault, words) in [
+        ("inverter.dead", "fault inverter.dead is on the train"),
+        ("tra.dead,tcms.silent", "fault tcms.silent is on the train"),
+        ("tcms.silent", "`ptu run --inject`"),
+        (
+            "tra.daed",
+            "no fault tra.daed; `ptu catalog faults` lists them",
+        ),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_ato-under-test"))
+            .args(["--pty", "--inject", fault, "--scripts"])
+            .arg(&scripts)
+            .output()
+            .expect("ato-under-test starts");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+}
