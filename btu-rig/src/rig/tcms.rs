@@ -1,7 +1,7 @@
 //! TCMS on the bench: what it is given in a scan, and what it shows as signals.
 
 use protocol::Speed;
-use protocol::message::{EbCause, Mode};
+use protocol::message::{Channel, EbCause, Mode};
 use protocol::signal::{Sample, Signal};
 
 use crate::procedure::{EventSource, UnitEvent};
@@ -48,6 +48,8 @@ impl Rig {
             self.desk.faults = self.faults.desk;
             self.tcms_port.fault = self.faults.tcms;
         }
+        let equipment = self.train_driven.then(|| self.train.equipment());
+        let refused = self.link.counters().rejected_on(Channel::Tcms);
         let desk = &self.desk;
         let on = |switch| desk.is_on(switch);
         let inputs = TcmsInputs {
@@ -62,9 +64,9 @@ impl Rig {
             inverters_cut_out: desk.inverters_cut_out,
             contacts: self.recorder.outputs(),
             load_kg: self.tcms_port.load_kg,
-            equipment: self.train_driven.then(|| self.train.equipment()),
+            equipment: equipment.as_ref(),
             speed_mps: self.wheel.velocity_mps().abs(),
-            frames_refused: 0,
+            frames_refused: u32::try_from(refused).unwrap_or(u32::MAX),
         };
         let mut told = self.tcms.step(self.now, &inputs);
         told.regeneration_refused = !on(TrainSwitch::Regeneration);

@@ -29,6 +29,7 @@ pub struct AtcLink {
     heard: Option<(Instant, AtcToTcms)>,
     order: AtoOrder,
     silent: bool,
+    frames_contradicting: u32,
     contradictions: u32,
     contradicts: bool,
 }
@@ -41,20 +42,32 @@ impl AtcLink {
             heard: None,
             order: AtoOrder::default(),
             silent: true,
+            frames_contradicting: 0,
             contradictions: 0,
             contradicts: false,
         }
     }
 
-    /// Takes a frame.
+    /// Takes a frame. One that contradicts itself is taken, too: [`driving_control`] reads it by its
+    /// safe side.
+    ///
+    /// [`driving_control`]: super::driving_control()
     pub fn hear(&mut self, now: Instant, frame: &AtcToTcms) {
         let power = frame.bits.contains(AtcToTcmsBits::POWER);
         let brake = frame.bits.contains(AtcToTcmsBits::BRAKE);
         let beyond = !(FULL_BRAKE..=FULL_POWER).contains(&frame.effort);
-        let against = power && (brake || frame.effort < 0) || brake && frame.effort > 0;
+        let against = match (power, brake) {
+            (true, true) => true,
+            (true, false) => frame.effort < 0,
+            (false, true) => frame.effort > 0,
+            (false, false) => frame.effort != 0,
+        };
         let contradicts = beyond || against;
-        if contradicts && !self.contradicts {
-            self.contradictions = self.contradictions.saturating_add(1);
+        if contradicts {
+            self.frames_contradicting = self.frames_contradicting.saturating_add(1);
+            self.contradictions = self
+                .contradictions
+                .saturating_add(u32::from(!self.contradicts));
         }
         self.contradicts = contradicts;
         self.heard = Some((now, *frame));
@@ -83,6 +96,11 @@ impl AtcLink {
     /// No frames for too long.
     pub fn silent(&self) -> bool {
         self.silent
+    }
+
+    /// Frames that contradicted themselves.
+    pub fn frames_contradicting(&self) -> u32 {
+        self.frames_contradicting
     }
 
     /// Times the unit began to contradict itself.

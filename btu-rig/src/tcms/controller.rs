@@ -28,6 +28,13 @@ pub struct ControllerInputs {
     pub emergency: bool,
 }
 
+impl ControllerInputs {
+    /// More than one of its contacts is closed.
+    pub fn contradicts(&self) -> bool {
+        self.power && self.brake || self.neutral && (self.power || self.brake)
+    }
+}
+
 impl TcmsData {
     /// What the master controller gives at a position.
     pub fn at(&self, lever: Lever) -> ControllerInputs {

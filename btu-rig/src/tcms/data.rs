@@ -15,6 +15,10 @@ pub struct TcmsData {
     pub controller_v: [f64; 4],
     /// Age at which orders of ATO no longer count, s.
     pub order_timeout_s: f64,
+    /// Refused frames of the unit that are logged when they come within `refused_within_s`.
+    pub refused_frames: u32,
+    /// See `refused_frames`, s.
+    pub refused_within_s: f64,
     /// Time the dead man may be released, s.
     pub dead_man_s: f64,
     /// Speed below which a brake that lasts becomes the holding brake, km/h (S4).
@@ -47,16 +51,16 @@ impl TcmsData {
     /// The first thing that cannot be.
     pub fn check(&self) -> Result<(), ConfigError> {
         let time = |key, value| within(key, value, 0.0, 60.0);
-        for share in self.power_notches.iter().chain(&self.brake_notches) {
-            within("tcms: notch", *share, 0.0, 100.0)?;
-        }
         for (key, notches) in [
-            ("power_notches", &self.power_notches[..]),
-            ("brake_notches", &self.brake_notches[..]),
+            ("tcms.power_notches", &self.power_notches[..]),
+            ("tcms.brake_notches", &self.brake_notches[..]),
         ] {
+            for share in notches {
+                within(key, *share, 0.0, 100.0)?;
+            }
             if notches.windows(2).any(|pair| pair[1] <= pair[0]) {
                 return Err(ConfigError::Conflict(format!(
-                    "tcms.{key} {notches:?} must rise from notch to notch"
+                    "{key} {notches:?} must rise from notch to notch"
                 )));
             }
         }
@@ -70,6 +74,13 @@ impl TcmsData {
             )));
         }
         time("tcms.order_timeout_s", self.order_timeout_s)?;
+        within(
+            "tcms.refused_frames",
+            f64::from(self.refused_frames),
+            1.0,
+            1000.0,
+        )?;
+        time("tcms.refused_within_s", self.refused_within_s)?;
         time("tcms.dead_man_s", self.dead_man_s)?;
         within("tcms.holding_below_kmh", self.holding_below_kmh, 0.1, 20.0)?;
         time("tcms.holding_after_s", self.holding_after_s)?;
@@ -90,5 +101,81 @@ impl TcmsData {
         time("tcms.not_following_after_s", self.not_following_after_s)?;
         time("tcms.silent_after_s", self.silent_after_s)?;
         within("tcms.slip_kmh", self.slip_kmh, 0.1, 50.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::train::TrainData;
+
+    const LINE6: &str = include_str!("../../../scripts/trains/line6.toml");
+
+    /// The file with one of its lines under `[tcms]` written otherwise.
+    fn with(key: &str, value: &str) -> String {
+        let (head, tcms) = LINE6.split_once("[tcms]").unwrap();
+        let mut found = false;
+        let lines = tcms.lines().map(|line| {
+            if line.split('=').next().is_some_and(|k| k.trim() == key) {
+                found = true;
+                format!("{key} = {value}")
+            } else {
+                line.to_owned()
+            }
+        });
+        let tcms: Vec<_> = lines.collect();
+        assert!(found, "{key}");
+        format!("{head}[tcms]{}", tcms.join("\n"))
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_by_its_key() {
+        let mut keys = std::collections::BTreeSet::new();
+        for (key, value) in [
+            ("power_notches", "[15, 30, 30, 75, 100]"),
+            ("power_notches", "[-1, 30, 50, 75, 100]"),
+            ("power_notches", "[15, 30, 50, 75, 101]"),
+            ("brake_notches", "[13.5, 27.5, 42, 56.5, 71, 85.5, nan]"),
+            ("brake_notches", "[27.5, 13.5, 42, 56.5, 71, 85.5, 100]"),
+            ("controller_v", "[0.5, 4.8, 4.8, 9.5]"),
+            ("controller_v", "[0.5, 4.8, 5.2, 10.5]"),
+            ("controller_v", "[-0.5, 4.8, 5.2, 9.5]"),
+            ("order_timeout_s", "-0.1"),
+            ("refused_frames", "0"),
+            ("refused_frames", "1001"),
+            ("refused_within_s", "61.0"),
+            ("dead_man_s", "nan"),
+            ("holding_below_kmh", "0.0"),
+            ("holding_after_s", "inf"),
+            ("holding_release", "0.0"),
+            ("not_released_above", "101.0"),
+            ("not_released_after_s", "-1.0"),
+            ("not_following_above", "0.0"),
+            ("not_following_after_s", "61.0"),
+            ("silent_after_s", "-1.0"),
+            ("slip_kmh", "0.0"),
+        ] {
+            let error = TrainData::from_toml(&with(key, value)).unwrap_err();
+            let named = error.to_string().contains(&format!("tcms.{key}"));
+            assert!(named, "{key} = {value}: {error}");
+            keys.insert(key);
+        }
+        let table = LINE6.split_once("[tcms]").unwrap().1;
+        let table = table.split("[[").next().unwrap();
+        let all = table.lines().filter(|line| line.contains('=')).count();
+        assert_eq!(keys.len(), all, "every key of the table");
+    }
+
+    #[test]
+    fn keys_missing_unknown_or_of_another_kind_are_named() {
+        for (text, word) in [
+            (LINE6.replace("slip_kmh = 5", ""), "slip_kmh"),
+            (LINE6.replace("slip_kmh = 5", "slip_mph = 5"), "slip_mph"),
+            (with("power_notches", "[15, 30]"), "power_notches"),
+            (with("refused_frames", "-5"), "refused_frames"),
+            (with("dead_man_s", "\"long\""), "dead_man_s"),
+        ] {
+            let error = TrainData::from_toml(&text).unwrap_err().to_string();
+            assert!(error.contains(word), "{word}: {error}");
+        }
     }
 }

@@ -52,25 +52,34 @@ pub struct DrivingOutputs {
 /// One cycle of the module. It keeps nothing.
 ///
 /// Automatic and driverless: P, B and value of ATO. Manual, yard and emergency: contacts and value of
-/// the master controller. P and B both: B, and the value is taken as B's. Powering with powering cut
-/// is coasting. A value against its contact counts by its safe side. No mode, or more than one, is a
-/// full brake.
+/// the master controller. P and B both: B, and the value is taken as B's.
+///
+/// The paper is silent on the rest, and the safe side is taken. The neutral contact takes P away, not
+/// B. Powering with powering cut is coasting. A value against its contact, or without one, brakes if it
+/// can: P with a value that brakes brakes, a value that powers without P is none. A value beyond
+/// −1024..1023 is a full brake, and so is no mode, or more than one.
 pub fn driving_control(inputs: &DrivingInputs) -> DrivingOutputs {
     let by_hand = [inputs.drxemod, inputs.drxymod, inputs.drxmmod];
     let by_ato = [inputs.drxamod, inputs.drxdmod];
     let count = |modes: &[bool]| modes.iter().filter(|on| **on).count();
     let (power, brake, value, hand) = match (count(&by_hand), count(&by_ato)) {
-        (1, 0) => (inputs.drxp, inputs.drxb, inputs.drxmcrv, true),
+        (1, 0) => (
+            inputs.drxp && !inputs.drxcoa,
+            inputs.drxb,
+            inputs.drxmcrv,
+            true,
+        ),
         (0, 1) => (inputs.drxaop, inputs.drxaob, inputs.drxtebe, false),
         _ => (false, true, FULL_BRAKE, false),
     };
-    let value = value.clamp(FULL_BRAKE, FULL_POWER);
-    let drytebe = match (power, brake) {
-        (_, true) => -value.saturating_abs().min(-FULL_BRAKE),
-        (true, false) if inputs.drxpcut => value.min(0),
-        (true, false) => value,
-        // Neither contact: a value that brakes is believed, one that powers is not.
-        (false, false) => value.min(0),
+    let drytebe = if !(FULL_BRAKE..=FULL_POWER).contains(&value) {
+        FULL_BRAKE
+    } else if brake {
+        -value.abs()
+    } else if power && !inputs.drxpcut {
+        value
+    } else {
+        value.min(0)
     };
     DrivingOutputs {
         dryinb7: hand && drytebe == FULL_BRAKE,

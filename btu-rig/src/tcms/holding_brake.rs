@@ -10,6 +10,8 @@ use super::timer::Lasting;
 pub struct HoldingInputs {
     /// Automatic or driverless mode.
     pub by_ato: bool,
+    /// Driverless mode.
+    pub driverless: bool,
     /// ATO asks for it, by contact or by message.
     pub requested: bool,
     /// The train brakes by the driver's or ATO's order (DRYINB).
@@ -30,6 +32,7 @@ pub struct HoldingBrake {
     after: Duration,
     release: f64,
     lasts: Lasting,
+    driverless: bool,
     applied: bool,
 }
 
@@ -41,20 +44,23 @@ impl HoldingBrake {
             after: Duration::from_secs(data.holding_after_s),
             release: data.holding_release / 100.0,
             lasts: Lasting::default(),
+            driverless: false,
             applied: false,
         }
     }
 
     /// One scan: whether it is ordered.
     ///
-    /// On by ATO's request, by driverless initialisation or turn-back, or by hand when a brake has
-    /// lasted at low speed. Off when nothing asks for it and one motor car at least pulls.
+    /// On by ATO's request, when driverless mode begins at standstill, at a driverless turn-back, and by
+    /// hand when a brake has lasted at low speed. Off when nothing asks for it and one motor car at
+    /// least pulls. Request and turn-back are wired and count in any mode: they brake.
     pub fn step(&mut self, now: Instant, inputs: &HoldingInputs) -> bool {
         let slow = inputs.speed_mps <= self.below_mps;
         let by_hand = !inputs.by_ato && inputs.braking && slow;
         let lasts = self.lasts.update(now, by_hand, self.after);
-        let asked = inputs.requested || inputs.turn_back || lasts;
-        if asked {
+        let begins = inputs.driverless && !self.driverless && slow;
+        self.driverless = inputs.driverless;
+        if inputs.requested || inputs.turn_back || lasts || begins {
             self.applied = true;
         } else if inputs.traction >= self.release {
             self.applied = false;

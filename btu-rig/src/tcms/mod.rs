@@ -2,32 +2,48 @@
 //! have it. Sans-IO: stepped once a scan with what cabs, train lines, the unit and the train's equipment
 //! give it.
 //!
-//! A scan, in this order: orders of ATO (`atc_link`), the cab that counts, the mode, the emergency
-//! brake train line (`emergency_line`), what equipment has failed (`watch`), the full service brake
-//! (`full_service_brake`), the holding brake (`holding_brake`), what cuts powering, the value
-//! (`driving_control`, `controller`), and the effort of each car (`effort`: `powering`, `braking`,
-//! `consist`).
+//! A scan, in this order (`system`): the cab that counts (`inputs`), orders of ATO (`atc_link`), the
+//! `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`watch`,
+//! `not_released`), the full service brake (`full_service_brake`), the holding brake
+//! (`holding_brake`), what cuts powering (`causes`), the value (`driving_control`, `controller`), the
+//! effort of each car (`effort`: `powering`, `braking`, `consist`), and what to tell of it (`view`,
+//! `feedback`, `report`).
 
 mod atc_link;
 mod braking;
+mod causes;
 mod consist;
 mod controller;
 mod data;
 mod driving_control;
 mod effort;
 mod emergency_line;
+mod feedback;
 mod full_service_brake;
 mod holding_brake;
+mod inputs;
+mod mode;
+mod not_released;
 mod powering;
+mod report;
 mod speed;
 mod system;
 mod timer;
+mod view;
 mod watch;
 mod words;
 
 pub use consist::Consist;
-pub use controller::ControllerInputs;
+pub use controller::{ControllerInputs, FULL_BRAKE, FULL_POWER};
 pub use data::TcmsData;
+pub use driving_control::{DrivingInputs, DrivingOutputs, driving_control};
 pub use effort::{Demands, Effort, Order};
-pub use system::{CabInputs, Tcms, TcmsEvent, TcmsInputs, TcmsMode, TcmsView};
+pub use emergency_line::{Line, LineInputs, emergency_line};
+pub use full_service_brake::{BrakeInputs, BrakeOutputs, full_service_brake};
+pub use holding_brake::{HoldingBrake, HoldingInputs};
+pub use inputs::{CabInputs, TcmsInputs};
+pub use mode::TcmsMode;
+pub use system::Tcms;
+pub use view::{TcmsEvent, TcmsView};
+pub use watch::Found;
 pub use words::{EbSources, Lamps, PowerCuts};

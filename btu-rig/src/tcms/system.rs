@@ -1,195 +1,83 @@
 //! One scan of TCMS, from inputs to what the train is told.
 
-use protocol::event::Event;
-use protocol::message::{AtcToTcms, ModeSwitch, Outputs};
+use protocol::message::{AtcToTcms, Outputs};
 use protocol::{Duration, Instant, SCAN};
 
-use crate::train::{CarSet, Equipment, MAX_CARS, TrainData, TrainInputs};
+use crate::train::{MAX_CARS, TrainData, TrainInputs};
 
 use super::atc_link::{AtcLink, AtoOrder};
+use super::causes::{Findings, lamps, power_cuts};
 use super::consist::Consist;
-use super::controller::{ControllerInputs, FULL_BRAKE, FULL_POWER};
+use super::controller::{FULL_BRAKE, FULL_POWER};
 use super::data::TcmsData;
 use super::driving_control::{DrivingInputs, DrivingOutputs, driving_control};
 use super::effort::{Demands, Effort, Order};
 use super::emergency_line::{Line, LineInputs, emergency_line};
+use super::feedback;
 use super::full_service_brake::{BrakeInputs, BrakeOutputs, full_service_brake};
 use super::holding_brake::{HoldingBrake, HoldingInputs};
-use super::speed::train_speed;
+use super::inputs::{CabInputs, TcmsInputs};
+use super::mode::TcmsMode;
+use super::report::{Report, Scan};
 use super::timer::Lasting;
+use super::view::{TcmsEvent, TcmsView};
 use super::watch::{Found, Watch, WatchInputs};
-use super::words::{EbSources, Lamps, PowerCuts};
-
-/// Mode TCMS drives in (S4).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TcmsMode {
-    /// None: no cab counts, or its mode switch is off.
-    #[default]
-    None,
-    /// Emergency.
-    Emergency,
-    /// Yard.
-    Yard,
-    /// Manual.
-    Manual,
-    /// Automatic.
-    Automatic,
-    /// Driverless.
-    Driverless,
-}
-
-impl TcmsMode {
-    /// Place among the labels of the signal `tcms_mode`.
-    pub fn code(self) -> u8 {
-        self as u8
-    }
-
-    fn by_ato(self) -> bool {
-        matches!(self, Self::Automatic | Self::Driverless)
-    }
-}
-
-/// One cab as wired to TCMS. The default is a cab nobody is in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CabInputs {
-    /// Head control relay energised.
-    pub hcr: bool,
-    /// Reverser: 1, 0 or −1.
-    pub reverser: i8,
-    /// Mode switch.
-    pub mode_switch: ModeSwitch,
-    /// Master controller.
-    pub controller: ControllerInputs,
-    /// The dead man is held.
-    pub dead_man: bool,
-    /// Emergency push button pressed.
-    pub emergency_button: bool,
-    /// Button for release by force pressed.
-    pub forced_release: bool,
-}
-
-/// What TCMS is given in one scan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TcmsInputs {
-    /// Both cabs; the unit is in the first.
-    pub cabs: [CabInputs; 2],
-    /// All doors proved closed.
-    pub doors_closed: bool,
-    /// Pressure switch of the main reservoir.
-    pub main_reservoir_low: bool,
-    /// The emergency brake is cut out.
-    pub eb_cut_out: bool,
-    /// Security brake, hard-wired.
-    pub security_brake: bool,
-    /// Parking brake.
-    pub parking_brake: bool,
-    /// Driverless initialisation or turn-back.
-    pub turn_back: bool,
-    /// Cars whose brake is cut out.
-    pub brakes_cut_out: CarSet,
-    /// Cars whose inverter is cut out.
-    pub inverters_cut_out: CarSet,
-    /// The unit's contacts; `None` = not heard.
-    pub contacts: Option<Outputs>,
-    /// Passengers as the brake control units weigh them, kg.
-    pub load_kg: f64,
-    /// What the equipment reports; `None` = generators turn the wheels, and it counts as sound.
-    pub equipment: Option<Equipment>,
-    /// Speed of the wheels while generators turn them, m/s, a size.
-    pub speed_mps: f64,
-    /// Frames of the unit that were refused so far.
-    pub frames_refused: u32,
-}
-
-/// What TCMS did in one scan, for signals, lamps and the unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TcmsView {
-    /// Mode.
-    pub mode: TcmsMode,
-    /// Outputs of the driving-control module.
-    pub driving: DrivingOutputs,
-    /// Outputs of the full-service-brake module.
-    pub brake: BrakeOutputs,
-    /// Holding brake ordered.
-    pub holding: bool,
-    /// Emergency brake train line.
-    pub line: Line,
-    /// Why powering is cut.
-    pub power_cuts: PowerCuts,
-    /// Lamps.
-    pub lamps: Lamps,
-    /// What is wrong with the equipment.
-    pub found: Found,
-    /// Voltage of the controller that counts, V.
-    pub volts: f64,
-    /// Speed as TCMS sees it, m/s.
-    pub speed_mps: f64,
-    /// Demands on the cars.
-    pub demands: Demands,
-    /// Effort the train gives, −1024..1023, for the unit.
-    pub given: i16,
-    /// Forward or backward, as the reverser that counts.
-    pub backward: bool,
-}
-
-/// An event TCMS logs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TcmsEvent {
-    /// What.
-    pub event: Event,
-    /// Its parameter.
-    pub parameter: i32,
-}
 
 /// The system.
 #[derive(Clone, Debug)]
 pub struct Tcms {
     data: TcmsData,
     atc: AtcLink,
+    /// Sharing out of effort; a point mass has nothing to share it over.
     effort: Option<Effort>,
+    full_load_kg: f64,
+    /// Holding brake, share of full service.
+    holding_share: f64,
     watch: Watch,
     holding: HoldingBrake,
     dead_man: Lasting,
-    found_before: Found,
-    counted: Counted,
+    dead_man_acts: bool,
+    /// Something else than brakes found not released orders the full service brake.
+    full_service_otherwise: bool,
     view: TcmsView,
-    events: Vec<TcmsEvent>,
+    report: Report,
 }
 
-/// What has been told by an event already.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counted {
-    controller_failed: bool,
-    contradicts: bool,
-    two_cabs: bool,
-    atc_silent: Option<bool>,
-    ato_contradictions: u32,
-    frames_refused: u32,
-    main_reservoir_low: bool,
-    dead_man: bool,
-    regeneration: CarSet,
+/// What the first steps of a scan find and the others go by.
+#[derive(Clone, Copy, Debug)]
+struct Now<'a> {
+    now: Instant,
+    inputs: &'a TcmsInputs<'a>,
+    cab: Option<&'a CabInputs>,
+    order: AtoOrder,
+    mode: TcmsMode,
 }
 
 impl Tcms {
     /// A system for a train, at its start.
     pub fn new(train: &TrainData) -> Self {
         let data = train.tcms().clone();
-        let effort = match train {
-            TrainData::Cars(cars) => Some(Effort::new(Consist::new(cars))),
-            TrainData::Ideal(_) => None,
+        let (effort, holding_share) = match train {
+            TrainData::Cars(cars) => (
+                Some(Effort::new(Consist::new(cars))),
+                cars.service_brake.holding_share,
+            ),
+            TrainData::Ideal(ideal) => (None, ideal.holding_share),
         };
         let full_service_n = effort
             .as_ref()
             .map_or([0.0; MAX_CARS], |effort| effort.consist.full_service_n);
         Self {
             atc: AtcLink::new(Duration::from_secs(data.order_timeout_s)),
+            full_load_kg: train.full_load_kg(),
+            holding_share,
             watch: Watch::new(&data, full_service_n),
             holding: HoldingBrake::new(&data),
             dead_man: Lasting::default(),
-            found_before: Found::default(),
-            counted: Counted::default(),
+            dead_man_acts: false,
+            full_service_otherwise: false,
             view: TcmsView::default(),
-            events: Vec::new(),
+            report: Report::new(&data),
             effort,
             data,
         }
@@ -200,11 +88,12 @@ impl Tcms {
         &self.data
     }
 
-    /// No effort, as when the train is put on the track anew.
+    /// No effort and nothing found, as when the train is put on the track anew.
     pub fn rest(&mut self) {
         if let Some(effort) = &mut self.effort {
             effort.reset();
         }
+        self.watch.clear();
     }
 
     /// Takes a frame of the unit.
@@ -217,44 +106,60 @@ impl Tcms {
         &self.view
     }
 
+    /// Frames of the unit that contradicted themselves so far.
+    pub fn frames_contradicting(&self) -> u32 {
+        self.atc.frames_contradicting()
+    }
+
     /// Its new events.
     pub fn take_events(&mut self) -> Vec<TcmsEvent> {
-        std::mem::take(&mut self.events)
+        self.report.take()
     }
 
     /// One scan: what the train is told.
-    pub fn step(&mut self, now: Instant, inputs: &TcmsInputs) -> TrainInputs {
+    pub fn step(&mut self, now: Instant, inputs: &TcmsInputs<'_>) -> TrainInputs {
+        let cab = inputs.active_cab();
         let order = self.atc.step(now);
-        let cab = active_cab(&inputs.cabs);
-        let mode = mode(cab, &order);
-        let line = emergency_line(&line_inputs(inputs, cab));
-        let found = self.look(now, inputs, cab);
+        let scan = Now {
+            now,
+            inputs,
+            cab,
+            mode: TcmsMode::of(cab, &order),
+            order,
+        };
+        let load_kg = self.weigh(inputs.load_kg);
+        let line = emergency_line(&line_inputs(&scan));
+        let found = self.look(&scan, &line);
+        let brake = self.full_service(&scan, &found);
+        let powering = self.view.driving.dryinp;
+        let speed_mps = feedback::speed_mps(inputs, self.effort.as_ref(), powering, &self.data);
+        let holding = self.hold(&scan, speed_mps);
+        let power_cuts = power_cuts(
+            inputs,
+            &Findings {
+                mode: scan.mode,
+                line: &line,
+                brake: &brake,
+                found: &found,
+                holding_asked: order.holding,
+            },
+        );
         let volts = cab.map_or(0.0, |cab| cab.controller.volts);
-        let brake = self.full_service(now, inputs, cab, mode, &order, &found);
-        let speed_mps = self.speed(inputs);
-        let holding = self.hold(now, inputs, mode, &order, speed_mps);
-        let power_cuts = power_cuts(inputs, cab, mode, &line, &brake, &found, &order);
-        let driving = driving_control(&DrivingInputs {
-            drxemod: mode == TcmsMode::Emergency,
-            drxymod: mode == TcmsMode::Yard,
-            drxmmod: mode == TcmsMode::Manual,
-            drxamod: mode == TcmsMode::Automatic,
-            drxdmod: mode == TcmsMode::Driverless,
-            drxmcrv: self.data.value(volts),
-            drxp: cab.is_some_and(|cab| cab.controller.power),
-            drxb: cab.is_some_and(|cab| cab.controller.brake),
-            drxcoa: cab.is_some_and(|cab| cab.controller.neutral),
-            drxpcut: !power_cuts.is_empty(),
-            drxtebe: order.value,
-            drxaop: order.power,
-            drxaob: order.brake,
-        });
+        let driving = self.drive(&scan, volts, !power_cuts.is_empty(), &line);
         let share = share(&driving, &brake);
-        let out = self.effort_order(inputs, share, holding, &line, speed_mps, &found);
-        let demands = self.share_out(inputs, &out);
-        let backward = cab.is_some_and(|cab| cab.reverser < 0);
+        let demands = self.share_out(
+            inputs,
+            &Order {
+                share,
+                holding,
+                no_inverters: line.applied || inputs.security_brake,
+                speed_mps,
+                inverters_out: inputs.inverters_cut_out.with(found.inverters),
+                brakes_out: inputs.brakes_cut_out.with(found.brake_units),
+            },
+        );
         self.view = TcmsView {
-            mode,
+            mode: scan.mode,
             driving,
             brake,
             holding,
@@ -265,384 +170,204 @@ impl Tcms {
             volts,
             speed_mps,
             demands,
-            given: self.given(inputs, share),
-            backward,
+            given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
+            backward: cab.is_some_and(|cab| cab.reverser < 0),
         };
-        self.report(inputs, cab);
-        let held = if holding { -self.holding_share() } else { 1.0 };
-        TrainInputs {
-            demand: share.min(held),
-            motor_n: demands.motor_n,
-            air_n: demands.air_n,
-            emergency: line.applied,
-            security: inputs.security_brake,
-            parking: inputs.parking_brake,
-            forced_release: cab.is_some_and(|cab| cab.forced_release),
-            brakes_cut_out: inputs.brakes_cut_out,
-            inverters_cut_out: inputs.inverters_cut_out,
-            backward,
-            load_kg: inputs.load_kg,
-            ..TrainInputs::default()
+        self.log(&scan);
+        self.tell(&scan, share, load_kg)
+    }
+
+    /// Takes the load; what it is does not go beyond the train's. No number is a full train, which
+    /// brakes most.
+    fn weigh(&mut self, load_kg: f64) -> f64 {
+        let load_kg = if load_kg.is_nan() {
+            self.full_load_kg
+        } else {
+            load_kg.clamp(0.0, self.full_load_kg)
+        };
+        if let Some(effort) = &mut self.effort
+            && effort.consist.load_kg() != load_kg
+        {
+            effort.consist.weigh(load_kg);
+            self.watch.weigh(effort.consist.full_service_n);
         }
+        load_kg
     }
 
-    fn holding_share(&self) -> f64 {
-        self.effort.as_ref().map_or(0.7, |effort| {
-            effort.consist.data.service_brake.holding_share
-        })
-    }
-
-    fn look(&mut self, now: Instant, inputs: &TcmsInputs, cab: Option<&CabInputs>) -> Found {
-        let Some(equipment) = &inputs.equipment else {
+    /// State of the equipment, judged by what was asked of it in the last scan.
+    fn look(&mut self, scan: &Now<'_>, line: &Line) -> Found {
+        let inputs = scan.inputs;
+        let Some(equipment) = inputs.equipment else {
+            self.watch.clear();
             return Found::default();
         };
+        let wired = line.applied || inputs.security_brake || inputs.parking_brake;
+        let ordered = self.view.driving.dryinb || self.view.holding || self.full_service_otherwise;
         self.watch.step(
-            now,
+            scan.now,
             &WatchInputs {
                 equipment,
-                air_n: &self.view.demands.air_n,
-                brakes_off: !self.view.driving.dryinb
-                    && !self.view.brake.bcymsb
-                    && !self.view.holding,
+                // Air takes its time: what cylinders hold is judged by what they should by now.
+                air_n: self
+                    .effort
+                    .as_ref()
+                    .map_or(&self.view.demands.air_n, Effort::air_due_n),
+                nobody_brakes: !ordered && !wired,
                 brakes_cut_out: inputs.brakes_cut_out,
                 inverters_cut_out: inputs.inverters_cut_out,
-                forced_release: cab.is_some_and(|cab| cab.forced_release),
+                forced_release: scan.cab.is_some_and(|cab| cab.forced_release),
             },
         )
     }
 
-    fn full_service(
-        &mut self,
-        now: Instant,
-        inputs: &TcmsInputs,
-        cab: Option<&CabInputs>,
-        mode: TcmsMode,
-        order: &AtoOrder,
-        found: &Found,
-    ) -> BrakeOutputs {
-        let released = cab.is_some_and(|cab| !cab.dead_man);
+    /// The full-service-brake module. It hears of the controller at B7 one scan later.
+    fn full_service(&mut self, scan: &Now<'_>, found: &Found) -> BrakeOutputs {
+        // The time begins with the mode: who takes the train over from ATO has to reach for it.
+        let released = !scan.mode.by_ato() && scan.cab.is_some_and(|cab| !cab.dead_man);
         let limit = Duration::from_secs(self.data.dead_man_s);
-        let dead_man = self.dead_man.update(now, released, limit);
-        self.note(self.counted.dead_man, dead_man, Event::DeadMan, 0);
-        self.counted.dead_man = dead_man;
-        full_service_brake(&BrakeInputs {
-            bcxemod: mode == TcmsMode::Emergency,
-            bcxymod: mode == TcmsMode::Yard,
-            bcxmmod: mode == TcmsMode::Manual,
-            bcxamod: mode == TcmsMode::Automatic,
-            bcxdmod: mode == TcmsMode::Driverless,
+        self.dead_man_acts = self.dead_man.update(scan.now, released, limit);
+        let inputs = BrakeInputs {
+            bcxemod: scan.mode == TcmsMode::Emergency,
+            bcxymod: scan.mode == TcmsMode::Yard,
+            bcxmmod: scan.mode == TcmsMode::Manual,
+            bcxamod: scan.mode == TcmsMode::Automatic,
+            bcxdmod: scan.mode == TcmsMode::Driverless,
             bcxvvvff: !found.inverters.is_empty(),
             bcxecuf: !found.brake_units.is_empty(),
             bcxbccsf: !found.cylinders.is_empty(),
-            bcxnrb: !found.not_released.is_empty(),
-            bcxatof: order.failed,
-            bcxdoreq: !inputs.doors_closed,
-            bcxacfsb: inputs.contacts.is_some_and(|c| c.contains(Outputs::FSB)),
-            bcxdmfsb: dead_man,
+            bcxnrb: found.not_released_brakes,
+            bcxatof: scan.order.failed,
+            bcxdoreq: !scan.inputs.doors_closed,
+            bcxacfsb: scan.inputs.contact(Outputs::FSB),
+            bcxdmfsb: self.dead_man_acts,
             bcxinb7: self.view.driving.dryinb7,
-        })
-    }
-
-    /// Mean of the inverters, or of the generators' wheels.
-    fn speed(&self, inputs: &TcmsInputs) -> f64 {
-        match (&inputs.equipment, &self.effort) {
-            (Some(equipment), Some(effort)) => train_speed(
-                &equipment.axle_mps,
-                effort.consist.motors.without(equipment.inverters_silent),
-                self.view.driving.dryinp,
-                self.data.slip_kmh / 3.6,
-            ),
-            (Some(equipment), None) => equipment.axle_mps[0],
-            (None, _) => inputs.speed_mps,
-        }
-    }
-
-    fn hold(
-        &mut self,
-        now: Instant,
-        inputs: &TcmsInputs,
-        mode: TcmsMode,
-        order: &AtoOrder,
-        speed_mps: f64,
-    ) -> bool {
-        let contact = inputs
-            .contacts
-            .is_some_and(|c| c.contains(Outputs::HOLDING_BRAKE));
-        let traction = match (&inputs.equipment, &self.effort) {
-            (Some(equipment), Some(effort)) => {
-                let most_n = equipment.traction_n.iter().fold(0.0, |a: f64, b| a.max(*b));
-                most_n / effort.consist.traction_n()
-            }
-            _ => f64::from(self.view.driving.drytebe) / f64::from(FULL_POWER),
         };
+        let brake = full_service_brake(&inputs);
+        self.full_service_otherwise = if inputs.bcxnrb {
+            let otherwise = BrakeInputs {
+                bcxnrb: false,
+                ..inputs
+            };
+            full_service_brake(&otherwise).bcymsb
+        } else {
+            brake.bcymsb
+        };
+        brake
+    }
+
+    fn hold(&mut self, scan: &Now<'_>, speed_mps: f64) -> bool {
+        let ordered = self.view.driving.drytebe;
         self.holding.step(
-            now,
+            scan.now,
             &HoldingInputs {
-                by_ato: mode.by_ato(),
-                requested: order.holding || contact,
+                by_ato: scan.mode.by_ato(),
+                driverless: scan.mode == TcmsMode::Driverless,
+                requested: scan.inputs.holding_asked(scan.order.holding),
                 braking: self.view.driving.dryinb,
                 speed_mps,
-                traction,
-                turn_back: inputs.turn_back,
+                traction: feedback::traction(scan.inputs.equipment, self.effort.as_ref(), ordered),
+                turn_back: scan.inputs.turn_back,
             },
         )
     }
 
-    fn effort_order(
-        &self,
-        inputs: &TcmsInputs,
-        share: f64,
-        holding: bool,
-        line: &Line,
-        speed_mps: f64,
-        found: &Found,
-    ) -> Order {
-        Order {
-            share: if line.applied { share.min(0.0) } else { share },
-            holding,
-            no_inverters: line.applied || inputs.security_brake,
-            speed_mps,
-            inverters_out: inputs.inverters_cut_out.with(found.inverters),
-            brakes_out: inputs.brakes_cut_out.with(found.brake_units),
+    /// The driving-control module, and the mask of the emergency brake behind it.
+    fn drive(&self, scan: &Now<'_>, volts: f64, cut: bool, line: &Line) -> DrivingOutputs {
+        let (mode, order) = (scan.mode, &scan.order);
+        let controller = scan.cab.map(|cab| cab.controller);
+        let driving = driving_control(&DrivingInputs {
+            drxemod: mode == TcmsMode::Emergency,
+            drxymod: mode == TcmsMode::Yard,
+            drxmmod: mode == TcmsMode::Manual,
+            drxamod: mode == TcmsMode::Automatic,
+            drxdmod: mode == TcmsMode::Driverless,
+            drxmcrv: self.data.value(volts),
+            drxp: controller.is_some_and(|c| c.power),
+            drxb: controller.is_some_and(|c| c.brake),
+            drxcoa: controller.is_some_and(|c| c.neutral),
+            drxpcut: cut,
+            drxtebe: order.value,
+            drxaop: order.power,
+            drxaob: order.brake,
+        });
+        if !line.applied {
+            return driving;
+        }
+        DrivingOutputs {
+            dryinp: false,
+            drytebe: 0,
+            ..driving
         }
     }
 
-    fn share_out(&mut self, inputs: &TcmsInputs, order: &Order) -> Demands {
-        let Some(effort) = &mut self.effort else {
-            return Demands::default();
-        };
-        if effort.consist.load_kg() != inputs.load_kg {
-            effort.consist.weigh(inputs.load_kg);
-            self.watch.weigh(effort.consist.full_service_n);
-        }
-        effort.step(SCAN.as_secs(), order, inputs.equipment.as_ref())
+    fn share_out(&mut self, inputs: &TcmsInputs<'_>, order: &Order) -> Demands {
+        self.effort
+            .as_mut()
+            .map_or_else(Demands::default, |effort| {
+                effort.step(SCAN.as_secs(), order, inputs.equipment)
+            })
     }
 
-    /// Effort the train gives as the unit is told it.
-    fn given(&self, inputs: &TcmsInputs, share: f64) -> i16 {
-        let given = match (&inputs.equipment, &self.effort) {
-            (Some(equipment), Some(effort)) => {
-                let sum = |of: &crate::train::PerCar| of.iter().sum::<f64>();
-                let brake_n = sum(&equipment.electric_n) + sum(&equipment.air_n);
-                let full_n = sum(&effort.consist.full_service_n);
-                let most_n = effort.power_n(self.view.speed_mps);
-                sum(&equipment.traction_n) / most_n - brake_n / full_n
-            }
-            _ => share,
-        };
-        let scale = if given < 0.0 {
-            FULL_BRAKE.abs()
+    fn log(&mut self, scan: &Now<'_>) {
+        let failed = scan.cab.is_some() && self.data.controller_failed(self.view.volts);
+        self.report.step(
+            scan.now,
+            &Scan {
+                inputs: scan.inputs,
+                view: &self.view,
+                atc: &self.atc,
+                controller_failed: failed,
+                dead_man: self.dead_man_acts,
+            },
+        );
+    }
+
+    /// What the train is told.
+    fn tell(&self, scan: &Now<'_>, share: f64, load_kg: f64) -> TrainInputs {
+        let (inputs, view) = (scan.inputs, &self.view);
+        let held = if view.holding {
+            -self.holding_share
         } else {
-            FULL_POWER
+            1.0
         };
-        (given * f64::from(scale))
-            .round()
-            .clamp(f64::from(FULL_BRAKE), f64::from(FULL_POWER)) as i16
-    }
-
-    fn note(&mut self, before: bool, now: bool, event: Event, parameter: i32) {
-        if now && !before {
-            self.events.push(TcmsEvent { event, parameter });
+        TrainInputs {
+            demand: share.min(held),
+            motor_n: view.demands.motor_n,
+            air_n: view.demands.air_n,
+            emergency: view.line.applied,
+            security: inputs.security_brake,
+            parking: inputs.parking_brake,
+            forced_release: scan.cab.is_some_and(|cab| cab.forced_release),
+            brakes_cut_out: inputs.brakes_cut_out,
+            inverters_cut_out: inputs.inverters_cut_out,
+            backward: view.backward,
+            load_kg,
+            ..TrainInputs::default()
         }
-    }
-
-    fn note_cars(&mut self, before: CarSet, now: CarSet, event: Event) {
-        for car in now.without(before).iter() {
-            self.note(false, true, event, car as i32 + 1);
-        }
-    }
-
-    /// Logs what began in this scan.
-    fn report(&mut self, inputs: &TcmsInputs, cab: Option<&CabInputs>) {
-        let (before, now) = (self.found_before, self.view.found);
-        self.note_cars(before.inverters, now.inverters, Event::InverterFailed);
-        self.note_cars(before.brake_units, now.brake_units, Event::BrakeUnitFailed);
-        self.note_cars(before.cylinders, now.cylinders, Event::BrakeCylinderFailed);
-        self.note_cars(
-            before.not_released,
-            now.not_released,
-            Event::BrakeNotReleased,
-        );
-        self.found_before = now;
-
-        let mut counted = self.counted;
-        let regeneration = inputs
-            .equipment
-            .map_or(CarSet::NONE, |equipment| equipment.regeneration_cut_out);
-        self.note_cars(
-            counted.regeneration,
-            regeneration,
-            Event::RegenerationCutOut,
-        );
-        counted.regeneration = regeneration;
-
-        let volts = self.view.volts;
-        let failed = cab.is_some() && self.data.controller_failed(volts);
-        let millivolts = (volts * 1000.0).round() as i32;
-        self.note(
-            counted.controller_failed,
-            failed,
-            Event::ControllerFailed,
-            millivolts,
-        );
-        counted.controller_failed = failed;
-
-        let contradicts = cab.is_some_and(|cab| cab.controller.power && cab.controller.brake);
-        self.note(
-            counted.contradicts,
-            contradicts,
-            Event::ControllerContradicts,
-            0,
-        );
-        counted.contradicts = contradicts;
-
-        let two_cabs = inputs.cabs.iter().all(|cab| cab.hcr);
-        self.note(counted.two_cabs, two_cabs, Event::TwoCabsActive, 0);
-        counted.two_cabs = two_cabs;
-
-        let low = inputs.main_reservoir_low;
-        self.note(counted.main_reservoir_low, low, Event::MainReservoirLow, 0);
-        counted.main_reservoir_low = low;
-
-        let contradictions = self.atc.contradictions();
-        let more = contradictions > counted.ato_contradictions;
-        let effort = i32::from(self.atc.effort());
-        self.note(false, more, Event::AtoOrderContradicts, effort);
-        counted.ato_contradictions = contradictions;
-
-        let refused = inputs.frames_refused;
-        let parameter = i32::try_from(refused).unwrap_or(i32::MAX);
-        self.note(
-            false,
-            refused > counted.frames_refused,
-            Event::AtcFramesRefused,
-            parameter,
-        );
-        counted.frames_refused = refused;
-
-        // Silence before the unit was first heard is a unit that is not switched on yet.
-        match (counted.atc_silent, self.atc.silent()) {
-            (Some(false), true) => self.note(false, true, Event::AtcSilent, 0),
-            (Some(true), false) => self.note(false, true, Event::AtcRestored, 0),
-            _ => {}
-        }
-        if counted.atc_silent.is_some() || !self.atc.silent() {
-            counted.atc_silent = Some(self.atc.silent());
-        }
-        self.counted = counted;
     }
 }
 
-/// The cab whose head control relay is energised; none when both are.
-fn active_cab(cabs: &[CabInputs; 2]) -> Option<&CabInputs> {
-    let mut active = cabs.iter().filter(|cab| cab.hcr);
-    match (active.next(), active.next()) {
-        (Some(cab), None) => Some(cab),
-        _ => None,
-    }
-}
-
-/// Automatic and driverless only while the unit is in automatic: until then, and after it, the driver
-/// has the train.
-fn mode(cab: Option<&CabInputs>, order: &AtoOrder) -> TcmsMode {
-    match cab.map_or(ModeSwitch::Off, |cab| cab.mode_switch) {
-        ModeSwitch::Off | ModeSwitch::Unknown(_) => TcmsMode::None,
-        ModeSwitch::Emergency => TcmsMode::Emergency,
-        ModeSwitch::Yard => TcmsMode::Yard,
-        ModeSwitch::Automatic if order.automatic => TcmsMode::Automatic,
-        ModeSwitch::Driverless if order.automatic => TcmsMode::Driverless,
-        ModeSwitch::Manual | ModeSwitch::Automatic | ModeSwitch::Driverless => TcmsMode::Manual,
-    }
-}
-
-fn line_inputs(inputs: &TcmsInputs, cab: Option<&CabInputs>) -> LineInputs {
+fn line_inputs(scan: &Now<'_>) -> LineInputs {
     LineInputs {
-        cab_valid: cab.is_some(),
-        controller: cab.is_some_and(|cab| cab.controller.emergency),
-        buttons: inputs.cabs.map(|cab| cab.emergency_button),
-        atc_relay: inputs
-            .contacts
-            .is_some_and(|contacts| contacts.contains(Outputs::EB_RELAY)),
-        main_reservoir_low: inputs.main_reservoir_low,
-        cut_out: inputs.eb_cut_out,
+        cab_valid: scan.cab.is_some(),
+        controller: scan.cab.is_some_and(|cab| cab.controller.emergency),
+        buttons: scan.inputs.cabs.map(|cab| cab.emergency_button),
+        atc_relay: scan.inputs.contact(Outputs::EB_RELAY),
+        main_reservoir_low: scan.inputs.main_reservoir_low,
+        cut_out: scan.inputs.eb_cut_out,
     }
 }
 
-fn power_cuts(
-    inputs: &TcmsInputs,
-    cab: Option<&CabInputs>,
-    mode: TcmsMode,
-    line: &Line,
-    brake: &BrakeOutputs,
-    found: &Found,
-    order: &AtoOrder,
-) -> PowerCuts {
-    let contact = |output| inputs.contacts.is_some_and(|c| c.contains(output));
-    let mut cuts = PowerCuts::default();
-    for (cut, holds) in [
-        (PowerCuts::DOORS, !inputs.doors_closed),
-        (PowerCuts::HCR, cab.is_none()),
-        (
-            PowerCuts::REVERSER,
-            cab.is_some_and(|cab| cab.reverser == 0),
-        ),
-        (PowerCuts::EMERGENCY, line.applied),
-        (PowerCuts::FULL_SERVICE, brake.bcypcut),
-        (PowerCuts::ATC, contact(Outputs::POWER_CUT)),
-        (PowerCuts::ATC_SILENT, inputs.contacts.is_none()),
-        (
-            PowerCuts::HOLDING,
-            order.holding || contact(Outputs::HOLDING_BRAKE),
-        ),
-        (PowerCuts::SECURITY, inputs.security_brake),
-        (PowerCuts::PARKING, inputs.parking_brake),
-        (PowerCuts::NOT_RELEASED, !found.not_released.is_empty()),
-        (PowerCuts::MAIN_RESERVOIR, inputs.main_reservoir_low),
-        (PowerCuts::MODE, mode == TcmsMode::None),
-        (PowerCuts::TURN_BACK, inputs.turn_back),
-    ] {
-        cuts.set(cut, holds);
-    }
-    cuts
-}
-
-/// Share of full effort, −1..1.
+/// Share of full effort, −1..1. The maximum service brake is an order of its own: no mask of the value
+/// takes it away.
 fn share(driving: &DrivingOutputs, brake: &BrakeOutputs) -> f64 {
     if brake.bcymsb {
         return -1.0;
     }
     let value = f64::from(driving.drytebe);
     if value < 0.0 {
-        value / f64::from(FULL_BRAKE.abs())
+        value / -f64::from(FULL_BRAKE)
     } else {
         value / f64::from(FULL_POWER)
-    }
-}
-
-fn lamps(inputs: &TcmsInputs, line: &Line, found: &Found) -> Lamps {
-    let forced = active_cab(&inputs.cabs).is_some_and(|cab| cab.forced_release);
-    let failed = found
-        .inverters
-        .with(found.brake_units)
-        .with(found.cylinders);
-    let mut lamps = Lamps::default();
-    for (lamp, lit) in [
-        (Lamps::EMERGENCY, line.applied),
-        (Lamps::EB_CUT_OUT, inputs.eb_cut_out),
-        (Lamps::SECURITY, inputs.security_brake),
-        (Lamps::PARKING, inputs.parking_brake),
-        (Lamps::FORCED_RELEASE, forced),
-        (Lamps::NOT_RELEASED, !found.not_released.is_empty()),
-        (Lamps::FAILURE, !failed.is_empty()),
-    ] {
-        lamps.set(lamp, lit);
-    }
-    lamps
-}
-
-impl TcmsView {
-    /// What opens the emergency brake train line.
-    pub fn eb_sources(&self) -> EbSources {
-        self.line.sources
     }
 }

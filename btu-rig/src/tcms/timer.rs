@@ -1,6 +1,8 @@
-//! How long something has lasted.
+//! How long something has lasted, and how often it came.
 
 use protocol::{Duration, Instant};
+
+use crate::train::{CarSet, MAX_CARS};
 
 /// Since when a condition holds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,6 +22,96 @@ impl Lasting {
     }
 }
 
+/// Since when a condition holds, for each car.
+#[derive(Clone, Debug)]
+pub(super) struct LastingCars {
+    holds: CarSet,
+    since: [Instant; MAX_CARS],
+}
+
+impl Default for LastingCars {
+    fn default() -> Self {
+        Self {
+            holds: CarSet::NONE,
+            since: [Instant::ZERO; MAX_CARS],
+        }
+    }
+}
+
+impl LastingCars {
+    /// The cars it has held for a time, of those it holds for.
+    pub fn update(&mut self, now: Instant, holds: CarSet, at_least: Duration) -> CarSet {
+        let before = std::mem::replace(&mut self.holds, holds);
+        let mut lasting = CarSet::NONE;
+        // As a rule there is none, and nothing is looked at.
+        if holds.is_empty() {
+            return lasting;
+        }
+        for car in holds.iter() {
+            if !before.contains(car) {
+                self.since[car] = now;
+            }
+            lasting.set(car, now.since(self.since[car]) >= at_least);
+        }
+        lasting
+    }
+
+    /// It holds for none.
+    pub fn clear(&mut self) {
+        self.holds = CarSet::NONE;
+    }
+}
+
+/// Something that matters only when it comes often.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Burst {
+    at_least: u32,
+    within: Duration,
+    /// Begin of the time looked at, and the count then.
+    from: Option<(Instant, u32)>,
+    count: u32,
+    told: bool,
+}
+
+impl Burst {
+    /// `at_least` times `within` a time.
+    pub fn new(at_least: u32, within: Duration) -> Self {
+        Self {
+            at_least,
+            within,
+            from: None,
+            count: 0,
+            told: false,
+        }
+    }
+
+    /// Takes the count so far; whether a burst begins. It ends when the time passes without any.
+    pub fn begins(&mut self, now: Instant, count: u32) -> bool {
+        let came = count != self.count;
+        if !came && self.from.is_none() {
+            return false;
+        }
+        if self
+            .from
+            .is_some_and(|(from, _)| now.since(from) > self.within)
+        {
+            self.told &= self.from.is_some_and(|(_, before)| before != self.count);
+            // Looking goes on for as long as something was told, so that its end is seen.
+            self.from = self.told.then_some((now, self.count));
+        }
+        if came && self.from.is_none() {
+            self.from = Some((now, self.count));
+        }
+        self.count = count;
+        let many = self
+            .from
+            .is_some_and(|(_, before)| count.saturating_sub(before) >= self.at_least);
+        let begins = many && !self.told;
+        self.told |= many;
+        begins
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -36,5 +128,41 @@ mod tests {
         assert!(!held(&mut lasting, 60, false));
         assert!(!held(&mut lasting, 70, true));
         assert!(!held(&mut lasting, 110, true));
+    }
+
+    /// Each car has its own time.
+    #[test]
+    fn cars_last_one_by_one() {
+        let mut lasting = LastingCars::default();
+        let mut held = |ms: u64, holds: CarSet| {
+            lasting.update(Instant::from_ms(ms), holds, Duration::from_ms(50))
+        };
+        let (one, two) = (CarSet::one(1), CarSet::one(2));
+        assert!(held(0, one).is_empty());
+        assert!(held(30, one.with(two)).is_empty());
+        assert_eq!(held(50, one.with(two)), one);
+        assert_eq!(held(80, one.with(two)), one.with(two));
+        assert_eq!(held(90, two), two);
+        assert_eq!(held(100, one.with(two)), two);
+    }
+
+    #[test]
+    fn a_burst_is_told_once_until_it_is_over() {
+        let mut burst = Burst::new(3, Duration::from_ms(1000));
+        let mut begins = |ms: u64, count: u32| burst.begins(Instant::from_ms(ms), count);
+        // Two and two, with a pause: never three within a second.
+        assert!(!begins(0, 1) && !begins(100, 2) && !begins(1200, 2));
+        assert!(!begins(1300, 3) && !begins(1400, 4));
+        assert!(begins(1500, 5));
+        // It goes on: nothing new.
+        for i in 0..40 {
+            assert!(!begins(1600 + i * 100, 6 + i as u32), "{i}");
+        }
+        // Over, and anew.
+        for ms in (5600..8000).step_by(100) {
+            assert!(!begins(ms, 45));
+        }
+        assert!(!begins(8000, 46) && !begins(8010, 47));
+        assert!(begins(8020, 48));
     }
 }

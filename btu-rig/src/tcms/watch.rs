@@ -1,12 +1,21 @@
 //! What TCMS watches of the train's equipment: inverters and brake control units that do not answer,
-//! cylinders that do not follow, brakes that are not released (S4 figure 3).
+//! cylinders that do not follow, brakes that are not released (S4).
+//!
+//! What was found is kept until the opposite has lasted as long, so that it does not come and go: a
+//! unit that answers again, cylinders that follow a full demand. Cutting the car's equipment out ends
+//! it at once.
 
 use protocol::{Duration, Instant};
 
 use crate::train::{CarSet, Equipment, MAX_CARS, PerCar};
 
 use super::data::TcmsData;
-use super::timer::Lasting;
+use super::not_released::{Asked, NotReleased};
+use super::timer::LastingCars;
+
+/// Demand on a car's air brake that shows whether its cylinders follow again, share of full service.
+/// Less would hide cylinders that get only part of their pressure.
+const FULL_DEMAND: f64 = 0.9;
 
 /// What it looks at in one scan.
 #[derive(Clone, Copy, Debug)]
@@ -15,8 +24,9 @@ pub struct WatchInputs<'a> {
     pub equipment: &'a Equipment,
     /// Air TCMS asks of each car, N.
     pub air_n: &'a PerCar,
-    /// Neither a brake nor the holding brake is ordered.
-    pub brakes_off: bool,
+    /// Nothing brakes but what the watch itself has found: no brake, holding, full service, emergency,
+    /// security or parking brake.
+    pub nobody_brakes: bool,
     /// Cars without a brake: cut out.
     pub brakes_cut_out: CarSet,
     /// Cars whose inverter is cut out.
@@ -34,8 +44,36 @@ pub struct Found {
     pub brake_units: CarSet,
     /// Cars whose cylinders do not follow (BCXBCCSF).
     pub cylinders: CarSet,
-    /// Cars whose brake is not released (BCXNRB).
+    /// Cars whose brake is not released.
     pub not_released: CarSet,
+    /// They bring the full service brake (BCXNRB): not while they are asked again.
+    pub not_released_brakes: bool,
+}
+
+/// Something wrong with cars that lasts, until its opposite has lasted.
+#[derive(Clone, Debug, Default)]
+struct Kept {
+    wrong: LastingCars,
+    right: LastingCars,
+    found: CarSet,
+}
+
+impl Kept {
+    fn update(&mut self, now: Instant, wrong: CarSet, right: CarSet, after: Duration) -> CarSet {
+        let lasting = self.wrong.update(now, wrong, after);
+        if !self.found.is_empty() {
+            let mended = self.right.update(now, right, after);
+            self.found = self.found.without(mended);
+        } else if !lasting.is_empty() {
+            self.right.clear();
+        }
+        self.found = self.found.with(lasting);
+        self.found
+    }
+
+    fn drop(&mut self, cars: CarSet) {
+        self.found = self.found.without(cars);
+    }
 }
 
 /// The watch.
@@ -43,73 +81,131 @@ pub struct Found {
 pub struct Watch {
     silent_after: Duration,
     not_released_above: f64,
-    not_released_after: Duration,
     not_following_above: f64,
     not_following_after: Duration,
     full_service_n: PerCar,
-    inverters: [Lasting; MAX_CARS],
-    brake_units: [Lasting; MAX_CARS],
-    cylinders: [Lasting; MAX_CARS],
-    not_released: [Lasting; MAX_CARS],
+    cars: CarSet,
+    inverters: Kept,
+    brake_units: Kept,
+    cylinders: Kept,
+    not_released: NotReleased,
 }
 
 impl Watch {
     /// Nothing found yet. `full_service_n` is each car's share of full service, N.
     pub fn new(data: &TcmsData, full_service_n: PerCar) -> Self {
-        Self {
+        let mut watch = Self {
             silent_after: Duration::from_secs(data.silent_after_s),
             not_released_above: data.not_released_above / 100.0,
-            not_released_after: Duration::from_secs(data.not_released_after_s),
             not_following_above: data.not_following_above / 100.0,
             not_following_after: Duration::from_secs(data.not_following_after_s),
             full_service_n,
-            inverters: Default::default(),
-            brake_units: Default::default(),
-            cylinders: Default::default(),
-            not_released: Default::default(),
-        }
+            cars: CarSet::NONE,
+            inverters: Kept::default(),
+            brake_units: Kept::default(),
+            cylinders: Kept::default(),
+            not_released: NotReleased::new(Duration::from_secs(data.not_released_after_s)),
+        };
+        watch.weigh(full_service_n);
+        watch
     }
 
     /// Takes each car's full service anew, N.
     pub fn weigh(&mut self, full_service_n: PerCar) {
         self.full_service_n = full_service_n;
+        for (car, full_n) in full_service_n.iter().enumerate() {
+            self.cars.set(car, *full_n > 0.0);
+        }
+    }
+
+    /// Forgets what was found.
+    pub fn clear(&mut self) {
+        for kept in [
+            &mut self.inverters,
+            &mut self.brake_units,
+            &mut self.cylinders,
+        ] {
+            kept.found = CarSet::NONE;
+            kept.wrong.clear();
+        }
+        self.not_released.clear();
     }
 
     /// One scan.
     pub fn step(&mut self, now: Instant, inputs: &WatchInputs<'_>) -> Found {
-        let mut found = Found::default();
         let equipment = inputs.equipment;
-        let asks = inputs.brakes_off && !equipment.other_brakes && !inputs.forced_release;
-        let (inverters, brakes) = (
-            equipment.inverters_silent.without(inputs.inverters_cut_out),
-            equipment.brake_units_silent.without(inputs.brakes_cut_out),
+        let (no_inverter, no_brake) = (inputs.inverters_cut_out, inputs.brakes_cut_out);
+        let silent = equipment.inverters_silent;
+        self.inverters.drop(no_inverter);
+        let inverters = self.inverters.update(
+            now,
+            silent.without(no_inverter),
+            self.cars.without(silent),
+            self.silent_after,
         );
-        for car in 0..MAX_CARS {
-            let full_n = self.full_service_n[car];
-            let answers = !equipment.brake_units_silent.contains(car);
-            let has_brake = full_n > 0.0 && answers && !inputs.brakes_cut_out.contains(car);
-            let air_n = equipment.air_n[car];
-            let off_n = (air_n - inputs.air_n[car]).abs();
-            let too_little = !equipment.other_brakes && air_n < inputs.air_n[car];
-            found.inverters.set(
-                car,
-                self.inverters[car].update(now, inverters.contains(car), self.silent_after),
-            );
-            found.brake_units.set(
-                car,
-                self.brake_units[car].update(now, brakes.contains(car), self.silent_after),
-            );
-            let follows_not = has_brake && too_little && off_n > self.not_following_above * full_n;
-            found.cylinders.set(
-                car,
-                self.cylinders[car].update(now, follows_not, self.not_following_after),
-            );
-            let remains = has_brake && asks && air_n > self.not_released_above * full_n;
-            found.not_released.set(
-                car,
-                self.not_released[car].update(now, remains, self.not_released_after),
-            );
+        let silent = equipment.brake_units_silent;
+        self.brake_units.drop(no_brake);
+        let brake_units = self.brake_units.update(
+            now,
+            silent.without(no_brake),
+            self.cars.without(silent),
+            self.silent_after,
+        );
+        let asked = self.cars.without(no_brake).without(silent);
+        self.cylinders.drop(no_brake);
+        let cylinders = self.cylinders(now, inputs, asked);
+        let (not_released, not_released_brakes) = self.not_released(now, inputs, asked);
+        Found {
+            inverters,
+            brake_units,
+            cylinders,
+            not_released,
+            not_released_brakes,
         }
-        found
+    }
+
+    /// Cars whose cylinders hold less than they were asked for. Other brakes hide it.
+    fn cylinders(&mut self, now: Instant, inputs: &WatchInputs<'_>, asked: CarSet) -> CarSet {
+        let (mut low, mut full) = (CarSet::NONE, CarSet::NONE);
+        if !inputs.equipment.other_brakes {
+            let (air_n, demands_n) = (&inputs.equipment.air_n, inputs.air_n);
+            for car in 0..MAX_CARS {
+                let full_n = self.full_service_n[car];
+                // Written so that what is no number does not follow.
+                let follows = air_n[car] >= demands_n[car] - self.not_following_above * full_n;
+                low.set(car, !follows);
+                full.set(car, demands_n[car] >= FULL_DEMAND * full_n);
+            }
+        }
+        let wrong = low.without(low.without(asked));
+        let right = full.without(low);
+        self.cylinders
+            .update(now, wrong, right, self.not_following_after)
+    }
+
+    fn not_released(
+        &mut self,
+        now: Instant,
+        inputs: &WatchInputs<'_>,
+        asked: CarSet,
+    ) -> (CarSet, bool) {
+        let nobody_brakes = inputs.nobody_brakes && !inputs.equipment.other_brakes;
+        let mut pressed = CarSet::NONE;
+        if nobody_brakes {
+            for car in 0..MAX_CARS {
+                let most_n = self.not_released_above * self.full_service_n[car];
+                let released = inputs.equipment.air_n[car] <= most_n;
+                pressed.set(car, !released);
+            }
+        }
+        self.not_released.step(
+            now,
+            &Asked {
+                nobody_brakes,
+                by_force: inputs.forced_release,
+                pressed: pressed.without(pressed.without(asked)),
+                cut_out: inputs.brakes_cut_out,
+            },
+        )
     }
 }

@@ -1,0 +1,102 @@
+//! What the equipment's reports mean to TCMS: speed, motor current, effort given.
+
+use crate::train::{Equipment, PerCar};
+
+use super::controller::{FULL_BRAKE, FULL_POWER};
+use super::data::TcmsData;
+use super::effort::Effort;
+use super::inputs::TcmsInputs;
+use super::speed::train_speed;
+
+/// Speed, m/s, a size: mean of the inverters' axles (S3), or of the generators' wheels. What is no
+/// number counts as standing.
+pub(super) fn speed_mps(
+    inputs: &TcmsInputs<'_>,
+    effort: Option<&Effort>,
+    powering: bool,
+    data: &TcmsData,
+) -> f64 {
+    let speed_mps = match (inputs.equipment, effort) {
+        (Some(equipment), Some(effort)) => train_speed(
+            &equipment.axle_mps,
+            effort.consist.motors.without(equipment.inverters_silent),
+            powering,
+            data.slip_kmh / 3.6,
+        ),
+        (Some(equipment), None) => equipment.axle_mps[0],
+        (None, _) => inputs.speed_mps,
+    };
+    if speed_mps.is_finite() {
+        speed_mps.max(0.0)
+    } else {
+        0.0
+    }
+}
+
+/// Greatest traction of any motor car, share of the greatest it can give: what S4 takes from the
+/// motors' current. Without reports the order counts as followed.
+pub(super) fn traction(
+    equipment: Option<&Equipment>,
+    effort: Option<&Effort>,
+    ordered: i16,
+) -> f64 {
+    match (equipment, effort) {
+        (Some(equipment), Some(effort)) => {
+            let most_n = equipment
+                .traction_n
+                .iter()
+                .fold(0.0, |most: f64, of| most.max(*of));
+            most_n / effort.consist.traction_n()
+        }
+        _ => f64::from(ordered) / f64::from(FULL_POWER),
+    }
+}
+
+/// Effort the train gives as the unit is told it, −1024..1023, of what there is at this speed and
+/// load.
+pub(super) fn given(
+    equipment: Option<&Equipment>,
+    effort: Option<&Effort>,
+    speed_mps: f64,
+    ordered: f64,
+) -> i16 {
+    let (Some(equipment), Some(effort)) = (equipment, effort) else {
+        return value(ordered);
+    };
+    let sum = |of: &PerCar| of.iter().sum::<f64>();
+    let brake_n = sum(&equipment.electric_n) + sum(&equipment.air_n);
+    let mut share = -brake_n / sum(&effort.consist.full_service_n);
+    let traction_n = sum(&equipment.traction_n);
+    // As a rule there is one or the other, and what traction there could be takes time to work out.
+    if traction_n > 0.0 {
+        share += traction_n / effort.power_n(speed_mps);
+    }
+    value(share)
+}
+
+fn value(share: f64) -> i16 {
+    let (low, high) = (f64::from(FULL_BRAKE), f64::from(FULL_POWER));
+    let scale = if share < 0.0 { -low } else { high };
+    (share * scale).round().clamp(low, high) as i16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effort_is_told_on_the_wires_scale() {
+        for (share, told) in [
+            (1.0, 1023),
+            (0.5, 512),
+            (0.0, 0),
+            (-0.5, -512),
+            (-1.0, -1024),
+            (-1.3, -1024),
+            (7.0, 1023),
+            (f64::NAN, 0),
+        ] {
+            assert_eq!(value(share), told, "{share}");
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! The mode TCMS drives in (S4).
+
+use protocol::message::ModeSwitch;
+
+use super::atc_link::AtoOrder;
+use super::inputs::CabInputs;
+
+/// Mode TCMS drives in (S4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TcmsMode {
+    /// None: no cab counts, or its mode switch is off.
+    #[default]
+    None,
+    /// Emergency.
+    Emergency,
+    /// Yard.
+    Yard,
+    /// Manual.
+    Manual,
+    /// Automatic.
+    Automatic,
+    /// Driverless.
+    Driverless,
+}
+
+impl TcmsMode {
+    /// Mode of the cab that counts. Automatic and driverless only while the unit is in automatic: until
+    /// then, and after it, the driver has the train.
+    pub(super) fn of(cab: Option<&CabInputs>, order: &AtoOrder) -> Self {
+        match cab.map_or(ModeSwitch::Off, |cab| cab.mode_switch) {
+            ModeSwitch::Off | ModeSwitch::Unknown(_) => Self::None,
+            ModeSwitch::Emergency => Self::Emergency,
+            ModeSwitch::Yard => Self::Yard,
+            ModeSwitch::Automatic if order.automatic => Self::Automatic,
+            ModeSwitch::Driverless if order.automatic => Self::Driverless,
+            ModeSwitch::Manual | ModeSwitch::Automatic | ModeSwitch::Driverless => Self::Manual,
+        }
+    }
+
+    /// Place among the labels of the signal `tcms_mode`.
+    pub fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// ATO drives.
+    pub fn by_ato(self) -> bool {
+        matches!(self, Self::Automatic | Self::Driverless)
+    }
+}

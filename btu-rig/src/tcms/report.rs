@@ -1,0 +1,172 @@
+//! Events TCMS logs: once when something begins.
+
+use protocol::event::Event;
+use protocol::{Duration, Instant};
+
+use crate::train::CarSet;
+
+use super::atc_link::AtcLink;
+use super::data::TcmsData;
+use super::inputs::TcmsInputs;
+use super::timer::Burst;
+use super::view::{TcmsEvent, TcmsView};
+use super::watch::Found;
+
+/// What it goes by in one scan.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scan<'a> {
+    /// What TCMS was given.
+    pub inputs: &'a TcmsInputs<'a>,
+    /// What it did.
+    pub view: &'a TcmsView,
+    /// The link to the unit.
+    pub atc: &'a AtcLink,
+    /// The controller's voltage is in a failure range.
+    pub controller_failed: bool,
+    /// The dead man has been released too long.
+    pub dead_man: bool,
+}
+
+/// What has been logged already, and what waits to be taken.
+#[derive(Clone, Debug)]
+pub(super) struct Report {
+    events: Vec<TcmsEvent>,
+    found: Found,
+    regeneration: CarSet,
+    conditions: u8,
+    contradictions: u32,
+    refused: Burst,
+    /// Whether the unit was silent, once it has been heard.
+    silent: Option<bool>,
+}
+
+/// Most events that wait to be taken.
+const MAX_WAITING: usize = 256;
+
+impl Report {
+    /// Nothing logged.
+    pub fn new(data: &TcmsData) -> Self {
+        Self {
+            events: Vec::new(),
+            found: Found::default(),
+            regeneration: CarSet::NONE,
+            conditions: 0,
+            contradictions: 0,
+            refused: Burst::new(
+                data.refused_frames,
+                Duration::from_secs(data.refused_within_s),
+            ),
+            silent: None,
+        }
+    }
+
+    /// New events.
+    pub fn take(&mut self) -> Vec<TcmsEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Logs what began in this scan.
+    pub fn step(&mut self, now: Instant, scan: &Scan<'_>) {
+        self.found(scan);
+        self.conditions(scan);
+        self.link(now, scan);
+    }
+
+    /// Equipment, car by car.
+    fn found(&mut self, scan: &Scan<'_>) {
+        let (before, found) = (self.found, scan.view.found);
+        if found != before {
+            for (before, found, event) in [
+                (before.inverters, found.inverters, Event::InverterFailed),
+                (
+                    before.brake_units,
+                    found.brake_units,
+                    Event::BrakeUnitFailed,
+                ),
+                (
+                    before.cylinders,
+                    found.cylinders,
+                    Event::BrakeCylinderFailed,
+                ),
+                (
+                    before.not_released,
+                    found.not_released,
+                    Event::BrakeNotReleased,
+                ),
+            ] {
+                self.note_cars(found.without(before), event);
+            }
+            self.found = found;
+        }
+        let equipment = scan.inputs.equipment;
+        let regeneration = equipment.map_or(CarSet::NONE, |e| e.regeneration_cut_out);
+        if regeneration != self.regeneration {
+            let new = regeneration.without(self.regeneration);
+            self.note_cars(new, Event::RegenerationCutOut);
+            self.regeneration = regeneration;
+        }
+    }
+
+    /// What is on or off.
+    fn conditions(&mut self, scan: &Scan<'_>) {
+        let cabs = &scan.inputs.cabs;
+        let contacts = scan
+            .inputs
+            .active_cab()
+            .is_some_and(|cab| cab.controller.contradicts());
+        let millivolts = (scan.view.volts * 1000.0).round() as i32;
+        let conditions = [
+            (scan.controller_failed, Event::ControllerFailed, millivolts),
+            (contacts, Event::ControllerContradicts, 0),
+            (cabs.iter().all(|cab| cab.hcr), Event::TwoCabsActive, 0),
+            (scan.inputs.main_reservoir_low, Event::MainReservoirLow, 0),
+            (scan.dead_man, Event::DeadMan, 0),
+        ];
+        let before = std::mem::take(&mut self.conditions);
+        for (at, (holds, event, parameter)) in conditions.into_iter().enumerate() {
+            let bit = 1 << at;
+            if holds {
+                self.conditions |= bit;
+                if before & bit == 0 {
+                    self.note(event, parameter);
+                }
+            }
+        }
+    }
+
+    /// The link to the unit.
+    fn link(&mut self, now: Instant, scan: &Scan<'_>) {
+        let contradictions = scan.atc.contradictions();
+        if contradictions != self.contradictions {
+            self.contradictions = contradictions;
+            self.note(Event::AtoOrderContradicts, i32::from(scan.atc.effort()));
+        }
+        let refused = scan.inputs.frames_refused;
+        if self.refused.begins(now, refused) {
+            let parameter = i32::try_from(refused).unwrap_or(i32::MAX);
+            self.note(Event::AtcFramesRefused, parameter);
+        }
+        // Silence before the unit was first heard is a unit that is not switched on yet.
+        let silent = scan.atc.silent();
+        match (self.silent, silent) {
+            (Some(false), true) => self.note(Event::AtcSilent, 0),
+            (Some(true), false) => self.note(Event::AtcRestored, 0),
+            (None, true) => return,
+            _ => {}
+        }
+        self.silent = Some(silent);
+    }
+
+    fn note_cars(&mut self, cars: CarSet, event: Event) {
+        for car in cars.iter() {
+            self.note(event, car as i32 + 1);
+        }
+    }
+
+    fn note(&mut self, event: Event, parameter: i32) {
+        // Whoever does not take them loses the newest: what began first says more.
+        if self.events.len() < MAX_WAITING {
+            self.events.push(TcmsEvent { event, parameter });
+        }
+    }
+}

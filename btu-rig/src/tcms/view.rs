@@ -1,0 +1,58 @@
+//! What TCMS shows of a scan: for signals, lamps, the event log and the unit.
+
+use protocol::event::Event;
+
+use super::driving_control::DrivingOutputs;
+use super::effort::Demands;
+use super::emergency_line::Line;
+use super::full_service_brake::BrakeOutputs;
+use super::mode::TcmsMode;
+use super::watch::Found;
+use super::words::{EbSources, Lamps, PowerCuts};
+
+/// What TCMS did in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TcmsView {
+    /// Mode.
+    pub mode: TcmsMode,
+    /// Outputs of the driving-control module; P and value masked while the emergency brake is applied.
+    pub driving: DrivingOutputs,
+    /// Outputs of the full-service-brake module.
+    pub brake: BrakeOutputs,
+    /// Holding brake ordered.
+    pub holding: bool,
+    /// Emergency brake train line.
+    pub line: Line,
+    /// Why powering is cut.
+    pub power_cuts: PowerCuts,
+    /// Lamps.
+    pub lamps: Lamps,
+    /// What is wrong with the equipment.
+    pub found: Found,
+    /// Voltage of the controller that counts, V.
+    pub volts: f64,
+    /// Speed as TCMS sees it, m/s.
+    pub speed_mps: f64,
+    /// Demands on the cars.
+    pub demands: Demands,
+    /// Effort the train gives, −1024..1023, for the unit.
+    pub given: i16,
+    /// The reverser that counts points backward.
+    pub backward: bool,
+}
+
+impl TcmsView {
+    /// What opens the emergency brake train line.
+    pub fn eb_sources(&self) -> EbSources {
+        self.line.sources
+    }
+}
+
+/// An event TCMS logs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TcmsEvent {
+    /// What.
+    pub event: Event,
+    /// Its parameter.
+    pub parameter: i32,
+}

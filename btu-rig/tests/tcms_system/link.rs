@@ -1,0 +1,129 @@
+//! Frames of the unit that contradict themselves, grow old or are refused.
+
+use btu_rig::procedure::EventSource;
+use btu_rig::rig::Rig;
+use protocol::config::UnitConfig;
+use protocol::event::Event;
+use protocol::line::Line;
+use protocol::link::{End, Link};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, ModeSwitch};
+use protocol::{Instant, SCAN};
+
+use crate::bench::{Bench, order};
+
+const P: AtcToTcmsBits = AtcToTcmsBits::POWER;
+const B: AtcToTcmsBits = AtcToTcmsBits::BRAKE;
+
+/// The safe reading wins, every such frame is counted, and an event says so once.
+#[test]
+fn contradicting_orders_brake() {
+    let none = AtcToTcmsBits::empty();
+    for (bits, effort, value, contradicts) in [
+        (P, 600, 600, false),
+        (B, -600, -600, false),
+        (none, 0, 0, false),
+        (P | B, 600, -600, true),
+        (P | B, -600, -600, true),
+        (P, -600, -600, true),
+        (B, 600, -600, true),
+        (none, 600, 0, true),
+        (none, -600, -600, true),
+        (P, 1024, -1024, true),
+        (P, i16::MAX, -1024, true),
+        (B, i16::MIN, -1024, true),
+        (none, -1025, -1024, true),
+    ] {
+        let mut bench = Bench::automatic(bits, effort);
+        bench.run(1000);
+        let name = format!("{bits:?} {effort}");
+        assert_eq!(bench.view().driving.drytebe, value, "{name}");
+        assert_eq!(bench.powers(), value > 0, "{name}");
+        let frames = bench.tcms.frames_contradicting();
+        assert_eq!(frames, if contradicts { 20 } else { 0 }, "{name}");
+        let events = vec![Event::AtoOrderContradicts; usize::from(contradicts)];
+        assert_eq!(bench.events(), events, "{name}");
+        bench.order = Some(order(none, 0));
+        bench.run(100);
+        bench.order = Some(order(bits, effort));
+        bench.run(100);
+        assert_eq!(bench.events(), events, "{name}: again");
+    }
+}
+
+/// Orders count for 0.3 s; then it is ATO that failed.
+#[test]
+fn old_orders_are_a_full_brake_in_automatic_only() {
+    let mut bench = Bench::automatic(P, 1023);
+    bench.run(1000);
+    assert!(bench.powers() && !bench.full_service());
+    bench.order = None;
+    bench.run(250);
+    assert!(!bench.full_service());
+    bench.run(100);
+    assert!(bench.full_service() && !bench.view().driving.dryinp);
+    bench.run(2000);
+    assert!(!bench.powers());
+    bench.order = Some(order(P, 1023));
+    bench.run(100);
+    assert!(!bench.full_service());
+    assert_eq!(bench.events(), [Event::AtcSilent, Event::AtcRestored]);
+
+    bench.inputs.cabs[0].mode_switch = ModeSwitch::Manual;
+    bench.order = None;
+    bench.run(2000);
+    assert!(!bench.full_service(), "by hand nobody waits for ATO");
+}
+
+#[test]
+fn refused_frames_are_told_when_many_come_together() {
+    let mut bench = Bench::new();
+    for _ in 0..20 {
+        bench.inputs.frames_refused += 1;
+        bench.run(500);
+    }
+    assert!(bench.events().is_empty(), "now and then is nothing");
+    for _ in 0..20 {
+        bench.inputs.frames_refused += 1;
+        bench.run(100);
+    }
+    assert_eq!(bench.events(), [Event::AtcFramesRefused]);
+}
+
+/// Through the wire: a frame that comes again (stale sequence), one with a wrong FCS, one cut short.
+#[test]
+fn the_rig_counts_what_its_link_refuses() {
+    let config = include_str!("../../../scripts/units/sg100.toml");
+    let line = include_str!("../../../scripts/lines/line8.toml");
+    let config = UnitConfig::from_toml(config).unwrap();
+    let mut rig = Rig::new(&config, &Line::from_toml(line).unwrap(), 1);
+    let mut unit = Link::new(End::Unit);
+    let (mut now, mut out) = (Instant::from_ms(1000), Vec::new());
+    let mut told = 0;
+    for scan in 0..100 {
+        now += SCAN;
+        if scan % 5 == 0 {
+            let mut frame = Vec::new();
+            unit.send(now, &AtcToTcms::default().into(), &mut frame);
+            rig.receive(now, &frame);
+            let mut wrong = frame.clone();
+            match scan % 15 {
+                0 => {}
+                5 => {
+                    let middle = wrong.len() / 2;
+                    wrong[middle] ^= 0x01;
+                }
+                _ => {
+                    wrong.remove(wrong.len() / 2);
+                }
+            }
+            rig.receive(now, &wrong);
+        }
+        rig.step(now, &mut out);
+        let events = rig.take_events();
+        let refused = Event::AtcFramesRefused.definition().code;
+        let tcms = events.iter().filter(|e| e.source == EventSource::Tcms);
+        told += tcms.filter(|e| e.code == refused).count();
+    }
+    assert!(rig.counters().rejected_total() >= 15);
+    assert_eq!(told, 1);
+}
