@@ -346,6 +346,13 @@ mod tests {
     #[test]
     fn what_cannot_be_is_refused_by_name() {
         let cut = LINE6.find("[[cars]]").unwrap_or(LINE6.len());
+        // The train less the first car of a name.
+        let without = |name: &str| {
+            let named = format!("[[cars]]\nname = \"{name}\"");
+            let from = LINE6.find(&named).unwrap_or(LINE6.len());
+            let next = LINE6[from + 1..].find("[[cars]]").unwrap_or(0);
+            format!("{}{}", &LINE6[..from], &LINE6[from + 1 + next..])
+        };
         for (text, words) in [
             (
                 LINE6.replace("empty_kg = 33552", "empty_kg = -1"),
@@ -379,6 +386,34 @@ mod tests {
                 "motor car",
             ),
             (LINE6.replace("air_n = 54022", "air_n = 5402"), "pair 1"),
+            (
+                LINE6.replace("rotating_kg = 4999", "rotating_kg = -4999"),
+                "cars 2 (M1): rotating_kg",
+            ),
+            (
+                LINE6.replace("full_load_kg = 20000", "full_load_kg = -1"),
+                "cars 1 (TC1): full_load_kg",
+            ),
+            (
+                LINE6.replace("bogies_kg = 13913", "bogies_kg = 40000"),
+                "cars 2 (M1): bogies_kg",
+            ),
+            (
+                LINE6.replace("empty_kg = 29378", "empty_kg = nan"),
+                "cars 5 (T2): empty_kg",
+            ),
+            (
+                LINE6.replace("air_n = 49720", "air_n = inf"),
+                "cars 5 (T2): air_n",
+            ),
+            (LINE6.replace("pair = 4", "pair = 5"), "pair 4"),
+            (LINE6.replace("pair = 4", "pair = 0"), "cars 7 (M2): pair"),
+            (without("M1"), "pair 1: a pair needs a motor car"),
+            (
+                format!("{LINE6}{}", &LINE6[cut..]),
+                "cars = 16 is outside 1 .. 12",
+            ),
+            (LINE6.replace("bogies_kg = 10600\n", ""), "bogies_kg"),
         ] {
             let error = TrainData::from_toml(&text).unwrap_err().to_string();
             assert!(error.contains(words), "{words}: {error}");

@@ -40,6 +40,8 @@ pub(super) struct Formation {
     service_n: PerCar,
     motor_cars: CarSet,
     faults: EquipmentFaults,
+    /// None of them.
+    sound: bool,
     /// Pressure in each car's cylinders as force, N.
     cylinders_n: PerCar,
     /// What the inputs of the last step mean for reports.
@@ -94,6 +96,7 @@ impl Formation {
             service_n: none,
             motor_cars: motor_cars(data),
             faults: EquipmentFaults::default(),
+            sound: true,
             cylinders_n: none,
             cut_out: CutOut::default(),
             efforts: Efforts {
@@ -137,24 +140,32 @@ impl Formation {
     }
 
     pub fn set_faults(&mut self, faults: EquipmentFaults) {
+        self.sound = faults == EquipmentFaults::default();
         self.faults = faults;
     }
 
     pub fn equipment(&self) -> Equipment {
         let speed_mps = self.velocity_mps.abs();
-        let left = |i: usize| self.wheels.left(i);
-        let factor = self.conditions.brake_factor;
-        Equipment {
-            axle_mps: std::array::from_fn(|i| self.wheels.rim_mps(i).map_or(speed_mps, f64::abs)),
-            traction_n: std::array::from_fn(|i| left(i) * self.efforts.traction_n[i]),
+        let (efforts, factor) = (&self.efforts, self.conditions.brake_factor);
+        let mut equipment = Equipment {
+            axle_mps: [speed_mps; MAX_CARS],
+            traction_n: efforts.traction_n,
             // An inverter knows its motors' torque, not what becomes of it at the rims.
-            electric_n: std::array::from_fn(|i| left(i) * self.efforts.electric_n[i] / factor),
+            electric_n: efforts.electric_n.map(|n| n / factor),
             air_n: self.cylinders_n,
             inverters_silent: self.faults.inverters_dead,
             regeneration_cut_out: self.cut_out.regeneration,
             brake_units_silent: self.faults.brake_units_dead,
             other_brakes: self.cut_out.others,
+        };
+        if self.wheels.disturbed() {
+            for i in 0..MAX_CARS {
+                equipment.axle_mps[i] = self.wheels.rim_mps(i).map_or(speed_mps, f64::abs);
+                equipment.traction_n[i] *= self.wheels.left(i);
+                equipment.electric_n[i] *= self.wheels.left(i);
+            }
         }
+        equipment
     }
 
     pub fn step(&mut self, dt_s: f64, inputs: &TrainInputs) -> TrainState {
@@ -227,19 +238,61 @@ impl Formation {
 
     /// Demands become efforts, as far as the equipment is sound and not cut out.
     fn follow_demands(&mut self, dt_s: f64, inputs: &TrainInputs) {
-        let faults = &self.faults;
-        let no_motor = faults.inverters_dead.with(inputs.inverters_cut_out);
+        let no_motor = self.faults.inverters_dead.with(inputs.inverters_cut_out);
         let refused = if inputs.regeneration_refused {
             self.motor_cars
         } else {
             CarSet::NONE
         };
-        let no_electric = faults.regeneration_lost.with(refused);
-        let no_service = faults.brake_units_dead.with(inputs.brakes_cut_out);
+        let no_electric = self.faults.regeneration_lost.with(refused);
+        let no_service = self.faults.brake_units_dead.with(inputs.brakes_cut_out);
         self.cut_out = CutOut {
             regeneration: no_electric.without(no_motor),
             others: inputs.emergency || inputs.security || inputs.parking,
         };
+        // Equipment is sound nearly always, and a train is simulated many thousand times.
+        let all_sound = self.sound
+            && (no_motor.with(no_electric).with(no_service)).is_empty()
+            && !inputs.security;
+        if all_sound {
+            self.motors.step(dt_s, &inputs.motor_n);
+            self.air.step(dt_s, &inputs.air_n);
+        } else {
+            let (motor_n, air_n) = self.reach_equipment(inputs, no_motor, no_electric, no_service);
+            self.motors.step(dt_s, &motor_n);
+            self.air.step(dt_s, &air_n);
+        }
+        let emergency = self.emergency.step(dt_s, inputs.emergency);
+        let mut cylinders_n = *self.air.effort_n();
+        if emergency > 0.0 || !self.sound {
+            self.fill_cylinders(&mut cylinders_n, emergency, inputs);
+        }
+        self.cylinders_n = cylinders_n;
+        let factor = self.conditions.brake_factor;
+        let motor_n = self.motors.effort_n();
+        let efforts = &mut self.efforts;
+        for i in 0..MAX_CARS {
+            efforts.traction_n[i] = motor_n[i].max(0.0);
+            efforts.electric_n[i] = factor * (-motor_n[i]).max(0.0);
+            efforts.air_n[i] = factor * cylinders_n[i];
+        }
+        if inputs.parking {
+            let share = factor * self.data.service_brake.parking_share;
+            for (air, service) in efforts.air_n.iter_mut().zip(&self.service_n) {
+                *air = air.max(share * service);
+            }
+        }
+    }
+
+    /// Demands on inverters and air brakes that reach equipment which is able to follow, N.
+    #[cold]
+    fn reach_equipment(
+        &self,
+        inputs: &TrainInputs,
+        no_motor: CarSet,
+        no_electric: CarSet,
+        no_service: CarSet,
+    ) -> (PerCar, PerCar) {
         let (mut motor_n, mut air_n) = (inputs.motor_n, inputs.air_n);
         let full = self.data.service_brake.security_share;
         for i in 0..MAX_CARS {
@@ -249,34 +302,25 @@ impl Formation {
             if no_service.contains(i) {
                 air_n[i] = 0.0;
             }
-            air_n[i] *= 1.0 - faults.pressure_lost[i];
+            air_n[i] *= 1.0 - self.faults.pressure_lost[i];
             if inputs.security && !inputs.brakes_cut_out.contains(i) {
                 air_n[i] = air_n[i].max(full * self.service_n[i]);
             }
         }
-        let motor_n = self.motors.step(dt_s, &motor_n);
-        let air_n = self.air.step(dt_s, &air_n);
-        let emergency = self.emergency.step(dt_s, inputs.emergency);
-        let parking = if inputs.parking {
-            self.data.service_brake.parking_share
-        } else {
-            0.0
-        };
-        let factor = self.conditions.brake_factor;
-        let efforts = &mut self.efforts;
-        for i in 0..MAX_CARS {
-            let cut_out = inputs.brakes_cut_out.contains(i);
-            let mut cylinder_n = air_n[i];
-            if !cut_out {
-                cylinder_n = cylinder_n.max(emergency * self.emergency_n[i]);
-                if self.faults.brakes_stuck.contains(i) && !inputs.forced_release {
-                    cylinder_n = cylinder_n.max(self.cylinders_n[i]);
-                }
+        (motor_n, air_n)
+    }
+
+    /// What the emergency brake's valve adds, and what does not go out of stuck cylinders, N.
+    #[cold]
+    fn fill_cylinders(&self, cylinders_n: &mut PerCar, emergency: f64, inputs: &TrainInputs) {
+        for (i, cylinder_n) in cylinders_n.iter_mut().enumerate() {
+            if inputs.brakes_cut_out.contains(i) {
+                continue;
             }
-            self.cylinders_n[i] = cylinder_n;
-            efforts.traction_n[i] = motor_n[i].max(0.0);
-            efforts.electric_n[i] = factor * (-motor_n[i]).max(0.0);
-            efforts.air_n[i] = factor * cylinder_n.max(parking * self.service_n[i]);
+            *cylinder_n = cylinder_n.max(emergency * self.emergency_n[i]);
+            if self.faults.brakes_stuck.contains(i) && !inputs.forced_release {
+                *cylinder_n = cylinder_n.max(self.cylinders_n[i]);
+            }
         }
     }
 

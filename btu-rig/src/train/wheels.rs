@@ -103,6 +103,11 @@ impl WheelSets {
         self.disturbed && self.breaks_away.contains(&true)
     }
 
+    /// A car slips or slides, or the protection still keeps effort off it.
+    pub fn disturbed(&self) -> bool {
+        self.disturbed
+    }
+
     /// Speed of a car's rims if it slips or slides.
     pub fn rim_mps(&self, car: usize) -> Option<f64> {
         self.breaks_away[car].then(|| self.rim_mps[car])
