@@ -1,5 +1,7 @@
 //! `ptu catalog`: what there is to name in commands and scripts.
 
+use btu_rig::tcms::Consist;
+use btu_rig::train::{CarSet, Role, TrainData};
 use clap::{Args, ValueEnum};
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
@@ -8,7 +10,7 @@ use super::{ScriptsOption, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::table::Table;
 
-/// Show faults, signals, speed codes, lines or parts
+/// Show faults, signals, speed codes, lines, parts or a train's cars
 #[derive(Debug, Args)]
 pub struct CatalogArguments {
     /// What to show
@@ -17,6 +19,9 @@ pub struct CatalogArguments {
     /// Unit configuration whose speed codes to show
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
+    /// Train whose cars to show: line6 or another trains/NAME.toml, or a file ending in .toml
+    #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
+    train: String,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -36,6 +41,8 @@ enum What {
     Lines,
     /// Parts that can be replaced
     Lrus,
+    /// Masses and brake forces of a train's cars, its MT pairs and the whole of it
+    Train,
 }
 
 impl CatalogArguments {
@@ -47,6 +54,7 @@ impl CatalogArguments {
             What::Codes => self.codes()?,
             What::Lines => self.lines()?,
             What::Lrus => self.lrus()?,
+            What::Train => self.train()?,
         };
         if self.json {
             print_json(&entries)
@@ -98,6 +106,59 @@ impl CatalogArguments {
             }
         }
         Ok(entries)
+    }
+}
+
+impl CatalogArguments {
+    /// S3's table, derived from the train's file.
+    fn train(&self) -> Result<Vec<Value>, Failure> {
+        let TrainData::Cars(data) = crate::drive::train::train(&self.scripts.find()?, &self.train)?
+        else {
+            return Err(Failure::usage(format!(
+                "--train {}: a point mass has no cars",
+                self.train
+            )));
+        };
+        let empty = Consist::new(&data);
+        let mut full = empty.clone();
+        full.weigh(data.cars.iter().map(|car| car.full_load_kg).sum());
+        let row = |name: &str, role: &str, pair: Option<usize>, cars: CarSet| {
+            let sum = |value: &dyn Fn(usize) -> f64| cars.iter().map(value).sum::<f64>().round();
+            let car = |i: usize| &data.cars[i];
+            json!({
+                "car": name, "role": role, "pair": pair,
+                "empty_kg": sum(&|i| car(i).empty_kg),
+                "bogies_kg": sum(&|i| car(i).bogies_kg),
+                "full_kg": sum(&|i| car(i).empty_kg + car(i).full_load_kg),
+                "braking_empty_kg": sum(&|i| car(i).empty_kg + car(i).rotating_kg),
+                "braking_full_kg":
+                    sum(&|i| car(i).empty_kg + car(i).rotating_kg + car(i).full_load_kg),
+                "brake_empty_n": sum(&|i| empty.full_service_n[i]),
+                "brake_full_n": sum(&|i| full.full_service_n[i]),
+                "regeneration_empty_n": sum(&|i| empty.electric_n[i]),
+                "regeneration_full_n": sum(&|i| full.electric_n[i]),
+            })
+        };
+        let mut rows = Vec::new();
+        let mut all = CarSet::NONE;
+        for (i, car) in data.cars.iter().enumerate() {
+            let role = match car.role {
+                Role::Motor => "motor",
+                Role::Trailer => "trailer",
+            };
+            rows.push(row(&car.name, role, Some(car.pair), CarSet::one(i)));
+            all.set(i, true);
+        }
+        for (i, pair) in full.pairs.iter().enumerate() {
+            let cars = pair.motors.with(pair.trailers);
+            let names: Vec<_> = cars
+                .iter()
+                .map(|car| data.cars[car].name.as_str())
+                .collect();
+            rows.push(row(&names.join("+"), "pair", Some(i + 1), cars));
+        }
+        rows.push(row(&data.name, "train", None, all));
+        Ok(rows)
     }
 }
 
