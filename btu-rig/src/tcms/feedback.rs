@@ -63,7 +63,6 @@ pub(super) fn given(
     let (Some(equipment), Some(effort)) = (equipment, effort) else {
         return value(ordered);
     };
-    let sum = |of: &PerCar| of.iter().sum::<f64>();
     let brake_n = sum(&equipment.electric_n) + sum(&equipment.air_n);
     let mut share = -brake_n / sum(&effort.consist.full_service_n);
     let traction_n = sum(&equipment.traction_n);
@@ -72,6 +71,17 @@ pub(super) fn given(
         share += traction_n / effort.power_n(speed_mps);
     }
     value(share)
+}
+
+/// Sum over the cars. In four lanes, which do not wait for each other: this runs every scan.
+fn sum(of: &PerCar) -> f64 {
+    let mut lanes = [0.0; 4];
+    for four in of.chunks_exact(4) {
+        for (lane, n) in lanes.iter_mut().zip(four) {
+            *lane += n;
+        }
+    }
+    lanes.iter().sum()
 }
 
 fn value(share: f64) -> i16 {
@@ -83,6 +93,13 @@ fn value(share: f64) -> i16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::train::MAX_CARS;
+
+    #[test]
+    fn a_sum_leaves_no_car_out() {
+        let each: PerCar = std::array::from_fn(|car| f64::from(1 << car));
+        assert_eq!(sum(&each), f64::from((1 << MAX_CARS) - 1));
+    }
 
     #[test]
     fn effort_is_told_on_the_wires_scale() {

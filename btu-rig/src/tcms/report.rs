@@ -114,22 +114,23 @@ impl Report {
             .inputs
             .active_cab()
             .is_some_and(|cab| cab.controller.contradicts());
-        let millivolts = (scan.view.volts * 1000.0).round() as i32;
         let conditions = [
-            (scan.controller_failed, Event::ControllerFailed, millivolts),
-            (contacts, Event::ControllerContradicts, 0),
-            (cabs.iter().all(|cab| cab.hcr), Event::TwoCabsActive, 0),
-            (scan.inputs.main_reservoir_low, Event::MainReservoirLow, 0),
-            (scan.dead_man, Event::DeadMan, 0),
+            (scan.controller_failed, Event::ControllerFailed),
+            (contacts, Event::ControllerContradicts),
+            (cabs.iter().all(|cab| cab.hcr), Event::TwoCabsActive),
+            (scan.inputs.main_reservoir_low, Event::MainReservoirLow),
+            (scan.dead_man, Event::DeadMan),
         ];
         let before = std::mem::take(&mut self.conditions);
-        for (at, (holds, event, parameter)) in conditions.into_iter().enumerate() {
-            let bit = 1 << at;
-            if holds {
-                self.conditions |= bit;
-                if before & bit == 0 {
-                    self.note(event, parameter);
-                }
+        for (at, (holds, event)) in conditions.into_iter().enumerate() {
+            let bit = u8::from(holds) << at;
+            self.conditions |= bit;
+            if bit & !before != 0 {
+                let parameter = match event {
+                    Event::ControllerFailed => (scan.view.volts * 1000.0).round() as i32,
+                    _ => 0,
+                };
+                self.note(event, parameter);
             }
         }
     }

@@ -169,12 +169,12 @@ impl Watch {
         let (mut low, mut full) = (CarSet::NONE, CarSet::NONE);
         if !inputs.equipment.other_brakes {
             let (air_n, demands_n) = (&inputs.equipment.air_n, inputs.air_n);
-            for car in 0..MAX_CARS {
-                let full_n = self.full_service_n[car];
-                // Written so that what is no number does not follow.
-                let follows = air_n[car] >= demands_n[car] - self.not_following_above * full_n;
-                low.set(car, !follows);
-                full.set(car, demands_n[car] >= FULL_DEMAND * full_n);
+            let (full_n, part) = (&self.full_service_n, self.not_following_above);
+            // Written so that what is no number does not follow.
+            let follows = |car: usize| air_n[car] >= demands_n[car] - part * full_n[car];
+            low = cars(|car| !follows(car));
+            if !self.cylinders.found.is_empty() {
+                full = cars(|car| demands_n[car] >= FULL_DEMAND * full_n[car]);
             }
         }
         let wrong = low.without(low.without(asked));
@@ -192,11 +192,9 @@ impl Watch {
         let nobody_brakes = inputs.nobody_brakes && !inputs.equipment.other_brakes;
         let mut pressed = CarSet::NONE;
         if nobody_brakes {
-            for car in 0..MAX_CARS {
-                let most_n = self.not_released_above * self.full_service_n[car];
-                let released = inputs.equipment.air_n[car] <= most_n;
-                pressed.set(car, !released);
-            }
+            let (air_n, full_n) = (&inputs.equipment.air_n, &self.full_service_n);
+            let released = |car: usize| air_n[car] <= self.not_released_above * full_n[car];
+            pressed = cars(|car| !released(car));
         }
         self.not_released.step(
             now,
@@ -208,4 +206,13 @@ impl Watch {
             },
         )
     }
+}
+
+/// The cars something holds for. As a rule it is none, and that is found out for all at once.
+fn cars(holds: impl Fn(usize) -> bool) -> CarSet {
+    let mut set = CarSet::NONE;
+    if (0..MAX_CARS).fold(false, |any, car| any | holds(car)) {
+        (0..MAX_CARS).for_each(|car| set.set(car, holds(car)));
+    }
+    set
 }
