@@ -1,8 +1,8 @@
-//! How long the train models and TCMS's sharing out of effort take: `cargo bench -p btu-rig --bench train`. One item is the two
-//! steps of 5 ms of a scan.
+//! How long the train models take, with TCMS's sharing out of effort for a train of cars:
+//! `cargo bench -p btu-rig --bench train`. One item is the two steps of 5 ms of a scan.
 
 use btu_rig::conditions::Conditions;
-use btu_rig::tcms::{Consist, Effort, Order};
+use btu_rig::tcms::{Consist, Demands, Effort, Order};
 use btu_rig::train::{CarSet, Train, TrainData, TrainInputs, TrainState};
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -15,7 +15,7 @@ fn main() {
 }
 
 /// Power to 60 km/h, coasting, braking to a stop: the three things a train does.
-fn run((train, effort): &mut (Train, Effort)) -> TrainState {
+fn run((train, effort): &mut (Train, Option<Effort>)) -> TrainState {
     let mut state = TrainState::default();
     for scan in 0..SCANS {
         let share = [1.0, 0.05, -0.6][(scan / 2500).min(2)];
@@ -27,7 +27,9 @@ fn run((train, effort): &mut (Train, Effort)) -> TrainState {
             inverters_out: CarSet::NONE,
             brakes_out: CarSet::NONE,
         };
-        let demands = effort.step(0.01, &order, Some(&train.equipment()));
+        let demands = effort.as_mut().map_or_else(Demands::default, |effort| {
+            effort.step(0.01, &order, Some(&train.equipment()))
+        });
         let inputs = TrainInputs {
             demand: share,
             motor_n: demands.motor_n,
@@ -52,10 +54,10 @@ fn section_run(bencher: Bencher<'_, '_>, name: &str) {
         conditions.adhesion = 0.06;
     }
     let train = Train::new(&data, &conditions);
-    let TrainData::Cars(cars) = TrainData::line6() else {
-        return;
+    let effort = match &data {
+        TrainData::Cars(cars) => Some(Effort::new(Consist::new(cars))),
+        TrainData::Ideal(_) => None,
     };
-    let effort = Effort::new(Consist::new(&cars));
     bencher
         .counter(ItemsCount::new(SCANS))
         .with_inputs(|| (train.clone(), effort.clone()))

@@ -286,6 +286,7 @@ fn what_there_is_to_name_is_catalogued() {
         ("codes", &["name"]),
         ("lines", &["line"]),
         ("lrus", &["id", "name", "name_ko"]),
+        ("train", &["car", "role"]),
     ] {
         let entries = place.json(&["catalog", what, "--json"]);
         assert!(!list(&entries).is_empty(), "{what}");

@@ -9,6 +9,8 @@
 //! Who can give what changes with load and cut-outs only, so it is kept ([`Sharing`]) from scan to
 //! scan.
 
+use std::ops::Range;
+
 use crate::train::{CarSet, MAX_CARS, PerCar};
 
 use super::consist::Consist;
@@ -17,20 +19,24 @@ use super::consist::Consist;
 #[derive(Clone, Debug)]
 pub struct Sharing {
     shares: Vec<PairShares>,
-    /// Place of each car's pair.
-    pair_of: [usize; MAX_CARS],
-    /// Part of its pair's electric brake that each car gives.
-    electric_part: PerCar,
-    /// The same of air on trailers, or on motor cars.
-    air_part: PerCar,
+    /// Cars, one pair after the other.
+    parts: Vec<CarPart>,
     /// Motor cars that brake electrically, with their pair.
     willing: Vec<(usize, usize)>,
-    trailers: CarSet,
     full_n: f64,
 }
 
+/// Part of each of its pair's brakes that a car gives.
+#[derive(Clone, Copy, Debug)]
+struct CarPart {
+    car: usize,
+    electric: f64,
+    trailer_air: f64,
+    motor_air: f64,
+}
+
 /// One MT pair, N.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 struct PairShares {
     /// Full service, with what it takes over for others.
     full_n: f64,
@@ -38,6 +44,8 @@ struct PairShares {
     electric_n: f64,
     trailer_air_n: f64,
     motor_air_n: f64,
+    /// Its cars among the parts.
+    parts: Range<usize>,
 }
 
 /// What is asked for in one scan.
@@ -87,11 +95,8 @@ impl Sharing {
             .sum();
         let mut sharing = Self {
             shares: Vec::with_capacity(consist.pairs.len()),
-            pair_of: [0; MAX_CARS],
-            electric_part: [0.0; MAX_CARS],
-            air_part: [0.0; MAX_CARS],
+            parts: Vec::new(),
             willing: Vec::new(),
-            trailers: CarSet::NONE,
             full_n: wanted_n,
         };
         for (at, pair) in consist.pairs.iter().enumerate() {
@@ -99,26 +104,28 @@ impl Sharing {
             let willing = pair.motors.without(no_electric);
             let (trailers, motors) = (pair.trailers.without(no_air), pair.motors.without(no_air));
             let moved_n = moved(consist, at, wanted_n, no_air);
+            let begin = sharing.parts.len();
+            let all = pair.motors.with(pair.trailers);
             let shares = PairShares {
                 full_n: (pair_n * pair.load_factor() + moved_n).max(0.0),
                 electric_n: sum(&consist.electric_n, willing),
                 trailer_air_n: sum(&consist.air_n, trailers),
                 motor_air_n: sum(&consist.air_n, motors),
+                parts: begin..begin + all.iter().count(),
             };
-            for car in pair.motors.with(pair.trailers).iter() {
-                sharing.pair_of[car] = at;
+            for car in all.iter() {
+                let of = |cars: CarSet, each: &PerCar, whole_n| match cars.contains(car) {
+                    true => part(each[car], whole_n),
+                    false => 0.0,
+                };
+                sharing.parts.push(CarPart {
+                    car,
+                    electric: of(willing, &consist.electric_n, shares.electric_n),
+                    trailer_air: of(trailers, &consist.air_n, shares.trailer_air_n),
+                    motor_air: of(motors, &consist.air_n, shares.motor_air_n),
+                });
             }
-            for car in willing.iter() {
-                sharing.electric_part[car] = part(consist.electric_n[car], shares.electric_n);
-                sharing.willing.push((car, at));
-            }
-            for car in trailers.iter() {
-                sharing.air_part[car] = part(consist.air_n[car], shares.trailer_air_n);
-                sharing.trailers.set(car, true);
-            }
-            for car in motors.iter() {
-                sharing.air_part[car] = part(consist.air_n[car], shares.motor_air_n);
-            }
+            sharing.willing.extend(willing.iter().map(|car| (car, at)));
             sharing.shares.push(shares);
         }
         sharing
@@ -127,30 +134,22 @@ impl Sharing {
     /// Demands of one scan. It keeps nothing.
     pub fn braking(&self, inputs: &BrakingInputs<'_>) -> BrakeDemands {
         let lost_n = self.lost(inputs.inverters);
-        let (mut electric_n, mut trailer_n, mut motor_n) =
-            ([0.0; MAX_CARS], [0.0; MAX_CARS], [0.0; MAX_CARS]);
-        for (at, pair) in self.shares.iter().enumerate() {
-            let needed_n = inputs.share * pair.full_n;
-            electric_n[at] = needed_n.min(inputs.pattern * pair.electric_n);
-            let left_n = needed_n.min(inputs.pattern_ahead * pair.electric_n);
-            let air_n = needed_n - left_n + lost_n[at];
-            trailer_n[at] = air_n.min(pair.trailer_air_n);
-            motor_n[at] = (air_n - trailer_n[at]).min(pair.motor_air_n);
-        }
         let mut demands = BrakeDemands {
             train_n: inputs.share * self.full_n,
             electric_n: [0.0; MAX_CARS],
             air_n: [0.0; MAX_CARS],
         };
-        for car in 0..MAX_CARS {
-            let at = self.pair_of[car];
-            let air_n = if self.trailers.contains(car) {
-                trailer_n[at]
-            } else {
-                motor_n[at]
-            };
-            demands.electric_n[car] = self.electric_part[car] * electric_n[at];
-            demands.air_n[car] = self.air_part[car] * air_n;
+        for (pair, lost_n) in self.shares.iter().zip(lost_n) {
+            let needed_n = inputs.share * pair.full_n;
+            let electric_n = needed_n.min(inputs.pattern * pair.electric_n);
+            let left_n = needed_n.min(inputs.pattern_ahead * pair.electric_n);
+            let air_n = needed_n - left_n + lost_n;
+            let trailer_n = air_n.min(pair.trailer_air_n);
+            let motor_n = (air_n - trailer_n).min(pair.motor_air_n);
+            for part in &self.parts[pair.parts.clone()] {
+                demands.electric_n[part.car] = part.electric * electric_n;
+                demands.air_n[part.car] = part.trailer_air * trailer_n + part.motor_air * motor_n;
+            }
         }
         demands
     }

@@ -46,6 +46,7 @@ pub struct Consist {
     pub air_n: PerCar,
     /// Greatest traction of each car at the present load, N: TE_w times the greatest (S3).
     pub power_n: PerCar,
+    full_inertia_kg: f64,
     load_kg: f64,
 }
 
@@ -61,6 +62,7 @@ impl Consist {
             full_service_n: [0.0; MAX_CARS],
             air_n: [0.0; MAX_CARS],
             power_n: [0.0; MAX_CARS],
+            full_inertia_kg: 0.0,
             load_kg: 0.0,
         };
         for (i, car) in data.cars.iter().enumerate() {
@@ -75,6 +77,7 @@ impl Consist {
             }
             consist.air_n[i] = car.air_n;
         }
+        consist.full_inertia_kg = consist.pairs.iter().map(|pair| pair.full_inertia_kg).sum();
         consist.weigh(0.0);
         consist
     }
@@ -125,7 +128,7 @@ impl Consist {
 
     /// Braking mass of the full train, kg.
     pub fn full_inertia_kg(&self) -> f64 {
-        self.pairs.iter().map(|pair| pair.full_inertia_kg).sum()
+        self.full_inertia_kg
     }
 
     /// Greatest braking effort of the full train, N [S3 eq. 4-1, without its rounding].

@@ -9,6 +9,9 @@ use super::powering::{self, powering};
 /// Deceleration below which air no longer holds a train back that departs, m/s² [default].
 const RELEASED_MPS2: f64 = 0.02;
 
+/// Time constants after which air that is no longer asked for has gone, to 1 part in 20 000.
+const SETTLED: f64 = 10.0;
+
 /// What effort is ordered in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
@@ -52,6 +55,8 @@ pub struct Effort {
     motors_due: Actuators,
     /// What cylinders should hold by now.
     air_due: Actuators,
+    /// Time since air was last asked for, s.
+    air_rests_s: f64,
     /// Longer answer of air than of inverters, s.
     air_later_s: f64,
     sharing: Sharing,
@@ -73,6 +78,7 @@ impl Effort {
         Self {
             motors_due: Actuators::new(motors),
             air_due: Actuators::new(air),
+            air_rests_s: 0.0,
             air_later_s: (air.dead_s + air.rise_s - motors.dead_s - motors.rise_s).max(0.0),
             effort_mps2: 0.0,
             held_mps2: 0.0,
@@ -120,8 +126,24 @@ impl Effort {
             self.brake(brake_mps2, order, equipment, &mut demands);
         }
         self.motors_due.step(dt_s, &demands.motor_n);
-        self.air_due.step(dt_s, &demands.air_n);
+        self.expect_air(dt_s, brake_mps2 > 0.0, &demands.air_n);
         demands
+    }
+
+    /// What cylinders should hold: nothing to work out once they have long been empty.
+    fn expect_air(&mut self, dt_s: f64, asked: bool, air_n: &PerCar) {
+        let service = &self.consist.data.service_brake;
+        let settled_s = service.dead_time_s + SETTLED * service.release_s;
+        if asked {
+            self.air_rests_s = 0.0;
+        } else if self.air_rests_s > settled_s {
+            return;
+        }
+        self.air_rests_s += dt_s;
+        self.air_due.step(dt_s, air_n);
+        if self.air_rests_s > settled_s {
+            self.air_due.reset();
+        }
     }
 
     fn brake(

@@ -77,24 +77,27 @@ impl Actuators {
         if dt_s != self.dt_s {
             self.tune(dt_s);
         }
-        let due_n = self.delayed(demand_n);
-        for (effort, due) in self.effort_n.iter_mut().zip(due_n) {
+        let (rise, fall) = (self.rise, self.fall);
+        let follow = |effort: &mut f64, due: f64| {
             let change = due - *effort;
-            *effort += change * if change > 0.0 { self.rise } else { self.fall };
+            *effort += change * if change > 0.0 { rise } else { fall };
+        };
+        if let Some(place) = self.line.get_mut(self.next) {
+            for i in 0..MAX_CARS {
+                let due = place[i];
+                place[i] = demand_n[i];
+                follow(&mut self.effort_n[i], due);
+            }
+            self.next += 1;
+            if self.next == self.line.len() {
+                self.next = 0;
+            }
+        } else {
+            for i in 0..MAX_CARS {
+                follow(&mut self.effort_n[i], demand_n[i]);
+            }
         }
         &self.effort_n
-    }
-
-    fn delayed(&mut self, demand_n: &PerCar) -> PerCar {
-        let Some(place) = self.line.get_mut(self.next) else {
-            return *demand_n;
-        };
-        let due = std::mem::replace(place, *demand_n);
-        self.next += 1;
-        if self.next == self.line.len() {
-            self.next = 0;
-        }
-        due
     }
 
     fn tune(&mut self, dt_s: f64) {

@@ -261,6 +261,38 @@ fn the_holding_brake_holds_where_it_would_roll() {
     }
 }
 
+/// Full power against the holding brake, which goes when motors pull with 10 % of what they can (S4):
+/// no roll-back on the ruling gradient, and jerk at its limit although air goes out by itself.
+#[test]
+fn it_departs_without_rolling_back_or_jumping() {
+    for (gradient_permille, load_kg) in [(35.0, FULL_KG), (35.0, 0.0), (0.0, 0.0), (-20.0, FULL_KG)]
+    {
+        let inputs = TrainInputs {
+            gradient_permille,
+            load_kg,
+            ..TrainInputs::default()
+        };
+        let mut ride = Ride::new(Conditions::default(), 0.0, inputs);
+        ride.holding = true;
+        ride.run(3.0);
+        let stood_m = ride.way_m;
+        ride.speeds_mps.clear();
+        ride.inputs.demand = 1.0;
+        let tenth_n = 0.1 * ride.effort.consist.traction_n();
+        ride.run_until(|r| r.train.equipment().traction_n[1] >= tenth_n);
+        ride.holding = false;
+        let mut least_m = stood_m;
+        for _ in 0..1200 {
+            ride.step();
+            least_m = least_m.min(ride.way_m);
+        }
+        assert_eq!(least_m, stood_m, "{gradient_permille} {load_kg}");
+        let peak = ride.peak_jerk_mps3();
+        assert!(peak < 0.9, "{gradient_permille} {load_kg}: {peak}");
+        assert!(ride.kmh() > 5.0, "{}", ride.kmh());
+    }
+}
+
 /// On rails that carry 0.05 full service slides: deceleration is what friction gives, the axle with
 /// the tachometers rolls less way than the train. On good rails again, everything recovers.
 #[test]

@@ -123,7 +123,8 @@ impl CatalogArguments {
         let mut full = empty.clone();
         full.weigh(data.cars.iter().map(|car| car.full_load_kg).sum());
         let row = |name: &str, role: &str, pair: Option<usize>, cars: CarSet| {
-            let sum = |value: &dyn Fn(usize) -> f64| cars.iter().map(value).sum::<f64>().round();
+            let sum =
+                |value: &dyn Fn(usize) -> f64| cars.iter().map(value).sum::<f64>().round() as i64;
             let car = |i: usize| &data.cars[i];
             json!({
                 "car": name, "role": role, "pair": pair,
