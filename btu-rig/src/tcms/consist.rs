@@ -47,6 +47,8 @@ pub struct Consist {
     /// Greatest traction of each car at the present load, N: TE_w times the greatest (S3).
     pub power_n: PerCar,
     full_inertia_kg: f64,
+    service_mps2: f64,
+    power_mps2: f64,
     load_kg: f64,
 }
 
@@ -63,6 +65,8 @@ impl Consist {
             air_n: [0.0; MAX_CARS],
             power_n: [0.0; MAX_CARS],
             full_inertia_kg: 0.0,
+            service_mps2: data.service_brake.kmh_per_s / 3.6,
+            power_mps2: 0.0,
             load_kg: 0.0,
         };
         for (i, car) in data.cars.iter().enumerate() {
@@ -78,6 +82,7 @@ impl Consist {
             consist.air_n[i] = car.air_n;
         }
         consist.full_inertia_kg = consist.pairs.iter().map(|pair| pair.full_inertia_kg).sum();
+        consist.power_mps2 = data.traction.full_load_n / consist.full_inertia_kg;
         consist.weigh(0.0);
         consist
     }
@@ -118,12 +123,12 @@ impl Consist {
 
     /// Full service brake, m/s².
     pub fn service_mps2(&self) -> f64 {
-        self.data.service_brake.kmh_per_s / 3.6
+        self.service_mps2
     }
 
     /// Full power, m/s², of the train's braking mass.
     pub fn power_mps2(&self) -> f64 {
-        self.data.traction.full_load_n / self.full_inertia_kg()
+        self.power_mps2
     }
 
     /// Braking mass of the full train, kg.

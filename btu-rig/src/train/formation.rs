@@ -146,12 +146,13 @@ impl Formation {
 
     pub fn equipment(&self) -> Equipment {
         let speed_mps = self.velocity_mps.abs();
-        let (efforts, factor) = (&self.efforts, self.conditions.brake_factor);
+        let efforts = &self.efforts;
+        // An inverter knows its motors' torque, not what becomes of it at the rims.
+        let torque_share = 1.0 / self.conditions.brake_factor;
         let mut equipment = Equipment {
             axle_mps: [speed_mps; MAX_CARS],
             traction_n: efforts.traction_n,
-            // An inverter knows its motors' torque, not what becomes of it at the rims.
-            electric_n: efforts.electric_n.map(|n| n / factor),
+            electric_n: efforts.electric_n.map(|n| n * torque_share),
             air_n: self.cylinders_n,
             inverters_silent: self.faults.inverters_dead,
             regeneration_cut_out: self.cut_out.regeneration,
