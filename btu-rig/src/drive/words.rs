@@ -29,6 +29,10 @@ pub(super) fn described(event: u16, number: i32) -> String {
             Some(channel) => format!("{name}: channel {channel:?}"),
             None => format!("{name}: channel {number}"),
         },
+        _ if definition.parameter.starts_with("car") => match number {
+            0 => format!("{name}: all cars"),
+            car => format!("{name}: car {car}"),
+        },
         _ if definition.parameter.is_empty() => name.into(),
         _ => format!("{name}: {}", measured(definition.parameter, number)),
     }
@@ -93,6 +97,12 @@ mod tests {
                 Event::WheelDiameter,
                 -150,
                 "wheel_diameter: difference -1.50 %",
+            ),
+            (Event::BrakeUnitFailed, 4, "brake_unit_failed: car 4"),
+            (
+                Event::RegenerationCutOut,
+                0,
+                "regeneration_cut_out: all cars",
             ),
             (Event::PowerUp, 0, "power_up"),
             (Event::AutomaticRefused, 0x8000, "automatic_refused: bit 15"),

@@ -1,26 +1,28 @@
-//! `ptu drive`: station-to-station automatic runs.
+//! `ptu drive`: station-to-station automatic runs, and runs by hand.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use btu_rig::conditions::Disturbance;
-use btu_rig::drive::{Ending, Scatter};
+use btu_rig::drive::{Ending, Scatter, manual as manual_drive};
 use clap::Args;
 use protocol::config::ControllerKind;
 
 use super::{ScriptsOption, print_json, print_out};
-use crate::data::{ScriptsDirectory, read};
+use crate::data::{ScriptsDirectory, check_writable, read, write};
+use crate::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use crate::drive::{
     Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, cores, disturbance, drive_all,
     monte_carlo,
 };
 use crate::failure::{Exit, Failure, did_you_mean};
-use crate::report::drive::{self as report, Outcomes, Results, Target};
+use crate::report::drive::{self as report, Outcomes, Report, Results, Target, manual};
 use crate::stop::Stop;
 
-/// Drive from station to station and measure the stop
+/// Drive from station to station and measure the stop, or drive by hand
 ///
 /// Exit code 0 when the train stopped within the door tolerance, 1 when not; with --monte-carlo 0
-/// when 99.9 % of the runs did and none went more than 1 m too far.
+/// when 99.9 % of the runs did and none went more than 1 m too far; with --manual 0 when all steps
+/// were done and ATP did not brake.
 ///
 /// Examples:
 ///   ptu drive                                   line 8 section 61, empty line 6 train
@@ -29,15 +31,28 @@ use crate::stop::Stop;
 ///   ptu drive --train ideal --mass 432000 --disturbance s1 --controller fuzzy
 ///   ptu drive --monte-carlo 10000 --json
 ///   ptu drive --set ato.servo.s_curve_s=12 --set 'ato.controller="pss"'
+///   ptu drive --manual figure7 --report figure7.html
+///   ptu drive --manual keys --load full --save mine.toml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DriveArguments {
-    /// Line, lines/NAME.toml
-    #[arg(long, value_name = "NAME", default_value = "line8")]
-    line: String,
-    /// Sections: a number, A-B or all
-    #[arg(long, value_name = "N", default_value = "61")]
-    section: SectionChoice,
+    /// Line, lines/NAME.toml [default: line8; by hand the sequence's, or test_track]
+    #[arg(long, value_name = "NAME")]
+    line: Option<String>,
+    /// Sections: a number, A-B or all [default: 61; by hand the sequence's, or the line's first]
+    #[arg(long, value_name = "N")]
+    section: Option<SectionChoice>,
+    /// By hand: a sequence of notches and switches, manual/NAME.toml or a file ending in .toml, or
+    /// keys on this terminal
+    #[arg(
+        long,
+        value_name = "NAME|FILE|keys",
+        conflicts_with_all = ["monte_carlo", "compare", "controller", "scattered", "jobs"]
+    )]
+    manual: Option<String>,
+    /// Write what was driven by keys as a sequence, to be driven again with --manual FILE
+    #[arg(long, value_name = "FILE", requires = "manual")]
+    save: Option<PathBuf>,
     /// Speed controller: servo, fuzzy, pi or pss [default: the configuration's]
     #[arg(long, value_name = "NAME", value_parser = controller)]
     controller: Option<ControllerKind>,
@@ -55,7 +70,7 @@ pub struct DriveArguments {
         allow_negative_numbers = true
     )]
     mass: Option<f64>,
-    /// Passengers: a mass, empty or full [default: empty]
+    /// Passengers: a mass, empty or full [default: empty, or the sequence's]
     #[arg(long, value_name = "KG|empty|full", allow_negative_numbers = true)]
     load: Option<LoadChoice>,
     /// Force against the train: none, s1 or AMP@HZ in N·s/m and Hz
@@ -108,6 +123,9 @@ impl DriveArguments {
         for target in &self.report {
             target.check()?;
         }
+        if let Some(source) = &self.manual {
+            return self.by_hand(&directory, source);
+        }
         let mut cases = self.request()?.cases(&directory)?;
         let stop = Stop::default();
         stop.listen();
@@ -131,9 +149,57 @@ impl DriveArguments {
         };
         let results = Results {
             outcomes,
-            list: !self.compare.is_empty() || !matches!(self.section, SectionChoice::One(_)),
+            list: !self.compare.is_empty()
+                || !matches!(self.section, None | Some(SectionChoice::One(_))),
         };
         self.answer(&results, &stop)
+    }
+
+    /// A sequence, or keys.
+    fn by_hand(&self, directory: &ScriptsDirectory, source: &str) -> Result<Exit, Failure> {
+        if let Some(file) = &self.save {
+            if source != KEYS {
+                return Err(Failure::usage("--save goes with --manual keys"));
+            }
+            if file.extension().is_none_or(|ending| ending != "toml") {
+                return Err(Failure::usage(
+                    "--save: a sequence is a file ending in .toml",
+                ));
+            }
+            check_writable(file)?;
+        }
+        let case = self.request()?.manual(directory, source)?;
+        let stop = Stop::default();
+        let outcome = if case.plan.by_hand {
+            stop.listen();
+            drive_by_hand(&case, &stop)?
+        } else {
+            case.play()
+        };
+        let run = ManualRun { case, outcome };
+        if self.json {
+            print_json(&run.json())?;
+        } else {
+            print_out(&manual::text(&run))?;
+        }
+        for target in &self.report {
+            target.write(&run)?;
+        }
+        match &self.save {
+            Some(_) if run.outcome.done.is_empty() => eprintln!("nothing was done: nothing saved"),
+            Some(file) => write(file, &run.sequence().to_toml())?,
+            None => {}
+        }
+        if stop.presses() > 0 {
+            return Ok(Exit::Aborted);
+        }
+        match &run.outcome.ending {
+            ending @ (manual_drive::Ending::LinkLost(_) | manual_drive::Ending::Refused(_)) => {
+                Err(Failure::bench(ending.to_string()))
+            }
+            _ if run.passed() => Ok(Exit::Passed),
+            _ => Ok(Exit::Failed),
+        }
     }
 
     fn request(&self) -> Result<Request, Failure> {

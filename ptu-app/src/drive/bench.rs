@@ -22,19 +22,26 @@ pub struct DriveBench {
     pub settings: Vec<Setting>,
 }
 
+impl DriveBench {
+    /// A fresh embedded unit on a rig, at the beginning of time.
+    pub(super) fn fresh(&self, seed: u64) -> Bench<SimLink> {
+        let setup = Setup {
+            serial: SIM_SERIAL.into(),
+            config: self.config.content.clone(),
+            config_crc: self.config.crc,
+            line: self.line.content.clone(),
+            tdb_crc: self.line.crc,
+            seed,
+            faults: Vec::new(),
+        };
+        let rig = Rig::new(&self.config.content, &self.line.content, seed);
+        Bench::new(rig, SimLink::new(setup, Instant::ZERO))
+    }
+}
+
 /// Drives `plan` once, in virtual time.
 pub fn drive(bench: &DriveBench, plan: DrivePlan, seed: u64) -> Outcome {
-    let setup = Setup {
-        serial: SIM_SERIAL.into(),
-        config: bench.config.content.clone(),
-        config_crc: bench.config.crc,
-        line: bench.line.content.clone(),
-        tdb_crc: bench.line.crc,
-        seed,
-        faults: Vec::new(),
-    };
-    let rig = Rig::new(&bench.config.content, &bench.line.content, seed);
-    let mut bench = Bench::new(rig, SimLink::new(setup, Instant::ZERO));
+    let mut bench = bench.fresh(seed);
     let mut drive = Drive::new(plan);
     loop {
         let ticked = bench.tick();

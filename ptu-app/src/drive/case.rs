@@ -17,14 +17,17 @@ use crate::stop::Stop;
 
 /// Key of the controller in the unit configuration.
 const CONTROLLER_KEY: &str = "ato.controller";
+/// Line and section when none are asked for: S0's test run.
+const DEFAULT_LINE: &str = "line8";
+const DEFAULT_SECTION: SectionChoice = SectionChoice::One(61);
 
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// Line, `lines/NAME.toml`.
-    pub line: String,
-    /// Its sections.
-    pub sections: SectionChoice,
+    /// Line, `lines/NAME.toml`; none = line8, or the sequence's own.
+    pub line: Option<String>,
+    /// Its sections; none = 61, or the sequence's own.
+    pub sections: Option<SectionChoice>,
     /// Controllers; none = the configuration's.
     pub controllers: Vec<ControllerKind>,
     /// Train, `trains/NAME.toml` or a file.
@@ -83,8 +86,10 @@ impl Request {
             load_kg,
             ..self.fixed
         };
-        let line = self.line(directory, &train)?;
-        let sections = self.sections.numbers(&line.content)?;
+        let line = self.line.as_deref().unwrap_or(DEFAULT_LINE);
+        let line = track(directory, line, &train)?;
+        let sections = self.sections.unwrap_or(DEFAULT_SECTION);
+        let sections = sections.numbers(&line.content)?;
         let benches = self.benches(directory, &train, &line)?;
         let mut cases = Vec::new();
         for section in sections {
@@ -120,26 +125,8 @@ impl Request {
         }
     }
 
-    fn line(
-        &self,
-        directory: &ScriptsDirectory,
-        train: &TrainData,
-    ) -> Result<DataFile<Line>, Failure> {
-        let mut line = directory.line(&self.line)?;
-        if train::needs_level_track(train) {
-            for section in &mut line.content.sections {
-                section.gradients.clear();
-                section.curves.clear();
-            }
-            // Another track database than the file's, so another checksum.
-            let level = format!("{} level", line.sha256);
-            line.crc = checksum(&level);
-            line.sha256 = sha256(&level);
-        }
-        Ok(line)
-    }
-
-    fn benches(
+    /// A bench for each controller.
+    pub(super) fn benches(
         &self,
         directory: &ScriptsDirectory,
         train: &TrainData,
@@ -205,6 +192,26 @@ impl Driven {
         let near = |error: f64| error.abs() <= self.case.tolerance_m();
         self.outcome.ending == Ending::Stopped && self.outcome.stop_error_m.is_some_and(near)
     }
+}
+
+/// The line called `name`, level for a train on which gradients do not act.
+pub(super) fn track(
+    directory: &ScriptsDirectory,
+    name: &str,
+    train: &TrainData,
+) -> Result<DataFile<Line>, Failure> {
+    let mut line = directory.line(name)?;
+    if train::needs_level_track(train) {
+        for section in &mut line.content.sections {
+            section.gradients.clear();
+            section.curves.clear();
+        }
+        // Another track database than the file's, so another checksum.
+        let level = format!("{} level", line.sha256);
+        line.crc = checksum(&level);
+        line.sha256 = sha256(&level);
+    }
+    Ok(line)
 }
 
 /// Drives all cases, some at a time, and gives them back in order. A stop leaves cases out.

@@ -53,6 +53,9 @@ pub struct Figures {
     pub max_deviation: Option<f64>,
     /// When that was, s.
     pub max_deviation_t_s: Option<f64>,
+    /// The same where the electric brake is whole. Below, a full train's cars brake by air as much as
+    /// each can in service, so that nothing is left to make up for a brake that is cut out.
+    pub max_deviation_electric: Option<f64>,
 }
 
 impl Figures {
@@ -64,7 +67,9 @@ impl Figures {
             |of: fn(&Row) -> f64| rows.iter().map(|row| of(row) * row.speed_kmh).sum::<f64>();
         let (electric, air) = (work(|row| row.electric_n), work(|row| row.air_n));
         let share = |part: f64| (electric + air > 0.0).then(|| part / (electric + air));
-        let deviation = steady_deviation(rows, done);
+        let deviation = steady_deviation(rows, done, 0.0);
+        let fades_kmh = plan.train.electric_brake.fade_from_kmh;
+        let electric_range = steady_deviation(rows, done, fades_kmh);
         let decel = band(rows, FULL_BRAKE, DECEL_FROM_KMH, DECEL_TO_KMH);
         Self {
             accel_0_35_kmh_s: from_rest(rows),
@@ -85,6 +90,7 @@ impl Figures {
             air_share: share(air),
             max_deviation: deviation.map(|(off, _)| off),
             max_deviation_t_s: deviation.map(|(_, at_s)| at_s),
+            max_deviation_electric: electric_range.map(|(off, _)| off),
         }
     }
 }

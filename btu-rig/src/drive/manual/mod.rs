@@ -1,28 +1,28 @@
 //! Driving by hand: notches and switches in sequence, with the unit in the loop. Sans-IO as
 //! [`super::Drive`]: stepped once a scan after [`crate::rig::Bench::tick`].
 //!
-//! * `sequence`, `action`, `file`: what is done when, and its file;
+//! * `sequence`, `action`, `file`, `wrong`: what is done when, and its file;
 //! * `plan`: on which train, under which code;
 //! * `row`, `recording`: what is recorded each cycle;
-//! * `settle`, `figures`: what it came to.
+//! * `settle`, `figures`, `outcome`: what it came to.
 //!
 //! Terms: a *step* waits for its condition and then does its actions; a *deed* is a step done.
 
 mod action;
 mod figures;
 mod file;
+mod outcome;
 mod plan;
 mod recording;
 mod row;
 mod sequence;
 mod settle;
+mod wrong;
 
 use protocol::message::{EbCause, FsbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{CYCLE, Duration, Instant};
-use thiserror::Error;
 
-use super::Landmark;
 use crate::lever::Lever;
 use crate::procedure::Refusal;
 use crate::rig::{Rig, Truth};
@@ -32,117 +32,31 @@ use crate::train::TrainData;
 
 pub use action::Action;
 pub use figures::Figures;
-pub use file::{MAX_AFTER_S, MAX_STEPS, SequenceError, Wrong};
+pub use file::{MAX_AFTER_S, MAX_STEPS};
+pub use outcome::{AtpBrake, Done, Ending, Outcome};
 pub use plan::{ManualError, Plan};
 pub use row::{PAIRS, Pair, Row};
 pub use sequence::{Load, Sequence, Step, When};
 pub use settle::{Settled, WITHIN, settled};
+pub use wrong::{SequenceError, Wrong};
 
+use outcome::told;
 use recording::Recording;
 
 /// Time a unit may take from power-up until it lets the train be driven.
 const READY_WITHIN: Duration = Duration::from_ms(10_000);
 /// Time a step may wait for a speed or a standstill [default].
 const REACHED_WITHIN: Duration = Duration::from_ms(120_000);
+/// Share of full service up to which brakes count as released.
+const RELEASED_SHARE: f64 = 0.001;
 /// Standing for so long after the last step, the run is over.
 const STANDS: Duration = Duration::from_ms(2_000);
-/// A train that ATP brakes is watched for so long, should it not come to a stand.
+/// A train that ATP brakes is watched for so long, should it neither stand nor be released.
 const ATP_STOPS_WITHIN: Duration = Duration::from_ms(60_000);
+/// Released for so long, a brake of ATP is over.
+const RELEASED: Duration = Duration::from_ms(2_000);
 /// Longest run [default].
 const LONGEST: Duration = Duration::from_ms(3_600_000);
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Ending {
-    /// All steps were done.
-    #[error("all steps done")]
-    Played,
-    /// Whoever drove ended it.
-    #[error("ended by hand")]
-    ByHand,
-    /// The bench cannot do what the sequence asks for.
-    #[error("the bench refused: {0}")]
-    Refused(String),
-    /// The unit did not let the train be driven.
-    #[error("never ready: {0}")]
-    NeverReady(String),
-    /// ATP braked.
-    #[error("{0}")]
-    Atp(AtpBrake),
-    /// What a step waited for did not come.
-    #[error("line {line}: {what} not reached within {} s", REACHED_WITHIN.as_secs())]
-    NotReached {
-        /// Line of the step.
-        line: usize,
-        /// What it waited for.
-        what: String,
-    },
-    /// All steps were done, and the train does not stand.
-    #[error("the train does not stand {} s after the last step", REACHED_WITHIN.as_secs())]
-    NeverStood,
-    /// The run took too long.
-    #[error("time limit of {} s", LONGEST.as_secs())]
-    TimeLimit,
-    /// The unit cannot be reached any more.
-    #[error("link lost: {0}")]
-    LinkLost(String),
-}
-
-/// A brake ATP applied, with the unit's cause if it said one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum AtpBrake {
-    /// Full service.
-    #[error("ATP applied the full service brake{}", told(*.0, FsbCause::None, FsbCause::label))]
-    FullService(Option<FsbCause>),
-    /// Emergency.
-    #[error("ATP applied the emergency brake{}", told(*.0, EbCause::None, EbCause::label))]
-    Emergency(Option<EbCause>),
-}
-
-fn told<C: PartialEq>(cause: Option<C>, none: C, label: fn(C) -> &'static str) -> String {
-    let known = cause.filter(|cause| *cause != none);
-    known.map_or_else(String::new, |cause| {
-        format!(": {}", label(cause).replace('_', " "))
-    })
-}
-
-/// A step as it was done.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Done {
-    /// Line of its file; 0 = by hand.
-    pub line: usize,
-    /// Time since the sequence began, s.
-    pub t_s: f64,
-    /// Head of the train in the section, m.
-    pub x_m: f64,
-    /// Speed, km/h, a size.
-    pub speed_kmh: f64,
-    /// What was done.
-    pub actions: Vec<Action>,
-}
-
-impl Done {
-    /// What was done, in words.
-    pub fn what(&self) -> String {
-        let words: Vec<_> = self.actions.iter().map(ToString::to_string).collect();
-        words.join(", ")
-    }
-}
-
-/// What a run came to.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// How it ended.
-    pub ending: Ending,
-    /// One row a cycle. Time 0 is the beginning of the sequence.
-    pub rows: Vec<Row>,
-    /// Steps that were done.
-    pub done: Vec<Done>,
-    /// Those, and what unit and TCMS logged, in order.
-    pub landmarks: Vec<Landmark>,
-    /// Figures.
-    pub figures: Figures,
-}
 
 /// Where the run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,6 +82,14 @@ struct Waiting {
     stands_since: Option<Instant>,
 }
 
+/// A brake of ATP: the gravest, since when, and since when there is none any more.
+#[derive(Clone, Copy, Debug)]
+struct Braked {
+    brake: AtpBrake,
+    since: Instant,
+    released: Option<Instant>,
+}
+
 /// A run under way.
 #[derive(Debug)]
 pub struct Player {
@@ -176,7 +98,7 @@ pub struct Player {
     next: usize,
     waiting: Waiting,
     lever: Lever,
-    braked: Option<(Instant, AtpBrake)>,
+    braked: Option<Braked>,
     recording: Recording,
 }
 
@@ -213,10 +135,13 @@ impl Player {
     /// Does something now, by hand; nothing before the train may be driven.
     ///
     /// # Errors
-    /// What the bench cannot do.
+    /// What the bench cannot do, and more than a sequence can hold.
     pub fn act(&mut self, now: Instant, rig: &mut Rig, action: Action) -> Result<(), Refusal> {
         if !matches!(self.phase, Phase::Playing { .. }) {
             return Ok(());
+        }
+        if self.recording.done.len() >= MAX_STEPS {
+            return Err(Refusal(format!("no more than {MAX_STEPS} actions a run")));
         }
         let truth = rig.truth();
         self.perform(now, &truth, rig, 0, vec![action])
@@ -229,7 +154,7 @@ impl Player {
 
     /// The brake ATP has applied, if it has.
     pub fn atp_brake(&self) -> Option<AtpBrake> {
-        self.braked.map(|(_, brake)| brake)
+        self.braked.map(|braked| braked.brake)
     }
 
     /// Position of the master controller.
@@ -270,14 +195,16 @@ impl Player {
             }
             // On a cycle, so that a sequence driven again has its rows at the same times.
             Phase::Preparing { .. }
-                if now.as_us().is_multiple_of(CYCLE.as_us()) && lacking(rig).is_none() =>
+                if now.as_us().is_multiple_of(CYCLE.as_us())
+                    && self.lacking(truth, rig).is_none() =>
             {
                 self.phase = Phase::Playing { since: now };
                 self.recording.began = Some(now);
                 self.wait(now, truth, true);
+                return self.play(now, now, truth, rig);
             }
             Phase::Preparing { since } if now.since(since) >= READY_WITHIN => {
-                let lacks = lacking(rig).unwrap_or_default();
+                let lacks = self.lacking(truth, rig).unwrap_or_default();
                 return Ok(Some(Ending::NeverReady(lacks)));
             }
             Phase::Playing { since } => return self.play(now, since, truth, rig),
@@ -310,6 +237,13 @@ impl Player {
         Ok(())
     }
 
+    /// What keeps the train from being driven, in words; none = nothing does.
+    fn lacking(&self, truth: &Truth, rig: &Rig) -> Option<String> {
+        let brakes = truth.air_brake_n > RELEASED_SHARE * self.plan.full_service_n();
+        let brakes = brakes.then(|| "the brakes do not release".into());
+        refusal(rig).or(brakes)
+    }
+
     fn play(
         &mut self,
         now: Instant,
@@ -337,9 +271,11 @@ impl Player {
                 .or((!waiting.moved).then_some(waiting.since));
             stands.is_some_and(|stands| now.since(stands) >= STANDS)
         };
-        if let Some((at, brake)) = self.braked {
-            let over = stood(&self.waiting) || now.since(at) >= ATP_STOPS_WITHIN;
-            return Ok(over.then_some(Ending::Atp(brake)));
+        if let Some(braked) = self.braked {
+            let lasted = |since: Instant, limit| now.since(since) >= limit;
+            let released = braked.released.is_some_and(|at| lasted(at, RELEASED));
+            let over = stood(&self.waiting) || released || lasted(braked.since, ATP_STOPS_WITHIN);
+            return Ok(over.then_some(Ending::Atp(braked.brake)));
         }
         while let Some(step) = self.plan.sequence.steps.get(self.next) {
             if !self.reached(now, truth, step.when) {
@@ -422,31 +358,25 @@ impl Player {
             if self.plan.by_hand {
                 self.braked = None;
             }
+            if let Some(braked) = &mut self.braked {
+                braked.released.get_or_insert(now);
+            }
             return;
         };
-        match &mut self.braked {
-            None => self.braked = Some((now, found)),
-            Some((_, brake)) if brake.told_less_than(found) => *brake = found,
-            Some(_) => {}
+        let braked = self.braked.get_or_insert(Braked {
+            brake: found,
+            since: now,
+            released: None,
+        });
+        braked.released = None;
+        if braked.brake.told_less_than(found) {
+            braked.brake = found;
         }
     }
 }
 
-impl AtpBrake {
-    /// The other is graver, or has a cause where this has none.
-    fn told_less_than(self, other: Self) -> bool {
-        let rank = |brake: Self| match brake {
-            Self::FullService(None) => 0,
-            Self::FullService(Some(_)) => 1,
-            Self::Emergency(None) => 2,
-            Self::Emergency(Some(_)) => 3,
-        };
-        rank(self) < rank(other)
-    }
-}
-
-/// What keeps the train from being driven, in words; none = nothing does.
-fn lacking(rig: &Rig) -> Option<String> {
+/// What unit and TCMS have against driving, in words; none = nothing.
+fn refusal(rig: &Rig) -> Option<String> {
     let sample = rig.sample();
     let is = |signal, value: f64| sample.get(signal) == Some(value);
     let mode = sample

@@ -61,8 +61,9 @@ pub fn settled(rows: &[Row], t_s: f64, until_s: f64) -> Option<Settled> {
 }
 
 /// Greatest deviation of the brake from its demand outside transients, and when: more than a second
-/// after the last deed and after the demand last moved. None without such a time.
-pub fn steady_deviation(rows: &[Row], done: &[Done]) -> Option<(f64, f64)> {
+/// after the last deed and after the demand last moved, at speeds above `above_kmh`. None without such
+/// a time.
+pub fn steady_deviation(rows: &[Row], done: &[Done], above_kmh: f64) -> Option<(f64, f64)> {
     let mut moved_s = f64::NEG_INFINITY;
     let mut deeds = done.iter().map(|done| done.t_s).peekable();
     let mut worst: Option<(f64, f64)> = None;
@@ -75,7 +76,7 @@ pub fn steady_deviation(rows: &[Row], done: &[Done]) -> Option<(f64, f64)> {
             moved_s = row.t_s;
         }
         before_n = row.brake_demand_n;
-        let steady = row.t_s > moved_s + TRANSIENT_S;
+        let steady = row.t_s > moved_s + TRANSIENT_S && row.speed_kmh > above_kmh;
         if let Some(off) = row.deviation().filter(|_| steady)
             && worst.is_none_or(|(most, _)| off.abs() > most.abs())
         {
@@ -125,7 +126,7 @@ mod tests {
         let mut rows = braking();
         rows.iter_mut().for_each(|row| row.brake_demand_n = 0.0);
         assert_eq!(settled(&rows, 1.9, f64::INFINITY), None);
-        assert_eq!(steady_deviation(&rows, &[]), None);
+        assert_eq!(steady_deviation(&rows, &[], 0.0), None);
     }
 
     /// The first second belongs to the demand's own appearance, the one from 1.9 s to the deed.
@@ -138,9 +139,9 @@ mod tests {
             speed_kmh: 40.0,
             actions: Vec::new(),
         };
-        let (off, at_s) = steady_deviation(&braking(), &[deed]).unwrap();
+        let (off, at_s) = steady_deviation(&braking(), &[deed], 0.0).unwrap();
         assert!((off + 0.05).abs() < 1e-9 && (at_s - 8.0).abs() < 0.051);
-        let (off, _) = steady_deviation(&braking(), &[]).unwrap();
+        let (off, _) = steady_deviation(&braking(), &[], 0.0).unwrap();
         assert!(
             (off + 0.3).abs() < 1e-9,
             "without the deed it is a deviation: {off}"

@@ -94,7 +94,7 @@ fn trials(many: &[MonteCarlo]) -> String {
 }
 
 /// A number, or nothing for what is not known.
-fn cell(value: f64) -> String {
+pub fn cell(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.6}")
     } else {

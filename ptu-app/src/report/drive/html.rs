@@ -21,6 +21,11 @@ pub fn html(results: &Results) -> String {
             html! { @for one in many { (html_many::section(one)) } },
         ),
     };
+    page(heading, &body)
+}
+
+/// A page with nothing outside it, and how to make it again.
+pub fn page(heading: &str, body: &Markup) -> String {
     let command = std::env::args()
         .skip(1)
         .map(|argument| quoted(&argument))

@@ -79,7 +79,8 @@ fn case_json(case: &Case) -> Map<String, Value> {
     .collect()
 }
 
-fn conditions_json(conditions: &Conditions) -> Value {
+/// Train and day.
+pub fn conditions_json(conditions: &Conditions) -> Value {
     let disturbance = match conditions.disturbance {
         Disturbance::None => Value::Null,
         Disturbance::Sine {

@@ -1,10 +1,12 @@
-//! What station-to-station runs came to: text for people, JSON, CSV, and HTML with plots.
+//! What runs came to: text for people, JSON, CSV, and HTML with plots. Station-to-station runs here,
+//! runs by hand in [`manual`].
 
 mod csv;
 mod figures;
 mod html;
 mod html_many;
 mod json;
+pub mod manual;
 mod plot;
 mod plots;
 mod text;
@@ -14,6 +16,8 @@ use std::str::FromStr;
 
 pub use json::json;
 pub use text::text;
+
+use serde_json::Value;
 
 use crate::data;
 use crate::drive::Driven;
@@ -34,6 +38,30 @@ pub enum Outcomes {
     Single(Vec<Driven>),
     /// Cases, each many times.
     Many(Vec<MonteCarlo>),
+}
+
+/// What can be written as a report.
+pub trait Report {
+    /// As a page that stands alone.
+    fn html(&self) -> String;
+    /// As one JSON document.
+    fn json(&self) -> Value;
+    /// As a table.
+    fn csv(&self) -> String;
+}
+
+impl Report for Results {
+    fn html(&self) -> String {
+        html::html(self)
+    }
+
+    fn json(&self) -> Value {
+        json(self)
+    }
+
+    fn csv(&self) -> String {
+        csv::csv(self)
+    }
 }
 
 /// A report to write.
@@ -80,11 +108,11 @@ impl Target {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&self, results: &Results) -> Result<(), Failure> {
+    pub fn write(&self, report: &impl Report) -> Result<(), Failure> {
         let text = match self.format {
-            Format::Html => html::html(results),
-            Format::Json => format!("{:#}\n", json(results)),
-            Format::Csv => csv::csv(results),
+            Format::Html => report.html(),
+            Format::Json => format!("{:#}\n", report.json()),
+            Format::Csv => report.csv(),
         };
         data::write(&self.path, &text)
     }

@@ -163,7 +163,8 @@ impl Plot {
             .map(|place| {
                 let at = x.at(place.x);
                 let width = place.name.chars().count() as f64 * LETTER + 4.0;
-                let begin = (at - width / 2.0).min(WIDTH - width);
+                // Within the drawing, also where a long name belongs to its edge.
+                let begin = (at - width / 2.0).min(WIDTH - width).max(LEFT);
                 let row = ends.iter().position(|end| begin > *end);
                 if let Some(row) = row {
                     ends[row] = begin + width;
