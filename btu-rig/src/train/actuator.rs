@@ -82,19 +82,18 @@ impl Actuators {
             let change = due - *effort;
             *effort += change * if change > 0.0 { rise } else { fall };
         };
+        let demands = self.effort_n.iter_mut().zip(demand_n);
         if let Some(place) = self.line.get_mut(self.next) {
-            for i in 0..MAX_CARS {
-                let due = place[i];
-                place[i] = demand_n[i];
-                follow(&mut self.effort_n[i], due);
+            for ((effort, demand), waits) in demands.zip(place) {
+                follow(effort, std::mem::replace(waits, *demand));
             }
             self.next += 1;
             if self.next == self.line.len() {
                 self.next = 0;
             }
         } else {
-            for i in 0..MAX_CARS {
-                follow(&mut self.effort_n[i], demand_n[i]);
+            for (effort, demand) in demands {
+                follow(effort, *demand);
             }
         }
         &self.effort_n
