@@ -2,7 +2,8 @@
 //!
 //! Method: the table says for each fault mode which step must fail, and which modes no stored fault
 //! names the broken part of. A mode that is not in the table fails the test, so that nobody adds one
-//! without saying what finds it.
+//! without saying what finds it. What a fault of the train makes fail suspects the train, and what one
+//! of the unit makes fail does not.
 
 mod common;
 
@@ -15,13 +16,14 @@ use serde_json::Value;
 
 /// Trace rows are this far apart.
 const PERIOD_MS: f64 = 50.0;
-const BEFORE_S: f64 = 10.0;
+/// One row less than what is recorded before a trigger: what fails with power-up has no row at 0 s.
+const BEFORE_S: f64 = 10.0 - PERIOD_MS / 1000.0;
 const AFTER_S: f64 = 5.0;
 /// Suites run side by side.
 const WORKERS: usize = 2;
 
 /// Fault mode → procedure and words in the name of a step that must fail.
-const FOUND_BY: [(&str, &str, &str); 34] = [
+const FOUND_BY: [(&str, &str, &str); 45] = [
     ("atp_receiver.dead", "atp/power_up", "start-up self-test"),
     ("atp_receiver.detuned", "atp/power_up", "start-up self-test"),
     ("atp_receiver.stuck", "atp/overspeed", "code 0 stops"),
@@ -132,6 +134,49 @@ const FOUND_BY: [(&str, &str, &str); 34] = [
     ),
     ("test_board.dead", "atp/power_up", "start-up self-test"),
     ("test_board.dead", "twc/ptu_exchange", "its end is noticed"),
+    ("inverter.dead", "tcms/powering_braking", "N to P4"),
+    (
+        "inverter.regeneration_lost",
+        "tcms/powering_braking",
+        "N to B7",
+    ),
+    ("brake_unit.dead", "tcms/not_released", "air on every car"),
+    (
+        "brake_cylinder.weak",
+        "tcms/not_released",
+        "air on every car",
+    ),
+    (
+        "brake_cylinder.not_releasing",
+        "tcms/not_released",
+        "released at departure",
+    ),
+    (
+        "master_controller.pot_*",
+        "tcms/train_lines",
+        "controller at N",
+    ),
+    ("door_contact.open", "tcms/train_lines", "doors closed"),
+    ("door_contact.bridged", "tcms/train_lines", "doors open"),
+    (
+        "head_control_relay.dead",
+        "tcms/train_lines",
+        "its head control relay picks up",
+    ),
+    ("head_control_relay.stuck", "tcms/train_lines", "cab left"),
+    ("tcms.*", "tcms/train_lines", "alive counter moves"),
+];
+
+/// Parts of the train around the unit.
+const TRAIN_PARTS: [&str; 8] = [
+    "inverter",
+    "brake_unit",
+    "brake_cylinder",
+    "master_controller",
+    "door_contact",
+    "head_control_relay",
+    "tcms",
+    "air_supply",
 ];
 
 /// Modes that no stored fault names the part of, and why.
@@ -250,6 +295,7 @@ fn check(mode: &Mode, signals: &BTreeSet<String>) -> Vec<String> {
     }
     problems.extend(check_steps(mode, &report));
     problems.extend(check_parts(mode, &report));
+    problems.extend(check_side(mode, &report));
     problems.extend(check_traces(&place, &report, signals));
     let named = |problem| format!("{}: {problem}", mode.id);
     problems.into_iter().map(named).collect()
@@ -289,6 +335,23 @@ fn check_parts(mode: &Mode, report: &Value) -> Option<String> {
         )),
         _ => None,
     }
+}
+
+/// Unit and train are not taken for each other: no part of the other side is suspected, and a broken
+/// train fails nothing but the procedures that test the train.
+fn check_side(mode: &Mode, report: &Value) -> Vec<String> {
+    let of_train = |part: &str| TRAIN_PARTS.contains(&part);
+    let train_is_broken = of_train(&mode.lru);
+    let blamed = list(&report["faults"])
+        .iter()
+        .filter(|fault| of_train(text(&fault["lru"])) != train_is_broken)
+        .map(|fault| format!("suspects the other side: {fault}"));
+    let failed = list(&report["steps"])
+        .iter()
+        .filter(|step| train_is_broken && step["verdict"] == "failed")
+        .filter(|step| !text(&step["procedure"]).starts_with("tcms/"))
+        .map(|step| format!("fails a test of the unit: {step}"));
+    blamed.chain(failed).collect()
 }
 
 /// Every stored fault has a trace, and at least one trace has its whole window.
