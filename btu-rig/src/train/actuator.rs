@@ -82,17 +82,18 @@ impl Actuators {
             let change = due - *effort;
             *effort += change * if change > 0.0 { rise } else { fall };
         };
-        let demands = self.effort_n.iter_mut().zip(demand_n);
         if let Some(place) = self.line.get_mut(self.next) {
-            for ((effort, demand), waits) in demands.zip(place) {
-                follow(effort, std::mem::replace(waits, *demand));
+            let due_n = *place;
+            *place = *demand_n;
+            for (effort, due) in self.effort_n.iter_mut().zip(due_n) {
+                follow(effort, due);
             }
             self.next += 1;
             if self.next == self.line.len() {
                 self.next = 0;
             }
         } else {
-            for (effort, demand) in demands {
+            for (effort, demand) in self.effort_n.iter_mut().zip(demand_n) {
                 follow(effort, *demand);
             }
         }
