@@ -178,7 +178,7 @@ fn condition(args: &Args<'_>) -> Result<Condition, String> {
 /// Bits a signal of bits is compared with.
 fn bits(signal: Signal, name: &str, item: &Item) -> Result<Operand, String> {
     let definition = signal.definition();
-    if definition.unit != "" || !matches!(definition.kind, Kind::Number { lsb: 1.0 }) {
+    if !definition.unit.is_empty() || !matches!(definition.kind, Kind::Number { lsb: 1.0 }) {
         return Err(format!(
             "{} is not made of bits, it cannot be `{name}` something",
             definition.name
