@@ -242,7 +242,7 @@ impl Rig {
     /// of the unit begin anew when it is started again.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
         let mut events = self.tester.take_events();
-        events.extend(self.tcms_events.drain(..));
+        events.append(&mut self.tcms_events);
         events
     }
 
