@@ -1,8 +1,8 @@
 //! TCMS on the bench: what it is given in a scan, and what it shows as signals.
 
-use protocol::Speed;
 use protocol::message::{Channel, EbCause, Mode};
 use protocol::signal::{Sample, Signal};
+use protocol::{CYCLE, Speed};
 
 use crate::procedure::{EventSource, UnitEvent};
 use crate::stimulus::TrainSwitch;
@@ -102,10 +102,16 @@ impl Rig {
         }
     }
 
-    /// Records what TCMS does.
+    /// Records what TCMS does: bits each scan, efforts once in a cycle, as rows have them.
     pub(super) fn record_tcms(&mut self) {
         let view = self.tcms.view();
         let sample = &mut self.recorder.sample;
+        record_words(sample, view);
+        let alive = self.tcms_port.alive(self.now);
+        sample.set_bit(Signal::TcmsAlive, alive);
+        if !self.now.as_us().is_multiple_of(CYCLE.as_us()) {
+            return;
+        }
         let sum = |of: &PerCar, cars: CarSet| cars.iter().map(|car| of[car]).sum::<f64>();
         for ([motor, trailer_air, motor_air], (motors, trailers)) in
             PAIRS.iter().zip(self.pair_cars)
@@ -114,7 +120,6 @@ impl Rig {
             sample.set(*trailer_air, sum(&view.demands.air_n, trailers));
             sample.set(*motor_air, sum(&view.demands.air_n, motors));
         }
-        record_words(sample, view);
         sample.set(Signal::BrakeDemand, view.demands.brake_n);
         sample.set(
             Signal::MotorDemand,
@@ -124,8 +129,6 @@ impl Rig {
         sample.set(Signal::Traction, state.traction_n);
         sample.set(Signal::ElectricBrake, state.electric_brake_n);
         sample.set(Signal::AirBrake, state.air_brake_n);
-        let alive = self.tcms_port.alive(self.now);
-        sample.set_bit(Signal::TcmsAlive, alive);
     }
 }
 

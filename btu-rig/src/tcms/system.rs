@@ -1,7 +1,7 @@
 //! One scan of TCMS, from inputs to what the train is told.
 
 use protocol::message::{AtcToTcms, Outputs};
-use protocol::{Duration, Instant, SCAN};
+use protocol::{CYCLE, Duration, Instant, SCAN};
 
 use crate::train::{MAX_CARS, TrainData, TrainInputs};
 
@@ -170,11 +170,25 @@ impl Tcms {
             volts,
             speed_mps,
             demands,
-            given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
+            given: self.given(&scan, speed_mps, share),
             backward: cab.is_some_and(|cab| cab.reverser < 0),
         };
         self.log(&scan);
         self.tell(&scan, share, load_kg)
+    }
+
+    /// Effort the train gives, worked out in the scans in which the unit is told.
+    fn given(&self, scan: &Now<'_>, speed_mps: f64, share: f64) -> i16 {
+        if scan.now.as_us().is_multiple_of(CYCLE.as_us()) {
+            feedback::given(
+                scan.inputs.equipment,
+                self.effort.as_ref(),
+                speed_mps,
+                share,
+            )
+        } else {
+            self.view.given
+        }
     }
 
     /// Takes the load; what it is does not go beyond the train's. No number is a full train, which
