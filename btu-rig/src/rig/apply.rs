@@ -37,6 +37,7 @@ impl Rig {
         if self.making_safe {
             self.rest_quiescent();
         }
+        self.quiescent = false;
         self.tester.forget_failure();
         match *stimulus {
             Stimulus::Code {
@@ -214,6 +215,8 @@ impl Rig {
 
     fn rest_quiescent(&mut self) {
         self.making_safe = false;
+        self.quiescent = true;
+        self.tcms.rest();
         self.train.set_conditions(&self.conditions);
         self.antenna.off();
         self.codes_along = false;

@@ -114,6 +114,8 @@ pub struct Rig {
     making_safe: bool,
     /// What was begun last and takes its time is a motion.
     awaits_motion: bool,
+    /// Made safe, and nothing was asked of the bench since.
+    quiescent: bool,
     braking: bool,
     link: Link,
     watch: LinkWatch,
@@ -167,6 +169,7 @@ impl Rig {
             awaits_motion: false,
             braking: false,
             link: Link::new(End::Bench),
+            quiescent: false,
             watch: LinkWatch::default(),
             recorder: Recorder::default(),
             now: Instant::ZERO,
@@ -189,6 +192,11 @@ impl Rig {
         let told = self.run_tcms();
         self.roll(told);
         self.follow_codes();
+        if self.quiescent {
+            // The unit may ask for the holding brake a little longer: the next procedure knows nothing
+            // of it.
+            self.tcms.unlatch();
+        }
         self.antenna.step();
         for tacho in &mut self.tachos {
             tacho.step(self.wheel.axle());

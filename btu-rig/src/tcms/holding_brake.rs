@@ -49,6 +49,13 @@ impl HoldingBrake {
         }
     }
 
+    /// Released, and whatever asks for it begins anew.
+    pub fn reset(&mut self) {
+        self.lasts = Lasting::default();
+        self.driverless = false;
+        self.applied = false;
+    }
+
     /// One scan: whether it is ordered.
     ///
     /// On by ATO's request, when driverless mode begins at standstill, at a driverless turn-back, and by

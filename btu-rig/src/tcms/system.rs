@@ -88,12 +88,19 @@ impl Tcms {
         &self.data
     }
 
-    /// No effort and nothing found, as when the train is put on the track anew.
+    /// No effort, nothing found and nothing latched, as when the train is put on the track anew. A
+    /// holding brake that is asked for is on again in the next scan; one by hand has to last anew.
     pub fn rest(&mut self) {
         if let Some(effort) = &mut self.effort {
             effort.reset();
         }
         self.watch.clear();
+        self.unlatch();
+    }
+
+    /// Nothing latched: the holding brake is on for as long as it is asked for.
+    pub fn unlatch(&mut self) {
+        self.holding.reset();
     }
 
     /// Takes a frame of the unit.

@@ -99,11 +99,7 @@ impl Formation {
             sound: true,
             cylinders_n: none,
             cut_out: CutOut::default(),
-            efforts: Efforts {
-                traction_n: none,
-                electric_n: none,
-                air_n: none,
-            },
+            efforts: Efforts::default(),
             velocity_mps: 0.0,
             accel_mps2: 0.0,
             seconds: 0.0,
@@ -129,6 +125,9 @@ impl Formation {
         self.emergency.open_s = 0.0;
         self.emergency.share = 0.0;
         self.cylinders_n = [0.0; MAX_CARS];
+        // What it reports is of this drive, not of the one before.
+        self.cut_out = CutOut::default();
+        self.efforts = Efforts::default();
         self.wheels.reset();
         self.velocity_mps = velocity_mps;
         self.accel_mps2 = 0.0;

@@ -11,7 +11,7 @@ use super::{MAX_CARS, PerCar};
 const GRAVITY_MPS2: f64 = 9.80665;
 
 /// Effort at the wheels of each car.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Efforts {
     /// Traction, N, a size.
     pub traction_n: PerCar,

@@ -1,5 +1,6 @@
 //! TCMS as a whole: what it does with cabs, train lines, the unit's frames and the equipment's reports.
 
+mod anew;
 mod arbitrary;
 mod bench;
 mod brakes;
