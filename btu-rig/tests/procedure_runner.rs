@@ -551,8 +551,8 @@ fn an_event_nobody_asked_for_fails_the_step() {
     assert_eq!(run(&two, log).finished().0, Verdict::Passed);
 }
 
-/// Whoever logs an event names its part: the unit for the step it comes in, TCMS for all that follow,
-/// since an inverter does not mend itself. What a step provokes names nothing.
+/// Whoever logs an event names its part for the step it comes in, and a part of the train for all that
+/// follow, since an inverter does not mend itself. What a step provokes names nothing.
 #[test]
 fn an_event_nobody_asked_for_names_the_part() {
     let suspects = |source, event, provokes: &str| {
@@ -579,6 +579,14 @@ fn an_event_nobody_asked_for_names_the_part() {
             Event::InverterFailed,
             "",
             ["ato_cpu", "inverter", "inverter"],
+        ),
+        // The link and the unit are none of the train's parts.
+        (tcms, Event::AtcSilent, "", ["ato_cpu", "rs485_link", "tra"]),
+        (
+            tcms,
+            Event::AtoOrderContradicts,
+            "",
+            ["ato_cpu", "ato_cpu", "tra"],
         ),
         (
             tcms,

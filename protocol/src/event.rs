@@ -142,6 +142,9 @@ events! {
 /// Parameter of [`Event::TcmsLost`] when frames still come and their alive counter stands.
 pub const COUNTER_STANDS: i32 = 1;
 
+/// Parameter of [`Event::RegenerationCutOut`] when all inverters cut out together.
+pub const ALL_CARS: i32 = 0;
+
 impl Event {
     /// The part under suspicion, given the event's parameter; `-` = none.
     pub fn suspect(self, parameter: i32) -> &'static str {
@@ -159,6 +162,8 @@ impl Event {
             {
                 return "-";
             }
+            // The line takes nothing: no inverter's fault.
+            Self::RegenerationCutOut if parameter == ALL_CARS => return "-",
             // Frames arrive: what stands is who makes them.
             Self::TcmsLost if parameter == COUNTER_STANDS => return "tcms",
             Self::FramesRejected if parameter != i32::from(Channel::Tcms.code()) => {
@@ -178,6 +183,23 @@ impl Event {
             .iter()
             .find(|(item, _)| failed.contains(*item))
             .map_or(self.definition().lru, |&(_, lru)| lru)
+    }
+
+    /// Whether it is about the train's own equipment, which stays broken whatever is tested next; what
+    /// TCMS says of the unit and of the link to it is not.
+    pub const fn about_train(self) -> bool {
+        matches!(
+            self,
+            Self::InverterFailed
+                | Self::BrakeUnitFailed
+                | Self::BrakeCylinderFailed
+                | Self::RegenerationCutOut
+                | Self::BrakeNotReleased
+                | Self::ControllerFailed
+                | Self::ControllerContradicts
+                | Self::TwoCabsActive
+                | Self::MainReservoirLow
+        )
     }
 }
 

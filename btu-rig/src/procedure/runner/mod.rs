@@ -214,7 +214,7 @@ impl Runner {
         self.messages.push(text);
     }
 
-    /// Part to suspect when a step fails: what TCMS has reported, if anything, stays broken and shows in
+    /// Part to suspect when a step fails: what TCMS has reported of the train, if anything, stays broken and shows in
     /// every step after that, too.
     fn suspect(&self, step: &Step) -> String {
         let own = step.suspect.as_ref().unwrap_or(&self.procedure.suspect);

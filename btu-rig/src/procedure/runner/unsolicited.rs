@@ -5,10 +5,10 @@ use protocol::event::{Event, Severity};
 use protocol::signal::{Sample, Signal};
 
 use super::{Phase, Runner};
+use crate::procedure::UnitEvent;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::plan::Step;
 use crate::procedure::report::RunEvent;
-use crate::procedure::{EventSource, UnitEvent};
 
 /// Events after which the emergency brake is applied.
 const BRAKING_EVENTS: [Event; 15] = [
@@ -49,8 +49,8 @@ impl Runner {
             });
             if !asked {
                 self.out.push(RunEvent::UnsolicitedEvent(*entry));
-                if entry.source == EventSource::Tcms {
-                    let part = known.map(|event| event.suspect(entry.parameter));
+                if let Some(event) = known.filter(|event| event.about_train()) {
+                    let part = Some(event.suspect(entry.parameter));
                     self.train_part = self.train_part.or(part.filter(|part| *part != "-"));
                 }
                 if let Some(step) = live.as_mut() {
