@@ -106,16 +106,18 @@ pub struct Rig {
     /// Events of TCMS that were not taken yet, and how many there were.
     tcms_events: Vec<UnitEvent>,
     tcms_logged: u32,
+    /// Those of them that nobody took in time.
+    tcms_dropped: u64,
     injected: Injected,
     faults: TrainFaults,
     desk: Desk,
     tester: Tester,
     /// Slowing down to a standstill, after which the rest is made quiescent.
     making_safe: bool,
-    /// What was begun last and takes its time is a motion.
-    awaits_motion: bool,
     /// Made safe, and nothing was asked of the bench since.
     quiescent: bool,
+    /// What was begun last and takes its time is a motion.
+    awaits_motion: bool,
     braking: bool,
     link: Link,
     watch: LinkWatch,
@@ -154,6 +156,7 @@ impl Rig {
             pair_cars: pair_cars(&train_data),
             tcms_events: Vec::new(),
             tcms_logged: 0,
+            tcms_dropped: 0,
             injected: Injected::default(),
             faults: TrainFaults::default(),
             train_data,
@@ -166,10 +169,10 @@ impl Rig {
             desk: Desk::default(),
             tester: Tester::new(session),
             making_safe: false,
+            quiescent: false,
             awaits_motion: false,
             braking: false,
             link: Link::new(End::Bench),
-            quiescent: false,
             watch: LinkWatch::default(),
             recorder: Recorder::default(),
             now: Instant::ZERO,
@@ -189,14 +192,14 @@ impl Rig {
         self.now = now;
         self.watch.step(now);
         self.recorder.step(now);
-        let told = self.run_tcms();
-        self.roll(told);
-        self.follow_codes();
         if self.quiescent {
             // The unit may ask for the holding brake a little longer: the next procedure knows nothing
             // of it.
             self.tcms.unlatch();
         }
+        let told = self.run_tcms();
+        self.roll(told);
+        self.follow_codes();
         self.antenna.step();
         for tacho in &mut self.tachos {
             tacho.step(self.wheel.axle());
@@ -265,9 +268,10 @@ impl Rig {
         self.tester.log().up_to_date()
     }
 
-    /// Log entries that were overwritten or cleared in the unit before they could be read.
+    /// Log entries that were overwritten or cleared in the unit before they could be read, and those of
+    /// TCMS that nobody took in time.
     pub fn events_overwritten(&self) -> u64 {
-        self.tester.log().overwritten()
+        self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
     }
 
     /// Who the unit is, once it has said so.

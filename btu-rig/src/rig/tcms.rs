@@ -82,13 +82,16 @@ impl Rig {
         let sample = &self.recorder.sample;
         let value = |signal| sample.get(signal).unwrap_or(0.0);
         for TcmsEvent { event, parameter } in events {
+            let index = self.tcms_logged;
+            self.tcms_logged += 1;
             // Nobody takes them while no procedure runs; the newest are of no use without the first.
             if self.tcms_events.len() >= MAX_EVENTS {
-                return;
+                self.tcms_dropped += 1;
+                continue;
             }
             self.tcms_events.push(UnitEvent {
                 source: EventSource::Tcms,
-                index: self.tcms_logged,
+                index,
                 code: event.definition().code,
                 at_ms: self.now.stamp_ms(),
                 parameter,
@@ -98,7 +101,6 @@ impl Rig {
                 mode: Mode::from_code(value(Signal::Mode) as u8),
                 eb_cause: EbCause::from_code(value(Signal::EbCause) as u8),
             });
-            self.tcms_logged += 1;
         }
     }
 

@@ -1,6 +1,6 @@
 //! Events TCMS logs: once when something begins.
 
-use protocol::event::Event;
+use protocol::event::{ALL_CARS, Event};
 use protocol::{Duration, Instant};
 
 use crate::train::CarSet;
@@ -19,6 +19,8 @@ pub(super) struct Scan<'a> {
     pub inputs: &'a TcmsInputs<'a>,
     /// What it did.
     pub view: &'a TcmsView,
+    /// Cars with an inverter.
+    pub motors: CarSet,
     /// The link to the unit.
     pub atc: &'a AtcLink,
     /// The controller's voltage is in a failure range.
@@ -31,8 +33,12 @@ pub(super) struct Scan<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Report {
     events: Vec<TcmsEvent>,
+    /// Events nobody took in time.
+    lost: u32,
     found: Found,
     regeneration: CarSet,
+    /// All inverters have cut out together: the line takes nothing.
+    line_takes_nothing: bool,
     conditions: u8,
     contradictions: u32,
     refused: Burst,
@@ -48,8 +54,10 @@ impl Report {
     pub fn new(data: &TcmsData) -> Self {
         Self {
             events: Vec::new(),
+            lost: 0,
             found: Found::default(),
             regeneration: CarSet::NONE,
+            line_takes_nothing: false,
             conditions: 0,
             contradictions: 0,
             refused: Burst::new(
@@ -63,6 +71,11 @@ impl Report {
     /// New events.
     pub fn take(&mut self) -> Vec<TcmsEvent> {
         std::mem::take(&mut self.events)
+    }
+
+    /// Events that were lost because nobody took them.
+    pub fn lost(&self) -> u32 {
+        self.lost
     }
 
     /// Logs what began in this scan.
@@ -101,10 +114,31 @@ impl Report {
         let equipment = scan.inputs.equipment;
         let regeneration = equipment.map_or(CarSet::NONE, |e| e.regeneration_cut_out);
         if regeneration != self.regeneration {
-            let new = regeneration.without(self.regeneration);
-            self.note_cars(new, Event::RegenerationCutOut);
-            self.regeneration = regeneration;
+            self.regeneration(regeneration, scan);
         }
+    }
+
+    /// Electric brakes that were cut out: by their inverters, or all at once by the line.
+    fn regeneration(&mut self, cut_out: CarSet, scan: &Scan<'_>) {
+        let new = cut_out.without(self.regeneration);
+        self.regeneration = cut_out;
+        let silent = scan
+            .inputs
+            .equipment
+            .map_or(CarSet::NONE, |e| e.inverters_silent);
+        let answering = scan
+            .motors
+            .without(silent)
+            .without(scan.inputs.inverters_cut_out);
+        let all = answering.without(cut_out).is_empty();
+        // An inverter that is cut in again finds the line as it was.
+        let line = all && (self.line_takes_nothing || new.iter().count() > 1);
+        match (line, self.line_takes_nothing) {
+            (true, false) => self.note(Event::RegenerationCutOut, ALL_CARS),
+            (true, true) => {}
+            (false, _) => self.note_cars(new, Event::RegenerationCutOut),
+        }
+        self.line_takes_nothing = line;
     }
 
     /// What is on or off.
@@ -168,6 +202,8 @@ impl Report {
         // Whoever does not take them loses the newest: what began first says more.
         if self.events.len() < MAX_WAITING {
             self.events.push(TcmsEvent { event, parameter });
+        } else {
+            self.lost = self.lost.saturating_add(1);
         }
     }
 }

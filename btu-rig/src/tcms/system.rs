@@ -3,7 +3,7 @@
 use protocol::message::{AtcToTcms, Outputs};
 use protocol::{CYCLE, Duration, Instant, SCAN};
 
-use crate::train::{MAX_CARS, TrainData, TrainInputs};
+use crate::train::{CarSet, MAX_CARS, TrainData, TrainInputs};
 
 use super::atc_link::{AtcLink, AtoOrder};
 use super::causes::{Findings, lamps, power_cuts};
@@ -121,6 +121,11 @@ impl Tcms {
     /// Its new events.
     pub fn take_events(&mut self) -> Vec<TcmsEvent> {
         self.report.take()
+    }
+
+    /// Events that were lost because nobody took them.
+    pub fn events_lost(&self) -> u32 {
+        self.report.lost()
     }
 
     /// One scan: what the train is told.
@@ -336,6 +341,10 @@ impl Tcms {
             &Scan {
                 inputs: scan.inputs,
                 view: &self.view,
+                motors: self
+                    .effort
+                    .as_ref()
+                    .map_or(CarSet::NONE, |e| e.consist.motors),
                 atc: &self.atc,
                 controller_failed: failed,
                 dead_man: self.dead_man_acts,

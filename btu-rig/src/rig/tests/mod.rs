@@ -4,6 +4,7 @@ mod driving;
 mod fake_unit;
 mod properties;
 mod session;
+mod tcms_events;
 mod train;
 mod train_faults;
 mod wire;
