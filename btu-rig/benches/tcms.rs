@@ -101,6 +101,7 @@ fn effort(bencher: Bencher<'_, '_>) {
                     share: f64::from(value) / 1024.0,
                     holding: false,
                     no_inverters: false,
+                    power_cut: false,
                     speed_mps: 12.0,
                     inverters_out: CarSet::NONE,
                     brakes_out: CarSet::NONE,

@@ -23,6 +23,7 @@ fn run((train, effort): &mut (Train, Option<Effort>)) -> TrainState {
             share,
             holding: false,
             no_inverters: false,
+            power_cut: false,
             speed_mps: train.velocity_mps().abs(),
             inverters_out: CarSet::NONE,
             brakes_out: CarSet::NONE,

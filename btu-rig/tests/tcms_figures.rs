@@ -345,6 +345,7 @@ impl Ride {
             share: self.share,
             holding: false,
             no_inverters: self.inputs.emergency || self.inputs.security,
+            power_cut: false,
             speed_mps: self.train.velocity_mps().abs(),
             inverters_out: self.inputs.inverters_cut_out,
             brakes_out: self.brakes_out,

@@ -21,6 +21,8 @@ pub struct Order {
     pub holding: bool,
     /// Emergency or security brake: no effort of the inverters (S3).
     pub no_inverters: bool,
+    /// Powering is cut: traction goes at once, not by the jerk limit (S3, S4).
+    pub power_cut: bool,
     /// Speed, m/s, a size.
     pub speed_mps: f64,
     /// Inverters that are cut out or failed.
@@ -202,8 +204,9 @@ impl Effort {
         } else {
             self.consist.power_mps2()
         };
-        // The emergency brake's contacts take power off without a ramp.
-        if order.no_inverters {
+        // What cuts powering, the emergency brake's contacts among it, takes it off without a ramp; only
+        // brakes then build up by the jerk limit.
+        if order.no_inverters || order.power_cut {
             self.effort_mps2 = self.effort_mps2.min(0.0);
         }
         let step = self.consist.data.traction.jerk_mps3 * dt_s;

@@ -157,7 +157,8 @@ impl Tcms {
             },
         );
         let volts = cab.map_or(0.0, |cab| cab.controller.volts);
-        let driving = self.drive(&scan, volts, !power_cuts.is_empty(), &line);
+        let power_cut = !power_cuts.is_empty();
+        let driving = self.drive(&scan, volts, power_cut, &line);
         let share = share(&driving, &brake);
         let demands = self.share_out(
             inputs,
@@ -165,6 +166,7 @@ impl Tcms {
                 share,
                 holding,
                 no_inverters: line.applied || inputs.security_brake,
+                power_cut,
                 speed_mps,
                 inverters_out: inputs.inverters_cut_out.with(found.inverters),
                 brakes_out: inputs.brakes_cut_out.with(found.brake_units),

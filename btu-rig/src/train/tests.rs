@@ -64,6 +64,7 @@ impl Ride {
             share: self.inputs.demand,
             holding: self.holding,
             no_inverters: self.inputs.emergency,
+            power_cut: false,
             speed_mps: self.train.velocity_mps().abs(),
             inverters_out: CarSet::NONE,
             brakes_out: CarSet::NONE,

@@ -1,8 +1,9 @@
 //! Each condition that cuts powering, made alone (S3: effort 0; S4).
 
+use btu_rig::conditions::Conditions;
 use btu_rig::lever::Lever;
 use btu_rig::tcms::PowerCuts;
-use btu_rig::train::CarSet;
+use btu_rig::train::{CarSet, Train, TrainData, TrainInputs};
 use protocol::message::{ModeSwitch, Outputs};
 
 use crate::bench::Bench;
@@ -47,10 +48,7 @@ const CONDITIONS: [(&str, Make, &[&str]); 14] = [
     ("parking", |b| b.inputs.parking_brake = true, &[]),
     (
         "not_released",
-        |b| {
-            b.stuck = CarSet::one(0);
-            b.run(3500);
-        },
+        |b| b.stuck = CarSet::one(0),
         &["full_service"],
     ),
     (
@@ -73,6 +71,57 @@ fn names(cuts: PowerCuts) -> Vec<&'static str> {
         .collect()
 }
 
+/// Scans until powering is cut.
+fn until_cut(bench: &mut Bench) -> u32 {
+    for scans in 1..=400 {
+        bench.run(10);
+        if !bench.view().power_cuts.is_empty() {
+            return scans;
+        }
+    }
+    panic!("never");
+}
+
+/// Nothing but the inverters' own times stands between a cut and the end of traction: not the jerk
+/// limit of powering.
+#[test]
+fn traction_goes_by_the_inverters_times_alone() {
+    let TrainData::Cars(cars) = TrainData::line6() else {
+        panic!("a train of cars");
+    };
+    let within_s = cars.traction.dead_time_s + 5.0 * cars.traction.lag_s;
+    let dead_man: Make = |b| b.inputs.cabs[0].dead_man = false;
+    let full_brake: Make = |b| b.lever(Lever::Brake(7));
+    let more = [("dead man", dead_man), ("B7", full_brake)];
+    let alone = CONDITIONS.iter().map(|(name, make, _)| (*name, *make));
+    for (name, make) in alone.chain(more) {
+        let mut bench = Bench::new();
+        let mut train = Train::new(&TrainData::line6(), &Conditions::default());
+        let mut follow = |told: &TrainInputs| {
+            train.step(0.005, told);
+            train.step(0.005, told).traction_n
+        };
+        bench.lever(Lever::Power(4));
+        let before_n = (0..200).fold(0.0, |_, _| follow(&bench.run(10)));
+        assert!(before_n > 200e3, "{name}: {before_n}");
+        make(&mut bench);
+        until_cut(&mut bench);
+        let mut seconds = 0.0;
+        loop {
+            // First what the cut's own scan told.
+            let told = bench.run(if seconds == 0.0 { 0 } else { 10 });
+            assert!(told.motor_n.iter().all(|n| *n <= 0.0), "{name}: {told:?}");
+            seconds += 0.01;
+            // Five time constants leave 0.7 %.
+            if follow(&told) < 0.01 * before_n {
+                break;
+            }
+            assert!(seconds <= within_s, "{name}: {seconds}");
+        }
+        println!("{name:<16} 1 % of traction after {seconds:.2} s of {within_s:.2}");
+    }
+}
+
 #[test]
 fn every_condition_alone_takes_power_off_and_gives_it_back() {
     let made: Vec<_> = CONDITIONS.iter().map(|(name, ..)| *name).collect();
@@ -86,7 +135,9 @@ fn every_condition_alone_takes_power_off_and_gives_it_back() {
         let sound = bench.inputs;
 
         make(&mut bench);
-        bench.run(10);
+        let scans = until_cut(&mut bench);
+        // A brake counts as not released when that has lasted.
+        assert_eq!(scans > 1, name == "not_released", "{name}: {scans}");
         assert!(!bench.view().driving.dryinp, "{name}: at once");
         let told = bench.run(2000);
         assert!(!bench.powers() && told.demand <= 0.0, "{name}");
