@@ -253,6 +253,12 @@ fn each_expectation_passes_fails_and_errs() {
             Verdict::Failed,
             "the unit did not log mode_changed within 1.000 s",
         ),
+        (
+            "logs('inverter_failed', within = s(1))",
+            Some(0.0),
+            Verdict::Failed,
+            "TCMS did not log inverter_failed within 1.000 s",
+        ),
         ("never_logs('mode_changed')", Some(0.0), Verdict::Passed, ""),
     ];
     for (expect, eb, verdict, message) in cases {
@@ -538,6 +544,13 @@ fn an_event_nobody_asked_for_fails_the_step() {
         .iter()
         .filter(|e| matches!(e, RunEvent::UnsolicitedEvent(e) if e.code == 400));
     assert_eq!(reported.count(), 1);
+    let of_the_train = run(&script(""), |world| {
+        if world.ms() == 500 {
+            world.log_by(EventSource::Tcms, Event::RegenerationCutOut);
+        }
+    });
+    let message = "TCMS logged regeneration_cut_out (803, all cars), which no step provoked";
+    assert_eq!(of_the_train.summary(), [("a", Verdict::Failed, message)]);
 
     for asked in [", provokes = 'twc_lost'", ", expect = logs('twc_lost')"] {
         assert_eq!(

@@ -185,6 +185,11 @@ impl Event {
             .map_or(self.definition().lru, |&(_, lru)| lru)
     }
 
+    /// Whether TCMS logs it, and not the unit.
+    pub const fn by_tcms(self) -> bool {
+        self.definition().code / 100 == 8
+    }
+
     /// Whether it is about the train's own equipment, which stays broken whatever is tested next; what
     /// TCMS says of the unit and of the link to it is not.
     pub const fn about_train(self) -> bool {

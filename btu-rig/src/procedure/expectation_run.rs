@@ -2,6 +2,7 @@
 
 use protocol::Instant;
 
+use super::EventSource;
 use super::action_run::{Problem, Scan};
 use super::condition::{Lack, Truth};
 use super::event_set::EventSet;
@@ -58,19 +59,21 @@ impl Watch {
                 Truth::No => {}
             },
             Expectation::Logs { event, within } => {
+                let who = EventSource::of(*event).who();
                 let name = event.definition().name;
                 if logged.contains(*event) {
                     self.decided = true;
                 } else if since_end.is_some_and(|waited| waited >= *within) {
                     self.fail(Truth::No, || {
-                        format!("the unit did not log {name} within {within}")
+                        format!("{who} did not log {name} within {within}")
                     });
                 }
             }
             Expectation::NeverLogs { event } => {
+                let who = EventSource::of(*event).who();
                 let name = event.definition().name;
                 if logged.contains(*event) {
-                    self.fail(Truth::Yes, || format!("the unit logged {name}"));
+                    self.fail(Truth::Yes, || format!("{who} logged {name}"));
                 }
             }
         }

@@ -21,6 +21,7 @@ pub mod report;
 pub mod runner;
 mod step_run;
 
+use protocol::event::{ALL_CARS, Event};
 use protocol::message::{EbCause, Mode};
 use protocol::{Instant, Speed};
 use thiserror::Error;
@@ -90,4 +91,37 @@ pub struct UnitEvent {
     pub mode: Mode,
     /// Why the emergency brake was applied.
     pub eb_cause: EbCause,
+}
+
+impl UnitEvent {
+    /// The car it is about, in words; `None` for an event that names no car.
+    pub fn car(&self) -> Option<String> {
+        let event = Event::from_code(self.code)?;
+        if !event.definition().parameter.starts_with("car") {
+            return None;
+        }
+        Some(match self.parameter {
+            ALL_CARS => "all cars".into(),
+            car => format!("car {car}"),
+        })
+    }
+}
+
+impl EventSource {
+    /// Who it is, in a message.
+    pub fn who(self) -> &'static str {
+        match self {
+            Self::Unit => "the unit",
+            Self::Tcms => "TCMS",
+        }
+    }
+
+    /// Who logs this event.
+    pub(crate) fn of(event: Event) -> Self {
+        if event.by_tcms() {
+            Self::Tcms
+        } else {
+            Self::Unit
+        }
+    }
 }

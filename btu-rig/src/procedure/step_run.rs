@@ -9,7 +9,7 @@ use super::expectation_run::Watch;
 use super::measure_run::Taking;
 use super::plan::Step;
 use super::report::{Measurement, RunEvent, Verdict};
-use super::{Driver, EventSource, UnitEvent};
+use super::{Driver, UnitEvent};
 
 /// A live step.
 #[derive(Debug)]
@@ -66,12 +66,10 @@ impl StepRun {
     pub(super) fn blame_event(&mut self, entry: &UnitEvent) {
         let event = Event::from_code(entry.code);
         let name = event.map_or("unknown", |e| e.definition().name);
-        let who = match entry.source {
-            EventSource::Unit => "the unit",
-            EventSource::Tcms => "TCMS",
-        };
+        let car = entry.car().map_or(String::new(), |car| format!(", {car}"));
         let text = format!(
-            "{who} logged {name} ({}), which no step provoked",
+            "{} logged {name} ({}{car}), which no step provoked",
+            entry.source.who(),
             entry.code
         );
         let part = event.map(|event| event.suspect(entry.parameter));

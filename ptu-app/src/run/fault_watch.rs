@@ -1,7 +1,7 @@
 //! Turns what happens in a run into faults: events of the unit nobody provoked, a brake nobody
 //! asked for, a check that failed.
 
-use btu_rig::procedure::{EventSource, Procedure, StepResult, UnitEvent, Verdict};
+use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
 use protocol::Instant;
 use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
@@ -62,13 +62,10 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
         step: None,
         message: format!(
             "{text} ({}) at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
-            parameter(event, entry.parameter),
+            parameter(entry),
             entry.speed.kmh(),
             entry.limit.kmh(),
-            match entry.source {
-                EventSource::Unit => "unit",
-                EventSource::Tcms => "TCMS",
-            },
+            entry.source.who().trim_start_matches("the "),
             f64::from(entry.at_ms) / 1000.0
         ),
         freeze: freeze_frame(sample),
@@ -76,13 +73,9 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
 }
 
 /// What the parameter of an event says: the car by its word, others as they are.
-fn parameter(event: Option<Event>, value: i32) -> String {
-    let names_car = event.is_some_and(|event| event.definition().parameter.starts_with("car"));
-    if names_car && value > 0 {
-        format!("car {value}")
-    } else {
-        format!("parameter {value}")
-    }
+fn parameter(entry: &UnitEvent) -> String {
+    let car = entry.car();
+    car.unwrap_or_else(|| format!("parameter {}", entry.parameter))
 }
 
 /// An emergency brake nobody asked for.
