@@ -40,7 +40,8 @@ macro_rules! causes {
 }
 
 causes! {
-    /// Why powering is cut (S3, S4). Every one can be made on the bench.
+    /// Why powering is cut (S3, S4). Scripts can make every one on the bench but two: `not_released` takes an
+    /// injected fault of a brake, `atc_silent` a unit that falls silent.
     PowerCuts {
         /// Doors not proved closed.
         DOORS = 0 "doors",
