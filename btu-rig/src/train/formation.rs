@@ -14,6 +14,9 @@ use super::{
 /// Brake force per mass that counts as applied, m/s² [default].
 const BRAKING_MPS2: f64 = 0.02;
 
+/// Share of the emergency brake's pressure that is none.
+const EMPTY_SHARE: f64 = 1e-6;
+
 /// What is cut out, and other brakes, as the last step had it.
 #[derive(Clone, Copy, Debug, Default)]
 struct CutOut {
@@ -65,8 +68,10 @@ impl Emergency {
         self.open_s = if applied { self.open_s + dt_s } else { 0.0 };
         if self.open_s > self.times.dead_s {
             self.share += (1.0 - self.share) * share_per_step(dt_s, self.times.rise_s);
-        } else if self.share > 0.0 {
+        } else if self.share > EMPTY_SHARE {
             self.share -= self.share * share_per_step(dt_s, self.times.fall_s);
+        } else {
+            self.share = 0.0;
         }
         self.share
     }
