@@ -7,6 +7,8 @@ use btu_rig::train::{CarSet, CarsData, Train, TrainData, TrainInputs, TrainState
 
 /// Full load (S3), kg.
 const FULL_KG: f64 = 160_000.0;
+/// Speed at which the train all but stands, km/h.
+const STAND_KMH: f64 = 0.1;
 const LOADS_KG: [f64; 3] = [0.0, 80_000.0, FULL_KG];
 /// S3's table: TC, T1, T2, M1, M2, train; kg, the last four rows N.
 const TABLE: [(&str, [f64; 6]); 9] = [
@@ -197,6 +199,7 @@ fn the_share_of_a_brake_that_is_cut_out() {
 /// the demand once the onset is over.
 #[test]
 fn effort_keeps_to_the_demand_through_blending() {
+    let fade_from_kmh = line6().electric_brake.fade_from_kmh;
     for (cut, name) in [(CarSet::NONE, "sound"), (CarSet::one(3), "T1 cut out")] {
         for load_kg in LOADS_KG {
             for (notch, share) in [("B7", 1.0), ("B4", 0.565), ("B2", 0.275)] {
@@ -204,14 +207,17 @@ fn effort_keeps_to_the_demand_through_blending() {
                 ride.brakes_out = cut;
                 // The ramp to the notch, and what the slower brake takes after it.
                 ride.run(share * 3.5 / 3.6 / 0.8 + 0.9);
-                let (low, high) = ride.run_to_stand();
                 let name = format!("{name}, {load_kg:.0} kg, {notch}");
+                let (low, high) = ride.run_to(fade_from_kmh);
                 println!("{name:<46} effort of demand {low:.4}..{high:.4}");
-                // The remaining brakes have no more than 393.9 of 443.7 kN of air.
+                assert!(low >= 0.98 && high <= 1.02, "{name}: {low}..{high}");
+                // Air alone: the remaining brakes have no more than 393.9 of 443.7 kN.
                 let least = match cut.is_empty() || load_kg < FULL_KG || share < 1.0 {
                     true => 0.98,
                     false => 393_935.0 / 443_691.0 - 0.001,
                 };
+                let (low, high) = ride.run_to(STAND_KMH);
+                println!("{:<46} while it fades {low:.4}..{high:.4}", "");
                 assert!(low >= least && high <= 1.02, "{name}: {low}..{high}");
             }
         }
@@ -244,7 +250,7 @@ fn air_takes_over_when_regeneration_is_cut_out() {
         println!("{name:<46} {seconds:.2} s, effort of demand {low:.3}..{high:.3}");
         assert!(seconds < 1.0 && high < 1.02, "{seconds} {low} {high}");
         assert_eq!(ride.state.electric_brake_n.round(), 0.0);
-        let (low, high) = ride.run_to_stand();
+        let (low, high) = ride.run_to(STAND_KMH);
         // Two pairs are a little short of air at full load: their cars' own maxima.
         let least = if load_kg < FULL_KG { 0.995 } else { 0.985 };
         assert!(low > least && high < 1.005, "{low} {high}");
@@ -262,8 +268,24 @@ fn air_takes_over_when_an_inverter_is_cut_out() {
         let name = format!("inverter cut out, {load_kg:.0} kg");
         println!("{name:<46} {seconds:.2} s, effort of demand {low:.3}..{high:.3}");
         assert!(seconds < 1.0 && high < 1.02, "{seconds} {low} {high}");
-        let (low, high) = ride.run_to_stand();
+        let (low, high) = ride.run_to(STAND_KMH);
         assert!(low > 0.98 && high < 1.02, "{low} {high}");
+    }
+}
+
+/// The brake of T1 is cut out while braking: the other pairs take its share over.
+#[test]
+fn the_others_take_over_when_a_brake_is_cut_out() {
+    for load_kg in [0.0, FULL_KG] {
+        let mut ride = Ride::new(60.0, load_kg, -1.0);
+        ride.run_until(|ride| ride.kmh() <= 40.0);
+        ride.brakes_out = CarSet::one(3);
+        let (seconds, low, high) = ride.transient();
+        let name = format!("brake of T1 cut out, {load_kg:.0} kg");
+        println!("{name:<46} {seconds:.2} s, effort of demand {low:.3}..{high:.3}");
+        assert!(seconds < 1.0 && high < 1.02, "{seconds} {low} {high}");
+        let t1_n = ride.train.equipment().air_n[3];
+        assert!(t1_n < 100.0, "{t1_n}");
     }
 }
 
@@ -376,10 +398,10 @@ impl Ride {
         panic!("never: {:?}", self.state);
     }
 
-    /// Least and most effort over demand until it all but stands.
-    fn run_to_stand(&mut self) -> (f64, f64) {
+    /// Least and most effort over demand down to a speed.
+    fn run_to(&mut self, kmh: f64) -> (f64, f64) {
         let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-        while self.kmh() > 0.1 {
+        while self.kmh() > kmh {
             self.scan();
             let of_demand = self.brake_n() / self.demands.brake_n;
             (low, high) = (low.min(of_demand), high.max(of_demand));
