@@ -197,7 +197,7 @@ fn setup_steps_and_clean_up_run_in_order_and_outputs_end_safe() {
 
 #[test]
 fn each_expectation_passes_fails_and_errs() {
-    let cases: [(&str, Option<f64>, Verdict, &str); 11] = [
+    let cases: [(&str, Option<f64>, Verdict, &str); 12] = [
         ("becomes(eb, 'applied')", Some(1.0), Verdict::Passed, ""),
         (
             "becomes(eb, 'applied')",
