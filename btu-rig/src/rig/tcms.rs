@@ -7,7 +7,7 @@ use protocol::{CYCLE, Speed};
 use crate::procedure::{EventSource, UnitEvent};
 use crate::stimulus::TrainSwitch;
 use crate::tcms::{TcmsEvent, TcmsInputs, TcmsView};
-use crate::train::{CarSet, PerCar, Role, TrainData, TrainInputs};
+use crate::train::{CarSet, PerCar, TrainData, TrainInputs};
 
 use super::Rig;
 use super::log_reader::MAX_EVENTS;
@@ -27,14 +27,8 @@ pub(super) type PairCars = [(CarSet, CarSet); 4];
 pub(super) fn pair_cars(train: &TrainData) -> PairCars {
     let mut pairs = PairCars::default();
     if let TrainData::Cars(data) = train {
-        for (i, car) in data.cars.iter().enumerate() {
-            let Some((motors, trailers)) = pairs.get_mut(car.pair - 1) else {
-                continue;
-            };
-            match car.role {
-                Role::Motor => motors.set(i, true),
-                Role::Trailer => trailers.set(i, true),
-            }
+        for (at, pair) in pairs.iter_mut().enumerate() {
+            *pair = data.pair_cars(at + 1);
         }
     }
     pairs
@@ -150,7 +144,7 @@ fn record_words(sample: &mut Sample, view: &TcmsView) {
         (Signal::TcmsValue, f64::from(view.driving.drytebe)),
         (Signal::ControllerVolts, view.volts),
         (Signal::PowerCutCauses, f64::from(view.power_cuts.bits())),
-        (Signal::EbSources, f64::from(view.eb_sources().bits())),
+        (Signal::EbSources, f64::from(view.line.sources.bits())),
         (Signal::Lamps, f64::from(view.lamps.bits())),
         (
             Signal::NotReleased,

@@ -29,7 +29,6 @@ pub struct AtcLink {
     heard: Option<(Instant, AtcToTcms)>,
     order: AtoOrder,
     silent: bool,
-    frames_contradicting: u32,
     contradictions: u32,
     contradicts: bool,
 }
@@ -42,7 +41,6 @@ impl AtcLink {
             heard: None,
             order: AtoOrder::default(),
             silent: true,
-            frames_contradicting: 0,
             contradictions: 0,
             contradicts: false,
         }
@@ -63,11 +61,8 @@ impl AtcLink {
             (false, false) => frame.effort != 0,
         };
         let contradicts = beyond || against;
-        if contradicts {
-            self.frames_contradicting = self.frames_contradicting.saturating_add(1);
-            self.contradictions = self
-                .contradictions
-                .saturating_add(u32::from(!self.contradicts));
+        if contradicts && !self.contradicts {
+            self.contradictions = self.contradictions.saturating_add(1);
         }
         self.contradicts = contradicts;
         self.heard = Some((now, *frame));
@@ -96,11 +91,6 @@ impl AtcLink {
     /// No frames for too long.
     pub fn silent(&self) -> bool {
         self.silent
-    }
-
-    /// Frames that contradicted themselves.
-    pub fn frames_contradicting(&self) -> u32 {
-        self.frames_contradicting
     }
 
     /// Times the unit began to contradict itself.

@@ -19,6 +19,15 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// Of these motor cars and trailers, not weighed.
+    fn of((motors, trailers): (CarSet, CarSet)) -> Self {
+        Self {
+            motors,
+            trailers,
+            ..Self::default()
+        }
+    }
+
     /// Load compensation: TE_w, BE_w of S3.
     pub fn load_factor(&self) -> f64 {
         if self.full_inertia_kg > 0.0 {
@@ -58,8 +67,10 @@ impl Consist {
         let count = data.cars.iter().map(|car| car.pair).max().unwrap_or(0);
         let mut consist = Self {
             data: data.clone(),
-            pairs: vec![Pair::default(); count],
-            motors: CarSet::NONE,
+            pairs: (1..=count)
+                .map(|pair| Pair::of(data.pair_cars(pair)))
+                .collect(),
+            motors: data.motor_cars(),
             electric_n: [0.0; MAX_CARS],
             full_service_n: [0.0; MAX_CARS],
             air_n: [0.0; MAX_CARS],
@@ -72,13 +83,6 @@ impl Consist {
         for (i, car) in data.cars.iter().enumerate() {
             let pair = &mut consist.pairs[car.pair - 1];
             pair.full_inertia_kg += car.empty_kg + car.rotating_kg + car.full_load_kg;
-            match car.role {
-                Role::Motor => {
-                    pair.motors.set(i, true);
-                    consist.motors.set(i, true);
-                }
-                Role::Trailer => pair.trailers.set(i, true),
-            }
             consist.air_n[i] = car.air_n;
         }
         consist.full_inertia_kg = consist.pairs.iter().map(|pair| pair.full_inertia_kg).sum();

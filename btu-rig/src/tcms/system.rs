@@ -113,11 +113,6 @@ impl Tcms {
         &self.view
     }
 
-    /// Frames of the unit that contradicted themselves so far.
-    pub fn frames_contradicting(&self) -> u32 {
-        self.atc.frames_contradicting()
-    }
-
     /// Its new events.
     pub fn take_events(&mut self) -> Vec<TcmsEvent> {
         self.report.take()

@@ -8,7 +8,7 @@ use super::emergency_line::Line;
 use super::full_service_brake::BrakeOutputs;
 use super::mode::TcmsMode;
 use super::watch::Found;
-use super::words::{EbSources, Lamps, PowerCuts};
+use super::words::{Lamps, PowerCuts};
 
 /// What TCMS did in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,13 +39,6 @@ pub struct TcmsView {
     pub given: i16,
     /// The reverser that counts points backward.
     pub backward: bool,
-}
-
-impl TcmsView {
-    /// What opens the emergency brake train line.
-    pub fn eb_sources(&self) -> EbSources {
-        self.line.sources
-    }
 }
 
 /// An event TCMS logs.

@@ -4,6 +4,7 @@ use protocol::config::ConfigError;
 use serde::{Deserialize, Serialize};
 
 use super::actuator::Times;
+use super::car_set::CarSet;
 use super::check;
 use crate::tcms::TcmsData;
 
@@ -41,7 +42,7 @@ pub struct IdealData {
     pub service_kmh_per_s: f64,
     /// Emergency brake, km/h/s.
     pub emergency_kmh_per_s: f64,
-    /// Holding brake, share of full service (S4).
+    /// Holding brake, share of full service (S4). The security brake is all of it.
     pub holding_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
@@ -297,6 +298,26 @@ impl TrainData {
 impl CarsData {
     /// How inverters follow a demand.
     pub(crate) fn motor_times(&self) -> Times {
+    /// Cars with an inverter.
+    pub fn motor_cars(&self) -> CarSet {
+        self.cars_where(|car| car.role == Role::Motor)
+    }
+
+    /// Motor cars and trailers of an MT pair, counted from 1.
+    pub fn pair_cars(&self, pair: usize) -> (CarSet, CarSet) {
+        let all = self.cars_where(|car| car.pair == pair);
+        let trailers = all.without(self.motor_cars());
+        (all.without(trailers), trailers)
+    }
+
+    fn cars_where(&self, holds: impl Fn(&CarData) -> bool) -> CarSet {
+        let mut cars = CarSet::NONE;
+        for (i, car) in self.cars.iter().enumerate() {
+            cars.set(i, holds(car));
+        }
+        cars
+    }
+
         Times {
             dead_s: self.traction.dead_time_s,
             rise_s: self.traction.lag_s,

@@ -7,8 +7,7 @@ use super::data::CarsData;
 use super::resistance::RunningResistance;
 use super::wheels::{Efforts, Rolling, WheelSets, adhesion_share, direction};
 use super::{
-    CarSet, Equipment, EquipmentFaults, KGF_PER_T, MAX_CARS, PerCar, Piece, Role, TrainInputs,
-    TrainState,
+    CarSet, Equipment, EquipmentFaults, KGF_PER_T, MAX_CARS, PerCar, Piece, TrainInputs, TrainState,
 };
 
 /// Brake force per mass that counts as applied, m/s² [default].
@@ -99,7 +98,7 @@ impl Formation {
             weight_kg: 0.0,
             emergency_n: none,
             service_n: none,
-            motor_cars: motor_cars(data),
+            motor_cars: data.motor_cars(),
             faults: EquipmentFaults::default(),
             sound: true,
             cylinders_n: none,
@@ -346,15 +345,6 @@ impl Formation {
         self.resistance.weigh(&weight_kg);
         self.wheels.weigh(&weight_kg);
     }
-}
-
-/// Cars with inverters.
-fn motor_cars(data: &CarsData) -> CarSet {
-    let mut cars = CarSet::NONE;
-    for (i, car) in data.cars.iter().enumerate() {
-        cars.set(i, car.role == Role::Motor);
-    }
-    cars
 }
 
 fn emergency_times(data: &CarsData) -> Times {
