@@ -4,6 +4,7 @@ use protocol::Instant;
 
 use crate::procedure::Refusal;
 use crate::stimulus::{CutOut, Stimulus, TachoCondition, WaysideCondition};
+use crate::train::TrainData;
 
 use super::antenna::MAX_RATE_HZ;
 use super::exchange::Request;
@@ -278,10 +279,20 @@ impl Rig {
     }
 
     fn cut_out(&mut self, what: CutOut, car: u8, on: bool) -> Result<(), Refusal> {
-        let cars = self.cars.len();
+        let TrainData::Cars(data) = &self.train_data else {
+            return Err(Refusal(
+                "a point mass has no cars to cut anything out on: take a train of cars".to_owned(),
+            ));
+        };
+        let cars = data.cars.len();
         let place = usize::from(car).checked_sub(1).filter(|at| *at < cars);
         let place = place
             .ok_or_else(|| Refusal(format!("there is no car {car}: the train has 1 to {cars}")))?;
+        if what == CutOut::Inverter && !data.motor_cars().contains(place) {
+            return Err(Refusal(format!(
+                "car {car} is a trailer: it has no inverter to cut out"
+            )));
+        }
         self.desk.cut_out(what, place, on);
         Ok(())
     }

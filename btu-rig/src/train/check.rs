@@ -25,6 +25,7 @@ pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
         ("service_kmh_per_s", data.service_kmh_per_s, 0.1, 10.0),
         ("emergency_kmh_per_s", data.emergency_kmh_per_s, 0.1, 10.0),
         ("holding_share", data.holding_share, 0.0, 1.0),
+        ("parking_share", data.parking_share, 0.0, 1.0),
     ] {
         within(key, value, low, high)?;
     }

@@ -44,6 +44,8 @@ pub struct IdealData {
     pub emergency_kmh_per_s: f64,
     /// Holding brake, share of full service (S4). The security brake is all of it.
     pub holding_share: f64,
+    /// Parking brake, share of full service.
+    pub parking_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
     /// Its TCMS.
@@ -296,8 +298,6 @@ impl TrainData {
 }
 
 impl CarsData {
-    /// How inverters follow a demand.
-    pub(crate) fn motor_times(&self) -> Times {
     /// Cars with an inverter.
     pub fn motor_cars(&self) -> CarSet {
         self.cars_where(|car| car.role == Role::Motor)
@@ -318,6 +318,8 @@ impl CarsData {
         cars
     }
 
+    /// How inverters follow a demand.
+    pub(crate) fn motor_times(&self) -> Times {
         Times {
             dead_s: self.traction.dead_time_s,
             rise_s: self.traction.lag_s,

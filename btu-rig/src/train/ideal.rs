@@ -144,7 +144,14 @@ impl Ideal {
             base_mps / self.velocity_mps.abs().max(base_mps)
         });
         let power = share.max(0.0) * self.data.power_kmh_per_s / 3.6 * fade;
-        let service = (-share).max(0.0) * self.data.service_kmh_per_s / 3.6;
+        let mut brake_share = (-share).max(0.0);
+        if inputs.security {
+            brake_share = 1.0;
+        }
+        if inputs.parking {
+            brake_share = brake_share.max(self.data.parking_share);
+        }
+        let service = brake_share * self.data.service_kmh_per_s / 3.6;
         let emergency = if inputs.emergency {
             self.data.emergency_kmh_per_s / 3.6
         } else {
@@ -228,6 +235,34 @@ mod tests {
                 _ => continue,
             };
             assert!((train.velocity_mps() - expected).abs() < 1e-5, "{step}");
+        }
+    }
+
+    /// Security brake as hard as full service, parking brake by its share, neither adding to a brake.
+    #[test]
+    fn hard_wired_brakes_brake() {
+        for (security, parking, demand, share) in [
+            (true, false, 0.0, 1.0),
+            (true, true, -0.5, 1.0),
+            (false, true, 0.0, 0.25),
+            (false, true, -0.5, 0.5),
+        ] {
+            let change: fn(&mut IdealData) = |d| (d.drag_per_s, d.parking_share) = (0.0, 0.25);
+            let mut train = train(change, &Conditions::default());
+            train.place(20.0);
+            let inputs = TrainInputs {
+                demand,
+                security,
+                parking,
+                ..TrainInputs::default()
+            };
+            let state = train.step(DT, &inputs);
+            let lost_mps = 20.0 - train.velocity_mps();
+            assert!(
+                (lost_mps / DT - share * 3.5 / 3.6).abs() < 1e-9,
+                "{inputs:?}"
+            );
+            assert!(state.braking);
         }
     }
 

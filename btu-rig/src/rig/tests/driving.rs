@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 
 use super::{FakeUnit, bench};
 use crate::rig::Bench;
-use crate::stimulus::{Stimulus, TachoCondition};
+use crate::stimulus::{CutOut, Stimulus, TachoCondition};
 
 fn speed(bench: &Bench<FakeUnit>) -> f64 {
     bench.rig().sample().get(Signal::TrainSpeed).unwrap()
@@ -134,6 +134,22 @@ fn what_cannot_be_is_refused_in_words() {
                 passengers_kg: -1.0,
             },
             "load -1 kg",
+        ),
+        (
+            Stimulus::CutOut {
+                what: CutOut::Inverter,
+                car: 1,
+                on: true,
+            },
+            "car 1 is a trailer",
+        ),
+        (
+            Stimulus::CutOut {
+                what: CutOut::Brake,
+                car: 9,
+                on: true,
+            },
+            "no car 9",
         ),
     ] {
         let refusal = bench.rig_mut().apply(now, &stimulus).unwrap_err();

@@ -8,7 +8,7 @@ use protocol::signal::Signal;
 use super::{FakeUnit, config, line};
 use crate::conditions::Conditions;
 use crate::rig::{Bench, Rig, Truth};
-use crate::stimulus::Stimulus;
+use crate::stimulus::{CutOut, Stimulus};
 use crate::train::TrainData;
 
 /// Full effort the fake unit's commands stand for.
@@ -264,4 +264,12 @@ fn a_train_can_be_exchanged() {
     // It coasts by r·v alone, after the two cycles in which the order for power still stands.
     assert!((after - before).abs() < 0.2, "{before} {after}");
     assert!(bench.rig().truth().accel_mps2 > -0.02);
+    let cut_out = Stimulus::CutOut {
+        what: CutOut::Brake,
+        car: 1,
+        on: true,
+    };
+    let now = bench.now();
+    let refusal = bench.rig_mut().apply(now, &cut_out).unwrap_err();
+    assert!(refusal.0.contains("point mass"), "{}", refusal.0);
 }
