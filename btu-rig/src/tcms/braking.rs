@@ -154,14 +154,21 @@ impl Sharing {
         demands
     }
 
-    /// Electric brake of each pair that should be there and is not, N.
+    /// Electric brake of each pair that should be there and is not, N. A report that is no number is of
+    /// no brake.
     fn lost(&self, inverters: Option<Inverters<'_>>) -> PerCar {
         let mut lost_n = [0.0; MAX_CARS];
         let Some(inverters) = inverters else {
             return lost_n;
         };
         for &(car, at) in &self.willing {
-            lost_n[at] += (-inverters.due_n[car] - inverters.electric_n[car]).max(0.0);
+            let reported_n = inverters.electric_n[car];
+            let given_n = if reported_n.is_finite() {
+                reported_n.max(0.0)
+            } else {
+                0.0
+            };
+            lost_n[at] += (-inverters.due_n[car] - given_n).max(0.0);
         }
         lost_n
     }
@@ -282,6 +289,34 @@ mod tests {
         near(demands.air_n[3], 49_756.0);
         near(demands.air_n[2], 110_923.0 - 87_418.0 + 40_000.0 - 49_756.0);
         near(demands.air_n[0], 110_923.0 - 87_345.0);
+    }
+
+    /// A report that is no number is of nothing given, and air comes in its place.
+    #[test]
+    fn air_makes_up_for_an_inverter_that_reports_no_number() {
+        let consist = line6(160_000.0);
+        let sharing = Sharing::new(&consist, CarSet::NONE, CarSet::NONE);
+        let due_n = consist.electric_n.map(|n| -n);
+        let air_n = |reported_n: f64| {
+            let mut electric_n = consist.electric_n;
+            electric_n[2] = reported_n;
+            let inverters = Inverters {
+                due_n: &due_n,
+                electric_n: &electric_n,
+            };
+            let demands = sharing.braking(&BrakingInputs {
+                share: 1.0,
+                pattern: 1.0,
+                pattern_ahead: 1.0,
+                inverters: Some(inverters),
+            });
+            demands.air_n
+        };
+        let nothing = air_n(0.0);
+        assert!(nothing[2] + nothing[3] > 108_000.0);
+        for report_n in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e9] {
+            assert_eq!(air_n(report_n), nothing, "{report_n}");
+        }
     }
 
     /// Without an inverter its pair brakes by air; without both, its cars are all that is missing.

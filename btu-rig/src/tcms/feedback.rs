@@ -9,7 +9,8 @@ use super::inputs::TcmsInputs;
 use super::speed::train_speed;
 
 /// Speed, m/s, a size: mean of the inverters' axles (S3), or of the generators' wheels. What is no
-/// number counts as standing.
+/// number counts as standing, and so does a train whose inverters are all silent: a brake that lasts
+/// becomes the holding brake then, at whatever speed, which is the safe side.
 pub(super) fn speed_mps(
     inputs: &TcmsInputs<'_>,
     effort: Option<&Effort>,
@@ -34,7 +35,8 @@ pub(super) fn speed_mps(
 }
 
 /// Greatest traction of any motor car, share of the greatest it can give: what S4 takes from the
-/// motors' current. Without reports the order counts as followed.
+/// motors' current. Without reports the order counts as followed; a report that is no number is of no
+/// traction, and releases no holding brake.
 pub(super) fn traction(
     equipment: Option<&Equipment>,
     effort: Option<&Effort>,
@@ -45,6 +47,7 @@ pub(super) fn traction(
             let most_n = equipment
                 .traction_n
                 .iter()
+                .filter(|n| n.is_finite())
                 .fold(0.0, |most: f64, of| most.max(*of));
             most_n / effort.consist.traction_n()
         }
@@ -92,8 +95,24 @@ fn value(share: f64) -> i16 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::consist::Consist;
     use super::*;
-    use crate::train::MAX_CARS;
+    use crate::train::{MAX_CARS, TrainData};
+
+    #[test]
+    fn traction_that_is_no_number_pulls_nothing() {
+        let TrainData::Cars(data) = TrainData::line6() else {
+            panic!("a train of cars");
+        };
+        let effort = Effort::new(Consist::new(&data));
+        let mut equipment = Equipment::default();
+        for report_n in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            equipment.traction_n = [report_n; MAX_CARS];
+            assert_eq!(traction(Some(&equipment), Some(&effort), 0), 0.0);
+        }
+        equipment.traction_n[2] = effort.consist.traction_n();
+        assert_eq!(traction(Some(&equipment), Some(&effort), 0), 1.0);
+    }
 
     #[test]
     fn a_sum_leaves_no_car_out() {

@@ -46,7 +46,9 @@ pub struct TcmsInputs<'a> {
     pub brakes_cut_out: CarSet,
     /// Cars whose inverter is cut out.
     pub inverters_cut_out: CarSet,
-    /// The unit's contacts; `None` = not heard.
+    /// The unit's contacts; `None` = not heard. Its relay in the emergency brake line counts as open
+    /// then, so that the train brakes, and powering is cut; the contacts for full service and holding
+    /// brake are not read.
     pub contacts: Option<Outputs>,
     /// Passengers as the brake control units weigh them, kg.
     pub load_kg: f64,

@@ -130,7 +130,7 @@ fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 31] {
         ("electric_brake.fade_to_kmh", el.fade_to_kmh, 0.0, 200.0),
         ("service_brake.kmh_per_s", s.kmh_per_s, 0.1, 10.0),
         ("service_brake.holding_share", s.holding_share, 0.0, 1.0),
-        ("service_brake.security_share", s.security_share, 0.0, 1.3),
+        ("service_brake.security_share", s.security_share, 0.5, 1.3),
         ("service_brake.parking_share", s.parking_share, 0.0, 1.0),
         ("service_brake.dead_time_s", s.dead_time_s, 0.0, time),
         ("service_brake.build_up_s", s.build_up_s, 0.0, time),

@@ -437,6 +437,10 @@ mod tests {
                 "cars = 16 is outside 1 .. 12",
             ),
             (LINE6.replace("bogies_kg = 10600\n", ""), "bogies_kg"),
+            (
+                LINE6.replace("security_share = 1.0", "security_share = 0.4"),
+                "service_brake.security_share",
+            ),
         ] {
             let error = TrainData::from_toml(&text).unwrap_err().to_string();
             assert!(error.contains(words), "{words}: {error}");
