@@ -107,6 +107,7 @@ impl RunArguments {
         let Loaded {
             procedures,
             errors,
+            need_cars,
             printed,
         } = load(
             &texts,
@@ -126,6 +127,17 @@ impl RunArguments {
                 "{} {what} in the scripts; nothing was driven",
                 errors.len()
             )));
+        }
+        if !need_cars.is_empty() {
+            let why = format!(
+                "the train \"{}\" has no cars, which these test: {}",
+                self.train,
+                need_cars.join(", ")
+            );
+            if procedures.is_empty() {
+                return Err(Failure::usage(why));
+            }
+            eprintln!("left out: {why}");
         }
         check_suspects(&procedures, &directory.faults()?)?;
         if self.check {

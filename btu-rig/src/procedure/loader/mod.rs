@@ -25,7 +25,7 @@ mod verb;
 mod verbs;
 mod want;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use protocol::config::UnitConfig;
@@ -67,14 +67,37 @@ pub struct Loaded {
     pub procedures: Vec<Arc<Procedure>>,
     /// All errors of all scripts, by path and line.
     pub errors: Vec<LoadError>,
+    /// Procedures, by name, that a train without cars cannot be tested by.
+    pub need_cars: Vec<String>,
     /// What scripts printed.
     pub printed: Vec<String>,
 }
 
 /// Loads all `scripts` for a unit of type `unit` on `line` in `train`.
 ///
-/// Files whose names start with `_` are libraries for `load()`; every other is one procedure.
+/// Files whose names start with `_` are libraries for `load()`; every other is one procedure. One that
+/// cannot be read for a train that is a point mass, and can for a train of cars, needs cars: it is no error
+/// but is set apart.
 pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData) -> Loaded {
+    let mut loaded = load_for(scripts, unit, line, train);
+    if matches!(train, TrainData::Ideal(_)) && !loaded.errors.is_empty() {
+        let with_cars = load_for(scripts, unit, line, &TrainData::line6());
+        let wrong: BTreeSet<_> = with_cars.errors.iter().map(|e| e.file.as_str()).collect();
+        let (errors, only_here): (Vec<_>, Vec<_>) = std::mem::take(&mut loaded.errors)
+            .into_iter()
+            .partition(|error| wrong.contains(error.file.as_str()));
+        loaded.errors = errors;
+        let files: BTreeSet<_> = only_here.into_iter().map(|error| error.file).collect();
+        let procedures = with_cars.procedures.iter();
+        loaded.need_cars = procedures
+            .filter(|procedure| files.contains(&procedure.path))
+            .map(|procedure| procedure.id.clone())
+            .collect();
+    }
+    loaded
+}
+
+fn load_for(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData) -> Loaded {
     let context = Context::new(unit.clone(), line.clone(), train.clone());
     let predeclared = globals::predeclared(&context);
     let globals = globals::build(&predeclared);
