@@ -11,6 +11,7 @@ use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
+use protocol::event::Event;
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::message::Identity;
@@ -222,8 +223,7 @@ pub fn start<'scope>(
                         break;
                     }
                     let began = session.now();
-                    // What the last procedure's end still makes the unit log is not the next one's.
-                    session.idle(READY_WITHIN, |_, _, _| {}, settled());
+                    found.extend(between_procedures(&mut session));
                     run_task(
                         &mut session,
                         task,
@@ -250,6 +250,24 @@ pub fn start<'scope>(
         }
     }
     receivers
+}
+
+/// Waits until the unit has settled. What the last procedure's end still makes it log is not the next one's,
+/// but the train's equipment may break at any time, and nobody else would tell.
+fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<FaultSeen> {
+    let mut found = Vec::new();
+    session.idle(
+        READY_WITHIN,
+        |entry, at, sample| {
+            if Event::from_code(entry.code).is_some_and(Event::about_train)
+                && fault_watch::is_fault(entry)
+            {
+                found.push(fault_watch::of_event(entry, at, sample));
+            }
+        },
+        settled(),
+    );
+    found
 }
 
 /// Tasks not begun yet.
@@ -335,18 +353,7 @@ mod tests {
     /// row. Method: all of them, forward and backward, on one embedded unit in virtual time.
     #[test]
     fn procedures_pass_in_any_order_on_a_unit_that_is_never_powered_off() {
-        let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
-        let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
-        let setup = BenchSetup {
-            endpoint: Endpoint::Sim,
-            config: directory.unit_config("sg100").expect("configuration"),
-            line: directory.line("line8").expect("line"),
-            train: TrainData::line6(),
-            faults: Vec::new(),
-            seed: 1,
-            serial: None,
-            realtime: false,
-        };
+        let (directory, setup) = line6_bench();
         let texts = directory.procedures().expect("procedures");
         let loaded = load(
             &texts,
@@ -359,7 +366,8 @@ mod tests {
         session.judge_bring_up(BEFORE + READY_WITHIN, settled());
         let backward = loaded.procedures.iter().rev();
         for procedure in loaded.procedures.iter().chain(backward) {
-            session.idle(READY_WITHIN, |_, _, _| {}, settled());
+            let found = between_procedures(&mut session);
+            assert!(found.is_empty(), "{}: {found:#?}", procedure.id);
             let mut said = Vec::new();
             let mut verdict = None;
             let mut sink = |event| match event {
@@ -386,5 +394,45 @@ mod tests {
                 procedure.id
             );
         }
+    }
+
+    /// A controller that breaks while no procedure runs is found all the same.
+    #[test]
+    fn what_breaks_between_procedures_is_kept() {
+        let (directory, mut setup) = line6_bench();
+        let faults = directory.faults().expect("faults");
+        let controller = faults.fault("master_controller.pot_low").expect("mode");
+        setup.faults = vec![FaultMode {
+            onset_s: 20.0,
+            ..controller.clone()
+        }];
+        let stop = Stop::default();
+        let mut session = setup.sim_session("between", &stop);
+        session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+        session.idle(Duration::from_ms(1_000), |_, _, _| {}, |_| false);
+        assert!(between_procedures(&mut session).is_empty());
+        // Not taken by anybody, as while a window runs out.
+        while session.now() < Instant::ZERO + BEFORE + Duration::from_ms(21_000) {
+            session.bench().tick().expect("bench");
+        }
+        let found = between_procedures(&mut session);
+        let names: Vec<_> = found.iter().map(|fault| fault.name.as_str()).collect();
+        assert_eq!(names, ["controller_failed"]);
+    }
+
+    fn line6_bench() -> (ScriptsDirectory, BenchSetup) {
+        let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+        let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
+        let setup = BenchSetup {
+            endpoint: Endpoint::Sim,
+            config: directory.unit_config("sg100").expect("configuration"),
+            line: directory.line("line8").expect("line"),
+            train: TrainData::line6(),
+            faults: Vec::new(),
+            seed: 1,
+            serial: None,
+            realtime: false,
+        };
+        (directory, setup)
     }
 }

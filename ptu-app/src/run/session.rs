@@ -204,11 +204,10 @@ impl<L: UnitLink> Session<L> {
         self.finish_window(sink);
     }
 
-    /// Lets an open window run out on a quiet bench.
+    /// Lets an open window run out on a quiet bench. What is logged meanwhile waits for whoever idles next.
     fn finish_window(&mut self, sink: &mut dyn FnMut(SessionEvent)) {
         while self.recorder.is_open() && self.stop.presses() == 0 && self.link_error().is_none() {
             self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));
-            self.bench.rig_mut().take_events();
         }
         if let Some(cut) = self.recorder.close(true) {
             sink(SessionEvent::Trace(Box::new(cut)));
