@@ -312,6 +312,27 @@ fn a_brake_that_is_already_applied_has_no_reaction_time() {
 }
 
 #[test]
+fn what_many_measurements_waited_for_is_said_once() {
+    let script = format!(
+        "{HEAD}step('a', measure = [at('v%d' % n, speed, when = is_(eb, 'applied')) for n in range(17)])"
+    );
+    let outcome = run(&script, |world| world.sample.set(Signal::Eb, 0.0));
+    let message = "v0 and 16 more: no value, eb = applied did not come about in time";
+    assert_eq!(outcome.summary(), [("a", Verdict::Error, message)]);
+}
+
+#[test]
+fn bits_that_are_not_as_wanted_are_named() {
+    let script = format!(
+        "{HEAD}step('a', do = until(lamps, lacks = lamp.failure + lamp.not_released, within = s(1)))"
+    );
+    let outcome = run(&script, |world| world.sample.set(Signal::Lamps, 64.0));
+    let message =
+        "lamps without not_released + failure did not come within 1.000 s (lamps = failure)";
+    assert_eq!(outcome.summary(), [("a", Verdict::Failed, message)]);
+}
+
+#[test]
 fn limits_missing_data_and_nan_never_pass() {
     let cases = [
         (

@@ -5,6 +5,7 @@ use protocol::{Duration, Instant};
 
 use super::Driver;
 use super::condition::{Captured, Truth};
+use super::describe::bits_seen;
 use super::plan::Action;
 use super::report::RunEvent;
 use super::runner::PromptPolicy;
@@ -112,7 +113,8 @@ impl ActionRun {
                         Ok(done) => done,
                         Err(make) => {
                             return Progress::Stuck(make(format!(
-                                "{condition} did not come within {within}"
+                                "{condition} did not come within {within}{}",
+                                bits_seen(condition, scan.sample)
                             )));
                         }
                     }

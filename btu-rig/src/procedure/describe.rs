@@ -2,13 +2,13 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use protocol::signal::{Kind, Signal};
+use protocol::signal::{Kind, Sample, Signal};
 
 use super::plan::{
     Action, Comparison, Condition, Connection, Expectation, Measure, Operand, Procedure, Step,
     TimeFrom, What,
 };
-use crate::stimulus::{CutOut, Stimulus};
+use super::stimulus_text::stimulus_text;
 use crate::tcms::{EbSources, Lamps, PowerCuts};
 
 impl Procedure {
@@ -222,11 +222,18 @@ impl Display for Measure {
             What::Change(signal) => write!(f, "change of {}", signal.name())?,
         }
         let unit = self.unit();
+        let limit = |limit: &Operand| match limit {
+            Operand::Literal(newtons) if unit == "N" => force(*newtons),
+            other => with_unit(other, unit),
+        };
         match (&self.low, &self.high) {
             (None, None) => Ok(()),
-            (Some(low), None) => write!(f, ", at least {}", with_unit(low, unit)),
-            (None, Some(high)) => write!(f, ", at most {}", with_unit(high, unit)),
-            (Some(low), Some(high)) => write!(f, ", {low} to {}", with_unit(high, unit)),
+            (Some(low), None) => write!(f, ", at least {}", limit(low)),
+            (None, Some(high)) => write!(f, ", at most {}", limit(high)),
+            (Some(low), Some(high)) if unit == "N" => {
+                write!(f, ", {} to {}", limit(low), limit(high))
+            }
+            (Some(low), Some(high)) => write!(f, ", {low} to {}", limit(high)),
         }
     }
 }
@@ -241,6 +248,29 @@ pub(super) fn limits(low: Option<f64>, high: Option<f64>) -> String {
     }
 }
 
+/// A force as people say it: kN with one digit, small ones in N.
+fn force(newtons: f64) -> String {
+    if newtons.abs() < 1000.0 {
+        return format!("{} N", newtons.round() + 0.0);
+    }
+    format!("{:.1} kN", newtons / 1000.0)
+}
+
+/// What the bits a condition asks for are instead, as the end of a sentence; empty for other conditions.
+pub(super) fn bits_seen(condition: &Condition, sample: &Sample) -> String {
+    match condition {
+        Condition::Compare {
+            signal, comparison, ..
+        } if comparison.is_bits() => sample
+            .get(*signal)
+            .and_then(|bits| bit_names(*signal, bits as u16))
+            .map_or(String::new(), |names| {
+                format!(" ({} = {names})", signal.name())
+            }),
+        _ => String::new(),
+    }
+}
+
 /// A number without the noise of binary fractions.
 pub(super) fn number(value: f64) -> String {
     let rounded = (value * 1e3).round() / 1e3;
@@ -248,121 +278,19 @@ pub(super) fn number(value: f64) -> String {
     format!("{}", rounded + 0.0)
 }
 
-/// Each stimulus in words; long because it is a table.
-fn stimulus_text(stimulus: &Stimulus) -> String {
-    let on_off = |on: bool| if on { "on" } else { "off" };
-    let way = |backward: bool| if backward { "backward" } else { "forward" };
-    match *stimulus {
-        Stimulus::Code {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-        } => format!("antenna signal {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV"),
-        Stimulus::CodeDrift {
-            rate_hz_per_s,
-            level_mv_per_s,
-        } => format!("antenna signal drifts {rate_hz_per_s} Hz/s, {level_mv_per_s} mV/s"),
-        Stimulus::CodeOff => "antenna signal off".into(),
-        Stimulus::Speed { to, accel_mps2 } => {
-            format!("speed to {to} at {} m/s²", number(accel_mps2))
-        }
-        Stimulus::Travel {
-            distance_m, speed, ..
-        } => format!("travel {} m at {speed}", number(distance_m)),
-        Stimulus::Direction { backward } => format!("wheels turn {}", way(backward)),
-        Stimulus::Tacho { channel, condition } => format!("tachometer {channel}: {condition:?}"),
-        Stimulus::CodesAlong { on } => format!("speed codes along the way {}", on_off(on)),
-        Stimulus::TrainDriven { on } => format!("train model {}", on_off(on)),
-        Stimulus::Adhesion {
-            coefficient: Some(coefficient),
-        } => format!("adhesion {}", number(coefficient)),
-        Stimulus::Adhesion { coefficient: None } => "adhesion as always".into(),
-        Stimulus::Marker { psm } => format!("pulse of marker PSM{psm}"),
-        Stimulus::MarkerMoved { psm, by_m: None } => format!("PSM{psm} is missing"),
-        Stimulus::MarkerMoved {
-            psm,
-            by_m: Some(by_m),
-        } => format!("PSM{psm} lies {} m beyond its place", number(by_m)),
-        Stimulus::MarkersAlong { section: Some(n) } => {
-            format!("markers of section {n} along the way")
-        }
-        Stimulus::MarkersAlong { section: None } => "no markers along the way".into(),
-        Stimulus::Station(data) => format!("wayside sends {}", station_text(&data)),
-        Stimulus::Wayside(condition) => format!("TWC wayside {condition:?}").to_lowercase(),
-        Stimulus::Doors { closed } => format!("doors {}", if closed { "closed" } else { "open" }),
-        Stimulus::Hcr { on } => format!("cab active (HCR) {}", on_off(on)),
-        Stimulus::MaintenanceKey { on } => format!("maintenance key {}", on_off(on)),
-        Stimulus::ModeSwitch(mode) => format!("mode switch to {}", mode.label()),
-        Stimulus::Controller { lever } => format!("master controller to {lever}"),
-        Stimulus::ControllerVolts { volts: Some(volts) } => {
-            format!("master controller gives {} V", number(volts))
-        }
-        Stimulus::ControllerVolts { volts: None } => "master controller's own voltage".into(),
-        Stimulus::ControllerContacts {
-            contacts: Some((power, brake)),
-        } => format!(
-            "master controller contacts P {}, B {}",
-            on_off(power),
-            on_off(brake)
-        ),
-        Stimulus::ControllerContacts { contacts: None } => {
-            "master controller's own contacts".into()
-        }
-        Stimulus::Switch { switch, on } => format!("{} {}", switch.label(), on_off(on)),
-        Stimulus::CutOut { what, car, on } => {
-            let part = match what {
-                CutOut::Brake => "brake",
-                CutOut::Inverter => "inverter",
-            };
-            format!("{part} of car {car} cut {}", if on { "out" } else { "in" })
-        }
-        Stimulus::Gradient {
-            permille: Some(permille),
-        } => format!("gradient {} ‰", number(permille)),
-        Stimulus::Gradient { permille: None } => "gradient as always".into(),
-        Stimulus::Reverser { position } => format!("reverser to {position}"),
-        Stimulus::Acknowledge => "press acknowledge".into(),
-        Stimulus::Start => "press ATO start".into(),
-        Stimulus::Tcms(condition) => format!("TCMS link {condition:?}").to_lowercase(),
-        Stimulus::AtoEnable { on } => format!("TCMS permits ATO: {}", on_off(on)),
-        Stimulus::Load { passengers_kg } => format!("load {passengers_kg} kg"),
-        Stimulus::PtuArm => "arm the unit".into(),
-        Stimulus::PtuDisarm => "disarm the unit".into(),
-        Stimulus::PtuSilent { on } => format!("tester silent: {}", on_off(on)),
-        Stimulus::PtuCode {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-        } => format!("test code {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV"),
-        Stimulus::PtuSpeed {
-            channels,
-            backward,
-            to,
-            ..
-        } => {
-            let inputs = ["none", "1", "2", "1 and 2"][usize::from(channels & 3)];
-            format!("test speed {to} {} on input {inputs}", way(backward))
-        }
-        Stimulus::PtuMarker { psm } => format!("pulse of test marker PSM{psm}"),
-        Stimulus::PtuTwc(data) => format!("test TWC frame {}", station_text(&data)),
-        Stimulus::PtuRelease => "take test signals away".into(),
-        Stimulus::PtuClearLog => "clear the event log".into(),
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::force;
 
-fn station_text(data: &crate::stimulus::StationData) -> String {
-    let speed = data
-        .fixed_speed_kmh
-        .map_or(String::new(), |v| format!(", fixed speed {v} km/h"));
-    format!(
-        "section {}, station {}, next {}, loop {}, {}, doors {}, departure {}, train {}{speed}",
-        data.section,
-        data.station,
-        data.next_station,
-        data.loop_id,
-        data.running_mode.label(),
-        data.door_side.label(),
-        if data.departure { "given" } else { "not given" },
-        data.train_number,
-    )
+    #[test]
+    fn forces_are_told_in_the_size_they_have() {
+        for (newtons, words) in [
+            (-0.4, "0 N"),
+            (999.4, "999 N"),
+            (1000.0, "1.0 kN"),
+            (-54_022.468, "-54.0 kN"),
+        ] {
+            assert_eq!(force(newtons), words);
+        }
+    }
 }

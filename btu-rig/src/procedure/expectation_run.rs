@@ -5,6 +5,7 @@ use protocol::Instant;
 use super::EventSource;
 use super::action_run::{Problem, Scan};
 use super::condition::{Lack, Truth};
+use super::describe::bits_seen;
 use super::event_set::EventSet;
 use super::plan::Expectation;
 
@@ -37,7 +38,8 @@ impl Watch {
                     Truth::Yes => self.decided = true,
                     truth if waited >= *within => {
                         self.fail(truth, || {
-                            format!("{condition} did not come within {within}")
+                            let seen = bits_seen(condition, scan.sample);
+                            format!("{condition} did not come within {within}{seen}")
                         });
                     }
                     Truth::No | Truth::NoData(_) => {}

@@ -20,6 +20,7 @@ pub mod plan;
 pub mod report;
 pub mod runner;
 mod step_run;
+mod stimulus_text;
 
 use protocol::event::{ALL_CARS, Event};
 use protocol::message::{EbCause, Mode};

@@ -211,9 +211,28 @@ fn message(problems: &[Problem], step: &Step, aborted: bool) -> String {
     if problems.is_empty() && !aborted {
         return step.note.clone().unwrap_or_default();
     }
-    let stopped = aborted.then_some("stopped by the operator");
-    let texts = stopped
-        .into_iter()
-        .chain(problems.iter().map(Problem::message));
-    texts.collect::<Vec<_>>().join("; ")
+    let mut texts: Vec<String> = Vec::new();
+    texts.extend(aborted.then(|| "stopped by the operator".to_owned()));
+    // Measurements wait for the same thing more often than not: it is said once.
+    let mut without_value: Vec<(&str, &str, usize)> = Vec::new();
+    for problem in problems {
+        match problem.message().split_once(": ") {
+            Some((name, reason)) if reason.starts_with("no value") => {
+                match without_value.iter_mut().find(|known| known.1 == reason) {
+                    Some(known) => known.2 += 1,
+                    None => without_value.push((name, reason, 0)),
+                }
+            }
+            _ => texts.push(problem.message().to_owned()),
+        }
+    }
+    texts.extend(
+        without_value
+            .into_iter()
+            .map(|(name, reason, more)| match more {
+                0 => format!("{name}: {reason}"),
+                more => format!("{name} and {more} more: {reason}"),
+            }),
+    );
+    texts.join("; ")
 }

@@ -1,0 +1,134 @@
+//! A stimulus in words.
+
+use super::describe::number;
+use crate::stimulus::{CutOut, StationData, Stimulus, TachoCondition};
+
+/// Each stimulus in words; long because it is a table.
+pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
+    let on_off = |on: bool| if on { "on" } else { "off" };
+    let way = |backward: bool| if backward { "backward" } else { "forward" };
+    match *stimulus {
+        Stimulus::Code {
+            carrier_hz,
+            rate_hz,
+            level_mv,
+        } => format!("antenna signal {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV"),
+        Stimulus::CodeDrift {
+            rate_hz_per_s,
+            level_mv_per_s,
+        } => format!("antenna signal drifts {rate_hz_per_s} Hz/s, {level_mv_per_s} mV/s"),
+        Stimulus::CodeOff => "antenna signal off".into(),
+        Stimulus::Speed { to, accel_mps2 } => {
+            format!("speed to {to} at {} m/s²", number(accel_mps2))
+        }
+        Stimulus::Travel {
+            distance_m, speed, ..
+        } => format!("travel {} m at {speed}", number(distance_m)),
+        Stimulus::Direction { backward } => format!("wheels turn {}", way(backward)),
+        Stimulus::Tacho { channel, condition } => {
+            format!("tachometer {channel} {}", tacho_text(condition))
+        }
+        Stimulus::CodesAlong { on } => format!("speed codes along the way {}", on_off(on)),
+        Stimulus::TrainDriven { on } => format!("train model {}", on_off(on)),
+        Stimulus::Adhesion {
+            coefficient: Some(coefficient),
+        } => format!("adhesion {}", number(coefficient)),
+        Stimulus::Adhesion { coefficient: None } => "adhesion as always".into(),
+        Stimulus::Marker { psm } => format!("pulse of marker PSM{psm}"),
+        Stimulus::MarkerMoved { psm, by_m: None } => format!("PSM{psm} is missing"),
+        Stimulus::MarkerMoved {
+            psm,
+            by_m: Some(by_m),
+        } => format!("PSM{psm} lies {} m beyond its place", number(by_m)),
+        Stimulus::MarkersAlong { section: Some(n) } => {
+            format!("markers of section {n} along the way")
+        }
+        Stimulus::MarkersAlong { section: None } => "no markers along the way".into(),
+        Stimulus::Station(data) => format!("wayside sends {}", station_text(&data)),
+        Stimulus::Wayside(condition) => format!("TWC wayside {condition:?}").to_lowercase(),
+        Stimulus::Doors { closed } => format!("doors {}", if closed { "closed" } else { "open" }),
+        Stimulus::Hcr { on } => format!("cab active (HCR) {}", on_off(on)),
+        Stimulus::MaintenanceKey { on } => format!("maintenance key {}", on_off(on)),
+        Stimulus::ModeSwitch(mode) => format!("mode switch to {}", mode.label()),
+        Stimulus::Controller { lever } => format!("master controller to {lever}"),
+        Stimulus::ControllerVolts { volts: Some(volts) } => {
+            format!("master controller gives {} V", number(volts))
+        }
+        Stimulus::ControllerVolts { volts: None } => "master controller's own voltage".into(),
+        Stimulus::ControllerContacts {
+            contacts: Some((power, brake)),
+        } => format!(
+            "master controller contacts P {}, B {}",
+            on_off(power),
+            on_off(brake)
+        ),
+        Stimulus::ControllerContacts { contacts: None } => {
+            "master controller's own contacts".into()
+        }
+        Stimulus::Switch { switch, on } => format!("{} {}", switch.label(), on_off(on)),
+        Stimulus::CutOut { what, car, on } => {
+            let part = match what {
+                CutOut::Brake => "brake",
+                CutOut::Inverter => "inverter",
+            };
+            format!("{part} of car {car} cut {}", if on { "out" } else { "in" })
+        }
+        Stimulus::Gradient {
+            permille: Some(permille),
+        } => format!("gradient {} ‰", number(permille)),
+        Stimulus::Gradient { permille: None } => "gradient as always".into(),
+        Stimulus::Reverser { position } => format!("reverser to {position}"),
+        Stimulus::Acknowledge => "press acknowledge".into(),
+        Stimulus::Start => "press ATO start".into(),
+        Stimulus::Tcms(condition) => format!("TCMS link {condition:?}").to_lowercase(),
+        Stimulus::AtoEnable { on } => format!("TCMS permits ATO: {}", on_off(on)),
+        Stimulus::Load { passengers_kg } => format!("load {passengers_kg} kg"),
+        Stimulus::PtuArm => "arm the unit".into(),
+        Stimulus::PtuDisarm => "disarm the unit".into(),
+        Stimulus::PtuSilent { on } => format!("tester silent: {}", on_off(on)),
+        Stimulus::PtuCode {
+            carrier_hz,
+            rate_hz,
+            level_mv,
+        } => format!("test code {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV"),
+        Stimulus::PtuSpeed {
+            channels,
+            backward,
+            to,
+            ..
+        } => {
+            let inputs = ["none", "1", "2", "1 and 2"][usize::from(channels & 3)];
+            format!("test speed {to} {} on input {inputs}", way(backward))
+        }
+        Stimulus::PtuMarker { psm } => format!("pulse of test marker PSM{psm}"),
+        Stimulus::PtuTwc(data) => format!("test TWC frame {}", station_text(&data)),
+        Stimulus::PtuRelease => "take test signals away".into(),
+        Stimulus::PtuClearLog => "clear the event log".into(),
+    }
+}
+
+fn tacho_text(condition: TachoCondition) -> String {
+    match condition {
+        TachoCondition::Good => "in order".into(),
+        TachoCondition::Dead => "without pulses".into(),
+        TachoCondition::Noisy { per_s } => format!("with {} false pulses a second", number(per_s)),
+        TachoCondition::Scaled { factor } => format!("with {} times the pulses", number(factor)),
+    }
+}
+
+fn station_text(data: &StationData) -> String {
+    let speed = data
+        .fixed_speed_kmh
+        .map_or(String::new(), |v| format!(", fixed speed {v} km/h"));
+    format!(
+        "section {}, station {}, next {}, loop {}, {}, doors {}, departure {}, train {}{speed}",
+        data.section,
+        data.station,
+        data.next_station,
+        data.loop_id,
+        data.running_mode.label(),
+        data.door_side.label(),
+        if data.departure { "given" } else { "not given" },
+        data.train_number,
+    )
+}
