@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use common::{Place, has_shape, list, number, record_bad_unit, relay_fault, text};
+use serde_json::Value;
 
 /// Far above what a small database takes; the bench measures that.
 const LISTS_WITHIN: Duration = Duration::from_millis(200);
@@ -286,7 +287,7 @@ fn what_there_is_to_name_is_catalogued() {
         ("codes", &["name"]),
         ("lines", &["line"]),
         ("lrus", &["id", "name", "name_ko"]),
-        ("train", &["car", "role"]),
+        ("train", &["name", "role"]),
     ] {
         let entries = place.json(&["catalog", what, "--json"]);
         assert!(!list(&entries).is_empty(), "{what}");
@@ -297,6 +298,20 @@ fn what_there_is_to_name_is_catalogued() {
         let rows = place.ptu(&["catalog", what]).exits(0).out.lines().count();
         assert_eq!(rows, list(&entries).len() + 1, "{what}");
     }
+    // Cars by the number that faults, verbs and events name them by, bits by the words of scripts.
+    let table = place.ptu(&["catalog", "train"]).exits(0).out;
+    let first: Vec<_> = table.lines().take(2).map(str::split_whitespace).collect();
+    let first: Vec<Vec<_>> = first.into_iter().map(|row| row.take(2).collect()).collect();
+    assert_eq!(first, [["car", "name"], ["1", "TC1"]]);
+    let signals = place.json(&["catalog", "signals", "--json"]);
+    let bits = |name: &str| {
+        let found = list(&signals).iter().find(|signal| signal["name"] == name);
+        found.map(|signal| signal["bits"].clone()).expect(name)
+    };
+    assert_eq!(bits("eb_sources")[3], "atc");
+    assert_eq!(bits("lamps")[6], "failure");
+    assert_eq!(bits("not_released")[1], "car 2");
+    assert_eq!(bits("speed"), Value::Null);
 }
 
 /// Goal: a first-time user is told what to do, not shown an error's innards.

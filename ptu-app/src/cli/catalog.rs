@@ -1,7 +1,8 @@
 //! `ptu catalog`: what there is to name in commands and scripts.
 
+use btu_rig::procedure::describe::bit_names;
 use btu_rig::tcms::Consist;
-use btu_rig::train::{CarSet, Role, TrainData};
+use btu_rig::train::{CarSet, MAX_CARS, Role, TrainData};
 use clap::{Args, ValueEnum};
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
@@ -122,12 +123,13 @@ impl CatalogArguments {
         let empty = Consist::new(&data);
         let mut full = empty.clone();
         full.weigh(data.cars.iter().map(|car| car.full_load_kg).sum());
-        let row = |name: &str, role: &str, pair: Option<usize>, cars: CarSet| {
+        let row = |number: Option<usize>, name: &str, role: &str, pair, cars: CarSet| {
+            let pair: Option<usize> = pair;
             let sum =
                 |value: &dyn Fn(usize) -> f64| cars.iter().map(value).sum::<f64>().round() as i64;
             let car = |i: usize| &data.cars[i];
             json!({
-                "car": name, "role": role, "pair": pair,
+                "car": number, "name": name, "role": role, "pair": pair,
                 "empty_kg": sum(&|i| car(i).empty_kg),
                 "bogies_kg": sum(&|i| car(i).bogies_kg),
                 "full_kg": sum(&|i| car(i).empty_kg + car(i).full_load_kg),
@@ -147,7 +149,13 @@ impl CatalogArguments {
                 Role::Motor => "motor",
                 Role::Trailer => "trailer",
             };
-            rows.push(row(&car.name, role, Some(car.pair), CarSet::one(i)));
+            rows.push(row(
+                Some(i + 1),
+                &car.name,
+                role,
+                Some(car.pair),
+                CarSet::one(i),
+            ));
             all.set(i, true);
         }
         for (i, pair) in full.pairs.iter().enumerate() {
@@ -156,9 +164,9 @@ impl CatalogArguments {
                 .iter()
                 .map(|car| data.cars[car].name.as_str())
                 .collect();
-            rows.push(row(&names.join("+"), "pair", Some(i + 1), cars));
+            rows.push(row(None, &names.join("+"), "pair", Some(i + 1), cars));
         }
-        rows.push(row(&data.name, "train", None, all));
+        rows.push(row(None, &data.name, "train", None, all));
         Ok(rows)
     }
 }
@@ -173,12 +181,20 @@ fn signals() -> Vec<Value> {
         };
         json!({
             "name": definition.name, "unit": definition.unit, "kind": kind, "lsb": lsb,
-            "labels": labels, "low": definition.low, "high": definition.high,
+            "labels": labels, "bits": bits(*signal), "low": definition.low, "high": definition.high,
             "from": match definition.origin { Origin::Rig => "rig", Origin::Unit => "unit" },
             "about": definition.doc,
         })
     };
     Signal::ALL.iter().map(entry).collect()
+}
+
+/// Names of a signal's bits from bit 0; `None` for one that is no set of named bits.
+fn bits(signal: Signal) -> Option<Vec<String>> {
+    let cars = (signal == Signal::NotReleased).then_some(MAX_CARS);
+    let count = cars.unwrap_or(u16::BITS as usize);
+    let names = (0..count).map_while(|bit| bit_names(signal, 1 << bit));
+    Some(names.collect()).filter(|names: &Vec<_>| !names.is_empty())
 }
 
 /// One row an entry, one column a key in the order of the first entry.
