@@ -48,7 +48,7 @@ use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::{TachoCondition, WaysideCondition};
 use crate::tcms::Tcms;
-use crate::train::{Train, TrainData, TrainState};
+use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use train_faults::{Misplaced, check_places};
@@ -101,6 +101,8 @@ pub struct Rig {
     markers: Markers,
     wayside: Wayside,
     tcms: Tcms,
+    /// What TCMS told the train last.
+    told: TrainInputs,
     tcms_port: TcmsPort,
     pair_cars: PairCars,
     /// Events of TCMS that were not taken yet, and how many there were.
@@ -152,6 +154,7 @@ impl Rig {
             cars: weight_shares(&train_data, 0.0),
             cars_load_kg: 0.0,
             tcms: Tcms::new(&train_data),
+            told: TrainInputs::default(),
             tcms_port: TcmsPort::default(),
             pair_cars: pair_cars(&train_data),
             tcms_events: Vec::new(),
@@ -197,7 +200,7 @@ impl Rig {
             // of it.
             self.tcms.unlatch();
         }
-        let told = self.run_tcms();
+        let told = self.orders_of_tcms();
         self.roll(told);
         self.follow_codes();
         self.antenna.step();

@@ -21,6 +21,7 @@ impl Rig {
         self.train = train;
         self.cars = weight_shares(&data, self.cars_load_kg);
         self.tcms = Tcms::new(&data);
+        self.told = TrainInputs::default();
         self.pair_cars = pair_cars(&data);
         self.train_data = data;
     }

@@ -2,7 +2,7 @@
 
 use protocol::message::{Channel, EbCause, Mode};
 use protocol::signal::{Sample, Signal};
-use protocol::{CYCLE, Speed};
+use protocol::{CYCLE, Duration, SCAN, Speed};
 
 use crate::procedure::{EventSource, UnitEvent};
 use crate::stimulus::TrainSwitch;
@@ -11,6 +11,9 @@ use crate::train::{CarSet, PerCar, TrainData, TrainInputs};
 
 use super::Rig;
 use super::log_reader::MAX_EVENTS;
+
+/// TCMS's own cycle: two scans [default].
+const TCMS_CYCLE: Duration = Duration::from_us(2 * SCAN.as_us());
 
 /// Signals of an MT pair: inverters, air of trailers, air of motor cars.
 const PAIRS: [[Signal; 3]; 4] = [
@@ -35,8 +38,15 @@ pub(super) fn pair_cars(train: &TrainData) -> PairCars {
 }
 
 impl Rig {
-    /// One scan of TCMS: what the train is told.
-    pub(super) fn run_tcms(&mut self) -> TrainInputs {
+    /// What the train is told in this scan; TCMS is stepped when its cycle is due.
+    pub(super) fn orders_of_tcms(&mut self) -> TrainInputs {
+        if self.now.as_us().is_multiple_of(TCMS_CYCLE.as_us()) {
+            self.told = self.step_tcms();
+        }
+        self.told
+    }
+
+    fn step_tcms(&mut self) -> TrainInputs {
         if self.injected.set_in(self.now, &mut self.faults) {
             self.train.set_faults(self.faults.equipment);
             self.desk.faults = self.faults.desk;

@@ -1,7 +1,7 @@
 //! One scan of TCMS, from inputs to what the train is told.
 
 use protocol::message::{AtcToTcms, Outputs};
-use protocol::{CYCLE, Duration, Instant, SCAN};
+use protocol::{Duration, Instant};
 
 use crate::train::{CarSet, MAX_CARS, TrainData, TrainInputs};
 
@@ -23,6 +23,9 @@ use super::timer::Lasting;
 use super::view::{TcmsEvent, TcmsView};
 use super::watch::{Found, Watch, WatchInputs};
 
+/// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
+const LONGEST_STEP_S: f64 = 0.05;
+
 /// The system.
 #[derive(Clone, Debug)]
 pub struct Tcms {
@@ -39,6 +42,8 @@ pub struct Tcms {
     dead_man_acts: bool,
     /// Something else than brakes found not released orders the full service brake.
     full_service_otherwise: bool,
+    /// When it was stepped last.
+    stepped: Option<Instant>,
     view: TcmsView,
     report: Report,
 }
@@ -76,6 +81,7 @@ impl Tcms {
             dead_man: Lasting::default(),
             dead_man_acts: false,
             full_service_otherwise: false,
+            stepped: None,
             view: TcmsView::default(),
             report: Report::new(&data),
             effort,
@@ -156,7 +162,7 @@ impl Tcms {
         let driving = self.drive(&scan, volts, power_cut, &line);
         let share = share(&driving, &brake);
         let demands = self.share_out(
-            inputs,
+            &scan,
             &Order {
                 share,
                 holding,
@@ -179,25 +185,11 @@ impl Tcms {
             volts,
             speed_mps,
             demands,
-            given: self.given(&scan, speed_mps, share),
+            given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
             backward: cab.is_some_and(|cab| cab.reverser < 0),
         };
         self.log(&scan);
         self.tell(&scan, share, load_kg)
-    }
-
-    /// Effort the train gives, worked out in the scans in which the unit is told.
-    fn given(&self, scan: &Now<'_>, speed_mps: f64, share: f64) -> i16 {
-        if scan.now.as_us().is_multiple_of(CYCLE.as_us()) {
-            feedback::given(
-                scan.inputs.equipment,
-                self.effort.as_ref(),
-                speed_mps,
-                share,
-            )
-        } else {
-            self.view.given
-        }
     }
 
     /// Takes the load; what it is does not go beyond the train's. No number is a full train, which
@@ -323,11 +315,13 @@ impl Tcms {
         }
     }
 
-    fn share_out(&mut self, inputs: &TcmsInputs<'_>, order: &Order) -> Demands {
+    fn share_out(&mut self, scan: &Now<'_>, order: &Order) -> Demands {
+        let before = self.stepped.replace(scan.now).unwrap_or(scan.now);
+        let dt_s = scan.now.since(before).as_secs().min(LONGEST_STEP_S);
         self.effort
             .as_mut()
             .map_or_else(Demands::default, |effort| {
-                effort.step(SCAN.as_secs(), order, inputs.equipment)
+                effort.step(dt_s, order, scan.inputs.equipment)
             })
     }
 
