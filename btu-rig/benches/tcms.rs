@@ -3,7 +3,7 @@
 
 use btu_rig::lever::Lever;
 use btu_rig::tcms::{CabInputs, Consist, Effort, Order, Tcms, TcmsInputs};
-use btu_rig::train::{CarSet, Equipment, TrainData};
+use btu_rig::train::{CarSet, CarsData, Equipment, TrainData};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch, Outputs};
@@ -86,9 +86,7 @@ fn scan(bencher: Bencher<'_, '_>, name: &str) {
 
 #[divan::bench]
 fn effort(bencher: Bencher<'_, '_>) {
-    let TrainData::Cars(cars) = TrainData::line6() else {
-        return;
-    };
+    let cars = CarsData::line6();
     let equipment = Equipment::default();
     bencher
         .counter(ItemsCount::new(SCANS))

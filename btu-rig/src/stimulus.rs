@@ -5,6 +5,9 @@ use protocol::message::{DoorSide, ModeSwitch, RunningMode};
 
 use crate::lever::Lever;
 
+/// Steepest gradient that can be added to the track's, ‰.
+pub const MAX_GRADIENT_PERMILLE: f64 = 100.0;
+
 /// Condition of one tachometer channel's generator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TachoCondition {

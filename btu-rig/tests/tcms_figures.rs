@@ -44,15 +44,8 @@ const PAIRS: [(f64, f64); 4] = [
     (116_321.0, 113_090.0),
 ];
 
-fn line6() -> CarsData {
-    match TrainData::line6() {
-        TrainData::Cars(data) => data,
-        TrainData::Ideal(_) => panic!("a train of cars"),
-    }
-}
-
 fn consist(load_kg: f64) -> Consist {
-    let mut consist = Consist::new(&line6());
+    let mut consist = Consist::new(&CarsData::line6());
     consist.weigh(load_kg);
     consist
 }
@@ -88,7 +81,7 @@ fn derived(empty_kg: f64, bogies_kg: f64, motor: bool) -> [f64; 9] {
 /// 1 N of the printed cells, S3's own rounding.
 #[test]
 fn the_table_of_cars() {
-    let data = line6();
+    let data = CarsData::line6();
     let (empty, full) = (consist(0.0), consist(FULL_KG));
     let mut totals = [0.0; 9];
     for (i, car) in data.cars.iter().enumerate() {
@@ -139,7 +132,7 @@ fn the_table_of_cars() {
 /// Greatest efforts of S3's equations 1, 4 and 6, kN.
 #[test]
 fn greatest_efforts() {
-    let (data, full) = (line6(), consist(FULL_KG));
+    let (data, full) = (CarsData::line6(), consist(FULL_KG));
     let traction = data.traction.full_load_n / 1e3;
     near("TE_max, kN", 456.4 * 0.83 + 19.024, 397.8, 0.05);
     near("TE_max of the train's file, kN", traction, 397.8, 0.05);
@@ -199,7 +192,7 @@ fn the_share_of_a_brake_that_is_cut_out() {
 /// the demand once the onset is over.
 #[test]
 fn effort_keeps_to_the_demand_through_blending() {
-    let fade_from_kmh = line6().electric_brake.fade_from_kmh;
+    let fade_from_kmh = CarsData::line6().electric_brake.fade_from_kmh;
     for (cut, name) in [(CarSet::NONE, "sound"), (CarSet::one(3), "T1 cut out")] {
         for load_kg in LOADS_KG {
             for (notch, share) in [("B7", 1.0), ("B4", 0.565), ("B2", 0.275)] {

@@ -3,7 +3,7 @@
 use protocol::Instant;
 
 use crate::procedure::Refusal;
-use crate::stimulus::{CutOut, Stimulus, TachoCondition, WaysideCondition};
+use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition, WaysideCondition};
 use crate::train::TrainData;
 
 use super::antenna::MAX_RATE_HZ;
@@ -23,8 +23,6 @@ const MAX_MOVE_M: f64 = 100.0;
 const MAX_NOISE_PER_S: f64 = 5_000.0;
 /// Greatest factor between a channel and its wheel.
 const MAX_FACTOR: f64 = 10.0;
-/// Steepest gradient, ‰.
-const MAX_GRADIENT_PERMILLE: f64 = 100.0;
 /// Fastest drift: what the whole range in a second would take.
 const MAX_DRIFT_PER_S: f64 = U16_MAX;
 

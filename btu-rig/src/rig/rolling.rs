@@ -4,7 +4,7 @@ use protocol::{Duration, SCAN};
 
 use crate::conditions::Conditions;
 use crate::tcms::Tcms;
-use crate::train::{CarSet, PerCar, Train, TrainData, TrainInputs, TrainState};
+use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 use super::tcms::pair_cars;
 use super::{PairEfforts, Rig, Truth};
@@ -63,12 +63,11 @@ impl Rig {
             return Default::default();
         }
         let equipment = self.train.equipment();
-        let sum = |of: &PerCar, cars: CarSet| cars.iter().map(|car| of[car]).sum::<f64>();
         self.pair_cars.map(|(motors, trailers)| PairEfforts {
-            traction_n: sum(&equipment.traction_n, motors),
-            electric_n: sum(&equipment.electric_n, motors),
-            air_trailers_n: sum(&equipment.air_n, trailers),
-            air_motors_n: sum(&equipment.air_n, motors),
+            traction_n: motors.sum(&equipment.traction_n),
+            electric_n: motors.sum(&equipment.electric_n),
+            air_trailers_n: trailers.sum(&equipment.air_n),
+            air_motors_n: motors.sum(&equipment.air_n),
         })
     }
 

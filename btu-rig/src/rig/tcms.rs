@@ -7,7 +7,7 @@ use protocol::{CYCLE, Duration, SCAN, Speed};
 use crate::procedure::{EventSource, UnitEvent};
 use crate::stimulus::TrainSwitch;
 use crate::tcms::{TcmsEvent, TcmsInputs, TcmsView};
-use crate::train::{CarSet, PerCar, TrainData, TrainInputs};
+use crate::train::{CarSet, TrainData, TrainInputs};
 
 use super::Rig;
 use super::log_reader::MAX_EVENTS;
@@ -118,13 +118,12 @@ impl Rig {
         if !self.now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
-        let sum = |of: &PerCar, cars: CarSet| cars.iter().map(|car| of[car]).sum::<f64>();
         for ([motor, trailer_air, motor_air], (motors, trailers)) in
             PAIRS.iter().zip(self.pair_cars)
         {
-            sample.set(*motor, sum(&view.demands.motor_n, motors));
-            sample.set(*trailer_air, sum(&view.demands.air_n, trailers));
-            sample.set(*motor_air, sum(&view.demands.air_n, motors));
+            sample.set(*motor, motors.sum(&view.demands.motor_n));
+            sample.set(*trailer_air, trailers.sum(&view.demands.air_n));
+            sample.set(*motor_air, motors.sum(&view.demands.air_n));
         }
         sample.set(Signal::BrakeDemand, view.demands.brake_n);
         sample.set(

@@ -27,7 +27,6 @@ pub struct AtoOrder {
 pub struct AtcLink {
     timeout: Duration,
     heard: Option<(Instant, AtcToTcms)>,
-    order: AtoOrder,
     silent: bool,
     contradictions: u32,
     contradicts: bool,
@@ -39,7 +38,6 @@ impl AtcLink {
         Self {
             timeout,
             heard: None,
-            order: AtoOrder::default(),
             silent: true,
             contradictions: 0,
             contradicts: false,
@@ -77,15 +75,14 @@ impl AtcLink {
         let mode = self.heard.map_or(Mode::Off, |(_, frame)| frame.mode);
         let runs = fresh.filter(|(_, frame)| frame.mode == Mode::AutomaticRun);
         let bits = fresh.map_or(AtcToTcmsBits::empty(), |(_, frame)| frame.bits);
-        self.order = AtoOrder {
+        AtoOrder {
             power: runs.is_some() && bits.contains(AtcToTcmsBits::POWER),
             brake: runs.is_some() && bits.contains(AtcToTcmsBits::BRAKE),
             value: runs.map_or(0, |(_, frame)| frame.effort),
             holding: bits.contains(AtcToTcmsBits::HOLDING_BRAKE),
             automatic: matches!(mode, Mode::Automatic | Mode::AutomaticRun),
             failed: self.silent || bits.contains(AtcToTcmsBits::ATO_FAILED),
-        };
-        self.order
+        }
     }
 
     /// No frames for too long.

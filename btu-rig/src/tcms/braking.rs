@@ -100,7 +100,6 @@ impl Sharing {
             full_n: wanted_n,
         };
         for (at, pair) in consist.pairs.iter().enumerate() {
-            let sum = |of: &PerCar, cars: CarSet| cars.iter().map(|car| of[car]).sum::<f64>();
             let willing = pair.motors.without(no_electric);
             let (trailers, motors) = (pair.trailers.without(no_air), pair.motors.without(no_air));
             let moved_n = moved(consist, at, wanted_n, no_air);
@@ -108,9 +107,9 @@ impl Sharing {
             let all = pair.motors.with(pair.trailers);
             let shares = PairShares {
                 full_n: (pair_n * pair.load_factor() + moved_n).max(0.0),
-                electric_n: sum(&consist.electric_n, willing),
-                trailer_air_n: sum(&consist.air_n, trailers),
-                motor_air_n: sum(&consist.air_n, motors),
+                electric_n: willing.sum(&consist.electric_n),
+                trailer_air_n: trailers.sum(&consist.air_n),
+                motor_air_n: motors.sum(&consist.air_n),
                 parts: begin..begin + all.iter().count(),
             };
             for car in all.iter() {
@@ -221,16 +220,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::train::TrainData;
-
-    fn line6(load_kg: f64) -> Consist {
-        let TrainData::Cars(data) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
-        let mut consist = Consist::new(&data);
-        consist.weigh(load_kg);
-        consist
-    }
+    use crate::tcms::consist::line6;
 
     /// Cars of the bits that the train has.
     fn cars(bits: u16) -> CarSet {

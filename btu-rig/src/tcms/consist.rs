@@ -82,7 +82,7 @@ impl Consist {
         };
         for (i, car) in data.cars.iter().enumerate() {
             let pair = &mut consist.pairs[car.pair - 1];
-            pair.full_inertia_kg += car.empty_kg + car.rotating_kg + car.full_load_kg;
+            pair.full_inertia_kg += car.full_inertia_kg();
             consist.air_n[i] = car.air_n;
         }
         consist.full_inertia_kg = consist.pairs.iter().map(|pair| pair.full_inertia_kg).sum();
@@ -103,7 +103,7 @@ impl Consist {
             pair.inertia_kg = 0.0;
         }
         for (i, car) in self.data.cars.iter().enumerate() {
-            let weight_kg = car.empty_kg + share * car.full_load_kg;
+            let weight_kg = car.weight_kg(share);
             let inertia_kg = weight_kg + car.rotating_kg;
             self.pairs[car.pair - 1].inertia_kg += inertia_kg;
             self.full_service_n[i] = inertia_kg * service_mps2;
@@ -149,4 +149,12 @@ impl Consist {
     pub fn traction_n(&self) -> f64 {
         self.data.traction.full_load_n / self.motors.iter().count().max(1) as f64
     }
+}
+
+/// Line 6's train with passengers, kg.
+#[cfg(test)]
+pub(super) fn line6(load_kg: f64) -> Consist {
+    let mut consist = Consist::new(&CarsData::line6());
+    consist.weigh(load_kg);
+    consist
 }

@@ -2,6 +2,7 @@
 //! powering and braking value for inverters and brake control units.
 
 use super::controller::{FULL_BRAKE, FULL_POWER};
+use super::mode::Driver;
 
 /// Inputs, by the paper's names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,18 +60,14 @@ pub struct DrivingOutputs {
 /// can: P with a value that brakes brakes, a value that powers without P is none. A value beyond
 /// −1024..1023 is a full brake, and so is no mode, or more than one.
 pub fn driving_control(inputs: &DrivingInputs) -> DrivingOutputs {
-    let by_hand = [inputs.drxemod, inputs.drxymod, inputs.drxmmod];
-    let by_ato = [inputs.drxamod, inputs.drxdmod];
-    let count = |modes: &[bool]| modes.iter().filter(|on| **on).count();
-    let (power, brake, value, hand) = match (count(&by_hand), count(&by_ato)) {
-        (1, 0) => (
-            inputs.drxp && !inputs.drxcoa,
-            inputs.drxb,
-            inputs.drxmcrv,
-            true,
-        ),
-        (0, 1) => (inputs.drxaop, inputs.drxaob, inputs.drxtebe, false),
-        _ => (false, true, FULL_BRAKE, false),
+    let driver = Driver::of(
+        [inputs.drxemod, inputs.drxymod, inputs.drxmmod],
+        [inputs.drxamod, inputs.drxdmod],
+    );
+    let (power, brake, value) = match driver {
+        Some(Driver::Hand) => (inputs.drxp && !inputs.drxcoa, inputs.drxb, inputs.drxmcrv),
+        Some(Driver::Ato) => (inputs.drxaop, inputs.drxaob, inputs.drxtebe),
+        None => (false, true, FULL_BRAKE),
     };
     let drytebe = if !(FULL_BRAKE..=FULL_POWER).contains(&value) {
         FULL_BRAKE
@@ -82,7 +79,7 @@ pub fn driving_control(inputs: &DrivingInputs) -> DrivingOutputs {
         value.min(0)
     };
     DrivingOutputs {
-        dryinb7: hand && drytebe == FULL_BRAKE,
+        dryinb7: driver == Some(Driver::Hand) && drytebe == FULL_BRAKE,
         dryinp: drytebe > 0,
         dryinb: drytebe < 0,
         dryincoa: drytebe == 0,

@@ -97,13 +97,11 @@ fn value(share: f64) -> i16 {
 mod tests {
     use super::super::consist::Consist;
     use super::*;
-    use crate::train::{MAX_CARS, TrainData};
+    use crate::train::{CarsData, MAX_CARS};
 
     #[test]
     fn traction_that_is_no_number_pulls_nothing() {
-        let TrainData::Cars(data) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
+        let data = CarsData::line6();
         let effort = Effort::new(Consist::new(&data));
         let mut equipment = Equipment::default();
         for report_n in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

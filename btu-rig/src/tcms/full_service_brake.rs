@@ -1,6 +1,8 @@
 //! Full-service-brake module of the standard EMU (S4 §3.2): the first brake to come on for an abnormal
 //! vehicle.
 
+use super::mode::Driver;
+
 /// Inputs, by the paper's names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BrakeInputs {
@@ -51,18 +53,18 @@ pub struct BrakeOutputs {
 /// driverless mode only; with no mode, or more than one, both count. The controller at B7 is the
 /// maximum service brake and cuts powering, but is nothing abnormal.
 pub fn full_service_brake(inputs: &BrakeInputs) -> BrakeOutputs {
-    let by_hand = [inputs.bcxemod, inputs.bcxymod, inputs.bcxmmod];
-    let by_ato = [inputs.bcxamod, inputs.bcxdmod];
-    let count = |modes: &[bool]| modes.iter().filter(|on| **on).count();
-    let unclear = count(&by_hand) + count(&by_ato) != 1;
+    let driver = Driver::of(
+        [inputs.bcxemod, inputs.bcxymod, inputs.bcxmmod],
+        [inputs.bcxamod, inputs.bcxdmod],
+    );
     let bcyinfsb = inputs.bcxvvvff
         || inputs.bcxecuf
         || inputs.bcxbccsf
         || inputs.bcxnrb
         || inputs.bcxdoreq
         || inputs.bcxacfsb
-        || inputs.bcxdmfsb && (count(&by_hand) == 1 || unclear)
-        || inputs.bcxatof && (count(&by_ato) == 1 || unclear);
+        || inputs.bcxdmfsb && driver != Some(Driver::Ato)
+        || inputs.bcxatof && driver != Some(Driver::Hand);
     let bcymsb = bcyinfsb || inputs.bcxinb7;
     BrakeOutputs {
         bcyinfsb,

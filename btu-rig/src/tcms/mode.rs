@@ -5,6 +5,27 @@ use protocol::message::ModeSwitch;
 use super::atc_link::AtoOrder;
 use super::inputs::CabInputs;
 
+/// Who has the train by the mode bits of the paper's modules.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Driver {
+    /// Whoever is in the cab: emergency, yard and manual mode.
+    Hand,
+    /// ATO: automatic and driverless mode.
+    Ato,
+}
+
+impl Driver {
+    /// `None` when no mode is on, or more than one.
+    pub fn of(by_hand: [bool; 3], by_ato: [bool; 2]) -> Option<Self> {
+        let count = |modes: &[bool]| modes.iter().filter(|on| **on).count();
+        match (count(&by_hand), count(&by_ato)) {
+            (1, 0) => Some(Self::Hand),
+            (0, 1) => Some(Self::Ato),
+            _ => None,
+        }
+    }
+}
+
 /// Mode TCMS drives in (S4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TcmsMode {

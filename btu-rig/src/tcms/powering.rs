@@ -27,16 +27,7 @@ pub fn pattern(consist: &Consist, speed_mps: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::train::TrainData;
-
-    fn line6(load_kg: f64) -> Consist {
-        let TrainData::Cars(data) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
-        let mut consist = Consist::new(&data);
-        consist.weigh(load_kg);
-        consist
-    }
+    use crate::tcms::consist::line6;
 
     /// S3's TE_max, a quarter of it each, and half of it at twice the base speed; empty by the braking
     /// masses of each pair: TC1 and M1 76 269 of 116 269 kg, M2 and T1 71 934 of 111 934 kg.

@@ -30,11 +30,6 @@ macro_rules! causes {
             pub fn bits(self) -> u16 {
                 self.0
             }
-
-            /// The one called so.
-            pub fn from_name(name: &str) -> Option<Self> {
-                Self::ALL.iter().find(|(_, label)| *label == name).map(|(one, _)| *one)
-            }
         }
     };
 }

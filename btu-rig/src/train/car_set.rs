@@ -1,6 +1,6 @@
 //! A set of cars.
 
-use super::MAX_CARS;
+use super::{MAX_CARS, PerCar};
 
 /// Cars of a train by their place from 0, the first at the head.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,6 +33,11 @@ impl CarSet {
     /// Nobody is.
     pub fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    /// What its cars come to together.
+    pub fn sum(self, of: &PerCar) -> f64 {
+        self.iter().map(|car| of[car]).sum()
     }
 
     /// Cars of either.

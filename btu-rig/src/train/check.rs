@@ -101,8 +101,8 @@ fn check_pairs(data: &CarsData) -> Result<(), ConfigError> {
 fn check_air(data: &CarsData) -> Result<(), ConfigError> {
     for pair in 1..=MAX_CARS {
         let cars = || data.cars.iter().filter(|car| car.pair == pair);
-        let inertia_kg = |car: &CarData| car.empty_kg + car.rotating_kg + car.full_load_kg;
-        let needs_n = cars().map(inertia_kg).sum::<f64>() * data.service_brake.kmh_per_s / 3.6;
+        let needs_n =
+            cars().map(CarData::full_inertia_kg).sum::<f64>() * data.service_brake.kmh_per_s / 3.6;
         let has_n = cars().map(|car| car.air_n).sum::<f64>();
         // S3's table is rounded to newtons.
         if has_n < 0.999 * needs_n {

@@ -203,6 +203,18 @@ pub struct CarData {
     pub air_n: f64,
 }
 
+impl CarData {
+    /// Weight with a share of its passengers, kg.
+    pub fn weight_kg(&self, share: f64) -> f64 {
+        self.empty_kg + share * self.full_load_kg
+    }
+
+    /// Braking mass full, kg (S3).
+    pub fn full_inertia_kg(&self) -> f64 {
+        self.empty_kg + self.rotating_kg + self.full_load_kg
+    }
+}
+
 /// Whether a car is driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -247,7 +259,7 @@ impl TrainData {
     /// # Panics
     /// Never: a test reads the same text.
     pub fn line6() -> Self {
-        built_in(include_str!("../../../scripts/trains/line6.toml"))
+        Self::Cars(CarsData::line6())
     }
 
     /// The point mass of S0: 200 t, r = 0.001 1/s, 3.0 and 3.5 km/h/s.
@@ -290,14 +302,24 @@ impl TrainData {
             Self::Cars(data) => {
                 let share = load_kg / self.full_load_kg().max(1.0);
                 let cars = data.cars.iter();
-                cars.map(|c| (c.length_m, c.empty_kg + share * c.full_load_kg))
-                    .collect()
+                cars.map(|c| (c.length_m, c.weight_kg(share))).collect()
             }
         }
     }
 }
 
 impl CarsData {
+    /// The train of [`TrainData::line6`].
+    ///
+    /// # Panics
+    /// Never: a test reads the same text.
+    pub fn line6() -> Self {
+        match built_in(include_str!("../../../scripts/trains/line6.toml")) {
+            TrainData::Cars(data) => data,
+            TrainData::Ideal(_) => panic!("built-in train: line6 is no point mass"),
+        }
+    }
+
     /// Cars with an inverter.
     pub fn motor_cars(&self) -> CarSet {
         self.cars_where(|car| car.role == Role::Motor)
@@ -355,12 +377,10 @@ mod tests {
     /// what it rounds afterwards.
     #[test]
     fn line_6_adds_up_to_the_printed_sums() {
-        let TrainData::Cars(train) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
+        let train = CarsData::line6();
         let sum = |f: fn(&CarData) -> f64| train.cars.iter().map(f).sum::<f64>();
         assert_eq!(sum(|c| c.empty_kg), 268_807.0);
-        let full_kg = sum(|c| c.empty_kg + c.rotating_kg + c.full_load_kg);
+        let full_kg = sum(CarData::full_inertia_kg);
         assert!((full_kg - 456_368.0).abs() <= 1.0, "{full_kg}");
         assert!((sum(|c| c.air_n) - 443_691.0).abs() <= 4.0);
         assert_eq!(TrainData::ideal().full_load_kg(), 160_000.0);

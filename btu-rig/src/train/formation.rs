@@ -336,7 +336,7 @@ impl Formation {
         let share = load_kg.max(0.0) / full_kg.max(1.0);
         let (mut weight_kg, mut inertia_kg) = ([0.0; MAX_CARS], [0.0; MAX_CARS]);
         for (i, car) in self.data.cars.iter().enumerate() {
-            weight_kg[i] = car.empty_kg + share * car.full_load_kg;
+            weight_kg[i] = car.weight_kg(share);
             inertia_kg[i] = weight_kg[i] + car.rotating_kg;
             self.service_n[i] = inertia_kg[i] * self.data.service_brake.kmh_per_s / 3.6;
             self.emergency_n[i] = inertia_kg[i] * self.data.emergency_brake.kmh_per_s / 3.6;

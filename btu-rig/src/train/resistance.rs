@@ -59,15 +59,13 @@ impl RunningResistance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::train::{MAX_CARS, TrainData};
+    use crate::train::{CarsData, MAX_CARS};
 
     /// Worked by hand for 428.807 t at 40 km/h in the tunnel: (1.32 + 0.0164·40 + 2)·428.807 kgf
     /// and 0.0904·40² kgf are 1704.9 + 144.6 kgf = 18.14 kN; S3 has 19.024 kN.
     #[test]
     fn line_6_at_40_kmh_resists_nearly_as_printed() {
-        let TrainData::Cars(train) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
+        let train = CarsData::line6();
         let mut resistance = RunningResistance::new(&train.resistance);
         let mut weights = [0.0; MAX_CARS];
         weights[0] = 428_807.0;
@@ -81,9 +79,7 @@ mod tests {
 
     #[test]
     fn starting_takes_more_until_it_rolls_and_stopping_does_not() {
-        let TrainData::Cars(train) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
+        let train = CarsData::line6();
         let mut resistance = RunningResistance::new(&train.resistance);
         resistance.weigh(&[1000.0; MAX_CARS]);
         let [rest, creeping, rolling, stopping] =

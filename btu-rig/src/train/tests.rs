@@ -27,9 +27,7 @@ impl Ride {
     fn new(conditions: Conditions, kmh: f64, inputs: TrainInputs) -> Self {
         let mut train = Train::new(&TrainData::line6(), &conditions);
         train.place(kmh / 3.6);
-        let TrainData::Cars(cars) = TrainData::line6() else {
-            panic!("a train of cars");
-        };
+        let cars = CarsData::line6();
         Self {
             train,
             effort: Effort::new(Consist::new(&cars)),

@@ -3,7 +3,7 @@
 use btu_rig::conditions::Conditions;
 use btu_rig::lever::Lever;
 use btu_rig::tcms::PowerCuts;
-use btu_rig::train::{CarSet, Train, TrainData, TrainInputs};
+use btu_rig::train::{CarSet, CarsData, Train, TrainData, TrainInputs};
 use protocol::message::{ModeSwitch, Outputs};
 
 use crate::bench::Bench;
@@ -86,9 +86,7 @@ fn until_cut(bench: &mut Bench) -> u32 {
 /// limit of powering.
 #[test]
 fn traction_goes_by_the_inverters_times_alone() {
-    let TrainData::Cars(cars) = TrainData::line6() else {
-        panic!("a train of cars");
-    };
+    let cars = CarsData::line6();
     let within_s = cars.traction.dead_time_s + 5.0 * cars.traction.lag_s;
     let dead_man: Make = |b| b.inputs.cabs[0].dead_man = false;
     let full_brake: Make = |b| b.lever(Lever::Brake(7));

@@ -132,10 +132,10 @@ impl CatalogArguments {
                 "car": number, "name": name, "role": role, "pair": pair,
                 "empty_kg": sum(&|i| car(i).empty_kg),
                 "bogies_kg": sum(&|i| car(i).bogies_kg),
-                "full_kg": sum(&|i| car(i).empty_kg + car(i).full_load_kg),
+                "full_kg": sum(&|i| car(i).weight_kg(1.0)),
                 "braking_empty_kg": sum(&|i| car(i).empty_kg + car(i).rotating_kg),
                 "braking_full_kg":
-                    sum(&|i| car(i).empty_kg + car(i).rotating_kg + car(i).full_load_kg),
+                    sum(&|i| car(i).full_inertia_kg()),
                 "brake_empty_n": sum(&|i| empty.full_service_n[i]),
                 "brake_full_n": sum(&|i| full.full_service_n[i]),
                 "regeneration_empty_n": sum(&|i| empty.electric_n[i]),

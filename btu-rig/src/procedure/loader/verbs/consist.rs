@@ -5,11 +5,8 @@ use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::verb::{Verb, needs, takes};
 use crate::procedure::loader::want::Want;
-use crate::stimulus::{CutOut, Stimulus, TrainSwitch};
+use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TrainSwitch};
 use crate::train::MAX_CARS;
-
-/// Steepest gradient, ‰.
-const MAX_GRADIENT: f64 = 100.0;
 
 macro_rules! switch {
     ($name:literal, $switch:ident) => {
@@ -67,9 +64,9 @@ pub(super) static VERBS: &[Verb] = &[
         make: |args| {
             let given = args.get("permille").map(|_| args.number("permille"));
             let permille = given.transpose()?;
-            if permille.is_some_and(|permille| permille.abs() > MAX_GRADIENT) {
+            if permille.is_some_and(|permille| permille.abs() > MAX_GRADIENT_PERMILLE) {
                 return Err(format!(
-                    "`permille` must be from -{MAX_GRADIENT} to {MAX_GRADIENT}"
+                    "`permille` must be from -{MAX_GRADIENT_PERMILLE} to {MAX_GRADIENT_PERMILLE}"
                 ));
             }
             at_once(Stimulus::Gradient { permille })
