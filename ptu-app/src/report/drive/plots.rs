@@ -69,23 +69,12 @@ pub fn plots(runs: &[Driven]) -> Vec<Plot> {
             .filter(|plot| plot.title.starts_with("Speed"))
             .zip([TIME, PLACE])
         {
-            plot.shaded = slides(&run.outcome.rows, x);
-            if !plot.shaded.is_empty() {
-                plot.title += " (shaded: a car slips or slides)";
-            }
+            plot.shade_slides(&run.outcome.rows, |row| row.sliding, x);
         }
         plots.push(forces(run));
     }
     plots.extend(last_metres(runs));
     plots
-}
-
-/// Where cars slip or slide.
-fn slides(rows: &[Row], x: Of) -> Vec<(f64, f64)> {
-    rows.chunk_by(|a, b| a.sliding == b.sliding)
-        .filter(|stretch| stretch[0].sliding)
-        .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
-        .collect()
 }
 
 /// The unavoidable jerk of the standstill itself is left out, as in the figures.

@@ -41,10 +41,7 @@ pub fn plots(run: &ManualRun) -> Vec<Plot> {
             line("actual", TOTAL, |r| r.speed_kmh),
         ],
     );
-    speed.shaded = slides(rows);
-    if !speed.shaded.is_empty() {
-        speed.title += " (shaded: a car slips or slides)";
-    }
+    speed.shade_slides(rows, |row| row.sliding, |row| row.t_s);
     vec![
         speed,
         plot(
@@ -104,12 +101,4 @@ fn places(run: &ManualRun) -> Vec<Place> {
         name: done.what(),
     };
     run.outcome.done.iter().map(place).collect()
-}
-
-/// Where cars slip or slide.
-fn slides(rows: &[Row]) -> Vec<(f64, f64)> {
-    rows.chunk_by(|a, b| a.sliding == b.sliding)
-        .filter(|stretch| stretch[0].sliding)
-        .map(|stretch| (stretch[0].t_s, stretch[stretch.len() - 1].t_s))
-        .collect()
 }

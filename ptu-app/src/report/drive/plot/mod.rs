@@ -82,6 +82,23 @@ pub struct Plot {
 }
 
 impl Plot {
+    /// Shades where cars slip or slide, and says so.
+    pub fn shade_slides<R>(
+        &mut self,
+        rows: &[R],
+        sliding: impl Fn(&R) -> bool,
+        x: impl Fn(&R) -> f64,
+    ) {
+        self.shaded = rows
+            .chunk_by(|a, b| sliding(a) == sliding(b))
+            .filter(|stretch| sliding(&stretch[0]))
+            .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
+            .collect();
+        if !self.shaded.is_empty() {
+            self.title += " (shaded: a car slips or slides)";
+        }
+    }
+
     /// The drawing.
     pub fn svg(&self) -> Markup {
         let free = if self.x_range.is_some() { 0.0 } else { FREE };
