@@ -12,6 +12,7 @@
 //! bench's own clock, `bench_time_us` and `wall_time_us` are lengths of time.
 
 mod care;
+pub mod diagnosis;
 mod error;
 mod fault_log;
 mod fault_state;

@@ -9,7 +9,10 @@ pub const APPLICATION_ID: i32 = 0x4654_4442;
 /// The schema version this crate reads and writes.
 pub const SCHEMA_VERSION: i32 = STEPS.len() as i32;
 
-const STEPS: &[M<'static>] = &[M::up(include_str!("schema/0001.sql"))];
+const STEPS: &[M<'static>] = &[
+    M::up(include_str!("schema/0001.sql")),
+    M::up(include_str!("schema/0002.sql")),
+];
 
 /// Brings a file to [`SCHEMA_VERSION`], all steps in one transaction.
 pub(crate) fn migrate(conn: &mut Connection) -> Result<(), rusqlite::Error> {

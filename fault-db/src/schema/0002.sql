@@ -1,0 +1,23 @@
+-- Second schema: what stimuli a fault's trace came from, and fault dictionaries.
+
+-- What was done to the bench in one procedure of a run, kept when the procedure found a fault: enough
+-- to do it again. Only ever added.
+CREATE TABLE recording(
+  run INTEGER NOT NULL REFERENCES run(seq),
+  ordinal INTEGER NOT NULL,             -- place of the procedure in the run
+  procedure TEXT NOT NULL,
+  t0_bench_us INTEGER NOT NULL,         -- bench time of the run at which the procedure's clock is 0
+  bench_json TEXT NOT NULL,             -- what the bench was made of
+  stimuli BLOB NOT NULL,                -- zstd of a json list, each with its time on the procedure's clock
+  PRIMARY KEY(run, ordinal)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE dictionary(
+  seq INTEGER PRIMARY KEY,
+  id BLOB NOT NULL UNIQUE,
+  made_at_us INTEGER NOT NULL,
+  app_version TEXT NOT NULL,
+  basis_sha256 TEXT NOT NULL,           -- over scripts, unit configuration, line, train and fault catalogue
+  data BLOB NOT NULL                    -- zstd of json
+) STRICT;
+CREATE INDEX dictionary_by_time ON dictionary(made_at_us);
