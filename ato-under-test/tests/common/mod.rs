@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use ato_under_test::{Setup, Unit};
 use protocol::config::UnitConfig;
-use protocol::injection::{Effect, FaultMode, Place};
+use protocol::injection::{Effect, FaultMode, Occurrence, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{
@@ -29,6 +29,8 @@ pub fn fault(place: Place, effect: Effect) -> FaultMode {
         effect,
         onset_s: 0.0,
         car: None,
+        occurs: Occurrence::Always,
+        levels: Vec::new(),
     }
 }
 

@@ -71,6 +71,7 @@ impl FaultCatalogue {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::injection::{Effect, FaultKind};
 
     const PARTS: &str = "lrus = [{ id = \"a\", name = \"A\", name_ko = \"A\" }]\n";
     const FAULT: &str = r#"
@@ -193,13 +194,94 @@ car = 5
 
     /// What the unit's memory holds is there from power-up on.
     #[test]
-    fn a_fault_of_stored_data_has_no_onset() {
-        let text = FAULT.replace("brake_cylinder", "wheel_parameter");
-        let text = text.replace("car = 5", "onset_s = 3.0");
-        let said = FaultCatalogue::from_toml(&format!("{PARTS}{text}")).unwrap_err();
+    fn a_fault_of_stored_data_has_no_onset_and_does_not_come_and_go() {
+        for (key, line) in [
+            ("onset_s", "onset_s = 3.0"),
+            ("occurs", "occurs = { when = \"above_speed\", kmh = 30.0 }"),
+        ] {
+            let text = FAULT.replace("brake_cylinder", "wheel_parameter");
+            let text = text.replace("car = 5", line);
+            let said = FaultCatalogue::from_toml(&format!("{PARTS}{text}")).unwrap_err();
+            assert_eq!(
+                said.to_string(),
+                format!(
+                    "fault a.b: wheel_parameter is stored data, wrong from power-up on: leave {key} out"
+                )
+            );
+        }
+    }
+
+    /// What is wrong when these lines are added to the fault.
+    fn wrong_with(lines: &str) -> String {
+        wrong("car = 5", &format!("car = 5\n{lines}"))
+    }
+
+    #[test]
+    fn occurrences_and_levels_that_make_no_sense_are_refused_with_the_reason() {
+        let occurs = |rest: &str| wrong_with(&format!("occurs = {{ when = {rest} }}"));
+        for (rest, expected) in [
+            (
+                "\"at_times\", on_s = 0.0, off_s = 1.0",
+                "fault a.b: occurs.on_s = 0 is outside 0.05 .. 3600",
+            ),
+            (
+                "\"at_times\", on_s = 1.0, off_s = nan",
+                "fault a.b: occurs.off_s = NaN is outside",
+            ),
+            (
+                "\"above_speed\", kmh = -3.0",
+                "fault a.b: occurs.kmh = -3 is outside 1 .. 200",
+            ),
+            (
+                "\"when_warm\", after_s = -1.0, full_s = 1.0",
+                "fault a.b: occurs.after_s = -1 is outside",
+            ),
+            (
+                "\"when_warm\", after_s = 1.0, full_s = inf",
+                "fault a.b: occurs.full_s = inf is outside",
+            ),
+        ] {
+            let said = occurs(rest);
+            assert!(said.starts_with(expected), "{rest}: {said}");
+        }
+        assert!(occurs("\"sometimes\"").contains("unknown variant `sometimes`"));
+        let warm = "onset_s = 2.0\noccurs = { when = \"when_warm\", after_s = 1.0, full_s = 1.0 }";
         assert_eq!(
-            said.to_string(),
-            "fault a.b: wheel_parameter is stored data, wrong from power-up on: leave onset_s out"
+            wrong_with(warm),
+            "fault a.b: what comes with warmth begins at occurs.after_s: leave onset_s out"
         );
+        assert!(
+            wrong_with("levels = [0.6, 1.5]")
+                .starts_with("fault a.b: levels = 1.5 is outside 0 .. 1")
+        );
+        for twice in ["levels = [0.6, 0.6]", "levels = [0.5]"] {
+            assert!(wrong_with(twice).contains("twice, or effect.factor has it already"));
+        }
+        let stuck = wrong(
+            "effect = { kind = \"gain\", factor = 0.5 }",
+            "effect = { kind = \"stuck_on\" }\nlevels = [0.5]",
+        );
+        assert_eq!(stuck, "fault a.b: stuck_on has no levels: leave them out");
+    }
+
+    #[test]
+    fn a_mode_has_a_kind_and_is_had_at_its_levels() {
+        let read = |lines: &str| {
+            let text = format!("{PARTS}{FAULT}{lines}");
+            FaultCatalogue::from_toml(&text).unwrap().faults.remove(0)
+        };
+        let mode = read("levels = [0.6, 0.7]");
+        assert_eq!(mode.kind(), FaultKind::Degraded);
+        let factors: Vec<_> = (0..4).map(|i| mode.at_level(i).map(|m| m.effect)).collect();
+        let gain = |factor| Some(Effect::Gain { factor });
+        assert_eq!(factors, [gain(0.5), gain(0.6), gain(0.7), None]);
+        let comes = read("occurs = { when = \"at_times\", on_s = 1.0, off_s = 5.0 }");
+        assert_eq!(comes.kind(), FaultKind::Intermittent);
+        assert_eq!(comes.at_level(0), Some(comes.clone()));
+        let dead = FaultMode {
+            effect: Effect::Dead,
+            ..mode
+        };
+        assert_eq!(dead.kind(), FaultKind::Permanent);
     }
 }

@@ -5,7 +5,7 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use super::{Effect, FaultMode, Place};
+use super::{Effect, FaultMode, Occurrence, Place};
 use crate::config::{ConfigError, conflict, within};
 
 /// Cars a train may have.
@@ -15,6 +15,12 @@ pub const MAX_CARS: u8 = 12;
 const LONGEST_DELAY_MS: f64 = 5_000.0;
 /// Latest onset, s: a day.
 const LATEST_ONSET_S: f64 = 86_400.0;
+/// Spells and pauses of what comes and goes, s: from a few scans to an hour.
+const SHORTEST_SPELL_S: f64 = 0.05;
+const LONGEST_SPELL_S: f64 = 3_600.0;
+/// Speeds at which something may shake loose, km/h.
+const LEAST_KMH: f64 = 1.0;
+const MOST_KMH: f64 = 200.0;
 /// Prior weights.
 const LEAST_WEIGHT: f64 = 1e-6;
 const MOST_WEIGHT: f64 = 1e6;
@@ -101,11 +107,17 @@ pub(super) fn check(fault: &FaultMode) -> Result<(), ConfigError> {
     in_range(fault, "onset_s", fault.onset_s, 0.0, LATEST_ONSET_S)?;
     let place = name(fault.place);
     let stored = matches!(fault.place, Place::TrackDatabase | Place::WheelParameter);
-    if stored && fault.onset_s > 0.0 {
-        return Err(wrong(format!(
-            "{place} is stored data, wrong from power-up on: leave onset_s out"
-        )));
+    for (key, given) in [
+        ("onset_s", fault.onset_s > 0.0),
+        ("occurs", !fault.occurs.is_always()),
+    ] {
+        if stored && given {
+            return Err(wrong(format!(
+                "{place} is stored data, wrong from power-up on: leave {key} out"
+            )));
+        }
     }
+    occurrence(fault)?;
     match fault.car {
         None if fault.place.on_car() => {
             return Err(wrong(format!("{place} is on a car, name it with `car`")));
@@ -125,10 +137,58 @@ pub(super) fn check(fault: &FaultMode) -> Result<(), ConfigError> {
             kinds.join(", ")
         )));
     };
-    match number {
-        Some((key, value)) => in_range(fault, &format!("effect.{key}"), value, *low, *high),
-        None => Ok(()),
+    if let Some((key, value)) = number {
+        in_range(fault, &format!("effect.{key}"), value, *low, *high)?;
     }
+    levels(fault, *low, *high)
+}
+
+/// Checks when the mode acts.
+fn occurrence(fault: &FaultMode) -> Result<(), ConfigError> {
+    match fault.occurs {
+        Occurrence::Always => Ok(()),
+        Occurrence::AtTimes { on_s, off_s } => {
+            let (least, most) = (SHORTEST_SPELL_S, LONGEST_SPELL_S);
+            in_range(fault, "occurs.on_s", on_s, least, most)?;
+            in_range(fault, "occurs.off_s", off_s, least, most)
+        }
+        Occurrence::AboveSpeed { kmh } => in_range(fault, "occurs.kmh", kmh, LEAST_KMH, MOST_KMH),
+        Occurrence::WhenWarm { after_s, full_s } => {
+            if fault.onset_s > 0.0 {
+                return Err(conflict(&format!(
+                    "fault {}: what comes with warmth begins at occurs.after_s: leave onset_s out",
+                    fault.id
+                )));
+            }
+            in_range(fault, "occurs.after_s", after_s, 0.0, LATEST_ONSET_S)?;
+            in_range(fault, "occurs.full_s", full_s, 0.0, LATEST_ONSET_S)
+        }
+    }
+}
+
+/// Checks the other values the effect's number may have.
+fn levels(fault: &FaultMode, low: f64, high: f64) -> Result<(), ConfigError> {
+    if fault.levels.is_empty() {
+        return Ok(());
+    }
+    let wrong = |what: String| conflict(&format!("fault {}: {what}", fault.id));
+    let (kind, number) = parts(fault.effect);
+    let Some((key, written)) = number.filter(|_| !matches!(fault.effect, Effect::Deaf { .. }))
+    else {
+        return Err(wrong(format!("{kind} has no levels: leave them out")));
+    };
+    for (i, level) in fault.levels.iter().enumerate() {
+        in_range(fault, "levels", *level, low, high)?;
+        if *level == written || fault.levels[..i].contains(level) {
+            return Err(wrong(format!(
+                "levels has {level} twice, or effect.{key} has it already"
+            )));
+        }
+        if matches!(fault.effect, Effect::Delay { .. }) && libm::trunc(*level) != *level {
+            return Err(wrong(format!("levels has {level}: whole ms only")));
+        }
+    }
+    Ok(())
 }
 
 fn in_range(

@@ -1,18 +1,24 @@
-//! Fault modes as data: where in the signal path, and what happens there (`check`: what can happen
-//! where). The parts and modes there are stand in the [`FaultCatalogue`].
+//! Fault modes as data: where in the signal path, what happens there (`check`: what can happen where),
+//! when ([`Occurrence`]) and how much of it (`severity`). The parts and modes there are stand in the
+//! [`FaultCatalogue`].
 //!
 //! The unit applies those of its own places, the rig those of the train and its wiring. Nothing
 //! that judges a result ever sees them.
 
 mod catalogue;
 mod check;
+mod occurrence;
+mod severity;
 
 use alloc::string::String;
+use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
 pub use catalogue::{FaultCatalogue, Lru};
 pub use check::MAX_CARS;
+pub use occurrence::{Occurrence, OccurrenceState};
+pub use severity::FaultKind;
 
 /// A place in the signal path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -173,4 +179,10 @@ pub struct FaultMode {
     /// Car it is on, counted from the head of the train; only at places that are on cars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub car: Option<u8>,
+    /// When it acts, once it has set in.
+    #[serde(default, skip_serializing_if = "Occurrence::is_always")]
+    pub occurs: Occurrence,
+    /// Other values that the effect's number may have in a part with this fault.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<f64>,
 }

@@ -71,6 +71,7 @@ impl CatalogArguments {
                 "id": fault.id, "lru": fault.lru, "mode": fault.mode,
                 "severity": fault.severity, "weight": fault.weight, "unsafe": fault.unsafe_,
                 "on": if fault.place.on_train() { "train" } else { "unit" }, "car": fault.car,
+                "kind": fault.kind().word(),
             })
         };
         Ok(catalogue.faults.iter().map(entry).collect())

@@ -1,0 +1,112 @@
+//! How much of an effect there is: levels of a mode, strengths of what comes and goes, and the kinds
+//! of modes that follow from both.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Effect, FaultMode};
+
+/// Greatest effort, from which a limit comes down as it grows [S0: 1024 steps].
+const FULL_EFFORT: f64 = 1024.0;
+/// Strength from which on a thing is there that is only there or not.
+const HALF: f64 = 0.5;
+
+/// What kind of fault a mode is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FaultKind {
+    /// Something does not work, all the time.
+    Permanent,
+    /// It comes and goes, by time, speed or warmth.
+    Intermittent,
+    /// Something works, but not as well as it should.
+    Degraded,
+}
+
+impl FaultKind {
+    /// As catalogues and reports write it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Permanent => "permanent",
+            Self::Intermittent => "intermittent",
+            Self::Degraded => "degraded",
+        }
+    }
+}
+
+impl FaultMode {
+    /// What kind of fault this is.
+    pub fn kind(&self) -> FaultKind {
+        match self.effect {
+            _ if !self.occurs.is_always() => FaultKind::Intermittent,
+            Effect::Dead | Effect::StuckOn | Effect::StuckOff => FaultKind::Permanent,
+            _ => FaultKind::Degraded,
+        }
+    }
+
+    /// The mode at one of its levels: 0 as it is written, from 1 on those of `levels`; `None` beyond.
+    pub fn at_level(&self, level: usize) -> Option<Self> {
+        let Some(listed) = level.checked_sub(1) else {
+            return Some(self.clone());
+        };
+        let number = *self.levels.get(listed)?;
+        Some(Self {
+            effect: self.effect.with_number(number),
+            ..self.clone()
+        })
+    }
+}
+
+impl Effect {
+    /// The effect at a strength of 0 to 1; `None` when there is nothing of it.
+    pub fn at_strength(self, strength: f64) -> Option<Self> {
+        if strength <= 0.0 {
+            return None;
+        }
+        let share = strength.min(1.0);
+        Some(match self {
+            Self::Dead | Self::StuckOn | Self::StuckOff | Self::Deaf { .. } => {
+                return (share >= HALF).then_some(self);
+            }
+            Self::Gain { factor } => self.with_number(1.0 + (factor - 1.0) * share),
+            Self::Limit { to } => self.with_number(FULL_EFFORT + (to - FULL_EFFORT) * share),
+            Self::Offset { by: number }
+            | Self::Noise { per_s: number }
+            | Self::BitErrors { rate: number } => self.with_number(number * share),
+            Self::Delay { ms } => self.with_number(f64::from(ms) * share),
+        })
+    }
+
+    /// The same effect with another number; one that has none stays as it is.
+    fn with_number(self, number: f64) -> Self {
+        match self {
+            Self::Dead | Self::StuckOn | Self::StuckOff | Self::Deaf { .. } => self,
+            Self::Gain { .. } => Self::Gain { factor: number },
+            Self::Offset { .. } => Self::Offset { by: number },
+            Self::Limit { .. } => Self::Limit { to: number },
+            Self::Delay { .. } => Self::Delay { ms: number as u32 },
+            Self::Noise { .. } => Self::Noise { per_s: number },
+            Self::BitErrors { .. } => Self::BitErrors { rate: number },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_grow_with_the_strength_and_contacts_turn_over_at_half() {
+        let gain = Effect::Gain { factor: 0.8 };
+        assert_eq!(gain.at_strength(0.0), None);
+        assert_eq!(gain.at_strength(0.5), Some(Effect::Gain { factor: 0.9 }));
+        assert_eq!(gain.at_strength(1.0), Some(gain));
+        let limit = Effect::Limit { to: 300.0 };
+        assert_eq!(limit.at_strength(0.5), Some(Effect::Limit { to: 662.0 }));
+        let delay = Effect::Delay { ms: 400 };
+        assert_eq!(delay.at_strength(0.25), Some(Effect::Delay { ms: 100 }));
+        let rate = Effect::BitErrors { rate: 0.6 };
+        assert_eq!(rate.at_strength(0.5), Some(Effect::BitErrors { rate: 0.3 }));
+        assert_eq!(Effect::StuckOn.at_strength(0.49), None);
+        assert_eq!(Effect::StuckOn.at_strength(0.5), Some(Effect::StuckOn));
+    }
+}
