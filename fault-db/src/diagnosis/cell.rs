@@ -1,0 +1,146 @@
+//! What one check does under one hypothesis, counted over the runs of a campaign.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use super::observation::{Result, Sign, StepSeen};
+
+/// Result and signs of a step together: what of it is a matter of kind, not of size.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Signature {
+    /// How it came out.
+    pub result: Result,
+    /// What showed.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub signs: BTreeSet<Sign>,
+}
+
+impl Signature {
+    /// That of a step as seen.
+    pub fn of(step: &StepSeen) -> Self {
+        Self {
+            result: step.result,
+            signs: step.signs.clone(),
+        }
+    }
+}
+
+/// Values of one measurement (Welford's sums).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Values {
+    /// How many there were.
+    pub n: u32,
+    /// How often nothing could be measured.
+    pub missing: u32,
+    /// Their mean.
+    pub mean: f64,
+    /// Sum of squared distances from it.
+    pub squares: f64,
+    /// Least.
+    pub low: f64,
+    /// Greatest.
+    pub high: f64,
+}
+
+impl Values {
+    fn add(&mut self, value: Option<f64>) {
+        let Some(value) = value.filter(|value| value.is_finite()) else {
+            self.missing += 1;
+            return;
+        };
+        (self.low, self.high) = if self.n == 0 {
+            (value, value)
+        } else {
+            (self.low.min(value), self.high.max(value))
+        };
+        self.n += 1;
+        let off = value - self.mean;
+        self.mean += off / f64::from(self.n);
+        self.squares += off * (value - self.mean);
+    }
+
+    /// Standard deviation; 0 of fewer than two.
+    pub fn sd(&self) -> f64 {
+        if self.n < 2 {
+            0.0
+        } else {
+            (self.squares / f64::from(self.n - 1)).max(0.0).sqrt()
+        }
+    }
+}
+
+/// One check under one hypothesis.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// How often each signature came.
+    pub signatures: Vec<(Signature, u32)>,
+    /// Mean bench time, s.
+    pub time_s: f64,
+    /// What it measured.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub values: BTreeMap<String, Values>,
+}
+
+impl Cell {
+    /// Counts a step.
+    pub fn add(&mut self, step: &StepSeen) {
+        let signature = Signature::of(step);
+        match self.signatures.iter_mut().find(|(s, _)| *s == signature) {
+            Some((_, count)) => *count += 1,
+            None => self.signatures.push((signature, 1)),
+        }
+        self.time_s += (step.time_s - self.time_s) / f64::from(self.runs());
+        for (name, value) in &step.values {
+            self.values.entry(name.clone()).or_default().add(*value);
+        }
+    }
+
+    /// How often it was run.
+    pub fn runs(&self) -> u32 {
+        self.signatures.iter().map(|(_, count)| count).sum()
+    }
+
+    /// How often it came out so.
+    pub fn count(&self, result: Result) -> u32 {
+        let of = self.signatures.iter().filter(|(s, _)| s.result == result);
+        of.map(|(_, count)| count).sum()
+    }
+
+    /// How often the sign showed.
+    pub fn count_sign(&self, sign: &Sign) -> u32 {
+        let of = self
+            .signatures
+            .iter()
+            .filter(|(s, _)| s.signs.contains(sign));
+        of.map(|(_, count)| count).sum()
+    }
+
+    /// Share of runs in which it did not pass.
+    pub fn not_passed(&self) -> f64 {
+        match self.runs() {
+            0 => 0.0,
+            runs => 1.0 - f64::from(self.count(Result::Passed)) / f64::from(runs),
+        }
+    }
+
+    /// As good as `other`: the same signatures alone, and values where those of `other` lie.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let known = |(signature, _): &(Signature, u32)| {
+            let of_other = other.signatures.iter().find(|(s, _)| s == signature);
+            // Once in the runs of the other is an accident there, not its way.
+            of_other.is_some_and(|(_, count)| f64::from(*count) >= 0.5 * f64::from(other.runs()))
+        };
+        self.runs() > 0
+            && self.signatures.iter().all(known)
+            && self.values.iter().all(|(name, values)| {
+                other.values.get(name).is_some_and(|of_other| {
+                    let margin = 3.0 * of_other.sd() + 1e-9 * of_other.mean.abs();
+                    values.missing == 0
+                        && values.low >= of_other.low - margin
+                        && values.high <= of_other.high + margin
+                        && (values.mean - of_other.mean).abs() <= of_other.sd() + 1e-9
+                })
+            })
+    }
+}

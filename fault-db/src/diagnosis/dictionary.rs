@@ -1,0 +1,202 @@
+//! The fault dictionary: what each fault mode does to each check, counted in a campaign.
+//!
+//! A mode is counted by its varieties (how bad it is); a variety's cells that are like those of a
+//! healthy unit are left out, so that the dictionary holds what differs.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use super::cell::Cell;
+use super::observation::{CheckName, Observation, Sign};
+
+/// What a dictionary was made of. Made of anything else it may be wrong.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Basis {
+    /// SHA-256 over everything below and the rest it was made of, in hex.
+    pub sha256: String,
+    /// SHA-256 of the unit configuration.
+    pub unit_config_sha256: String,
+    /// SHA-256 of each procedure's script.
+    pub procedures: BTreeMap<String, String>,
+    /// Line.
+    pub line: String,
+    /// Train.
+    pub train: String,
+    /// Version of the program.
+    pub app_version: String,
+}
+
+/// A fault mode as catalogues know it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModeName {
+    /// `part.mode`.
+    pub id: String,
+    /// Part to replace.
+    pub lru: String,
+    /// What is wrong, for people.
+    pub text: String,
+    /// `permanent`, `intermittent` or `degraded`.
+    pub kind: String,
+    /// It can leave the train less protected.
+    #[serde(rename = "unsafe")]
+    pub unsafe_: bool,
+    /// Relative prior weight.
+    pub weight: f64,
+}
+
+/// Counts of one hypothesis.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// How bad it is: `nominal`, or the effect's number.
+    pub level: String,
+    /// Runs of the suite.
+    pub runs: u32,
+    /// By the check's place; those like a healthy unit's are left out.
+    pub cells: BTreeMap<usize, Cell>,
+    /// In how many runs each sign showed anywhere.
+    pub signs: Vec<(Sign, u32)>,
+}
+
+/// A fault mode and its varieties.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mode {
+    /// Which.
+    #[serde(flatten)]
+    pub name: ModeName,
+    /// Its varieties.
+    pub columns: Vec<Column>,
+}
+
+/// A fault dictionary.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Dictionary {
+    /// What it was made of.
+    pub basis: Basis,
+    /// Seeds it was made with.
+    pub seeds: Vec<u64>,
+    /// Checks in the order of the suite.
+    pub checks: Vec<CheckName>,
+    /// A healthy unit.
+    pub healthy: Column,
+    /// Fault modes.
+    pub modes: Vec<Mode>,
+    /// Places of the checks by name.
+    #[serde(skip)]
+    places: BTreeMap<CheckName, usize>,
+}
+
+impl Dictionary {
+    /// An empty dictionary of these checks.
+    pub fn new(basis: Basis, seeds: Vec<u64>, checks: Vec<CheckName>) -> Self {
+        let mut dictionary = Self {
+            basis,
+            seeds,
+            checks,
+            ..Self::default()
+        };
+        dictionary.index();
+        dictionary
+    }
+
+    /// Reads a dictionary.
+    ///
+    /// # Errors
+    /// It is no dictionary, or not sound in itself.
+    pub fn from_json(text: &[u8]) -> std::result::Result<Self, String> {
+        let mut read: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        read.index();
+        match read.unsound() {
+            Some(what) => Err(what),
+            None => Ok(read),
+        }
+    }
+
+    /// What is wrong with it in itself, if anything.
+    fn unsound(&self) -> Option<String> {
+        let columns = self.modes.iter().flat_map(|mode| &mode.columns);
+        let mut places = columns
+            .chain([&self.healthy])
+            .flat_map(|column| column.cells.keys());
+        if let Some(place) = places.find(|place| **place >= self.checks.len()) {
+            return Some(format!("it has no check number {place}"));
+        }
+        let mut names = self.modes.iter().map(|mode| &mode.name);
+        let weightless = names.find(|name| !(name.weight.is_finite() && name.weight > 0.0))?;
+        let (id, weight) = (&weightless.id, weightless.weight);
+        Some(format!("fault mode {id} has the weight {weight}"))
+    }
+
+    fn index(&mut self) {
+        let names = self.checks.iter().cloned().zip(0..);
+        self.places = names.collect();
+    }
+
+    /// Place of a check. A repetition, `name (2/3)`, is another run of the check `name` where the
+    /// dictionary knows no such repetition.
+    pub fn place(&self, check: &CheckName) -> Option<usize> {
+        self.places.get(check).copied().or_else(|| {
+            let (step, turn) = check.step.rsplit_once(" (")?;
+            turn.strip_suffix(')')?.split_once('/')?;
+            let plain = CheckName {
+                procedure: check.procedure.clone(),
+                step: step.to_owned(),
+            };
+            self.places.get(&plain).copied()
+        })
+    }
+
+    /// Counts the runs of a healthy unit. Before any mode is added.
+    pub fn set_healthy(&mut self, runs: &[Observation]) {
+        self.healthy = self.count("nominal".into(), runs);
+    }
+
+    /// Counts the runs of one variety of a mode.
+    pub fn add(&mut self, mode: &ModeName, level: String, runs: &[Observation]) {
+        let mut column = self.count(level, runs);
+        let healthy = &self.healthy.cells;
+        column
+            .cells
+            .retain(|place, cell| healthy.get(place).is_none_or(|h| !cell.is_like(h)));
+        match self.modes.iter_mut().find(|known| known.name.id == mode.id) {
+            Some(known) => known.columns.push(column),
+            None => self.modes.push(Mode {
+                name: mode.clone(),
+                columns: vec![column],
+            }),
+        }
+    }
+
+    fn count(&self, level: String, runs: &[Observation]) -> Column {
+        let mut cells: BTreeMap<usize, Cell> = BTreeMap::new();
+        let mut signs: BTreeMap<Sign, u32> = BTreeMap::new();
+        for run in runs {
+            let mut shown: BTreeSet<&Sign> = run.signs.iter().collect();
+            for step in &run.steps {
+                if let Some(place) = self.place(&step.check) {
+                    cells.entry(place).or_default().add(step);
+                }
+                shown.extend(&step.signs);
+            }
+            for sign in shown {
+                *signs.entry(sign.clone()).or_default() += 1;
+            }
+        }
+        Column {
+            level,
+            runs: runs.len() as u32,
+            cells,
+            signs: signs.into_iter().collect(),
+        }
+    }
+
+    /// Parts its modes are of, each once, in order.
+    pub fn lrus(&self) -> Vec<&str> {
+        let all: BTreeSet<_> = self
+            .modes
+            .iter()
+            .map(|mode| mode.name.lru.as_str())
+            .collect();
+        all.into_iter().collect()
+    }
+}

@@ -1,0 +1,260 @@
+//! How likely what a check showed is under what a cell has counted.
+//!
+//! Counts of a few runs are smoothed: `doubt` runs that nobody made come out anyhow, so that nothing
+//! is impossible and one surprise refutes no hypothesis for good. Values are Student's (four degrees of
+//! freedom, so that an outlier is one) over the range the measurement has under all hypotheses.
+
+use super::cell::{Cell, Signature, Values};
+use super::observation::{Result, Sign, StepSeen};
+
+/// Runs beyond which more of them make nothing more certain: benches are not that much alike.
+const MOST_RUNS: f64 = 50.0;
+/// Chance of each result where nothing is known.
+const NOTHING_KNOWN: [(Result, f64); 3] = [
+    (Result::Passed, 0.50),
+    (Result::Failed, 0.35),
+    (Result::Error, 0.15),
+];
+/// Chance of a sign where nothing is known.
+const SIGN_UNKNOWN: f64 = 0.05;
+/// Chance of a missing value where nothing is known.
+const MISSING_UNKNOWN: f64 = 0.1;
+/// Share of values that lie anywhere.
+const ANYWHERE: f64 = 0.1;
+/// Least standard deviation of a value, of the range under all hypotheses.
+const LEAST_SPREAD: f64 = 0.01;
+
+/// Where values of a measurement lie under all hypotheses together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    low: f64,
+    high: f64,
+    /// Standard deviation of healthy units.
+    spread: f64,
+}
+
+impl Scale {
+    /// Of a healthy unit's values.
+    pub fn of_healthy(values: &Values) -> Self {
+        Self {
+            low: values.low,
+            high: values.high,
+            spread: values.sd(),
+        }
+    }
+
+    /// Widened by another hypothesis.
+    pub fn widen(&mut self, values: &Values) {
+        if values.n > 0 {
+            self.low = self.low.min(values.low);
+            self.high = self.high.max(values.high);
+        }
+    }
+
+    fn least_sd(&self) -> f64 {
+        let range = self.high - self.low;
+        let size = self.low.abs().max(self.high.abs());
+        self.spread
+            .max(LEAST_SPREAD * range)
+            .max(1e-6 * size)
+            .max(1e-9)
+    }
+}
+
+/// What is expected of a check: its counts, and how many runs stand behind them.
+#[derive(Clone, Copy, Debug)]
+pub struct Expected<'a> {
+    /// Counts.
+    pub cell: &'a Cell,
+    /// Runs of the hypothesis: fewer than the cell's where a healthy unit's counts stand in.
+    pub runs: u32,
+    /// See [`super::Settings::doubt_runs`].
+    pub doubt: f64,
+}
+
+impl Expected<'_> {
+    fn runs(&self) -> f64 {
+        f64::from(self.runs.min(self.cell.runs())).min(MOST_RUNS)
+    }
+
+    fn smoothed(&self, share: f64, nothing_known: f64) -> f64 {
+        let n = self.runs();
+        (n * share + self.doubt * nothing_known) / (n + self.doubt)
+    }
+
+    fn share(&self, count: u32) -> f64 {
+        match self.cell.runs() {
+            0 => 0.0,
+            runs => f64::from(count) / f64::from(runs),
+        }
+    }
+
+    /// Probability of a result.
+    pub fn result(&self, result: Result) -> f64 {
+        let nothing_known = NOTHING_KNOWN.iter().find(|(r, _)| *r == result);
+        let nothing_known = nothing_known.map_or(0.0, |(_, p)| *p);
+        self.smoothed(self.share(self.cell.count(result)), nothing_known)
+    }
+
+    /// Probability of a sign.
+    pub fn sign(&self, sign: &Sign) -> f64 {
+        self.smoothed(self.share(self.cell.count_sign(sign)), SIGN_UNKNOWN)
+    }
+
+    /// Probability of a signature: as counted, or, for one never seen, of its parts.
+    pub fn signature(&self, signature: &Signature) -> f64 {
+        let counted = self.cell.signatures.iter().find(|(s, _)| s == signature);
+        let share = self.share(counted.map_or(0, |(_, count)| *count));
+        self.smoothed(share, self.of_parts(signature))
+    }
+
+    fn of_parts(&self, signature: &Signature) -> f64 {
+        let absent = self
+            .cell
+            .signatures
+            .iter()
+            .flat_map(|(s, _)| &s.signs)
+            .filter(|sign| !signature.signs.contains(*sign));
+        let absent: std::collections::BTreeSet<_> = absent.collect();
+        let showing: f64 = signature.signs.iter().map(|sign| self.sign(sign)).product();
+        let silent: f64 = absent.iter().map(|sign| 1.0 - self.sign(sign)).product();
+        self.result(signature.result) * showing * silent
+    }
+
+    /// Relative probability density of a measured value, where one that lies anywhere has
+    /// [`ANYWHERE`].
+    pub fn value(&self, name: &str, value: Option<f64>, scale: &Scale) -> f64 {
+        let Some(values) = self.cell.values.get(name) else {
+            return ANYWHERE;
+        };
+        let seen = f64::from(values.n + values.missing);
+        let missing =
+            (f64::from(values.missing) + self.doubt * MISSING_UNKNOWN) / (seen + self.doubt);
+        let Some(value) = value.filter(|value| value.is_finite()) else {
+            return missing;
+        };
+        if values.n == 0 {
+            return (1.0 - missing) * ANYWHERE;
+        }
+        let least = scale.least_sd();
+        let sd = values.sd().hypot(least) * (1.0 + 1.0 / f64::from(values.n)).sqrt();
+        let range = (scale.high - scale.low) + 6.0 * least;
+        let near = range * student4((value - values.mean) / sd) / sd;
+        (1.0 - missing) * (ANYWHERE + (1.0 - ANYWHERE) * near)
+    }
+}
+
+/// Density of Student's t with four degrees of freedom.
+fn student4(t: f64) -> f64 {
+    0.375 * (1.0 + t * t / 4.0).powf(-2.5)
+}
+
+/// Logarithm of how likely a step is, `scale` telling where a measurement's values lie.
+pub fn ln_step<'s>(
+    expected: Expected<'_>,
+    step: &StepSeen,
+    scale: impl Fn(&str) -> Option<&'s Scale>,
+) -> f64 {
+    let values: f64 = step
+        .values
+        .iter()
+        .filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?).ln()))
+        .sum();
+    expected.signature(&Signature::of(step)).ln() + values
+}
+
+/// The same of a fault that no dictionary knows: it may do anything, and mostly does nothing.
+pub fn ln_step_unknown<'s>(
+    healthy: Expected<'_>,
+    step: &StepSeen,
+    scale: impl Fn(&str) -> Option<&'s Scale>,
+) -> f64 {
+    /// Share of steps that an unknown fault leaves alone.
+    const LEFT_ALONE: f64 = 0.8;
+    /// Of those it does not, how they come out.
+    const HIT: [(Result, f64); 3] = [
+        (Result::Passed, 0.1),
+        (Result::Failed, 0.6),
+        (Result::Error, 0.3),
+    ];
+    let hit = HIT.iter().find(|(r, _)| *r == step.result);
+    let signs = SIGN_UNKNOWN.powi(step.signs.len() as i32);
+    let strange =
+        hit.map_or(0.0, |(_, p)| *p) * signs * 0.5_f64.powi(i32::from(step.signs.is_empty()));
+    let anywhere = ANYWHERE.powi(
+        step.values
+            .iter()
+            .filter(|(name, _)| scale(name).is_some())
+            .count() as i32,
+    );
+    let alone = ln_step(healthy, step, &scale).exp();
+    (LEFT_ALONE * alone + (1.0 - LEFT_ALONE) * strange * anywhere).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::diagnosis::observation::CheckName;
+
+    fn step(result: Result, value: Option<f64>) -> StepSeen {
+        StepSeen {
+            check: CheckName {
+                procedure: "p".into(),
+                step: "s".into(),
+            },
+            result,
+            time_s: 1.0,
+            values: vec![("t".into(), value)],
+            signs: BTreeSet::new(),
+        }
+    }
+
+    fn cell(of: &[StepSeen]) -> Cell {
+        let mut cell = Cell::default();
+        of.iter().for_each(|step| cell.add(step));
+        cell
+    }
+
+    fn expected(cell: &Cell) -> Expected<'_> {
+        Expected {
+            cell,
+            runs: cell.runs(),
+            doubt: 0.5,
+        }
+    }
+
+    #[test]
+    fn results_are_probabilities_and_nothing_is_impossible() {
+        let cell = cell(&[
+            step(Result::Passed, Some(1.0)),
+            step(Result::Passed, Some(1.1)),
+        ]);
+        let sum: f64 = Result::ALL.iter().map(|r| expected(&cell).result(*r)).sum();
+        assert!((sum - 1.0).abs() < 1e-12);
+        assert!(expected(&cell).result(Result::Failed) > 0.01);
+        assert!(expected(&cell).result(Result::Passed) > 0.85);
+    }
+
+    /// A reaction time of 640 ms where 600 is allowed says less than none at all: under a slow relay
+    /// 640 ms is near, a missing value is not.
+    #[test]
+    fn a_value_says_more_than_its_verdict() {
+        let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(Result::Passed, Some(v))));
+        let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(Result::Failed, Some(v))));
+        let dead = cell(&[None, None, None].map(|v| step(Result::Failed, v)));
+        let mut scale = Scale::of_healthy(&healthy.values["t"]);
+        scale.widen(&slow.values["t"]);
+        let ln = |cell: &Cell, value| {
+            ln_step(expected(cell), &step(Result::Failed, value), |_| {
+                Some(&scale)
+            })
+        };
+        assert!(ln(&slow, Some(643.0)) > ln(&dead, Some(643.0)) + 3.0);
+        assert!(ln(&dead, None) > ln(&slow, None) + 2.0);
+        // Between both, neither is certain.
+        let apart = ln(&slow, Some(440.0)) - ln(&dead, Some(440.0));
+        assert!(apart.abs() < 3.0, "{apart}");
+    }
+}

@@ -1,0 +1,183 @@
+//! The next best check: the one that is expected to tell the most about the part, per second.
+//!
+//! Procedures begin with a unit that is brought up for them, and their steps build on each other. So
+//! a check costs all steps of its procedure before it that have not been run, and brings what they
+//! tell, too.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::belief::Belief;
+use super::cell::Signature;
+use super::observation::CheckName;
+
+/// A check worth making.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NextCheck {
+    /// Procedure and step.
+    #[serde(rename = "step", serialize_with = "as_text")]
+    pub check: CheckName,
+    /// What it is expected to tell of the part, bits.
+    pub gain_bits: f64,
+    /// Time it takes, steps before it and bringing the unit up included, s.
+    pub cost_s: f64,
+}
+
+fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> std::result::Result<S::Ok, S::Error> {
+    to.collect_str(check)
+}
+
+/// What is worth knowing: each part, no fault and an unknown one, with their probabilities.
+struct Classes {
+    of_hypothesis: Vec<usize>,
+    count: usize,
+    probabilities: Vec<f64>,
+}
+
+impl Belief<'_, '_> {
+    /// The next best check, of the procedures in `may` if that is given; `begun` says which steps of
+    /// the procedure under way have been run. Checks made already are not asked for again.
+    /// None when nothing would tell enough.
+    pub fn next_check(
+        &self,
+        done: &BTreeSet<CheckName>,
+        under_way: Option<&str>,
+        may: Option<&BTreeSet<String>>,
+    ) -> Option<NextCheck> {
+        let classes = self.classes();
+        let dictionary = self.model.dictionary;
+        let settings = self.model.settings;
+        let mut best: Option<(f64, NextCheck)> = None;
+        let mut procedure = "";
+        let (mut cost_s, mut told) = (0.0, 0.0);
+        for (place, check) in dictionary.checks.iter().enumerate() {
+            if check.procedure != procedure {
+                procedure = &check.procedure;
+                told = 0.0;
+                cost_s = if under_way == Some(procedure) {
+                    0.0
+                } else {
+                    settings.bring_up_s
+                };
+            }
+            if may.is_some_and(|may| !may.contains(procedure)) {
+                continue;
+            }
+            let again = done.contains(check);
+            if under_way == Some(procedure) && again {
+                continue;
+            }
+            cost_s += dictionary
+                .healthy
+                .cells
+                .get(&place)
+                .map_or(0.0, |cell| cell.time_s);
+            if again {
+                continue;
+            }
+            let gain_bits = self.gain_bits(place, &classes);
+            if gain_bits > told {
+                told = gain_bits;
+            }
+            if gain_bits < settings.least_gain_bits {
+                continue;
+            }
+            let worth = gain_bits / cost_s.max(0.1);
+            if best.as_ref().is_none_or(|(most, _)| worth > *most) {
+                let check = check.clone();
+                best = Some((
+                    worth,
+                    NextCheck {
+                        check,
+                        gain_bits,
+                        cost_s,
+                    },
+                ));
+            }
+        }
+        best.map(|(_, next)| next)
+    }
+
+    fn classes(&self) -> Classes {
+        let mut names: BTreeMap<Option<&str>, usize> = BTreeMap::new();
+        let mut of_hypothesis = Vec::new();
+        let probabilities = self.probabilities();
+        for (i, hypothesis) in self.model.hypotheses.iter().enumerate() {
+            // No fault and the unknown one stand first and are classes of their own.
+            let class = match self.model.lru(*hypothesis) {
+                None => i,
+                lru => {
+                    let next = names.len() + 2;
+                    *names.entry(lru).or_insert(next)
+                }
+            };
+            of_hypothesis.push(class);
+        }
+        Classes {
+            of_hypothesis,
+            count: names.len() + 2,
+            probabilities,
+        }
+    }
+
+    /// Mutual information of the class and what the check at `place` shows, bits.
+    fn gain_bits(&self, place: usize, classes: &Classes) -> f64 {
+        let model = self.model;
+        if model
+            .hypotheses
+            .iter()
+            .all(|h| model.is_like_healthy(*h, place) || classes.is_unknown(*h))
+        {
+            return 0.0;
+        }
+        let mut joint: BTreeMap<Signature, Vec<f64>> = BTreeMap::new();
+        for (i, hypothesis) in model.hypotheses.iter().enumerate() {
+            let p = classes.probabilities[i];
+            if p < 1e-9 {
+                continue;
+            }
+            let expected = model.expected(*hypothesis, place);
+            let runs = f64::from(expected.cell.runs());
+            if runs == 0.0 {
+                continue;
+            }
+            for (signature, count) in &expected.cell.signatures {
+                let share = f64::from(*count) / runs;
+                let row = joint
+                    .entry(signature.clone())
+                    .or_insert_with(|| vec![0.0; classes.count]);
+                row[classes.of_hypothesis[i]] += p * share;
+            }
+        }
+        information_bits(&joint.into_values().collect::<Vec<_>>())
+    }
+}
+
+impl Classes {
+    fn is_unknown(&self, hypothesis: super::model::Hypothesis) -> bool {
+        hypothesis == super::model::Hypothesis::Unknown
+    }
+}
+
+/// Mutual information of rows and columns of a table of joint probabilities, bits.
+fn information_bits(joint: &[Vec<f64>]) -> f64 {
+    let all: f64 = joint.iter().flatten().sum();
+    if all <= 0.0 {
+        return 0.0;
+    }
+    let columns = joint.first().map_or(0, Vec::len);
+    let of_column: Vec<f64> = (0..columns)
+        .map(|c| joint.iter().map(|row| row[c]).sum())
+        .collect();
+    let mut bits = 0.0;
+    for row in joint {
+        let of_row: f64 = row.iter().sum();
+        for (p, of_column) in row.iter().zip(&of_column) {
+            if *p > 0.0 {
+                bits += p / all * (p * all / (of_row * of_column)).log2();
+            }
+        }
+    }
+    bits.max(0.0)
+}

@@ -1,0 +1,116 @@
+//! What was seen: steps with what they measured and the signs that showed in them.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+/// How a step came out, as far as it says something. A step that was skipped or aborted is not seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Result {
+    /// Every expectation held.
+    Passed,
+    /// An expectation did not hold.
+    Failed,
+    /// It could not be tested.
+    Error,
+}
+
+impl Result {
+    /// All there are.
+    pub const ALL: [Self; 3] = [Self::Passed, Self::Failed, Self::Error];
+
+    /// The word for it.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// Names a step: its procedure and its name there.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct CheckName {
+    /// Procedure, for instance `atp/overspeed`.
+    pub procedure: String,
+    /// Step.
+    pub step: String,
+}
+
+impl std::fmt::Display for CheckName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.procedure, self.step)
+    }
+}
+
+/// Something the unit or the train said by itself: a fault's name and the part it points at.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Sign {
+    /// Name of the fault.
+    pub fault: String,
+    /// Part it points at; may be `unknown`.
+    pub lru: String,
+}
+
+impl From<Sign> for String {
+    fn from(sign: Sign) -> Self {
+        format!("{}/{}", sign.fault, sign.lru)
+    }
+}
+
+impl TryFrom<String> for Sign {
+    type Error = String;
+
+    fn try_from(text: String) -> std::result::Result<Self, String> {
+        let parts = text.split_once('/');
+        let (fault, lru) =
+            parts.ok_or_else(|| format!("\"{text}\" is no sign: write fault/part"))?;
+        Ok(Self {
+            fault: fault.to_owned(),
+            lru: lru.to_owned(),
+        })
+    }
+}
+
+/// A step that was run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepSeen {
+    /// Which.
+    pub check: CheckName,
+    /// How it came out.
+    pub result: Result,
+    /// Bench time it took, s.
+    pub time_s: f64,
+    /// What it measured by name; none where nothing could be measured.
+    pub values: Vec<(String, Option<f64>)>,
+    /// What showed while it ran, or while its procedure was brought up.
+    pub signs: BTreeSet<Sign>,
+}
+
+/// Everything that was seen, in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Observation {
+    /// Steps, in the order they were run.
+    pub steps: Vec<StepSeen>,
+    /// Signs that belong to no step: out of a unit's own log.
+    pub signs: BTreeSet<Sign>,
+}
+
+impl Observation {
+    /// Nothing was seen.
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty() && self.signs.is_empty()
+    }
+
+    /// A step failed or could not be tested, or a sign showed.
+    pub fn shows_a_fault(&self) -> bool {
+        !self.signs.is_empty()
+            || self
+                .steps
+                .iter()
+                .any(|step| step.result != Result::Passed || !step.signs.is_empty())
+    }
+}

@@ -1,0 +1,133 @@
+//! Why: the steps that speak for a fault mode, and those that speak against it.
+
+use super::belief::Belief;
+use super::model::{Hypothesis, Model};
+use super::observation::{Observation, Result, StepSeen};
+
+/// At most so many reasons each way.
+const MOST: usize = 6;
+/// A step speaks for something when it is e times likelier under it.
+const SPEAKS_AT: f64 = 1.0;
+/// Rivals a mode is held against.
+const RIVALS: usize = 5;
+
+/// What speaks for a mode, and what against, the strongest first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reasons {
+    /// For it: likelier than on a healthy unit.
+    pub for_it: Vec<String>,
+    /// Against it: likelier on a healthy unit, or under another part's fault.
+    pub against: Vec<String>,
+}
+
+/// The reasons for and against a mode.
+pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observation) -> Reasons {
+    let model = belief.model;
+    let rivals = rivals(belief, hypothesis);
+    let mut for_it = Vec::new();
+    let mut against = Vec::new();
+    for step in &seen.steps {
+        let Some(place) = model.dictionary.place(&step.check) else {
+            continue;
+        };
+        let own = model.ln_likelihood(hypothesis, place, step);
+        let healthy = model.ln_likelihood(Hypothesis::NoFault, place, step);
+        let rival = rivals.iter().map(|r| model.ln_likelihood(*r, place, step));
+        let best_rival = rival.fold(healthy, f64::max);
+        if own - healthy > SPEAKS_AT {
+            for_it.push((own - healthy, text(model, hypothesis, place, step)));
+        } else if best_rival - own > SPEAKS_AT {
+            against.push((best_rival - own, text(model, hypothesis, place, step)));
+        }
+    }
+    let strongest = |mut all: Vec<(f64, String)>| {
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let all = all.into_iter().map(|(_, text)| text);
+        all.take(MOST).collect()
+    };
+    let mut reasons = Reasons {
+        for_it: strongest(for_it),
+        against: strongest(against),
+    };
+    for sign in &seen.signs {
+        let alone = std::collections::BTreeSet::from([sign.clone()]);
+        let gain = model.ln_log(hypothesis, &alone) - model.ln_log(Hypothesis::NoFault, &alone);
+        let text = format!("the unit's log: {} names {}", sign.fault, sign.lru);
+        if gain > SPEAKS_AT {
+            reasons.for_it.push(text);
+        } else if gain < -SPEAKS_AT {
+            reasons.against.push(text);
+        }
+    }
+    reasons
+}
+
+/// The likeliest hypotheses that blame another part.
+fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<Hypothesis> {
+    let model = belief.model;
+    let own = model.lru(hypothesis);
+    let all = model.hypotheses.iter().copied().zip(belief.probabilities());
+    let mut rivals: Vec<_> = all
+        .filter(|(h, _)| model.lru(*h).is_some_and(|lru| Some(lru) != own))
+        .collect();
+    rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
+    rivals.truncate(RIVALS);
+    rivals.into_iter().map(|(h, _)| h).collect()
+}
+
+/// A step, how it came out, and how it comes out under the mode and on a healthy unit.
+fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen) -> String {
+    let own = model.expected(hypothesis, place);
+    let healthy = model.expected(Hypothesis::NoFault, place);
+    let share = |expected: super::likelihood::Expected<'_>| {
+        let runs = expected.cell.runs().max(1);
+        format!(
+            "{:.0} %",
+            100.0 * f64::from(expected.cell.count(step.result)) / f64::from(runs)
+        )
+    };
+    let mut text = format!(
+        "{} {} (under this fault {}, healthy {})",
+        step.check,
+        step.result.label(),
+        share(own),
+        share(healthy)
+    );
+    for sign in &step.signs {
+        text += &format!(", {} names {}", sign.fault, sign.lru);
+    }
+    for (name, value) in &step.values {
+        let (Some(of_own), Some(of_healthy)) =
+            (own.cell.values.get(name), healthy.cell.values.get(name))
+        else {
+            continue;
+        };
+        let range = |v: &super::cell::Values| match v.n {
+            0 => "none".to_owned(),
+            _ => format!("{} to {}", rounded(v.low), rounded(v.high)),
+        };
+        let differs = range(of_own) != range(of_healthy);
+        if differs || (step.result != Result::Passed && value.is_none()) {
+            let value = value.map_or_else(|| "none".to_owned(), rounded);
+            text += &format!(
+                "; {name} = {value} (under this fault {}, healthy {})",
+                range(of_own),
+                range(of_healthy)
+            );
+        }
+    }
+    text
+}
+
+/// Four figures are enough for a person.
+fn rounded(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 6);
+    let text = format!("{value:.*}", digits as usize);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}

@@ -1,0 +1,338 @@
+//! The answer: ranked parts and modes, reasons, the next best check, and a conclusion that says
+//! "cannot tell" where the evidence does not.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::belief::Belief;
+use super::model::{Hypothesis, Model};
+use super::next_check::NextCheck;
+use super::observation::Observation;
+use super::pairs::{Pair, pairs};
+use super::reasons::reasons;
+
+/// Candidates less likely than this are not shown, beyond the first.
+const LEAST_SHOWN: f64 = 0.005;
+/// Candidates shown at most.
+const MOST_SHOWN: usize = 10;
+
+/// A fault mode that may be the one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Part to replace.
+    pub lru: String,
+    /// Fault mode.
+    pub fault: String,
+    /// What is wrong, for people.
+    pub text: String,
+    /// Probability of the mode, alone or beside another.
+    pub probability: f64,
+    /// Steps that speak for it.
+    #[serde(rename = "for")]
+    pub for_it: Vec<String>,
+    /// Steps that speak against it.
+    pub against: Vec<String>,
+}
+
+/// A part and its probability.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartProbability {
+    /// The part.
+    pub lru: String,
+    /// Probability that it has failed.
+    pub probability: f64,
+}
+
+/// Two fault modes at once.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TwoFaults {
+    /// Their names.
+    pub faults: [String; 2],
+    /// Probability of both.
+    pub probability: f64,
+}
+
+/// What diagnosis comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Finding {
+    /// One part is found.
+    Found,
+    /// Two parts are found.
+    TwoFound,
+    /// Nothing is wrong.
+    NoFault,
+    /// One of several parts, and it cannot be told which.
+    CannotTell,
+    /// Something is wrong that no fault mode of the dictionary explains.
+    UnknownFault,
+    /// What was run shows nothing wrong, and was not enough to say that nothing is.
+    NotEnough,
+}
+
+/// A diagnosis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// Modes, those of the likeliest part first.
+    pub candidates: Vec<Candidate>,
+    /// The check to make next; none when the question is settled or nothing would tell.
+    pub next_check: Option<NextCheck>,
+    /// In words.
+    pub conclusion: String,
+    /// In a word.
+    pub finding: Finding,
+    /// Parts, the likeliest first.
+    pub lrus: Vec<PartProbability>,
+    /// Two faults at once, the likeliest first.
+    pub two_faults: Vec<TwoFaults>,
+    /// Probability that nothing is wrong.
+    pub no_fault: f64,
+    /// Probability of a fault that stands in no dictionary.
+    pub unknown_fault: f64,
+}
+
+impl Diagnosis {
+    /// What `seen` comes to.
+    pub fn of(model: &Model<'_>, seen: &Observation) -> Self {
+        let belief = Belief::after(model, seen);
+        let (pairs, single) = if seen.shows_a_fault() {
+            pairs(&belief, seen)
+        } else {
+            (Vec::new(), 1.0)
+        };
+        let weights = Weights::new(&belief, &pairs, single);
+        let candidates = weights.candidates(&belief, seen);
+        let next_check = weights.next_check(&belief, seen);
+        let (finding, conclusion) = weights.conclusion(model, seen, &pairs, next_check.as_ref());
+        let fault = |hypothesis: Hypothesis| match hypothesis {
+            Hypothesis::Mode { mode, .. } => model.dictionary.modes[mode].name.id.clone(),
+            _ => String::new(),
+        };
+        let shown = pairs.iter().filter(|pair| pair.probability >= LEAST_SHOWN);
+        Self {
+            candidates,
+            next_check,
+            conclusion,
+            finding,
+            two_faults: shown
+                .map(|pair| TwoFaults {
+                    faults: pair.both.map(fault),
+                    probability: pair.probability,
+                })
+                .collect(),
+            no_fault: weights.no_fault,
+            unknown_fault: weights.unknown,
+            lrus: weights.lrus,
+        }
+    }
+
+    /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
+    pub fn credible_parts(&self, sure: f64) -> Vec<&str> {
+        let mut sum = 0.0;
+        let mut parts = Vec::new();
+        for part in &self.lrus {
+            if sum >= sure {
+                break;
+            }
+            sum += part.probability;
+            parts.push(part.lru.as_str());
+        }
+        parts
+    }
+}
+
+/// Probabilities with pairs taken in.
+struct Weights {
+    lrus: Vec<PartProbability>,
+    /// By the mode's place.
+    modes: Vec<f64>,
+    /// Likeliest variety of each mode.
+    varieties: Vec<usize>,
+    no_fault: f64,
+    unknown: f64,
+}
+
+impl Weights {
+    fn new(belief: &Belief<'_, '_>, pairs: &[Pair], single: f64) -> Self {
+        let model = belief.model;
+        let count = model.dictionary.modes.len();
+        let mut modes = vec![0.0; count];
+        let mut varieties = vec![(0, 0.0); count];
+        let mut parts: BTreeMap<&str, f64> = BTreeMap::new();
+        let (mut no_fault, mut unknown) = (0.0, 0.0);
+        for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
+            let p = p * single;
+            match *hypothesis {
+                Hypothesis::NoFault => no_fault = p,
+                Hypothesis::Unknown => unknown = p,
+                Hypothesis::Mode { mode, column } => {
+                    modes[mode] += p;
+                    if p >= varieties[mode].1 {
+                        varieties[mode] = (column, p);
+                    }
+                    *parts
+                        .entry(&model.dictionary.modes[mode].name.lru)
+                        .or_default() += p;
+                }
+            }
+        }
+        for pair in pairs {
+            for hypothesis in pair.both {
+                if let Hypothesis::Mode { mode, column } = hypothesis {
+                    modes[mode] += pair.probability;
+                    if pair.probability > varieties[mode].1 {
+                        varieties[mode] = (column, pair.probability);
+                    }
+                    *parts
+                        .entry(&model.dictionary.modes[mode].name.lru)
+                        .or_default() += pair.probability;
+                }
+            }
+        }
+        let mut lrus: Vec<_> = parts
+            .into_iter()
+            .map(|(lru, probability)| PartProbability {
+                lru: lru.to_owned(),
+                probability: probability.min(1.0),
+            })
+            .collect();
+        lrus.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        Self {
+            lrus,
+            modes,
+            varieties: varieties.into_iter().map(|(column, _)| column).collect(),
+            no_fault,
+            unknown,
+        }
+    }
+
+    fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
+        let names = &belief.model.dictionary.modes;
+        let rank = |lru: &str| self.lrus.iter().position(|part| part.lru == lru);
+        let mut places: Vec<usize> = (0..names.len()).collect();
+        places.sort_by(|a, b| {
+            let key = |i: usize| rank(&names[i].name.lru);
+            key(*a)
+                .cmp(&key(*b))
+                .then(self.modes[*b].total_cmp(&self.modes[*a]))
+        });
+        let likely =
+            |(shown, place): &(usize, usize)| *shown == 0 || self.modes[*place] >= LEAST_SHOWN;
+        let places = places
+            .into_iter()
+            .enumerate()
+            .filter(likely)
+            .take(MOST_SHOWN);
+        places
+            .map(|(_, mode)| {
+                let column = self.varieties[mode];
+                let why = reasons(belief, Hypothesis::Mode { mode, column }, seen);
+                let name = &names[mode].name;
+                Candidate {
+                    lru: name.lru.clone(),
+                    fault: name.id.clone(),
+                    text: name.text.clone(),
+                    probability: self.modes[mode].min(1.0),
+                    for_it: why.for_it,
+                    against: why.against,
+                }
+            })
+            .collect()
+    }
+
+    fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
+        let settings = belief.model.settings;
+        let found = self
+            .lrus
+            .first()
+            .is_some_and(|part| part.probability >= settings.found_at);
+        if found || self.no_fault >= settings.healthy_at {
+            return None;
+        }
+        let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
+        belief.next_check(&done, None, None)
+    }
+
+    fn conclusion(
+        &self,
+        model: &Model<'_>,
+        seen: &Observation,
+        pairs: &[Pair],
+        next: Option<&NextCheck>,
+    ) -> (Finding, String) {
+        let settings = model.settings;
+        let percent = |p: f64| format!("{:.1} %", 100.0 * p);
+        let then = next.map_or_else(
+            || "nothing in this suite would tell more".to_owned(),
+            |next| {
+                format!(
+                    "next, run {} ({:.2} bits in {:.0} s)",
+                    next.check, next.gain_bits, next.cost_s
+                )
+            },
+        );
+        let found: Vec<_> = self
+            .lrus
+            .iter()
+            .filter(|part| part.probability >= settings.found_at)
+            .collect();
+        let two = pairs.first().is_some_and(|pair| pair.probability >= 0.5);
+        match found[..] {
+            [one] if !two => {
+                return (
+                    Finding::Found,
+                    format!("replace {} ({})", one.lru, percent(one.probability)),
+                );
+            }
+            [first, second, ..] => {
+                return (
+                    Finding::TwoFound,
+                    format!(
+                        "two faults: replace {} ({}) and {} ({})",
+                        first.lru,
+                        percent(first.probability),
+                        second.lru,
+                        percent(second.probability)
+                    ),
+                );
+            }
+            _ => {}
+        }
+        if self.no_fault >= settings.healthy_at {
+            return (
+                Finding::NoFault,
+                format!("no fault found ({})", percent(self.no_fault)),
+            );
+        }
+        if !seen.shows_a_fault() {
+            let checks = seen.steps.len();
+            let all = model.dictionary.checks.len();
+            return (
+                Finding::NotEnough,
+                format!(
+                    "{checks} of {all} checks were made and show nothing wrong; cannot tell more; {then}"
+                ),
+            );
+        }
+        if self.unknown >= 0.5 {
+            return (
+                Finding::UnknownFault,
+                format!(
+                    "cannot tell: no fault mode of the dictionary explains this ({}); {then}",
+                    percent(self.unknown)
+                ),
+            );
+        }
+        let likely: Vec<_> = self
+            .lrus
+            .iter()
+            .filter(|part| part.probability >= 0.05)
+            .map(|part| format!("{} ({})", part.lru, percent(part.probability)))
+            .collect();
+        (
+            Finding::CannotTell,
+            format!("cannot tell yet which: {}; {then}", likely.join(" or ")),
+        )
+    }
+}
