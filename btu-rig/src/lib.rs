@@ -2,6 +2,7 @@
 //!
 //! * [`conditions`]: how train and track differ from what the unit is told;
 //! * [`stimulus`]: what a procedure may do to the unit, as typed values;
+//! * [`tape`]: what was done and when, to do it again;
 //! * [`lever`]: positions of the master controller;
 //! * [`tcms`]: train control and monitoring system, from cabs and unit to each car's demands;
 //! * [`train`]: the train models;
@@ -19,5 +20,7 @@ pub mod lever;
 pub mod procedure;
 pub mod rig;
 pub mod stimulus;
+mod stored;
+pub mod tape;
 pub mod tcms;
 pub mod train;

@@ -2,14 +2,17 @@
 
 use protocol::Speed;
 use protocol::message::{DoorSide, ModeSwitch, RunningMode};
+use serde::{Deserialize, Serialize};
 
 use crate::lever::Lever;
+use crate::stored::{door_side, mode_switch, mps, running_mode};
 
 /// Steepest gradient that can be added to the track's, ‰.
 pub const MAX_GRADIENT_PERMILLE: f64 = 100.0;
 
 /// Condition of one tachometer channel's generator.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TachoCondition {
     /// As it should be.
     Good,
@@ -28,7 +31,8 @@ pub enum TachoCondition {
 }
 
 /// Condition of the TWC wayside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum WaysideCondition {
     /// Sends nothing.
     Silent,
@@ -39,7 +43,8 @@ pub enum WaysideCondition {
 }
 
 /// Condition of the TCMS link.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TcmsCondition {
     /// Answers every cycle.
     Good,
@@ -50,7 +55,8 @@ pub enum TcmsCondition {
 }
 
 /// A switch, contact or valve of the train that is on or off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TrainSwitch {
     /// Head control relay of the other cab.
     OtherCab,
@@ -96,7 +102,8 @@ impl TrainSwitch {
 }
 
 /// Equipment of a car that can be cut out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum CutOut {
     /// Its brake.
     Brake,
@@ -105,7 +112,8 @@ pub enum CutOut {
 }
 
 /// Station data for the wayside or the TWC TEST module.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub struct StationData {
     /// Route number.
     pub route: u16,
@@ -120,8 +128,10 @@ pub struct StationData {
     /// Fixed speed, km/h; `None` = no order.
     pub fixed_speed_kmh: Option<u8>,
     /// Running mode.
+    #[serde(with = "running_mode")]
     pub running_mode: RunningMode,
     /// Door side.
+    #[serde(with = "door_side")]
     pub door_side: DoorSide,
     /// Departure given.
     pub departure: bool,
@@ -130,7 +140,8 @@ pub struct StationData {
 }
 
 /// One thing done to the unit, through the bench harness or, for `Ptu…`, through the TEST board.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Stimulus {
     /// Signal in the ATP antenna; rate 0 = unmodulated.
     Code {
@@ -159,6 +170,7 @@ pub enum Stimulus {
     /// Tachometer generators go to a speed at this acceleration.
     Speed {
         /// Speed to reach.
+        #[serde(rename = "to_mps", with = "mps")]
         to: Speed,
         /// Size of the acceleration, m/s².
         accel_mps2: f64,
@@ -168,6 +180,7 @@ pub enum Stimulus {
         /// Distance, m.
         distance_m: f64,
         /// Speed on the way.
+        #[serde(rename = "speed_mps", with = "mps")]
         speed: Speed,
         /// Size of the acceleration, m/s².
         accel_mps2: f64,
@@ -231,7 +244,7 @@ pub enum Stimulus {
         on: bool,
     },
     /// Mode switch.
-    ModeSwitch(ModeSwitch),
+    ModeSwitch(#[serde(with = "mode_switch")] ModeSwitch),
     /// Master controller.
     Controller {
         /// Its position.
@@ -314,6 +327,7 @@ pub enum Stimulus {
         /// Turning backward.
         backward: bool,
         /// Speed.
+        #[serde(rename = "to_mps", with = "mps")]
         to: Speed,
         /// Size of the acceleration, m/s²; 0 = at once.
         accel_mps2: f64,

@@ -21,6 +21,7 @@ mod insert;
 mod lookup;
 mod query;
 mod record;
+mod recording;
 mod run_writer;
 mod schema;
 mod store;
@@ -40,6 +41,7 @@ pub use record::{
     FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,
     StepRecord, UnitRecord, Verdict,
 };
+pub use recording::{Recording, RecordingRecord};
 pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use store::{OpenOptions, Store, Synchronous};

@@ -25,9 +25,9 @@ const MAX_WAITING_STEPS: usize = 16_384;
 /// Dropping it writes the waiting steps if it can; without [`finish`](Self::finish) the run then
 /// counts as interrupted.
 pub struct RunWriter<'a> {
-    store: &'a Store,
+    pub(crate) store: &'a Store,
     id: Id,
-    run: i64,
+    pub(crate) run: i64,
     unit: i64,
     waiting: Vec<StepRecord>,
     last_index: Option<u32>,
@@ -174,7 +174,7 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    fn check_unfinished(&self) -> Result<(), StoreError> {
+    pub(crate) fn check_unfinished(&self) -> Result<(), StoreError> {
         if self.finished {
             Err(StoreError::RunFinished { run: self.id })
         } else {

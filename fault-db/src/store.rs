@@ -81,7 +81,8 @@ impl std::fmt::Debug for Store {
 }
 
 impl Store {
-    /// Opens a file for writing; creates it, or brings its schema up to date, if need be.
+    /// Opens a file for writing; creates it, or brings its schema up to date, if need be. A file of
+    /// an earlier schema is copied first, to `FILE.schemaN` beside it.
     pub fn open(path: &Path, options: OpenOptions) -> Result<Self, StoreError> {
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
             | OpenFlags::SQLITE_OPEN_CREATE
@@ -104,6 +105,9 @@ impl Store {
             return Err(StoreError::ReadOnly {
                 path: path.to_path_buf(),
             });
+        }
+        if (1..SCHEMA_VERSION).contains(&version) {
+            keep_copy(&conn, path, version)?;
         }
         set_up(&mut conn, version, &options).map_err(failed)?;
         Self::wrap(conn, path, Some(options.ids))
@@ -232,6 +236,9 @@ impl Store {
     }
 }
 
+/// Copies of files of an earlier schema that may lie beside a file.
+const MAX_COPIES: u32 = 9;
+
 /// More than the crate has statements that repeat.
 const STATEMENT_CACHE: usize = 64;
 
@@ -320,6 +327,35 @@ fn set_up(
         conn.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
     }
     Ok(())
+}
+
+/// Copies a file of an earlier schema before it is brought up to date. A copy that is there already
+/// is left alone: it may be the better one.
+fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<(), StoreError> {
+    let mut copies = (1..=MAX_COPIES).map(|number| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(format!(".schema{version}"));
+        if number > 1 {
+            name.push(format!(".{number}"));
+        }
+        PathBuf::from(name)
+    });
+    let Some(copy) = copies.find(|copy| !copy.exists()) else {
+        let mut first = path.as_os_str().to_owned();
+        first.push(format!(".schema{version}"));
+        return Err(StoreError::TargetExists { path: first.into() });
+    };
+    let name = copy.to_str().ok_or_else(|| StoreError::CannotOpen {
+        path: copy.clone(),
+        reason: "the name is not UTF-8".to_owned(),
+    })?;
+    conn.execute("VACUUM INTO ?1", [name])
+        .map(drop)
+        .map_err(|error| {
+            // A copy cut short is worse than none.
+            let _ = std::fs::remove_file(&copy);
+            StoreError::from_sqlite(&copy, "keeping a copy of the older schema", error)
+        })
 }
 
 /// Turns write-ahead logging on. SQLite does not wait for others while it changes a new file over;

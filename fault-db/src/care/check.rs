@@ -13,6 +13,8 @@ use crate::store::Store;
 pub struct CheckReport {
     /// Traces whose checksum and samples were read.
     pub traces: u32,
+    /// Recordings that were unpacked and read.
+    pub recordings: u32,
     /// What is wrong; empty is good.
     pub problems: Vec<Problem>,
 }
@@ -20,7 +22,7 @@ pub struct CheckReport {
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// integrity, foreign_key, trace or count.
+    /// integrity, foreign_key, trace, recording or count.
     pub kind: &'static str,
     /// Which, and how.
     pub detail: String,
@@ -30,7 +32,8 @@ pub struct Problem {
 const MAX_FINDINGS: u32 = 100;
 
 impl Store {
-    /// Looks for damage: SQLite's own check, foreign keys, every trace, the faults' counts.
+    /// Looks for damage: SQLite's own check, foreign keys, every trace and recording, the faults'
+    /// counts.
     pub fn check(&self) -> Result<CheckReport, StoreError> {
         let mut problems = Vec::new();
         let failed = |error| self.failed("checking", error);
@@ -76,7 +79,16 @@ impl Store {
                 }),
             }
         }
-        Ok(CheckReport { traces, problems })
+        let (recordings, wrong) = self.check_recordings().map_err(failed)?;
+        problems.extend(wrong.into_iter().map(|detail| Problem {
+            kind: "recording",
+            detail,
+        }));
+        Ok(CheckReport {
+            traces,
+            recordings,
+            problems,
+        })
     }
 
     /// Copies the file as it stands now, compacted, while others may write to it.

@@ -30,6 +30,8 @@ pub struct MergeCounts {
     pub events: usize,
     /// Traces not known before.
     pub traces: usize,
+    /// Recordings not known before.
+    pub recordings: usize,
 }
 
 /// From a row's number in the other file to its number in this one.
@@ -91,6 +93,7 @@ impl Merge<'_> {
         self.counts.steps = self.children(&runs, &STEPS)?;
         self.counts.measurements = self.children(&runs, &MEASUREMENTS)?;
         self.children(&runs, &SCRIPTS)?;
+        self.counts.recordings = self.children(&runs, &RECORDINGS)?;
         let channel_sets = self.channel_sets()?;
         let traces = self.traces(&runs, &channel_sets)?;
         let faults = self.faults(&units)?;
@@ -191,19 +194,25 @@ impl Merge<'_> {
         let mut numbers = Numbers::new();
         let mut select = self.theirs.prepare(
             "SELECT seq, id, run, t0_bench_us, t0_us, period_us, row_count, trigger_row, flags,
-                channel_set, encoding, sha256, data FROM trace",
+                channel_set, encoding, sha256, data, recording FROM trace",
         )?;
         let mut rows = select.query([])?;
         while let Some(row) = rows.next()? {
-            let mut trace = values(row, 1..13)?;
+            let mut trace = values(row, 1..14)?;
             trace[1] = renumber(runs, row.get(2)?);
             trace[8] = renumber(channel_sets, row.get(9)?);
             let known = "SELECT seq FROM trace WHERE id = ?1";
             let insert = "INSERT INTO trace(id, run, t0_bench_us, t0_us, period_us, row_count,
-                    trigger_row, flags, channel_set, encoding, sha256, data)
-                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)";
+                    trigger_row, flags, channel_set, encoding, sha256, data, recording)
+                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)";
             let (seq, is_new) = self.find_or_insert(known, insert, &trace)?;
             self.counts.traces += usize::from(is_new);
+            // It may have been copied earlier while its procedure was still under way.
+            self.ours
+                .prepare_cached(
+                    "UPDATE trace SET recording = ?2 WHERE seq = ?1 AND recording IS NULL",
+                )?
+                .execute(params![seq, trace[12]])?;
             numbers.insert(row.get(0)?, seq);
         }
         Ok(numbers)
@@ -328,6 +337,11 @@ const MEASUREMENTS: Child = Child {
 const SCRIPTS: Child = Child {
     table: "run_script",
     columns: "path, sha256",
+};
+
+const RECORDINGS: Child = Child {
+    table: "recording",
+    columns: "ordinal, procedure, t0_bench_us, bench_json, stimuli",
 };
 
 /// Counts and times follow from the occurrences, the state from the latest event that set one.

@@ -1,4 +1,4 @@
-//! Room again: old traces go; runs, verdicts and faults stay for ever.
+//! Room again: old traces go, and the recordings behind them; runs, verdicts and faults stay for ever.
 
 use rusqlite::params;
 use serde::Serialize;
@@ -20,6 +20,8 @@ pub struct PruneRule {
 pub struct PruneCounts {
     /// Traces deleted.
     pub traces: u32,
+    /// Recordings deleted with the last trace cut from them.
+    pub recordings: u32,
     /// Bytes of samples in them.
     pub trace_bytes: u64,
     /// Traces old enough, but kept for a fault that is not closed.
@@ -46,10 +48,19 @@ impl Store {
             "SELECT ifnull(sum(go), 0), ifnull(sum(go * size), 0), ifnull(sum(NOT go), 0)
              FROM (SELECT {MAY_GO} AS go, length(t.data) AS size FROM trace t WHERE t.t0_us < ?1)"
         );
+        // A recording goes with its last trace.
+        let recordings = format!(
+            "FROM recording AS r WHERE NOT EXISTS (SELECT 1 FROM trace t WHERE t.run = r.run
+                AND t.recording = r.ordinal AND NOT (t.t0_us < ?1 AND {MAY_GO}))"
+        );
         let counted = |conn: &rusqlite::Connection| {
-            conn.query_row(&count, [rule.older_than_us], |row| {
+            let older_than = [rule.older_than_us];
+            let count_recordings = format!("SELECT count(*) {recordings}");
+            let recordings = conn.query_row(&count_recordings, older_than, |row| row.get(0))?;
+            conn.query_row(&count, older_than, |row| {
                 Ok(PruneCounts {
                     traces: row.get(0)?,
+                    recordings,
                     trace_bytes: row.get(1)?,
                     kept_for_faults: row.get(2)?,
                     freed_bytes: 0,
@@ -62,6 +73,8 @@ impl Store {
         let delete = format!("DELETE FROM trace AS t WHERE t.t0_us < ?1 AND {MAY_GO}");
         let mut counts = self.write(DOING, |conn| {
             let counts = counted(conn).map_err(failed)?;
+            conn.execute(&format!("DELETE {recordings}"), params![rule.older_than_us])
+                .map_err(failed)?;
             conn.execute(&delete, params![rule.older_than_us])
                 .map_err(failed)?;
             Ok(counts)

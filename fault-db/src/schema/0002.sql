@@ -6,11 +6,14 @@ CREATE TABLE recording(
   run INTEGER NOT NULL REFERENCES run(seq),
   ordinal INTEGER NOT NULL,             -- place of the procedure in the run
   procedure TEXT NOT NULL,
-  t0_bench_us INTEGER NOT NULL,         -- bench time of the run at which the procedure's clock is 0
+  t0_bench_us INTEGER NOT NULL,         -- bench time of the run at which the bench's clock was 0
   bench_json TEXT NOT NULL,             -- what the bench was made of
-  stimuli BLOB NOT NULL,                -- zstd of a json list, each with its time on the procedure's clock
+  stimuli BLOB NOT NULL,                -- zstd of json: what was done, each with its time on the bench's clock
   PRIMARY KEY(run, ordinal)
 ) STRICT, WITHOUT ROWID;
+
+-- The recording a trace was cut from, by its ordinal in the same run; NULL: none was kept.
+ALTER TABLE trace ADD COLUMN recording INTEGER;
 
 CREATE TABLE dictionary(
   seq INTEGER PRIMARY KEY,

@@ -1,0 +1,166 @@
+//! Recordings: what was done to the bench in a procedure that found a fault, so that it can be done
+//! again. This crate keeps the two JSON texts and does not look into them.
+
+use std::io::Read;
+
+use rusqlite::{OptionalExtension, params};
+use serde::Serialize;
+
+use crate::error::StoreError;
+use crate::id::Id;
+use crate::run_writer::RunWriter;
+use crate::store::Store;
+
+/// Compression of the stimuli; they are a few kilobytes.
+const ZSTD_LEVEL: i32 = 3;
+/// Stimuli unpack to at most this many bytes.
+const MAX_STIMULI_BYTES: u64 = 64 << 20;
+
+/// A recording as it is handed in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordingRecord {
+    /// Place of the procedure in the run.
+    pub ordinal: u32,
+    /// The procedure.
+    pub procedure: String,
+    /// Bench time of the run at which the bench's clock was 0.
+    pub t0_bench_us: i64,
+    /// What the bench was made of, JSON.
+    pub bench_json: String,
+    /// What was done to it and when, JSON.
+    pub stimuli_json: String,
+}
+
+/// A recording as it is handed out.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Recording {
+    /// The run it belongs to.
+    pub run_id: Id,
+    /// The procedure.
+    pub procedure: String,
+    /// Bench time of the run at which the bench's clock was 0.
+    pub t0_bench_us: i64,
+    /// What the bench was made of, JSON.
+    pub bench_json: String,
+    /// What was done to it and when, JSON.
+    pub stimuli_json: String,
+}
+
+impl RunWriter<'_> {
+    /// Commits the recording of a procedure and hangs traces of this run on it.
+    pub fn recording(&mut self, record: &RecordingRecord, traces: &[Id]) -> Result<(), StoreError> {
+        const DOING: &str = "storing a recording";
+        self.check_unfinished()?;
+        let (store, run) = (self.store, self.run);
+        let stimuli = pack(&record.stimuli_json).map_err(|error| StoreError::Io {
+            path: store.path().to_path_buf(),
+            reason: error.to_string(),
+        })?;
+        store.write(DOING, |conn| {
+            let work = || {
+                conn.prepare_cached(
+                    "INSERT INTO recording(run, ordinal, procedure, t0_bench_us, bench_json, stimuli)
+                     VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                )?
+                .execute(params![
+                    run,
+                    record.ordinal,
+                    record.procedure,
+                    record.t0_bench_us,
+                    record.bench_json,
+                    stimuli
+                ])?;
+                let mut hang = conn
+                    .prepare_cached("UPDATE trace SET recording = ?1 WHERE id = ?2 AND run = ?3")?;
+                for trace in traces {
+                    hang.execute(params![record.ordinal, trace, run])?;
+                }
+                Ok(())
+            };
+            work().map_err(|error| store.failed(DOING, error))
+        })
+    }
+}
+
+impl Store {
+    /// The recording a trace was cut from; `None` for a trace of an earlier version, or one that was
+    /// not recorded by a procedure.
+    pub fn recording(&self, trace: Id) -> Result<Option<Recording>, StoreError> {
+        const SQL: &str = "SELECT u.id, r.procedure, r.t0_bench_us, r.bench_json, r.stimuli
+            FROM trace t JOIN run u ON u.seq = t.run
+            JOIN recording r ON r.run = t.run AND r.ordinal = t.recording WHERE t.id = ?1";
+        let found = self.conn.prepare_cached(SQL).and_then(|mut select| {
+            select
+                .query_row([trace], |row| {
+                    let packed: Vec<u8> = row.get(4)?;
+                    let recording = Recording {
+                        run_id: row.get(0)?,
+                        procedure: row.get(1)?,
+                        t0_bench_us: row.get(2)?,
+                        bench_json: row.get(3)?,
+                        stimuli_json: String::new(),
+                    };
+                    Ok((recording, packed))
+                })
+                .optional()
+        });
+        let found = found.map_err(|error| self.failed("reading a recording", error))?;
+        found
+            .map(|(recording, packed)| match unpack(&packed) {
+                Ok(stimuli_json) => Ok(Recording {
+                    stimuli_json,
+                    ..recording
+                }),
+                Err(detail) => Err(StoreError::Corrupt {
+                    path: self.path().to_path_buf(),
+                    detail: format!("the recording of trace {trace}: {detail}"),
+                }),
+            })
+            .transpose()
+    }
+
+    /// Recordings that cannot be read back, in words, and how many were looked at.
+    pub(crate) fn check_recordings(&self) -> rusqlite::Result<(u32, Vec<String>)> {
+        let mut select = self.conn.prepare(
+            "SELECT 'recording ' || r.ordinal || ' of run ' || hex(u.id), r.bench_json, r.stimuli
+             FROM recording r JOIN run u ON u.seq = r.run ORDER BY r.run, r.ordinal",
+        )?;
+        let mut rows = select.query([])?;
+        let (mut count, mut wrong) = (0, Vec::new());
+        while let Some(row) = rows.next()? {
+            count += 1;
+            let name: String = row.get(0)?;
+            let bench: String = row.get(1)?;
+            let packed: Vec<u8> = row.get(2)?;
+            let json = |text: &str| {
+                let read = serde_json::from_str::<serde::de::IgnoredAny>(text);
+                read.map(drop).map_err(|error| error.to_string())
+            };
+            let found = unpack(&packed)
+                .and_then(|stimuli| json(&stimuli))
+                .and_then(|()| json(&bench));
+            if let Err(detail) = found {
+                wrong.push(format!("{name}: {detail}"));
+            }
+        }
+        Ok((count, wrong))
+    }
+}
+
+/// One frame with a checksum of its content: a damaged one is found when it is unpacked.
+fn pack(json: &str) -> std::io::Result<Vec<u8>> {
+    let mut compressor = zstd::bulk::Compressor::new(ZSTD_LEVEL)?;
+    compressor.include_checksum(true)?;
+    compressor.compress(json.as_bytes())
+}
+
+fn unpack(packed: &[u8]) -> Result<String, String> {
+    let damaged = |error: std::io::Error| format!("the stimuli are damaged: {error}");
+    let mut json = String::new();
+    zstd::stream::read::Decoder::new(packed)
+        .map_err(damaged)?
+        .take(MAX_STIMULI_BYTES)
+        .read_to_string(&mut json)
+        .map_err(damaged)?;
+    Ok(json)
+}
