@@ -1,0 +1,148 @@
+//! The search where every test is certain in what it says: a point is a set of groups.
+
+use std::collections::BTreeMap;
+
+use super::bits::ones;
+use super::problem::Problem;
+use super::search::{Branch, Space};
+
+/// Sets of at most 64 groups, as bits in the order of rising weight.
+pub(super) struct CrispSpace {
+    /// Weights of the groups, rising.
+    weights: Vec<f64>,
+    /// Tests that differ in what they tell apart.
+    columns: Vec<Column>,
+    /// Costs of doing one, two, … of the cheapest tests.
+    cheapest: Vec<f64>,
+}
+
+struct Column {
+    test: usize,
+    cost: f64,
+    /// Groups in which the test fails.
+    fails: u64,
+}
+
+impl CrispSpace {
+    pub(super) fn new(problem: &Problem<'_>) -> Self {
+        let mut order: Vec<usize> = (0..problem.len()).collect();
+        order.sort_by(|a, b| {
+            problem.weights[*a]
+                .total_cmp(&problem.weights[*b])
+                .then(a.cmp(b))
+        });
+        let full = all(order.len());
+        // Tests that split all groups alike differ in cost only, so one of them is enough.
+        let mut columns: BTreeMap<u64, Column> = BTreeMap::new();
+        for (test, &cost) in problem.costs.iter().enumerate() {
+            let mut fails = 0;
+            for (bit, group) in order.iter().enumerate() {
+                if problem.row(*group)[test] == 1.0 {
+                    fails |= 1 << bit;
+                }
+            }
+            let same = fails.min(full & !fails);
+            if same != 0 && columns.get(&same).is_none_or(|known| cost < known.cost) {
+                columns.insert(same, Column { test, cost, fails });
+            }
+        }
+        let mut columns: Vec<_> = columns.into_values().collect();
+        columns.sort_by_key(|column| column.test);
+        let mut costs: Vec<f64> = columns.iter().map(|column| column.cost).collect();
+        costs.sort_by(f64::total_cmp);
+        let sums = costs.iter().scan(0.0, |sum, cost| {
+            *sum += cost;
+            Some(*sum)
+        });
+        Self {
+            weights: order.iter().map(|group| problem.weights[*group]).collect(),
+            cheapest: std::iter::once(0.0).chain(sums).collect(),
+            columns,
+        }
+    }
+
+    /// The set of all groups.
+    pub(super) fn root(&self) -> u64 {
+        all(self.weights.len())
+    }
+
+    fn mass(&self, set: u64) -> f64 {
+        ones(set).map(|bit| self.weights[bit]).sum()
+    }
+
+    /// Weighted length of the Huffman code of a set: tests that any tree does, times probability.
+    fn huffman(&self, set: u64) -> f64 {
+        // Two queues, both rising: leaves, and sums in the order they are made.
+        let mut leaves = [0.0; 64];
+        let mut count = 0;
+        for bit in ones(set) {
+            leaves[count] = self.weights[bit];
+            count += 1;
+        }
+        let mut sums = [0.0; 64];
+        let (mut leaf, mut sum, mut length) = (0, 0, 0.0);
+        for made in 0..count.saturating_sub(1) {
+            let mut least = || match sum < made && (leaf == count || sums[sum] < leaves[leaf]) {
+                true => {
+                    sum += 1;
+                    sums[sum - 1]
+                }
+                false => {
+                    leaf += 1;
+                    leaves[leaf - 1]
+                }
+            };
+            let joined = least() + least();
+            sums[made] = joined;
+            length += joined;
+        }
+        length
+    }
+
+    /// Cost of so many different tests, at least; between whole numbers on the line.
+    fn cost_of(&self, tests: f64) -> f64 {
+        let last = self.cheapest.len() - 1;
+        let whole = (tests as usize).min(last);
+        let low = self.cheapest[whole];
+        match self.cheapest.get(whole + 1) {
+            Some(high) => low + (high - low) * (tests - whole as f64),
+            None => low,
+        }
+    }
+}
+
+impl Space for CrispSpace {
+    type Point = u64;
+
+    fn branches(&self, set: u64) -> Vec<Branch<u64>> {
+        let mass = self.mass(set);
+        self.columns
+            .iter()
+            .filter(|column| set & column.fails != 0 && set & !column.fails != 0)
+            .map(|column| Branch {
+                test: column.test,
+                cost: column.cost * mass,
+                pass: (set & !column.fails, 1.0),
+                fail: (set & column.fails, 1.0),
+            })
+            .collect()
+    }
+
+    fn bound(&self, set: u64) -> f64 {
+        let mass = self.mass(set);
+        if mass <= 0.0 {
+            return 0.0;
+        }
+        // The cost of the first so many of the cheapest tests is convex in their number, so Jensen's
+        // inequality takes the mean number of tests for each state's own. Rounding may not raise it.
+        mass * self.cost_of(self.huffman(set) / mass) * (1.0 - 1e-12)
+    }
+}
+
+/// The first `length` bits.
+fn all(length: usize) -> u64 {
+    match length {
+        64.. => u64::MAX,
+        _ => (1 << length) - 1,
+    }
+}

@@ -1,0 +1,200 @@
+//! A dependency matrix that has been checked.
+
+use std::collections::BTreeSet;
+
+use super::error::MatrixError;
+
+/// What probabilities may miss 1 by, for each state: they come rounded.
+const SUM_TOLERANCE: f64 = 1e-6;
+
+/// Cells at most: 400 MB.
+const MAX_CELLS: usize = 50_000_000;
+
+/// What the system may be in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Its name.
+    pub id: String,
+    /// Probability before any test, 0..1.
+    pub probability: f64,
+}
+
+/// What can be tested.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Test {
+    /// Its name.
+    pub id: String,
+    /// What doing it once costs, above 0, in any unit.
+    pub cost: f64,
+}
+
+/// States, tests, and the probability that each test fails in each state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matrix {
+    states: Vec<State>,
+    tests: Vec<Test>,
+    /// One row of tests for each state.
+    cells: Vec<f64>,
+    crisp: bool,
+}
+
+impl Matrix {
+    /// Checks a matrix; `cells` has a row of all tests for each state.
+    ///
+    /// # Errors
+    /// Empty or doubled names, probabilities or costs out of range, a sum of probabilities that is
+    /// not 1, cells out of range or of a wrong number.
+    pub fn new(states: Vec<State>, tests: Vec<Test>, cells: Vec<f64>) -> Result<Self, MatrixError> {
+        check_size(states.len(), tests.len())?;
+        check_ids("state", states.iter().map(|state| state.id.as_str()))?;
+        check_ids("test", tests.iter().map(|test| test.id.as_str()))?;
+        check_probabilities(&states)?;
+        if let Some(test) = tests
+            .iter()
+            .find(|test| !(test.cost > 0.0 && test.cost.is_finite()))
+        {
+            return Err(MatrixError::Cost {
+                test: test.id.clone(),
+                cost: test.cost,
+            });
+        }
+        if cells.len() != states.len() * tests.len() {
+            return Err(MatrixError::CellCount {
+                found: cells.len(),
+                states: states.len(),
+                tests: tests.len(),
+            });
+        }
+        for (state, row) in states.iter().zip(cells.chunks(tests.len())) {
+            for (test, value) in tests.iter().zip(row) {
+                if !(0.0..=1.0).contains(value) {
+                    return Err(MatrixError::Cell {
+                        test: test.id.clone(),
+                        state: state.id.clone(),
+                        value: *value,
+                    });
+                }
+            }
+        }
+        let crisp = cells.iter().all(|cell| *cell == 0.0 || *cell == 1.0);
+        Ok(Self {
+            states,
+            tests,
+            cells,
+            crisp,
+        })
+    }
+
+    /// Its states, in the order given.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+
+    /// Its tests, in the order given.
+    pub fn tests(&self) -> &[Test] {
+        &self.tests
+    }
+
+    /// Probabilities that each test fails in a state; empty for a state that is not there.
+    pub fn row(&self, state: usize) -> &[f64] {
+        self.cells
+            .chunks(self.tests.len())
+            .nth(state)
+            .unwrap_or(&[])
+    }
+
+    /// Whether every test says the same of a state each time it is done: all cells 0 or 1.
+    pub fn is_crisp(&self) -> bool {
+        self.crisp
+    }
+
+    /// Groups of at least two states that no test of the matrix tells apart.
+    pub fn ambiguity_groups(&self) -> Vec<Vec<usize>> {
+        let mut groups = equal_rows(self, &(0..self.tests.len()).collect::<Vec<_>>(), |_| true);
+        groups.retain(|group| group.len() > 1);
+        groups
+    }
+}
+
+/// States that `keep` lets through, those together whose rows agree in all of `tests`; in the order
+/// of their first states.
+pub(super) fn equal_rows(
+    matrix: &Matrix,
+    tests: &[usize],
+    keep: impl Fn(usize) -> bool,
+) -> Vec<Vec<usize>> {
+    let column = |state: usize| {
+        let row = matrix.row(state);
+        // Zero of either sign is one zero.
+        tests
+            .iter()
+            .map(|test| (row.get(*test).copied().unwrap_or(0.0) + 0.0).to_bits())
+    };
+    let mut order: Vec<usize> = (0..matrix.states.len())
+        .filter(|state| keep(*state))
+        .collect();
+    order.sort_by(|a, b| column(*a).cmp(column(*b)).then(a.cmp(b)));
+    let mut groups: Vec<Vec<usize>> = order
+        .chunk_by(|a, b| column(*a).eq(column(*b)))
+        .map(<[usize]>::to_vec)
+        .collect();
+    groups.sort();
+    groups
+}
+
+/// Refuses what is empty or too large before room is made for it.
+pub(super) fn check_size(states: usize, tests: usize) -> Result<(), MatrixError> {
+    if states == 0 {
+        return Err(MatrixError::NoStates);
+    }
+    if tests == 0 {
+        return Err(MatrixError::NoTests);
+    }
+    if states.saturating_mul(tests) > MAX_CELLS {
+        return Err(MatrixError::TooManyCells {
+            states,
+            tests,
+            limit: MAX_CELLS,
+        });
+    }
+    Ok(())
+}
+
+fn check_ids<'a>(
+    kind: &'static str,
+    ids: impl Iterator<Item = &'a str>,
+) -> Result<(), MatrixError> {
+    let mut seen = BTreeSet::new();
+    for id in ids {
+        if id.is_empty() {
+            return Err(MatrixError::EmptyId { kind });
+        }
+        if !seen.insert(id) {
+            return Err(MatrixError::DuplicateId {
+                kind,
+                id: id.to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check_probabilities(states: &[State]) -> Result<(), MatrixError> {
+    if let Some(state) = states
+        .iter()
+        .find(|state| !(0.0..=1.0).contains(&state.probability))
+    {
+        return Err(MatrixError::Probability {
+            state: state.id.clone(),
+            p: state.probability,
+        });
+    }
+    let sum: f64 = states.iter().map(|state| state.probability).sum();
+    if (sum - 1.0).abs() > SUM_TOLERANCE * states.len() as f64 {
+        return Err(MatrixError::ProbabilitySum {
+            states: states.len(),
+            sum,
+        });
+    }
+    Ok(())
+}

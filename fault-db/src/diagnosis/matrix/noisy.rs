@@ -1,0 +1,239 @@
+//! The search where tests may miss or raise false alarms: a point is what is possible and what was
+//! seen, each test at most once on a way.
+
+use super::bits::{Bits, ones};
+use super::information::{binary_entropy, capacity, entropy};
+use super::problem::{Belief, Problem, USELESS_BITS};
+use super::search::{Branch, Space};
+
+/// What is known at a point. Outcomes that weigh all that is possible alike are left out, so that
+/// ways that come to the same knowledge meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct NoisyPoint {
+    /// Groups that are possible.
+    possible: u64,
+    /// Tests that passed.
+    passed: u64,
+    /// Tests that failed.
+    failed: u64,
+}
+
+/// At most 64 groups and 64 tests.
+pub(super) struct NoisySpace<'a> {
+    problem: &'a Problem<'a>,
+    /// Entropy of each outcome, as the cells lie.
+    noise: Vec<f64>,
+    /// For each test, groups in which it can pass.
+    can_pass: Vec<u64>,
+    /// For each test, groups in which it can fail.
+    can_fail: Vec<u64>,
+    /// For each test and group, groups with an equal cell.
+    same: Vec<u64>,
+    /// For each test and two groups, how alike the outcomes are: 1 if the same, 0 if never.
+    overlap: Vec<f64>,
+}
+
+impl<'a> NoisySpace<'a> {
+    pub(super) fn new(problem: &'a Problem<'a>) -> Self {
+        let (groups, tests) = (problem.len(), problem.tests.len());
+        let mut space = Self {
+            problem,
+            noise: Vec::new(),
+            can_pass: vec![0; tests],
+            can_fail: vec![0; tests],
+            same: vec![0; tests * groups],
+            overlap: vec![0.0; tests * groups * groups],
+        };
+        for group in 0..groups {
+            let row = problem.row(group);
+            space
+                .noise
+                .extend(row.iter().map(|cell| binary_entropy(*cell)));
+            for (test, &cell) in row.iter().enumerate() {
+                space.can_pass[test] |= u64::from(cell < 1.0) << group;
+                space.can_fail[test] |= u64::from(cell > 0.0) << group;
+                for other in 0..groups {
+                    let that = problem.row(other)[test];
+                    space.same[test * groups + group] |= u64::from(cell == that) << other;
+                    space.overlap[(test * groups + group) * groups + other] =
+                        (cell * that).sqrt() + ((1.0 - cell) * (1.0 - that)).sqrt();
+                }
+            }
+        }
+        space
+    }
+
+    /// Nothing seen yet.
+    pub(super) fn root(&self) -> NoisyPoint {
+        let possible = (0..self.problem.len()).fold(0, |set, group| set | 1 << group);
+        NoisyPoint {
+            possible,
+            passed: 0,
+            failed: 0,
+        }
+    }
+
+    /// Probabilities of what is possible, and tests used.
+    fn belief(&self, point: NoisyPoint) -> Belief {
+        let mut members: Vec<(usize, f64)> = ones(point.possible)
+            .map(|group| {
+                let row = self.problem.row(group);
+                let passed: f64 = ones(point.passed).map(|test| 1.0 - row[test]).product();
+                let failed: f64 = ones(point.failed).map(|test| row[test]).product();
+                (group, self.problem.weights[group] * passed * failed)
+            })
+            .collect();
+        let total: f64 = members.iter().map(|(_, weight)| weight).sum();
+        for (_, weight) in &mut members {
+            *weight /= total;
+        }
+        let mut used = Bits::none(self.problem.tests.len());
+        for test in ones(point.passed | point.failed) {
+            used.insert(test);
+        }
+        Belief { members, used }
+    }
+
+    /// Tests that tell something, with the probability that they fail.
+    fn useful(&self, belief: &Belief) -> Vec<(usize, f64)> {
+        if belief.members.len() < 2 || self.problem.is_decided(belief) {
+            return Vec::new();
+        }
+        let tests = self.problem.tests.len();
+        let mut useful = Vec::new();
+        for test in (0..tests).filter(|test| !belief.used.contains(*test)) {
+            let (mut failing, mut noise) = (0.0, 0.0);
+            for &(group, weight) in &belief.members {
+                failing += weight * self.problem.row(group)[test];
+                noise += weight * self.noise[group * tests + test];
+            }
+            if binary_entropy(failing) - noise > USELESS_BITS {
+                useful.push((test, failing));
+            }
+        }
+        useful
+    }
+
+    fn after(&self, point: NoisyPoint, test: usize, failed: bool) -> NoisyPoint {
+        let (possible, outcomes) = match failed {
+            true => (
+                self.can_fail[test],
+                (point.passed, point.failed | 1 << test),
+            ),
+            false => (
+                self.can_pass[test],
+                (point.passed | 1 << test, point.failed),
+            ),
+        };
+        let possible = point.possible & possible;
+        let first = possible.trailing_zeros() as usize;
+        let telling = |set: u64| {
+            ones(set)
+                .filter(|test| {
+                    let same = self.same.get(test * self.problem.len() + first);
+                    possible & !same.copied().unwrap_or(u64::MAX) != 0
+                })
+                .fold(0, |set, test| set | 1 << test)
+        };
+        NoisyPoint {
+            possible,
+            passed: telling(outcomes.0),
+            failed: telling(outcomes.1),
+        }
+    }
+
+    /// Entropy that stays after all unused tests, at most, in bits.
+    ///
+    /// For a state i it is the mean of log2 Σ_j π_j P(y|j) / (π_i P(y|i)); the root of a sum is at
+    /// most the sum of roots, and Jensen's inequality takes the mean inside, where it is the overlap
+    /// of the outcomes in both states.
+    fn residue(&self, belief: &Belief) -> f64 {
+        let groups = self.problem.len();
+        let unused: Vec<usize> = (0..self.problem.tests.len())
+            .filter(|test| !belief.used.contains(*test))
+            .collect();
+        let mut sums = vec![1.0; belief.members.len()];
+        for (i, &(a, weight_a)) in belief.members.iter().enumerate() {
+            for (j, &(b, weight_b)) in belief.members.iter().enumerate().skip(i + 1) {
+                let alike: f64 = unused
+                    .iter()
+                    .map(|test| self.overlap[(test * groups + a) * groups + b])
+                    .product();
+                if alike > 0.0 && weight_a > 0.0 && weight_b > 0.0 {
+                    sums[i] += alike * (weight_b / weight_a).sqrt();
+                    sums[j] += alike * (weight_a / weight_b).sqrt();
+                }
+            }
+        }
+        let bits = belief.members.iter().zip(&sums);
+        bits.map(|((_, weight), sum)| 2.0 * weight * sum.log2())
+            .sum()
+    }
+
+    /// Entropy of which class it is at an end that reached the confidence, at most.
+    fn doubt(&self, groups: usize) -> f64 {
+        let doubt = 1.0 - self.problem.confidence;
+        binary_entropy(doubt) + doubt * (groups.max(2) as f64 - 1.0).log2()
+    }
+}
+
+impl Space for NoisySpace<'_> {
+    type Point = NoisyPoint;
+
+    fn branches(&self, point: NoisyPoint) -> Vec<Branch<NoisyPoint>> {
+        let useful = self.useful(&self.belief(point));
+        let branch = |(test, failing): (usize, f64)| Branch {
+            test,
+            cost: self.problem.costs[test],
+            pass: (self.after(point, test, false), 1.0 - failing),
+            fail: (self.after(point, test, true), failing),
+        };
+        useful.into_iter().map(branch).collect()
+    }
+
+    /// An end has either reached the confidence or has no use for the tests left, so what it leaves
+    /// unknown is at most the doubt allowed and what all tests would leave. The rest must come from
+    /// tests, each giving at most its capacity, each used at most once: the cheapest way to buy it is
+    /// by rising cost per bit.
+    fn bound(&self, point: NoisyPoint) -> f64 {
+        let belief = self.belief(point);
+        let useful = self.useful(&belief);
+        let Some(least) = useful
+            .iter()
+            .map(|(test, _)| self.problem.costs[*test])
+            .min_by(f64::total_cmp)
+        else {
+            return 0.0;
+        };
+        let slack = self.problem.tests.len() as f64 * USELESS_BITS;
+        let mut needed = entropy(belief.members.iter().map(|(_, weight)| *weight))
+            - self.doubt(belief.members.len())
+            - self.residue(&belief)
+            - slack;
+        let mut offers: Vec<(f64, f64)> = (0..self.problem.tests.len())
+            .filter(|test| !belief.used.contains(*test))
+            .filter_map(|test| {
+                let cells = belief
+                    .members
+                    .iter()
+                    .map(|(group, _)| self.problem.row(*group)[test]);
+                let (low, high) = cells.fold((1.0_f64, 0.0_f64), |(low, high), cell| {
+                    (low.min(cell), high.max(cell))
+                });
+                let bits = capacity(low, high);
+                (bits > 0.0).then(|| (self.problem.costs[test], bits))
+            })
+            .collect();
+        offers.sort_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+        let mut cost = 0.0;
+        for (price, bits) in offers {
+            if needed <= 0.0 {
+                break;
+            }
+            cost += price * (needed / bits).min(1.0);
+            needed -= bits;
+        }
+        // Rounding may not raise it.
+        cost.max(least) * (1.0 - 1e-9)
+    }
+}

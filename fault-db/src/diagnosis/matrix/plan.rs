@@ -1,0 +1,228 @@
+//! The order of tests: what is asked, how it is found, what is to be said about it.
+
+use super::crisp::CrispSpace;
+use super::error::MatrixError;
+use super::greedy::{Rollout, grow};
+use super::model::Matrix;
+use super::noisy::NoisySpace;
+use super::posterior::Posterior;
+use super::problem::{Belief, Problem};
+use super::search::{Limits, OutOfWork, Search, Space};
+use super::tree::{Node, Tree};
+
+/// Probability that an answer must have where tests are not certain, unless asked otherwise.
+pub const DEFAULT_CONFIDENCE: f64 = 0.99;
+
+/// States that differ, and tests, for which an optimal tree can be asked.
+pub const MAX_OPTIMAL: usize = 64;
+
+/// States that differ up to which an optimal tree is tried without being asked.
+const TRIED_STATES: usize = 24;
+
+/// Work where tests are certain: all sets of 21 states, 40 tests.
+const CRISP_LIMITS: Limits = Limits {
+    points: 2_200_000,
+    branches: 90_000_000,
+};
+
+/// Work where they are not: a point costs some microseconds.
+const NOISY_LIMITS: Limits = Limits {
+    points: 700_000,
+    branches: 2_000_000,
+};
+
+/// Nodes of an optimal tree at most, where ways that meet in the search are written out.
+const MAX_NODES: usize = 200_000;
+
+/// How a tree is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The cheapest there is.
+    Optimal,
+    /// By information gain per cost, with a one-step rollout.
+    Greedy,
+}
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanOptions {
+    /// How; without it the cheapest tree if that can be found, else a greedy one.
+    pub method: Option<Method>,
+    /// Probability that an answer must have, above 0.5 and at most 1; of use in noisy matrices only,
+    /// where tests are certain answers are.
+    pub confidence: f64,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self {
+            method: None,
+            confidence: DEFAULT_CONFIDENCE,
+        }
+    }
+}
+
+/// The order of tests from what is known on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The decision tree.
+    pub tree: Tree,
+    /// Its expected cost, in the unit of the tests' costs.
+    pub expected_cost: f64,
+    /// Whether no tree costs less.
+    pub optimal: bool,
+    /// What a user of it should know.
+    pub warnings: Vec<String>,
+}
+
+/// Plans the tests from what is known on.
+///
+/// # Errors
+/// A confidence out of range, and more than an optimal tree can be made for if one is asked.
+pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<Plan, MatrixError> {
+    if !(options.confidence > 0.5 && options.confidence <= 1.0) {
+        return Err(MatrixError::Confidence(options.confidence));
+    }
+    let mut warnings = remarks(matrix);
+    let problem = Problem::new(matrix, known, options.confidence);
+    let tests = problem.tests.len();
+    let small = problem.len() <= MAX_OPTIMAL && (problem.is_crisp() || tests <= MAX_OPTIMAL);
+    let tried = match options.method {
+        Some(Method::Optimal) if !small => {
+            return Err(MatrixError::TooLargeForOptimal {
+                states: problem.len(),
+                tests,
+                limit: MAX_OPTIMAL,
+            });
+        }
+        Some(Method::Optimal) => true,
+        Some(Method::Greedy) => false,
+        None => small && problem.len() <= TRIED_STATES,
+    };
+    if tried {
+        match best_tree(&problem) {
+            Ok(tree) => {
+                return Ok(Plan {
+                    expected_cost: tree.expected_cost(matrix),
+                    tree,
+                    optimal: true,
+                    warnings,
+                });
+            }
+            Err(OutOfWork) => warnings.push(
+                "the search for the optimal tree met its limit of work; this tree is greedy and may cost more"
+                    .into(),
+            ),
+        }
+    }
+    let grown = grow(&problem, Rollout::On);
+    if grown.unchecked {
+        warnings.push(
+            "the work allowed for rollout was used up; some tests are chosen by information gain per cost alone"
+                .into(),
+        );
+    }
+    let cut = grown.tree.cut_probability();
+    if cut > 0.0 {
+        warnings.push(format!(
+            "the tree grew too large and is cut: with probability {cut:.3e} it ends before the confidence is reached, and the expected cost leaves out what would follow there; give the outcomes found and ask again"
+        ));
+    }
+    Ok(Plan {
+        expected_cost: grown.tree.expected_cost(matrix),
+        tree: grown.tree,
+        optimal: false,
+        warnings,
+    })
+}
+
+fn best_tree(problem: &Problem<'_>) -> Result<Tree, OutOfWork> {
+    if problem.is_crisp() {
+        let space = CrispSpace::new(problem);
+        let root = space.root();
+        searched(problem, Search::new(space, CRISP_LIMITS), root)
+    } else {
+        let space = NoisySpace::new(problem);
+        let root = space.root();
+        searched(problem, Search::new(space, NOISY_LIMITS), root)
+    }
+}
+
+/// Searches and writes out the tree found.
+fn searched<S: Space>(
+    problem: &Problem<'_>,
+    mut search: Search<S>,
+    root: S::Point,
+) -> Result<Tree, OutOfWork> {
+    search.solve(root)?;
+    let leaf = |belief: &Belief| Node::Leaf(problem.leaf(belief, false));
+    let mut nodes = vec![leaf(&problem.root())];
+    let mut open = vec![(root, problem.root(), 0)];
+    while let Some((point, belief, place)) = open.pop() {
+        let best = search.best_test(point);
+        let branches = search.space.branches(point);
+        let Some(branch) = branches.iter().find(|branch| Some(branch.test) == best) else {
+            continue;
+        };
+        if nodes.len() >= MAX_NODES {
+            return Err(OutOfWork);
+        }
+        let (pass, fail) = problem.split(&belief, branch.test);
+        let next = nodes.len();
+        nodes[place] = Node::Test {
+            test: problem.tests[branch.test],
+            reached: belief.mass(),
+            pass: next,
+            fail: next + 1,
+        };
+        nodes.extend([leaf(&pass), leaf(&fail)]);
+        open.push((branch.fail.0, fail, next + 1));
+        open.push((branch.pass.0, pass, next));
+    }
+    Ok(Tree::new(nodes))
+}
+
+/// What stands out in a matrix that can be worked with all the same.
+fn remarks(matrix: &Matrix) -> Vec<String> {
+    const SHOWN: usize = 8;
+    let some = |names: Vec<&str>| {
+        let more = names.len().saturating_sub(SHOWN);
+        let shown = names.into_iter().take(SHOWN);
+        let quoted: Vec<String> = shown.map(|name| format!("\"{name}\"")).collect();
+        match more {
+            0 => quoted.join(", "),
+            _ => format!("{} and {more} more", quoted.join(", ")),
+        }
+    };
+    let mut remarks = Vec::new();
+    let groups = matrix.ambiguity_groups();
+    for group in groups.iter().take(SHOWN) {
+        let names = group.iter().map(|s| matrix.states()[*s].id.as_str());
+        remarks.push(format!(
+            "no test tells these states apart (their rows are the same): {}",
+            some(names.collect())
+        ));
+    }
+    if let Some(more) = groups.len().checked_sub(SHOWN + 1) {
+        remarks.push(format!("{} more groups of states are alike", more + 1));
+    }
+    let first = matrix.row(0);
+    let mut silent: Vec<bool> = vec![true; matrix.tests().len()];
+    for state in 0..matrix.states().len() {
+        for ((silent, cell), first) in silent.iter_mut().zip(matrix.row(state)).zip(first) {
+            *silent &= cell == first;
+        }
+    }
+    let names = matrix.tests().iter().zip(silent);
+    let names: Vec<&str> = names
+        .filter(|(_, silent)| *silent && matrix.states().len() > 1)
+        .map(|(test, _)| test.id.as_str())
+        .collect();
+    if !names.is_empty() {
+        remarks.push(format!(
+            "these tests say the same of every state and are never of use: {}",
+            some(names)
+        ));
+    }
+    remarks
+}

@@ -1,0 +1,165 @@
+//! What is known of the states, before any test and after some.
+
+use super::error::MatrixError;
+use super::model::Matrix;
+
+/// What a test came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It passed: outcome 0.
+    Pass,
+    /// It failed, so it detected something: outcome 1.
+    Fail,
+}
+
+impl Outcome {
+    /// Reads `0`, `pass`, `passed`, `1`, `fail` or `failed`.
+    pub fn parse(word: &str) -> Option<Self> {
+        match word {
+            "0" | "pass" | "passed" => Some(Self::Pass),
+            "1" | "fail" | "failed" => Some(Self::Fail),
+            _ => None,
+        }
+    }
+
+    /// As a verb: `passes`, `fails`.
+    pub const fn verb(self) -> &'static str {
+        match self {
+            Self::Pass => "passes",
+            Self::Fail => "fails",
+        }
+    }
+
+    /// Its probability where the test fails with probability `cell`.
+    pub(super) fn likelihood(self, cell: f64) -> f64 {
+        match self {
+            Self::Pass => 1.0 - cell,
+            Self::Fail => cell,
+        }
+    }
+}
+
+/// Probabilities of the states, given the outcomes of tests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posterior {
+    probabilities: Vec<f64>,
+    /// States that no outcome rules out; one of probability 0 may be among them.
+    possible: Vec<bool>,
+    /// Tests that have been done.
+    done: Vec<bool>,
+}
+
+impl Posterior {
+    /// As the matrix has them, before any test.
+    pub fn prior(matrix: &Matrix) -> Self {
+        let states = matrix.states();
+        Self {
+            probabilities: states.iter().map(|state| state.probability).collect(),
+            possible: vec![true; states.len()],
+            done: vec![false; matrix.tests().len()],
+        }
+    }
+
+    /// After these outcomes, by Bayes' rule.
+    ///
+    /// # Errors
+    /// A test that is not known or is named twice, and outcomes that no state explains.
+    pub fn given(matrix: &Matrix, outcomes: &[(String, Outcome)]) -> Result<Self, MatrixError> {
+        let mut known = Self::prior(matrix);
+        let mut before = Vec::new();
+        for (name, outcome) in outcomes {
+            let test = matrix
+                .tests()
+                .iter()
+                .position(|test| test.id == *name)
+                .ok_or_else(|| MatrixError::OutcomeUnknown { test: name.clone() })?;
+            if known.done[test] {
+                return Err(MatrixError::OutcomeTwice { test: name.clone() });
+            }
+            if !known.learn(matrix, test, *outcome) {
+                return Err(MatrixError::Contradiction {
+                    before: history(&before),
+                    test: name.clone(),
+                    outcome: outcome.verb(),
+                });
+            }
+            before.push(format!("\"{name}\" {}", outcome.verb()));
+        }
+        Ok(known)
+    }
+
+    /// Weighs one outcome; `false` if no state explains it.
+    fn learn(&mut self, matrix: &Matrix, test: usize, outcome: Outcome) -> bool {
+        let mut likelihoods: Vec<f64> = (0..self.probabilities.len())
+            .map(|state| outcome.likelihood(matrix.row(state)[test]))
+            .collect();
+        let explains = |p: &f64, likelihood: f64| if *p > 0.0 { likelihood } else { 0.0 };
+        let largest = self
+            .probabilities
+            .iter()
+            .zip(&likelihoods)
+            .map(|(p, likelihood)| explains(p, *likelihood))
+            .fold(0.0, f64::max);
+        if largest <= 0.0 {
+            return false;
+        }
+        for likelihood in &mut likelihoods {
+            // Scaled, lest a product of small numbers vanish.
+            *likelihood /= largest;
+        }
+        for ((p, possible), likelihood) in self
+            .probabilities
+            .iter_mut()
+            .zip(&mut self.possible)
+            .zip(&likelihoods)
+        {
+            *p *= likelihood;
+            *possible &= *likelihood > 0.0;
+        }
+        let total: f64 = self.probabilities.iter().sum();
+        for p in &mut self.probabilities {
+            *p /= total;
+        }
+        self.done[test] = true;
+        true
+    }
+
+    /// Probability of a state; 0 for one that is not there.
+    pub fn probability(&self, state: usize) -> f64 {
+        self.probabilities.get(state).copied().unwrap_or(0.0)
+    }
+
+    /// Whether no outcome rules a state out.
+    pub fn is_possible(&self, state: usize) -> bool {
+        self.possible.get(state).copied().unwrap_or(false)
+    }
+
+    /// Whether a test has been done.
+    pub fn is_done(&self, test: usize) -> bool {
+        self.done.get(test).copied().unwrap_or(false)
+    }
+
+    /// States that are possible, likeliest first.
+    pub fn ranked(&self) -> Vec<(usize, f64)> {
+        let mut ranked: Vec<_> = (0..self.probabilities.len())
+            .filter(|state| self.is_possible(*state))
+            .map(|state| (state, self.probability(state)))
+            .collect();
+        ranked.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        ranked
+    }
+}
+
+/// Outcomes that went before, the first few of them.
+fn history(before: &[String]) -> String {
+    const SHOWN: usize = 6;
+    match before {
+        [] => String::new(),
+        few if few.len() <= SHOWN => format!("once {}, ", few.join(" and ")),
+        many => format!(
+            "once {} and {} more are as given, ",
+            many[..SHOWN].join(", "),
+            many.len() - SHOWN
+        ),
+    }
+}

@@ -1,0 +1,200 @@
+//! What is left to tell apart, and with what.
+
+use super::bits::Bits;
+use super::model::{Matrix, equal_rows};
+use super::posterior::Posterior;
+use super::tree::Leaf;
+
+/// Information below which a test is of no use, in bits: less than rounding leaves.
+pub(super) const USELESS_BITS: f64 = 1e-6;
+
+/// Share of the remaining probability by which rounding may miss the confidence.
+const ROUNDING: f64 = 1e-12;
+
+/// States that are left, those together that no test left tells apart, and tests that are left.
+pub(super) struct Problem<'a> {
+    pub(super) matrix: &'a Matrix,
+    posterior: &'a Posterior,
+    /// Tests not done yet, by their place in the matrix; rows of `cells` are in this order.
+    pub(super) tests: Vec<usize>,
+    /// What each of them costs.
+    pub(super) costs: Vec<f64>,
+    /// States by their place in the matrix.
+    groups: Vec<Vec<usize>>,
+    /// Probability of each group.
+    pub(super) weights: Vec<f64>,
+    cells: Vec<f64>,
+    /// Probability that one answer must have; of use in noisy matrices only.
+    pub(super) confidence: f64,
+}
+
+/// Groups that a point of the tree has left, with the probability to be there in that group; and
+/// tests used on the way.
+#[derive(Clone, Debug)]
+pub(super) struct Belief {
+    pub(super) members: Vec<(usize, f64)>,
+    pub(super) used: Bits,
+}
+
+impl Belief {
+    /// Probability to be here.
+    pub(super) fn mass(&self) -> f64 {
+        self.members.iter().map(|(_, weight)| weight).sum()
+    }
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn new(matrix: &'a Matrix, posterior: &'a Posterior, confidence: f64) -> Self {
+        let tests: Vec<usize> = (0..matrix.tests().len())
+            .filter(|test| !posterior.is_done(*test))
+            .collect();
+        // Certain tests tell a state of probability 0 apart like any other; where answers need only
+        // be likely it can never be one.
+        let crisp = matrix.is_crisp();
+        let groups = equal_rows(matrix, &tests, |state| {
+            posterior.is_possible(state) && (crisp || posterior.probability(state) > 0.0)
+        });
+        let weight = |group: &Vec<usize>| group.iter().map(|s| posterior.probability(*s)).sum();
+        let mut cells = Vec::with_capacity(groups.len() * tests.len());
+        for group in &groups {
+            let row = group.first().map_or(&[][..], |state| matrix.row(*state));
+            cells.extend(tests.iter().filter_map(|test| row.get(*test)));
+        }
+        Self {
+            costs: tests
+                .iter()
+                .map(|test| matrix.tests()[*test].cost)
+                .collect(),
+            weights: groups.iter().map(weight).collect(),
+            matrix,
+            posterior,
+            tests,
+            groups,
+            cells,
+            confidence,
+        }
+    }
+
+    /// Whether every test left is certain in what it says.
+    pub(super) fn is_crisp(&self) -> bool {
+        self.matrix.is_crisp()
+    }
+
+    /// Groups that are left.
+    pub(super) fn len(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// Probabilities that each test left fails in a group.
+    pub(super) fn row(&self, group: usize) -> &[f64] {
+        &self.cells[group * self.tests.len()..(group + 1) * self.tests.len()]
+    }
+
+    /// All that is left, no test used.
+    pub(super) fn root(&self) -> Belief {
+        Belief {
+            members: self.weights.iter().copied().enumerate().collect(),
+            used: Bits::none(self.tests.len()),
+        }
+    }
+
+    /// Where passing and where failing a test leads.
+    pub(super) fn split(&self, belief: &Belief, test: usize) -> (Belief, Belief) {
+        let mut used = belief.used.clone();
+        used.insert(test);
+        let (mut pass, mut fail) = (Vec::new(), Vec::new());
+        for &(group, weight) in &belief.members {
+            let cell = self.row(group)[test];
+            if cell < 1.0 {
+                pass.push((group, weight * (1.0 - cell)));
+            }
+            if cell > 0.0 {
+                fail.push((group, weight * cell));
+            }
+        }
+        let belief = |members| Belief {
+            members,
+            used: used.clone(),
+        };
+        (belief(pass), belief(fail))
+    }
+
+    /// Whether the members that no unused test tells apart from each other reach the confidence
+    /// together.
+    pub(super) fn is_decided(&self, belief: &Belief) -> bool {
+        let total = belief.mass();
+        let allowed = total * (1.0 - self.confidence + ROUNDING);
+        let mut rest = belief.members.clone();
+        rest.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        let mut seen = 0.0;
+        // Once more than allowed has been seen in other classes, no class can reach it any more.
+        while seen <= allowed {
+            let Some(&(first, _)) = rest.first() else {
+                return true;
+            };
+            let (class, others): (Vec<_>, Vec<_>) = rest
+                .into_iter()
+                .partition(|(group, _)| self.alike(first, *group, &belief.used));
+            let outside = seen + others.iter().map(|(_, weight)| weight).sum::<f64>();
+            if outside <= allowed {
+                return true;
+            }
+            seen += class.iter().map(|(_, weight)| weight).sum::<f64>();
+            rest = others;
+        }
+        false
+    }
+
+    fn alike(&self, a: usize, b: usize, used: &Bits) -> bool {
+        a == b
+            || self
+                .row(a)
+                .iter()
+                .zip(self.row(b))
+                .enumerate()
+                .all(|(test, (x, y))| x == y || used.contains(test))
+    }
+
+    /// The answer at an end of the tree: all states left if tests are certain, else the likeliest
+    /// that reach the confidence together.
+    pub(super) fn leaf(&self, belief: &Belief, cut: bool) -> Leaf {
+        let mut states = Vec::new();
+        for &(group, weight) in &belief.members {
+            let whole = self.weights[group];
+            for &state in &self.groups[group] {
+                let share = match whole > 0.0 {
+                    true => self.posterior.probability(state) / whole,
+                    false => 0.0,
+                };
+                states.push((state, weight * share));
+            }
+        }
+        states.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        let mass = belief.mass();
+        if self.is_crisp() {
+            states.sort_by_key(|(state, _)| *state);
+            return Leaf {
+                states: states.into_iter().map(|(state, _)| state).collect(),
+                p: 1.0,
+                reached: mass,
+                cut,
+            };
+        }
+        let allowed = mass * (1.0 - self.confidence + ROUNDING);
+        let mut left_out = 0.0;
+        let mut kept = states.len();
+        while kept > 1 && left_out + states[kept - 1].1 <= allowed {
+            kept -= 1;
+            left_out += states[kept].1;
+        }
+        Leaf {
+            states: states[..kept].iter().map(|(state, _)| *state).collect(),
+            p: match mass > 0.0 {
+                true => (mass - left_out) / mass,
+                false => 1.0,
+            },
+            reached: mass,
+            cut,
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! AND/OR search: the cheapest test at each point, where both branches must be paid for.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hash, Hasher};
+
+/// A graph of what can be known: at each point tests may be done, each with two outcomes.
+pub(super) trait Space {
+    /// What makes two points the same.
+    type Point: Copy + Eq + Hash;
+
+    /// What can be done at a point; nothing at an end.
+    fn branches(&self, point: Self::Point) -> Vec<Branch<Self::Point>>;
+
+    /// A cost that no way from this point on can undercut; 0 at an end.
+    fn bound(&self, point: Self::Point) -> f64;
+}
+
+/// A test that may be done.
+pub(super) struct Branch<P> {
+    pub(super) test: usize,
+    /// What it adds to the cost of its point.
+    pub(super) cost: f64,
+    /// Where passing it leads, and what the cost from there counts.
+    pub(super) pass: (P, f64),
+    /// Where failing it leads.
+    pub(super) fail: (P, f64),
+}
+
+/// How much may be looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Points kept in memory.
+    pub(super) points: usize,
+    /// Branches weighed.
+    pub(super) branches: u64,
+}
+
+/// The limit is met before the optimum is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct OutOfWork;
+
+#[derive(Clone, Copy)]
+struct Known {
+    /// The least cost if `solved`, else a bound of it.
+    cost: f64,
+    solved: bool,
+    /// The best test, if there is any to do.
+    test: Option<usize>,
+}
+
+/// A search under way.
+pub(super) struct Search<S: Space> {
+    pub(super) space: S,
+    known: HashMap<S::Point, Known, BuildHasherDefault<Mix>>,
+    limits: Limits,
+    weighed: u64,
+}
+
+impl<S: Space> Search<S> {
+    pub(super) fn new(space: S, limits: Limits) -> Self {
+        Self {
+            space,
+            known: HashMap::default(),
+            limits,
+            weighed: 0,
+        }
+    }
+
+    /// The least cost from a point on. As deep as tests follow each other, at most the number of
+    /// tests.
+    pub(super) fn solve(&mut self, point: S::Point) -> Result<f64, OutOfWork> {
+        if let Some(known) = self.known.get(&point).filter(|known| known.solved) {
+            return Ok(known.cost);
+        }
+        let branches = self.space.branches(point);
+        self.weighed += branches.len() as u64;
+        if self.weighed > self.limits.branches || self.known.len() > self.limits.points {
+            return Err(OutOfWork);
+        }
+        let mut order: Vec<(f64, usize)> = Vec::with_capacity(branches.len());
+        for (index, branch) in branches.iter().enumerate() {
+            let least = branch.cost
+                + branch.pass.1 * self.least(branch.pass.0)
+                + branch.fail.1 * self.least(branch.fail.0);
+            order.push((least, index));
+        }
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut best = (f64::INFINITY, None);
+        for (least, index) in order {
+            if least >= best.0 {
+                break;
+            }
+            let branch = &branches[index];
+            // The likelier branch first: it is the one to rule the test out.
+            let (first, second) = match branch.pass.1 >= branch.fail.1 {
+                true => (branch.pass, branch.fail),
+                false => (branch.fail, branch.pass),
+            };
+            let cost = branch.cost + first.1 * self.solve(first.0)?;
+            if cost + second.1 * self.least(second.0) >= best.0 {
+                continue;
+            }
+            let cost = cost + second.1 * self.solve(second.0)?;
+            if cost < best.0 {
+                best = (cost, Some(branch.test));
+            }
+        }
+        let cost = if branches.is_empty() { 0.0 } else { best.0 };
+        let known = Known {
+            cost,
+            solved: true,
+            test: best.1,
+        };
+        self.known.insert(point, known);
+        Ok(cost)
+    }
+
+    /// The best test at a point that has been solved, unless it is an end.
+    pub(super) fn best_test(&self, point: S::Point) -> Option<usize> {
+        self.known.get(&point).and_then(|known| known.test)
+    }
+
+    /// What is known of the cost from a point on, at least its bound.
+    fn least(&mut self, point: S::Point) -> f64 {
+        if let Some(known) = self.known.get(&point) {
+            return known.cost;
+        }
+        let cost = self.space.bound(point);
+        let known = Known {
+            cost,
+            solved: false,
+            test: None,
+        };
+        self.known.insert(point, known);
+        cost
+    }
+}
+
+/// A fixed mixer of small keys: the standard one costs more than the search itself. The table is
+/// only looked up, so no order comes from it.
+#[derive(Default)]
+pub(super) struct Mix(u64);
+
+impl Hasher for Mix {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64(u64::from(*byte));
+        }
+    }
+
+    fn write_u64(&mut self, value: u64) {
+        // The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+        let mut mixed = self.0 ^ value;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        self.0 = (mixed ^ (mixed >> 31)).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    }
+}

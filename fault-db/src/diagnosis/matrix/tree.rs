@@ -1,0 +1,159 @@
+//! Decision trees, and how they are written.
+
+use super::model::Matrix;
+
+/// Levels of a written tree that are set in; deeper ones would be blanks mostly.
+const MAX_INDENT: usize = 40;
+
+/// A point of a decision tree; states and tests by their place in the matrix.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Node {
+    /// Do a test and go on by its outcome.
+    Test {
+        /// The test.
+        test: usize,
+        /// Probability to come here.
+        reached: f64,
+        /// Where passing it leads: a place in [`Tree::nodes`].
+        pass: usize,
+        /// Where failing it leads.
+        fail: usize,
+    },
+    /// An end.
+    Leaf(Leaf),
+}
+
+/// An answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leaf {
+    /// The one state that it must be, or several that cannot be told apart any further.
+    pub states: Vec<usize>,
+    /// Probability that it is one of them, given the outcomes on the way.
+    pub p: f64,
+    /// Probability to come here.
+    pub reached: f64,
+    /// Whether tests that would tell more were left away because the tree grew too large.
+    pub cut: bool,
+}
+
+/// A decision tree; its root is the first node. Nodes are kept in a list: a tree may be thousands of
+/// tests deep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tree {
+    nodes: Vec<Node>,
+}
+
+impl Tree {
+    pub(super) fn new(nodes: Vec<Node>) -> Self {
+        Self { nodes }
+    }
+
+    /// All nodes, the root first, each before those below it.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The first test, unless there is none to do.
+    pub fn first_test(&self) -> Option<usize> {
+        match self.nodes.first() {
+            Some(Node::Test { test, .. }) => Some(*test),
+            _ => None,
+        }
+    }
+
+    /// Expected cost of the tests on the way to an answer.
+    pub fn expected_cost(&self, matrix: &Matrix) -> f64 {
+        let cost = |node: &Node| match node {
+            Node::Test { test, reached, .. } => reached * matrix.tests()[*test].cost,
+            Node::Leaf(_) => 0.0,
+        };
+        self.nodes.iter().map(cost).sum()
+    }
+
+    /// Probability to come to an end where the tree was cut.
+    pub fn cut_probability(&self) -> f64 {
+        let cut = |node: &Node| match node {
+            Node::Leaf(leaf) if leaf.cut => leaf.reached,
+            _ => 0.0,
+        };
+        self.nodes.iter().map(cut).sum()
+    }
+
+    /// `{"test", "pass": …, "fail": …}` down to `{"state" | "states", "p", "reached"}`, as text that
+    /// is set in by `indent` levels to begin with. No recursion: no depth is too much.
+    pub fn to_json(&self, matrix: &Matrix, indent: usize) -> String {
+        enum Task<'a> {
+            Node(usize, usize),
+            Text(&'a str, usize),
+        }
+        let mut text = String::new();
+        let mut tasks = vec![Task::Node(0, indent)];
+        while let Some(task) = tasks.pop() {
+            let (index, level) = match task {
+                Task::Node(index, level) => (index, level),
+                Task::Text(part, level) => {
+                    line(&mut text, level);
+                    text.push_str(part);
+                    continue;
+                }
+            };
+            match self.nodes.get(index) {
+                Some(Node::Test {
+                    test, pass, fail, ..
+                }) => {
+                    text.push('{');
+                    line(&mut text, level + 1);
+                    text.push_str("\"test\": ");
+                    text.push_str(&quoted(&matrix.tests()[*test].id));
+                    text.push(',');
+                    tasks.push(Task::Text("}", level));
+                    tasks.push(Task::Node(*fail, level + 1));
+                    tasks.push(Task::Text("\"fail\": ", level + 1));
+                    tasks.push(Task::Text(",", usize::MAX));
+                    tasks.push(Task::Node(*pass, level + 1));
+                    tasks.push(Task::Text("\"pass\": ", level + 1));
+                }
+                Some(Node::Leaf(leaf)) => leaf.write_json(matrix, &mut text),
+                None => {}
+            }
+        }
+        text
+    }
+}
+
+impl Leaf {
+    fn write_json(&self, matrix: &Matrix, text: &mut String) {
+        let mut ids = self
+            .states
+            .iter()
+            .map(|state| quoted(&matrix.states()[*state].id));
+        match (ids.next(), ids.len()) {
+            (Some(only), 0) => text.push_str(&format!("{{\"state\": {only}")),
+            (first, _) => {
+                let all: Vec<_> = first.into_iter().chain(ids).collect();
+                text.push_str(&format!("{{\"states\": [{}]", all.join(", ")));
+            }
+        }
+        // Probabilities are finite, so these are JSON numbers.
+        text.push_str(&format!(
+            ", \"p\": {:?}, \"reached\": {:?}",
+            self.p, self.reached
+        ));
+        if self.cut {
+            text.push_str(", \"cut\": true");
+        }
+        text.push('}');
+    }
+}
+
+/// A new line, set in; none at a level no tree has.
+fn line(text: &mut String, level: usize) {
+    if level != usize::MAX {
+        text.push('\n');
+        text.push_str(&"  ".repeat(level.min(MAX_INDENT)));
+    }
+}
+
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
