@@ -19,8 +19,13 @@ impl Random {
         z ^ (z >> 31)
     }
 
+    /// Uniform in 0 .. 1, never 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
     /// True with probability `p`.
     pub fn chance(&mut self, p: f64) -> bool {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64 % 1.0 < p
+        self.unit() < p
     }
 }

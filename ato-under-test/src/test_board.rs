@@ -29,6 +29,8 @@ pub struct TestBoard {
     marker: Option<u8>,
     twc: Option<(TwcWayside, Instant)>,
     dead: bool,
+    /// Pulses made for one that should be.
+    speed_gain: f64,
 }
 
 #[derive(Debug)]
@@ -48,6 +50,7 @@ impl TestBoard {
             marker: None,
             twc: None,
             dead: false,
+            speed_gain: 1.0,
         }
     }
 
@@ -60,6 +63,11 @@ impl TestBoard {
                 signals: TestSignals::all(),
             });
         }
+    }
+
+    /// How many pulses the speed generator makes for one that it should.
+    pub fn set_speed_gain(&mut self, gain: f64) {
+        self.speed_gain = gain;
     }
 
     /// The board answers its CPU.
@@ -197,6 +205,7 @@ impl TestBoard {
         let speed = speed + (goal - speed).clamp(-step, step);
         generator.speed = Speed::from_mps(speed);
 
+        let speed = speed * self.speed_gain;
         let made = speed * SCAN.as_secs() / self.metres_per_pulse;
         let before = libm::floor(generator.pulses);
         generator.pulses += made;

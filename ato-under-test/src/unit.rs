@@ -16,7 +16,9 @@ use protocol::{Duration, Instant};
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ScanContext};
 use crate::com::{ArmConditions, IoImage, Maintenance, RejectWatch, TcmsLink};
-use crate::front_end::{EffortOutput, Faults, FrontEnd, OutputStage, spoil_stored_data};
+use crate::front_end::{
+    EffortOutput, Faults, FrontEnd, Late, OutputStage, PowerAndClock, Supply, spoil_stored_data,
+};
 use crate::kernel::{EventLog, FreezeFrame, RunRecord, SelfTestInputs, SelfTester, Watchdog};
 use crate::psm::{Locator, Movement, Tra};
 use crate::report;
@@ -26,6 +28,8 @@ use crate::twc::{TrainState, Twc};
 
 /// Scans in a control cycle.
 const SCANS_PER_CYCLE: u8 = 5;
+/// Level of the self-test's code over the least that the receiver must decode [default].
+const SELF_TEST_LEVEL: f64 = 1.2;
 
 /// What one unit is made of.
 #[derive(Clone, Debug)]
@@ -70,6 +74,9 @@ pub struct Unit {
     pub(crate) ato_watchdog: Watchdog,
     pub(crate) run_record: RunRecord,
     pub(crate) faults: Faults,
+    power: PowerAndClock,
+    /// Station data that a slow TWC CPU has not handed on yet.
+    late_stations: Late<(Option<u16>, TwcWayside)>,
     front_end: FrontEnd,
     output_stage: OutputStage,
     contacts: Outputs,
@@ -81,7 +88,11 @@ pub struct Unit {
 impl Unit {
     /// Powers a unit up at [`Instant::ZERO`].
     pub fn new(setup: Setup) -> Self {
-        let setup = spoil_stored_data(setup);
+        let faults = Faults::new(&setup.faults, setup.seed ^ 0x5EED);
+        Self::powered_up(spoil_stored_data(setup), faults)
+    }
+
+    fn powered_up(setup: Setup, faults: Faults) -> Self {
         let config = &setup.config;
         let link = &config.link;
         let ms = |ms: u32| Duration::from_ms(u64::from(ms));
@@ -111,8 +122,10 @@ impl Unit {
             effort_output: EffortOutput::default(),
             inputs: Inputs::default(),
             image: IoImage::new(ms(link.io_timeout_ms)),
-            faults: Faults::new(&setup.faults, setup.seed ^ 0x5EED),
-            front_end: FrontEnd::new(),
+            faults,
+            power: PowerAndClock::default(),
+            late_stations: Late::default(),
+            front_end: FrontEnd::new(config.metres_per_pulse()),
             output_stage: OutputStage::default(),
             contacts: Outputs::empty(),
             reject_watch: RejectWatch::new(link.rejected_per_10s),
@@ -124,12 +137,22 @@ impl Unit {
 
     /// Takes bytes from the wire; they are acted on in the next scan.
     pub fn receive(&mut self, bytes: &[u8]) {
-        self.link.push(bytes);
+        if !self.power.down() {
+            self.link.push(bytes);
+        }
     }
 
     /// One scan, every 10 ms; frames to send are appended to `out`.
     pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.faults.step(now);
+        match self.power.supply(now, &mut self.faults) {
+            Supply::Down => return,
+            Supply::Back => self.restart(now),
+            Supply::Up => {}
+        }
+        let clock_rate = self.faults.gain(Place::Clock);
+        let now = self.power.own(now, clock_rate);
+        self.image.set_clock_rate(clock_rate);
         self.receive_frames(now, out);
         self.read_inputs(now);
         self.test_self(now);
@@ -140,6 +163,14 @@ impl Unit {
         }
         self.scan = (self.scan + 1) % SCANS_PER_CYCLE;
         self.drive_outputs(now, out);
+    }
+
+    /// Begins anew after a dip of the supply; the hardware, and what is wrong with it, stays the same.
+    fn restart(&mut self, now: Instant) {
+        let faults = core::mem::replace(&mut self.faults, Faults::new(&[], 0));
+        *self = Self::powered_up(self.setup.clone(), faults);
+        self.power = PowerAndClock::restarted(now);
+        self.log.push(Instant::ZERO, Event::SupplyDip, 0);
     }
 
     /// Latches what came; answers requests of the tester.
@@ -163,6 +194,9 @@ impl Unit {
                 _ => {}
             }
         }
+        while let Some((seq, data)) = self.late_stations.pop(now) {
+            self.handle_station(now, seq, data, out);
+        }
         let conditions = self.arm_conditions();
         let notice = self
             .maintenance
@@ -175,11 +209,13 @@ impl Unit {
 
     /// A frame is lost at `place`; one that arrives damaged is counted like any rejected frame.
     pub(crate) fn loses(&mut self, place: Place) -> bool {
-        let lost = self.faults.loses_frame(place);
+        let lost = self.faults.loses(place);
         let damaged = lost && matches!(self.faults.at(place), Some(Effect::BitErrors { .. }));
         match place {
             Place::TcmsReceiver if damaged => self.reject_watch.count_lost(Channel::Tcms),
-            Place::FskReceiver if damaged => self.reject_watch.count_lost(Channel::Twc),
+            Place::FskReceiver | Place::TwcAntenna if damaged => {
+                self.reject_watch.count_lost(Channel::Twc);
+            }
             _ => {}
         }
         lost
@@ -199,6 +235,10 @@ impl Unit {
         mut data: TwcWayside,
         out: &mut Vec<u8>,
     ) {
+        // The TEST module is wired to the modem: only what comes from the loop passes the antenna.
+        if seq.is_some() && self.loses(Place::TwcAntenna) {
+            return;
+        }
         if self.loses(Place::FskReceiver) {
             return;
         }
@@ -206,13 +246,32 @@ impl Unit {
         if seq.is_some() && self.board.makes_twc() {
             return;
         }
-        if let Some(Effect::Offset { by }) = self.faults.at(Place::TwcCpu) {
-            data.station = data.station.wrapping_add_signed(by as i16);
+        match self.faults.at(Place::TwcCpu) {
+            Some(Effect::Dead) => return,
+            Some(Effect::Delay { ms }) => {
+                let due = now + Duration::from_ms(u64::from(ms));
+                return self.late_stations.push(due, (seq, data));
+            }
+            Some(Effect::Offset { by }) => {
+                data.station = data.station.wrapping_add_signed(by as i16);
+            }
+            _ => {}
         }
+        self.handle_station(now, seq, data, out);
+    }
+
+    /// Takes station data and answers those from the loop.
+    fn handle_station(
+        &mut self,
+        now: Instant,
+        seq: Option<u16>,
+        data: TwcWayside,
+        out: &mut Vec<u8>,
+    ) {
         self.twc.take(now, data, &self.setup.line, &mut self.log);
         let Some(seq) = seq else { return };
         let answer = self.twc.answer(seq, &data, self.train_state());
-        if !self.loses(Place::FskTransmitter) {
+        if !self.loses(Place::FskTransmitter) && !self.loses(Place::TwcAntenna) {
             self.link.send(now, &answer.into(), out);
         }
     }
@@ -243,20 +302,23 @@ impl Unit {
             self.faults.at(Place::TestBoard),
             Some(Effect::Dead)
         ));
-        let coil = (!self.self_tester.finished())
+        let built_in = (!self.self_tester.finished())
             .then(|| self.self_test_code())
             .flatten();
-        self.inputs =
-            self.front_end
-                .scan(now, &self.image, &mut self.board, coil, &mut self.faults);
+        let (image, board) = (&self.image, &mut self.board);
+        self.inputs = self
+            .front_end
+            .scan(now, image, board, built_in, &mut self.faults);
     }
 
-    /// The code that start-up feeds into the test coil: the first of the table.
+    /// The code that start-up feeds into the receiver: the first of the table, little above the least
+    /// level it must decode.
     fn self_test_code(&self) -> Option<AntennaSignal> {
-        self.setup.config.codes.first().map(|code| AntennaSignal {
+        let config = &self.setup.config;
+        config.codes.first().map(|code| AntennaSignal {
             carrier_hz: code.carrier_hz,
             rate_hz: code.rate_hz,
-            level_mv: self.setup.config.receiver.level_nominal_mv,
+            level_mv: config.receiver.level_min_mv * SELF_TEST_LEVEL,
         })
     }
 
@@ -284,8 +346,8 @@ impl Unit {
     /// The modem's test frame, through its transmitter back into its receiver. One that arrives
     /// damaged is no bad frame of the link.
     fn loop_back(&mut self) -> bool {
-        let sent = !self.faults.loses_frame(Place::FskTransmitter);
-        sent && !self.faults.loses_frame(Place::FskReceiver)
+        let sent = !self.faults.loses(Place::FskTransmitter);
+        sent && !self.faults.loses(Place::FskReceiver)
     }
 
     /// One scan of ATP.

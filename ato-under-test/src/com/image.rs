@@ -3,6 +3,8 @@
 use protocol::message::IoInput;
 use protocol::{Duration, Instant};
 
+use crate::front_end::at_rate;
+
 /// Latched I/O inputs.
 #[derive(Debug)]
 pub struct IoImage {
@@ -12,6 +14,7 @@ pub struct IoImage {
     heard: Option<Instant>,
     alive: bool,
     timeout: Duration,
+    clock_rate: f64,
 }
 
 impl IoImage {
@@ -24,7 +27,18 @@ impl IoImage {
             heard: None,
             alive: false,
             timeout,
+            clock_rate: 1.0,
         }
+    }
+
+    /// Sets how fast the clock runs that times the inputs.
+    pub fn set_clock_rate(&mut self, rate: f64) {
+        self.clock_rate = rate;
+    }
+
+    /// How fast the clock runs that times the inputs.
+    pub fn clock_rate(&self) -> f64 {
+        self.clock_rate
     }
 
     /// Takes a frame sampled at the sender's `stamp_ms`.
@@ -35,7 +49,7 @@ impl IoImage {
         } else {
             0
         };
-        self.sampled_at += Duration::from_ms(u64::from(elapsed));
+        self.sampled_at += at_rate(Duration::from_ms(u64::from(elapsed)), self.clock_rate);
         self.stamp_ms = stamp_ms;
         self.latest = Some(input);
         self.heard = Some(now);

@@ -4,19 +4,23 @@
 
 mod effort;
 mod faults;
+mod late;
 mod outputs;
 mod sensors;
 mod stored;
+mod supply;
 
 use protocol::injection::{Effect, Place};
-use protocol::message::{IoInput, TrainLines};
-use protocol::{Instant, SCAN};
+use protocol::message::{IoInput, ModeSwitch, TrainLines};
+use protocol::{Duration, Instant, SCAN};
 
 pub use effort::EffortOutput;
 pub use faults::Faults;
+pub use late::Late;
 pub use outputs::OutputStage;
 pub use sensors::PulseSensor;
 pub use stored::spoil_stored_data;
+pub use supply::{PowerAndClock, Supply, at_rate};
 
 use crate::com::IoImage;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
@@ -28,36 +32,39 @@ pub struct FrontEnd {
     sensors: [PulseSensor; 2],
     marker_edges: Option<u8>,
     held_signal: AntennaSignal,
+    metres_per_pulse: f64,
 }
 
 impl FrontEnd {
-    /// Two speed sensors, one ATP antenna, one marker antenna with TRA.
-    pub fn new() -> Self {
+    /// Two speed sensors of this resolution, one ATP antenna, one marker antenna with TRA.
+    pub fn new(metres_per_pulse: f64) -> Self {
         Self {
             sensors: [PulseSensor::default(), PulseSensor::default()],
             marker_edges: None,
             held_signal: AntennaSignal::default(),
+            metres_per_pulse,
         }
     }
 
     /// Reads all inputs once.
     ///
-    /// `coil` is what start-up self-test feeds into the ATP test coil.
+    /// `built_in` is what the start-up self-test feeds into the ATP receiver in the antenna's place.
     pub fn scan(
         &mut self,
         now: Instant,
         image: &IoImage,
         board: &mut TestBoard,
-        coil: Option<AntennaSignal>,
+        built_in: Option<AntennaSignal>,
         faults: &mut Faults,
     ) -> Inputs {
         let input = image.input();
+        board.set_speed_gain(faults.gain(Place::TestSpeed));
         let test_pulses = board.step_speed(now);
         let mut pulses = [Pulses::default(); 2];
         for (i, sensor) in self.sensors.iter_mut().enumerate() {
             let place = [Place::SpeedSensor1, Place::SpeedSensor2][i];
             let sensed = sensor.read(
-                input.map(|(frame, at)| raw_pulses(frame, at, i)),
+                input.map(|(frame, at)| raw_pulses(frame, at, i, image.clock_rate())),
                 place,
                 faults,
             );
@@ -66,28 +73,38 @@ impl FrontEnd {
                 pulses[i].sampled_at = now;
             }
         }
+        let turned = self.sensors.iter().map(PulseSensor::turned).max();
+        faults.roll(f64::from(turned.unwrap_or(0)) * self.metres_per_pulse);
         let frame = input
             .filter(|_| image.alive())
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
         Inputs {
             alive: image.alive(),
-            signal: self.receive(&frame, board.code().or(coil), faults),
+            signal: self.receive(&frame, board.code(), built_in, faults),
             pulses,
             test_speed: test_pulses.map(|pulses| pulses.is_some()),
             marker: self.marker(input.map(|(frame, _)| frame), board, faults),
-            tra_answers: !matches!(faults.at(Place::Tra), Some(Effect::Dead)),
+            tra_answers: !faults.loses(Place::Tra),
             lines: lines(frame.lines, faults),
-            mode_switch: frame.mode_switch,
-            controller: frame.controller,
+            mode_switch: match faults.at(Place::ModeInput) {
+                Some(_) => ModeSwitch::Off,
+                None => frame.mode_switch,
+            },
+            controller: match faults.at(Place::ControllerInput) {
+                Some(_) => 0,
+                None => frame.controller,
+            },
         }
     }
 
-    /// Antenna and receiver: the stronger of track and test coil, through both their faults.
+    /// Antenna and receiver: the stronger of track and test coil through the antenna; what is built in
+    /// for the self-test enters behind it and is heard alone.
     fn receive(
         &mut self,
         frame: &IoInput,
         coil: Option<AntennaSignal>,
+        built_in: Option<AntennaSignal>,
         faults: &mut Faults,
     ) -> AntennaSignal {
         let track = AntennaSignal {
@@ -95,6 +112,10 @@ impl FrontEnd {
             rate_hz: f64::from(frame.code_rate_chz) / 100.0,
             level_mv: f64::from(frame.level_mv),
         };
+        let coil = coil.map(|coil| AntennaSignal {
+            level_mv: coil.level_mv * faults.gain(Place::TestCode),
+            ..coil
+        });
         let mut signal = match coil {
             Some(coil) if coil.level_mv >= track.level_mv => coil,
             _ => track,
@@ -104,8 +125,11 @@ impl FrontEnd {
             Some(Effect::Gain { factor }) => signal.level_mv *= factor,
             _ => {}
         }
+        signal = built_in.unwrap_or(signal);
         match faults.at(Place::AtpReceiver) {
             Some(Effect::Dead) => signal = AntennaSignal::default(),
+            Some(Effect::Gain { factor }) => signal.level_mv *= factor,
+            Some(Effect::Limit { to }) => signal.rate_hz = signal.rate_hz.min(to),
             Some(Effect::Offset { by }) if signal.rate_hz > 0.0 => signal.rate_hz += by,
             Some(Effect::StuckOn) if self.held_signal.level_mv > 0.0 => signal = self.held_signal,
             _ => {}
@@ -130,36 +154,29 @@ impl FrontEnd {
             }),
             _ => None,
         };
-        let tra_dead = matches!(faults.at(Place::Tra), Some(Effect::Dead));
-        let deaf = |marker: u8| match faults.at(Place::MarkerAntenna) {
-            Some(Effect::Dead) => true,
-            Some(Effect::Deaf { to_marker }) => marker == to_marker,
-            _ => false,
-        };
-        board
+        let pulse = board
             .take_marker()
             .map(|marker| MarkerPulse { marker, age_us: 0 })
             .or(passed)
             // TRA has four inputs; anything else on the wire is no marker.
-            .filter(|pulse| matches!(pulse.marker, 1..=4) && !deaf(pulse.marker) && !tra_dead)
-    }
-}
-
-impl Default for FrontEnd {
-    fn default() -> Self {
-        Self::new()
+            .filter(|pulse| matches!(pulse.marker, 1..=4))?;
+        let deaf = match faults.at(Place::MarkerAntenna) {
+            Some(Effect::Deaf { to_marker }) => pulse.marker == to_marker,
+            _ => faults.loses(Place::MarkerAntenna),
+        };
+        (!deaf && !faults.loses(Place::Tra)).then_some(pulse)
     }
 }
 
 /// One tachometer's part of an input frame: wrapping count, edge and sampling time, phase.
-fn raw_pulses(frame: &IoInput, at: Instant, channel: usize) -> (u16, Pulses) {
+fn raw_pulses(frame: &IoInput, at: Instant, channel: usize, clock_rate: f64) -> (u16, Pulses) {
     let (count, edge_us) = match channel {
         0 => (frame.tacho1_count, frame.tacho1_edge_us),
         _ => (frame.tacho2_count, frame.tacho2_edge_us),
     };
     let pulses = Pulses {
         count: 0,
-        edge_at: at.back(protocol::Duration::from_us(u64::from(edge_us))),
+        edge_at: at.back(at_rate(Duration::from_us(u64::from(edge_us)), clock_rate)),
         sampled_at: at,
         backward: frame.tacho_backward & (1 << channel) != 0,
     };
@@ -167,10 +184,15 @@ fn raw_pulses(frame: &IoInput, at: Instant, channel: usize) -> (u16, Pulses) {
 }
 
 fn lines(mut lines: TrainLines, faults: &Faults) -> TrainLines {
-    match faults.at(Place::DoorInput) {
-        Some(Effect::StuckOn) => lines.insert(TrainLines::DOORS_CLOSED),
-        Some(Effect::StuckOff | Effect::Dead) => lines.remove(TrainLines::DOORS_CLOSED),
-        _ => {}
+    for (place, line) in [
+        (Place::DoorInput, TrainLines::DOORS_CLOSED),
+        (Place::CabInput, TrainLines::HCR),
+    ] {
+        match faults.at(place) {
+            Some(Effect::StuckOn) => lines.insert(line),
+            Some(Effect::StuckOff | Effect::Dead) => lines.remove(line),
+            _ => {}
+        }
     }
     lines
 }

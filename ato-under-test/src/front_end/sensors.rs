@@ -12,6 +12,7 @@ pub struct PulseSensor {
     /// Share of a pulse owed by a sensor that gives too many or too few.
     owed: f64,
     last: Pulses,
+    turned: u32,
 }
 
 impl PulseSensor {
@@ -24,6 +25,7 @@ impl PulseSensor {
     ) -> Pulses {
         let Some((count, mut pulses)) = raw else {
             self.last_count = None;
+            self.turned = 0;
             return Pulses {
                 count: 0,
                 ..self.last
@@ -31,6 +33,7 @@ impl PulseSensor {
         };
         let before = self.last_count.replace(count).unwrap_or(count);
         pulses.count = u32::from(count.wrapping_sub(before));
+        self.turned = pulses.count;
         match faults.at(place) {
             Some(Effect::Dead) => pulses.count = 0,
             Some(Effect::Gain { factor }) => {
@@ -49,5 +52,10 @@ impl PulseSensor {
         }
         self.last = pulses;
         pulses
+    }
+
+    /// Pulses the wheel has made in this scan, whatever the sensor gives of them.
+    pub fn turned(&self) -> u32 {
+        self.turned
     }
 }

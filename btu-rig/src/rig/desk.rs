@@ -144,6 +144,12 @@ impl Desk {
         self.faults.doors.unwrap_or(self.doors_closed)
     }
 
+    /// The main reservoir's pressure switch says that pressure is low.
+    pub fn main_reservoir_low(&self) -> bool {
+        let said = self.faults.main_reservoir_low;
+        said.unwrap_or_else(|| self.is_on(TrainSwitch::MainReservoirLow))
+    }
+
     /// The head control relay of the first cab.
     pub fn hcr_energised(&self) -> bool {
         self.faults.hcr.unwrap_or(self.hcr)
@@ -161,6 +167,7 @@ impl Desk {
             };
         }
         controller.volts = self.volts.unwrap_or(controller.volts);
+        controller.volts += self.faults.volts_offset;
         controller.volts = self.faults.volts.unwrap_or(controller.volts);
         let first = CabInputs {
             hcr: self.hcr_energised(),

@@ -160,7 +160,7 @@ impl Rig {
             tcms_events: Vec::new(),
             tcms_logged: 0,
             tcms_dropped: 0,
-            injected: Injected::default(),
+            injected: Injected::new(seed),
             faults: TrainFaults::default(),
             train_data,
             train_state: TrainState::default(),
@@ -187,7 +187,7 @@ impl Rig {
     /// Faults of the train and its wiring, each from its time after `power_at`; those of the unit are
     /// its own affair.
     pub fn inject(&mut self, modes: &[FaultMode], power_at: Instant) {
-        self.injected = Injected::new(modes, power_at);
+        self.injected.begin(modes, power_at);
     }
 
     /// One scan: generators advance, frames that are due are appended to `out`.

@@ -47,7 +47,9 @@ impl Rig {
     }
 
     fn step_tcms(&mut self) -> TrainInputs {
-        if self.injected.set_in(self.now, &mut self.faults) {
+        let rims = Speed::from_mps(self.wheel.velocity_mps().abs());
+        if let Some(faults) = self.injected.step(self.now, rims) {
+            self.faults = faults;
             self.train.set_faults(self.faults.equipment);
             self.desk.faults = self.faults.desk;
             self.tcms_port.fault = self.faults.tcms;
@@ -59,7 +61,7 @@ impl Rig {
         let inputs = TcmsInputs {
             cabs: desk.cabs(self.tcms.data()),
             doors_closed: desk.doors_proved(),
-            main_reservoir_low: on(TrainSwitch::MainReservoirLow),
+            main_reservoir_low: desk.main_reservoir_low(),
             eb_cut_out: on(TrainSwitch::EbCutOut),
             security_brake: on(TrainSwitch::SecurityBrake),
             parking_brake: on(TrainSwitch::ParkingBrake),

@@ -1,12 +1,14 @@
 //! Faults of the train and its wiring, each at its place: equipment of cars, the cab's contacts, what
 //! TCMS sends.
 
-use protocol::injection::{Effect, FaultMode, Place};
-use protocol::{Duration, Instant};
+use protocol::injection::{Effect, FaultMode, OccurrenceState, Place};
+use protocol::{Duration, Instant, Speed};
 use thiserror::Error;
 
 use crate::stimulus::TcmsCondition;
 use crate::train::{CarSet, EquipmentFaults, Role, TrainData};
+
+use super::random::Random;
 
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,12 +19,18 @@ pub struct DeskFaults {
     pub hcr: Option<bool>,
     /// Voltage of the master controller's potentiometer, whatever its position.
     pub volts: Option<f64>,
+    /// How much more it gives than its position says, V.
+    pub volts_offset: f64,
+    /// The main reservoir's pressure switch, whatever the pressure.
+    pub main_reservoir_low: Option<bool>,
 }
 
+/// Sets the generators of faults apart from all others of the bench.
+const FAULTS: u64 = 0xFA01_75ED;
 /// Voltage of a broken potentiometer, V: its supply or nothing.
 const SUPPLY_V: f64 = 10.0;
 
-/// All faults of the train that have set in.
+/// All faults of the train that act.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainFaults {
     /// Equipment of cars.
@@ -33,33 +41,74 @@ pub struct TrainFaults {
     pub tcms: Option<TcmsCondition>,
 }
 
-/// Fault modes that are on the train, by when they set in.
-#[derive(Debug, Default)]
+/// Fault modes that are on the train, and how much of each acts.
+///
+/// Each has a generator of its own: whatever is injected, the bench draws as without it.
+#[derive(Debug)]
 pub struct Injected {
-    modes: Vec<(Instant, FaultMode)>,
+    modes: Vec<Acting>,
+    random: Random,
+    from: Instant,
+}
+
+#[derive(Debug)]
+struct Acting {
+    mode: FaultMode,
+    occurs: OccurrenceState,
+    random: Random,
+    strength: f64,
 }
 
 impl Injected {
-    /// Those of `modes` that are on the train; their times count from `from`.
-    pub fn new(modes: &[FaultMode], from: Instant) -> Self {
-        let mut modes: Vec<_> = modes
-            .iter()
-            .filter(|mode| mode.place.on_train())
-            .map(|mode| (from + Duration::from_secs(mode.onset_s), mode.clone()))
-            .collect();
-        modes.sort_by_key(|(at, _)| *at);
-        modes.reverse();
-        Self { modes }
+    /// None yet.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            modes: Vec::new(),
+            random: Random::new(seed ^ FAULTS),
+            from: Instant::ZERO,
+        }
     }
 
-    /// Adds what sets in by now to `faults`; whether anything did.
-    pub fn set_in(&mut self, now: Instant, faults: &mut TrainFaults) -> bool {
-        let mut changed = false;
-        while let Some((_, mode)) = self.modes.pop_if(|(at, _)| *at <= now) {
-            add(&mode, faults);
-            changed = true;
+    /// Those of `modes` that are on the train; their times count from `from`.
+    pub fn begin(&mut self, modes: &[FaultMode], from: Instant) {
+        self.from = from;
+        let random = &mut self.random;
+        let on_train = modes.iter().filter(|mode| mode.place.on_train());
+        self.modes = on_train
+            .map(|mode| Acting {
+                mode: mode.clone(),
+                occurs: OccurrenceState::new(
+                    mode.occurs,
+                    Instant::ZERO + Duration::from_secs(mode.onset_s),
+                ),
+                random: random.fork(),
+                strength: 0.0,
+            })
+            .collect();
+    }
+
+    /// What is wrong now, when that has changed; the wheels turn at `rims`.
+    pub fn step(&mut self, now: Instant, rims: Speed) -> Option<TrainFaults> {
+        if now < self.from {
+            return None;
         }
-        changed
+        let since = Instant::ZERO + now.since(self.from);
+        let mut changed = false;
+        for acting in &mut self.modes {
+            let random = &mut acting.random;
+            let strength = acting.occurs.step(since, rims, &mut || random.unit());
+            changed |= strength != acting.strength;
+            acting.strength = strength;
+        }
+        changed.then(|| {
+            let mut faults = TrainFaults::default();
+            for Acting { mode, strength, .. } in &self.modes {
+                if let Some(effect) = mode.effect.at_strength(*strength) {
+                    add(mode, effect, &mut faults);
+                }
+            }
+            faults
+        })
     }
 }
 
@@ -123,7 +172,7 @@ fn place_from_car(car: u8) -> Option<usize> {
 }
 
 /// The catalogue lets only these effects happen at these places.
-fn add(mode: &FaultMode, faults: &mut TrainFaults) {
+fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
     let place = mode.car.and_then(place_from_car);
     let car = place.map_or(CarSet::NONE, CarSet::one);
     let on = |set: &mut CarSet| *set = set.with(car);
@@ -132,8 +181,13 @@ fn add(mode: &FaultMode, faults: &mut TrainFaults) {
         desk,
         tcms,
     } = faults;
-    match (mode.place, mode.effect) {
+    match (mode.place, effect) {
         (Place::Inverter, Effect::Dead) => on(&mut equipment.inverters_dead),
+        (Place::Inverter, Effect::Gain { factor }) => {
+            if let Some(lost) = place.and_then(|at| equipment.motor_lost.get_mut(at)) {
+                *lost = 1.0 - factor;
+            }
+        }
         (Place::Regeneration, Effect::Dead) => on(&mut equipment.regeneration_lost),
         (Place::BrakeUnit, Effect::Dead) => on(&mut equipment.brake_units_dead),
         (Place::BrakeCylinder, Effect::StuckOn) => on(&mut equipment.brakes_stuck),
@@ -144,6 +198,9 @@ fn add(mode: &FaultMode, faults: &mut TrainFaults) {
         }
         (Place::ControllerPot, Effect::StuckOn) => desk.volts = Some(SUPPLY_V),
         (Place::ControllerPot, Effect::StuckOff) => desk.volts = Some(0.0),
+        (Place::ControllerPot, Effect::Offset { by }) => desk.volts_offset = by,
+        (Place::MainReservoir, Effect::StuckOn) => desk.main_reservoir_low = Some(true),
+        (Place::MainReservoir, Effect::StuckOff) => desk.main_reservoir_low = Some(false),
         (Place::DoorContact, Effect::StuckOn) => desk.doors = Some(true),
         (Place::DoorContact, Effect::StuckOff) => desk.doors = Some(false),
         (Place::HeadControlRelay, Effect::StuckOn) => desk.hcr = Some(true),

@@ -33,6 +33,8 @@ pub struct EquipmentFaults {
     pub regeneration_lost: CarSet,
     /// Brake control units that do nothing and say nothing; the emergency brake's valve still works.
     pub brake_units_dead: CarSet,
+    /// Share of traction and electric brake that each inverter does not give, 0..1.
+    pub motor_lost: PerCar,
     /// Cars whose cylinders keep the pressure they have had.
     pub brakes_stuck: CarSet,
     /// Share of the service brake's pressure that is lost on the way to each car's cylinders, 0..1.

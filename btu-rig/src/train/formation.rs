@@ -303,6 +303,7 @@ impl Formation {
             if no_motor.contains(i) || motor_n[i] < 0.0 && no_electric.contains(i) {
                 motor_n[i] = 0.0;
             }
+            motor_n[i] *= 1.0 - self.faults.motor_lost[i];
             if no_service.contains(i) {
                 air_n[i] = 0.0;
             }

@@ -43,21 +43,33 @@ const DELAY: Allowed = ("delay", 0.0, LONGEST_DELAY_MS);
 fn allowed(place: Place) -> &'static [Allowed] {
     match place {
         Place::AtpAntenna => &[DEAD, ("gain", 0.0, 10.0)],
-        Place::AtpReceiver => &[DEAD, STUCK_ON, ("offset", -100.0, 100.0)],
+        Place::AtpReceiver => &[
+            DEAD,
+            STUCK_ON,
+            ("gain", 0.0, 10.0),
+            ("offset", -100.0, 100.0),
+            ("limit", 0.0, 100.0),
+        ],
         Place::SpeedSensor1 | Place::SpeedSensor2 => &[DEAD, GAIN, NOISE],
         Place::EbRelay => &[DEAD, STUCK_ON, STUCK_OFF, DELAY],
-        Place::FsbOutput | Place::DoorInput | Place::DoorOutput => &[DEAD, STUCK_ON, STUCK_OFF],
-        Place::MarkerAntenna => &[DEAD, ("deaf", 1.0, 4.0)],
+        Place::FsbOutput => &[DEAD, STUCK_ON, STUCK_OFF, DELAY],
+        Place::DoorInput | Place::DoorOutput | Place::CabInput => &[DEAD, STUCK_ON, STUCK_OFF],
+        Place::ModeInput | Place::ControllerInput => &[DEAD, STUCK_OFF],
+        Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
+        Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
+        Place::TestCode => &[("gain", 0.0, 10.0)],
+        Place::TestSpeed => &[GAIN],
+        // Dips a second.
+        Place::PowerSupply => &[DEAD, ("noise", 0.0, 1.0)],
+        Place::Clock => &[("gain", 0.5, 2.0)],
+        Place::Inverter => &[DEAD, ("gain", 0.0, 1.0)],
         Place::Tra
-        | Place::TestBoard
-        | Place::Inverter
-        | Place::Regeneration
-        | Place::BrakeUnit => &[DEAD],
-        Place::FskReceiver
+        | Place::TwcAntenna
+        | Place::FskReceiver
         | Place::FskTransmitter
         | Place::TcmsReceiver
         | Place::TcmsTransmitter => &[DEAD, BIT_ERRORS],
-        Place::TwcCpu => &[("offset", -32_768.0, 32_767.0)],
+        Place::TwcCpu => &[DEAD, DELAY, ("offset", -32_768.0, 32_767.0)],
         Place::AtoCpu => &[
             DEAD,
             STUCK_ON,
@@ -68,7 +80,9 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::TrackDatabase => &[("offset", -1000.0, 1000.0)],
         Place::WheelParameter => &[("gain", 0.5, 2.0)],
         Place::BrakeCylinder => &[STUCK_ON, ("gain", 0.0, 1.0)],
-        Place::ControllerPot | Place::DoorContact | Place::HeadControlRelay => {
+        // V.
+        Place::ControllerPot => &[STUCK_ON, STUCK_OFF, ("offset", -10.0, 10.0)],
+        Place::DoorContact | Place::HeadControlRelay | Place::MainReservoir => {
             &[STUCK_ON, STUCK_OFF]
         }
         Place::Tcms => &[DEAD, STUCK_ON],
@@ -106,7 +120,7 @@ pub(super) fn check(fault: &FaultMode) -> Result<(), ConfigError> {
     in_range(fault, "weight", fault.weight, LEAST_WEIGHT, MOST_WEIGHT)?;
     in_range(fault, "onset_s", fault.onset_s, 0.0, LATEST_ONSET_S)?;
     let place = name(fault.place);
-    let stored = matches!(fault.place, Place::TrackDatabase | Place::WheelParameter);
+    let stored = fault.place.is_stored();
     for (key, given) in [
         ("onset_s", fault.onset_s > 0.0),
         ("occurs", !fault.occurs.is_always()),

@@ -40,15 +40,23 @@ pub enum Place {
     DoorInput,
     /// Door enable outputs.
     DoorOutput,
+    /// Input of the head control relay.
+    CabInput,
+    /// Input of the mode switch.
+    ModeInput,
+    /// Input of the master controller's position.
+    ControllerInput,
     /// Marker antenna.
     MarkerAntenna,
     /// Trigger receiver assembly.
     Tra,
+    /// TWC antenna, both ways; the TWC TEST module's frames enter behind it.
+    TwcAntenna,
     /// TWC modem, receiving side.
     FskReceiver,
     /// TWC modem, sending side.
     FskTransmitter,
-    /// TWC CPU: content of what it hands on.
+    /// TWC CPU: what it hands on, and when.
     TwcCpu,
     /// RS-485 link to TCMS, receiving side.
     TcmsReceiver,
@@ -56,6 +64,14 @@ pub enum Place {
     TcmsTransmitter,
     /// TEST board.
     TestBoard,
+    /// Level of the TEST board's code generator.
+    TestCode,
+    /// Pulses of the TEST board's speed generator.
+    TestSpeed,
+    /// The unit's power supply.
+    PowerSupply,
+    /// The unit's clock, which also times its pulse inputs.
+    Clock,
     /// ATO processor's effort.
     AtoCpu,
     /// Stop points in the stored track database.
@@ -78,6 +94,8 @@ pub enum Place {
     HeadControlRelay,
     /// What TCMS sends on RS-485.
     Tcms,
+    /// Pressure switch of the main reservoir.
+    MainReservoir,
 }
 
 impl Place {
@@ -93,7 +111,13 @@ impl Place {
                 | Self::DoorContact
                 | Self::HeadControlRelay
                 | Self::Tcms
+                | Self::MainReservoir
         )
+    }
+
+    /// Data the unit has stored: wrong from power-up on, or not at all.
+    pub const fn is_stored(self) -> bool {
+        matches!(self, Self::TrackDatabase | Self::WheelParameter)
     }
 
     /// On one of the train's cars, which the mode must name.

@@ -1,6 +1,6 @@
 //! Faults of the train act where they sit, from their onset on, and nothing on the bench mends them.
 
-use protocol::injection::{FaultCatalogue, FaultMode};
+use protocol::injection::{FaultCatalogue, FaultMode, Occurrence};
 use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
@@ -25,6 +25,7 @@ fn mode(id: &str) -> FaultMode {
     let mode = catalogue.fault(id).expect(id).clone();
     FaultMode {
         onset_s: ONSET_S,
+        occurs: Occurrence::Always,
         ..mode
     }
 }

@@ -1,0 +1,79 @@
+//! Power supply and clock of the unit: what comes before everything else it does.
+
+use protocol::injection::{Effect, Place};
+use protocol::{Duration, Instant};
+
+use super::{Faults, one_in_scan};
+
+/// Length of a single dip: enough to reset the processors.
+const DIP: Duration = Duration::from_ms(100);
+
+/// What the supply does in a scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supply {
+    /// Voltage is there.
+    Up,
+    /// It is not.
+    Down,
+    /// It has just come back.
+    Back,
+}
+
+/// Supply and clock.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PowerAndClock {
+    down: bool,
+    down_until: Instant,
+    last: Instant,
+    own: Instant,
+}
+
+impl PowerAndClock {
+    /// Powered up again at `now`; the unit's own time begins anew.
+    pub fn restarted(now: Instant) -> Self {
+        Self {
+            last: now,
+            ..Self::default()
+        }
+    }
+
+    /// One scan of the supply.
+    pub fn supply(&mut self, now: Instant, faults: &mut Faults) -> Supply {
+        let dips = match faults.at(Place::PowerSupply) {
+            Some(Effect::Dead) => true,
+            Some(Effect::Noise { per_s }) => faults.chance(one_in_scan(per_s)),
+            _ => false,
+        };
+        if dips {
+            self.down_until = now + DIP;
+        }
+        let was_down = self.down;
+        self.down = now < self.down_until;
+        match (was_down, self.down) {
+            (_, true) => Supply::Down,
+            (true, false) => Supply::Back,
+            (false, false) => Supply::Up,
+        }
+    }
+
+    /// Without voltage nothing is taken.
+    pub fn down(&self) -> bool {
+        self.down
+    }
+
+    /// The unit's own time for the true time since power-up.
+    pub fn own(&mut self, now: Instant, rate: f64) -> Instant {
+        let passed = now.since(self.last);
+        self.last = now;
+        self.own += at_rate(passed, rate);
+        self.own
+    }
+}
+
+/// A time as a clock that runs this many times too fast tells it.
+pub fn at_rate(passed: Duration, rate: f64) -> Duration {
+    if rate == 1.0 {
+        return passed;
+    }
+    Duration::from_secs(passed.as_secs() * rate)
+}
