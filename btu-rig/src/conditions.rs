@@ -1,4 +1,4 @@
-//! How the train and track of one run differ from what the unit is told.
+//! How the train, track and sensors of one run differ from what the unit is told.
 
 /// Greatest factor on dead times and time constants that may be asked for.
 pub const MAX_DELAY_FACTOR: f64 = 5.0;
@@ -36,6 +36,42 @@ pub struct Conditions {
     pub marker_offsets_m: [f64; 4],
     /// Disturbing force.
     pub disturbance: Disturbance,
+}
+
+/// How sensors and signal sources differ from ideal ones, and how much they scatter. The default does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensors {
+    /// Level in the ATP antenna over the intended one: height of the antenna, its tuning.
+    pub level_factor: f64,
+    /// Noise of that level from scan to scan, standard deviation as a share of it.
+    pub level_noise: f64,
+    /// Added to the carrier, Hz.
+    pub carrier_offset_hz: f64,
+    /// Added to the code rate, Hz.
+    pub rate_offset_hz: f64,
+    /// Noise of the code rate from scan to scan, standard deviation, Hz.
+    pub rate_jitter_hz: f64,
+    /// Place of each tooth of the tone wheels, standard deviation as a share of the pitch.
+    pub tooth_pitch: f64,
+    /// Picks which teeth lie where.
+    pub teeth_seed: u64,
+    /// Spurious pulses of each tachometer channel, 1/s.
+    pub spurious_pulses_per_s: f64,
+}
+
+impl Default for Sensors {
+    fn default() -> Self {
+        Self {
+            level_factor: 1.0,
+            level_noise: 0.0,
+            carrier_offset_hz: 0.0,
+            rate_offset_hz: 0.0,
+            rate_jitter_hz: 0.0,
+            tooth_pitch: 0.0,
+            teeth_seed: 0,
+            spurious_pulses_per_s: 0.0,
+        }
+    }
 }
 
 impl Default for Conditions {

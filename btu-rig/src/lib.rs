@@ -1,6 +1,7 @@
 //! Everything around the unit under test.
 //!
-//! * [`conditions`]: how train and track differ from what the unit is told;
+//! * [`conditions`]: how train, track and sensors differ from what the unit is told;
+//! * [`bench_scatter`]: how good units, trains and benches differ, drawn for many runs;
 //! * [`stimulus`]: what a procedure may do to the unit, as typed values;
 //! * [`tape`]: what was done and when, to do it again;
 //! * [`lever`]: positions of the master controller;
@@ -14,6 +15,7 @@
 //!
 //! No clock, no thread, no port: the edge steps everything.
 
+pub mod bench_scatter;
 pub mod conditions;
 pub mod drive;
 pub mod lever;

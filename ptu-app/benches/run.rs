@@ -42,6 +42,7 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
         train: TrainData::line6(),
         faults: Vec::new(),
         seed: 1,
+        scatter: None,
         serial: None,
         realtime: false,
     };

@@ -6,10 +6,11 @@ use protocol::config::ConfigError;
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::conditions::{Conditions, Disturbance, MAX_DELAY_FACTOR};
-use crate::rig::random::Random;
+use crate::rig::random::{Random, standard_normal};
 
 /// A quantity that differs from run to run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
 pub enum Spread {
     /// Any value of a range as likely as any other.
     Uniform {
@@ -44,7 +45,7 @@ impl<'de> Deserialize<'de> for Spread {
 }
 
 impl Spread {
-    fn draw(self, random: &mut Random) -> f64 {
+    pub(crate) fn draw(self, random: &mut Random) -> f64 {
         // Both kinds take two numbers, so that changing one quantity leaves the others as they are.
         let (first, second) = (random.unit(), random.unit());
         match self {
@@ -62,13 +63,22 @@ impl Spread {
     }
 }
 
-/// Box and Muller: a standard normal number of two uniform ones.
-fn standard_normal(first: f64, second: f64) -> f64 {
-    (-2.0 * (1.0 - first).ln()).sqrt() * (std::f64::consts::TAU * second).cos()
+/// Refuses spreads that leave their range: each with its key, least and greatest value.
+pub(crate) fn check_spreads(spreads: &[(&str, Spread, f64, f64)]) -> Result<(), ConfigError> {
+    for &(key, spread, low, high) in spreads {
+        let (least, most) = spread.range();
+        // A negated comparison so that not-a-number is refused, too.
+        if !(low <= least && least <= most && most <= high) {
+            return Err(ConfigError::Conflict(format!(
+                "{key}: values from {least} to {most} are not all within {low} to {high}"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// All that differs; see `scripts/scatter.toml`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {
     /// Passengers, kg; what the train cannot carry stays behind.
@@ -108,8 +118,8 @@ impl Scatter {
         Ok(scatter)
     }
 
-    fn check(&self) -> Result<(), ConfigError> {
-        for (key, spread, low, high) in [
+    pub(crate) fn check(&self) -> Result<(), ConfigError> {
+        check_spreads(&[
             ("load_kg", self.load_kg, 0.0, 1e6),
             (
                 "gradient_offset_permille",
@@ -122,16 +132,7 @@ impl Scatter {
             ("brake_factor", self.brake_factor, 0.2, 2.0),
             ("wheel_factor", self.wheel_factor, 0.8, 1.2),
             ("marker_offset_m", self.marker_offset_m, -5.0, 5.0),
-        ] {
-            let (least, most) = spread.range();
-            // A negated comparison so that not-a-number is refused, too.
-            if !(low <= least && least <= most && most <= high) {
-                return Err(ConfigError::Conflict(format!(
-                    "{key}: values from {least} to {most} are not all within {low} to {high}"
-                )));
-            }
-        }
-        Ok(())
+        ])
     }
 
     /// Draws a run's train and day; the same for the same `seed`.

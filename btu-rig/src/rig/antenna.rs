@@ -2,14 +2,28 @@
 
 use protocol::SCAN;
 
+use crate::conditions::Sensors;
+
+use super::random::Random;
 use super::ranges::U16_MAX;
 
 /// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
 pub const MAX_RATE_HZ: f64 = 655.0;
 
-/// The signal in the antenna; all 0 = none.
-#[derive(Debug, Default)]
+/// What is put into the antenna, and what arrives there.
+#[derive(Debug)]
 pub struct Antenna {
+    wanted: Wanted,
+    sensors: Sensors,
+    random: Random,
+    /// Noise of this scan: of the rate, Hz, and of the level as a share of it.
+    rate_noise_hz: f64,
+    level_noise: f64,
+}
+
+/// The signal that is put in; all 0 = none.
+#[derive(Debug, Default)]
+struct Wanted {
     carrier_hz: f64,
     rate_hz: f64,
     level_mv: f64,
@@ -18,48 +32,81 @@ pub struct Antenna {
 }
 
 impl Antenna {
+    /// No signal; `random` is for noise.
+    pub fn new(random: Random) -> Self {
+        Self {
+            wanted: Wanted::default(),
+            sensors: Sensors::default(),
+            random,
+            rate_noise_hz: 0.0,
+            level_noise: 0.0,
+        }
+    }
+
+    /// Sets how what arrives differs from what is put in.
+    pub fn set_sensors(&mut self, sensors: Sensors) {
+        self.sensors = sensors;
+    }
+
     /// Puts a steady signal into the antenna.
     pub fn set(&mut self, carrier_hz: f64, rate_hz: f64, level_mv: f64) {
-        *self = Self {
+        self.wanted = Wanted {
             carrier_hz,
             rate_hz,
             level_mv,
-            ..Self::default()
+            ..Wanted::default()
         };
     }
 
     /// Lets rate and level drift from where they are.
     pub fn drift(&mut self, rate_hz_per_s: f64, level_mv_per_s: f64) {
-        self.rate_hz_per_s = rate_hz_per_s;
-        self.level_mv_per_s = level_mv_per_s;
+        self.wanted.rate_hz_per_s = rate_hz_per_s;
+        self.wanted.level_mv_per_s = level_mv_per_s;
     }
 
     /// Takes the signal away.
     pub fn off(&mut self) {
-        *self = Self::default();
+        self.wanted = Wanted::default();
     }
 
-    /// One scan of drift.
+    /// One scan of drift and noise.
     pub fn step(&mut self) {
         let seconds = SCAN.as_secs();
-        self.rate_hz = (self.rate_hz + self.rate_hz_per_s * seconds).clamp(0.0, MAX_RATE_HZ);
-        self.level_mv = (self.level_mv + self.level_mv_per_s * seconds).clamp(0.0, U16_MAX);
+        let Wanted {
+            rate_hz_per_s,
+            level_mv_per_s,
+            ..
+        } = self.wanted;
+        let wanted = &mut self.wanted;
+        wanted.rate_hz = (wanted.rate_hz + rate_hz_per_s * seconds).clamp(0.0, MAX_RATE_HZ);
+        wanted.level_mv = (wanted.level_mv + level_mv_per_s * seconds).clamp(0.0, U16_MAX);
+        if self.sensors != Sensors::default() {
+            self.rate_noise_hz = self.sensors.rate_jitter_hz * self.random.normal();
+            self.level_noise = self.sensors.level_noise * self.random.normal();
+        }
     }
 
     /// Carrier as sent, Hz.
     pub fn carrier_hz(&self) -> u16 {
-        self.carrier_hz.round() as u16
+        off_by(self.wanted.carrier_hz, self.sensors.carrier_offset_hz).round() as u16
     }
 
     /// Code rate as sent, 0.01 Hz.
     pub fn rate_chz(&self) -> u16 {
-        (self.rate_hz * 100.0).round() as u16
+        let off_hz = self.sensors.rate_offset_hz + self.rate_noise_hz;
+        (off_by(self.wanted.rate_hz, off_hz) * 100.0).round() as u16
     }
 
     /// Level as sent, mV.
     pub fn level_mv(&self) -> u16 {
-        self.level_mv.round() as u16
+        let factor = self.sensors.level_factor * (1.0 + self.level_noise);
+        (self.wanted.level_mv * factor).round() as u16
     }
+}
+
+/// A frequency that is there is off by so much; one that is not stays away.
+fn off_by(hz: f64, off_hz: f64) -> f64 {
+    if hz > 0.0 { hz + off_hz } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -68,7 +115,7 @@ mod tests {
 
     #[test]
     fn drift_is_linear_and_stops_at_nothing() {
-        let mut antenna = Antenna::default();
+        let mut antenna = Antenna::new(Random::new(1));
         antenna.set(3000.0, 15.0, 500.0);
         antenna.drift(-0.5, -100.0);
         for _ in 0..200 {

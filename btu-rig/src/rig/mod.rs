@@ -51,6 +51,7 @@ use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
+pub use random::Random;
 pub use train_faults::{Misplaced, check_places};
 pub use truth::{PairEfforts, Truth};
 
@@ -58,7 +59,6 @@ use antenna::Antenna;
 use desk::Desk;
 use link_watch::LinkWatch;
 use markers::Markers;
-use random::Random;
 use rolling::weight_shares;
 use sample::Recorder;
 use tacho::Tacho;
@@ -80,6 +80,7 @@ pub struct Rig {
     level_mv: f64,
     /// Way the configured wheel rolls for a pulse, m.
     metres_per_pulse: f64,
+    pulses_per_turn: u32,
     conditions: Conditions,
     antenna: Antenna,
     /// The antenna signal follows the codes of the section laid along the way.
@@ -137,6 +138,7 @@ impl Rig {
         let wayside = Wayside::new(&line.sections[0], random.fork());
         // A session number is never 0.
         let session = random.next_u64() as u32 | 1;
+        let antenna = Antenna::new(random.fork());
         let conditions = Conditions::default();
         let train_data = TrainData::line6();
         let mut rig = Self {
@@ -144,8 +146,9 @@ impl Rig {
             codes: config.codes.clone(),
             level_mv: config.receiver.level_nominal_mv,
             metres_per_pulse: pulse_m,
+            pulses_per_turn: config.tacho.pulses_per_turn,
             conditions,
-            antenna: Antenna::default(),
+            antenna,
             codes_along: false,
             code_put_in: None,
             wheel: Wheel::default(),

@@ -37,10 +37,21 @@ impl Random {
         ((u128::from(self.next_u64()) * end as u128) >> 64) as usize
     }
 
+    /// Normally distributed with mean 0 and standard deviation 1.
+    pub fn normal(&mut self) -> f64 {
+        let (first, second) = (self.unit(), self.unit());
+        standard_normal(first, second)
+    }
+
     /// Time to the next event of a Poisson process of `per_s` events a second, s.
     pub fn waiting_time_s(&mut self, per_s: f64) -> f64 {
         -(1.0 - self.unit()).ln() / per_s
     }
+}
+
+/// Box and Muller: a standard normal number of two uniform ones.
+pub fn standard_normal(first: f64, second: f64) -> f64 {
+    (-2.0 * (1.0 - first).ln()).sqrt() * (std::f64::consts::TAU * second).cos()
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 
 use protocol::{Duration, SCAN};
 
-use crate::conditions::Conditions;
+use crate::conditions::{Conditions, Sensors};
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
+use super::random::Random;
 use super::tcms::pair_cars;
 use super::{PairEfforts, Rig, Truth};
 
@@ -36,6 +37,22 @@ impl Rig {
             tacho.set_metres_per_pulse(pulse_m, way_m);
         }
         self.conditions = conditions;
+    }
+
+    /// Changes how what sensors and antenna give differs from the ideal, from now on.
+    pub fn set_sensors(&mut self, sensors: &Sensors) {
+        self.antenna.set_sensors(*sensors);
+        let random = &mut Random::new(sensors.teeth_seed);
+        for tacho in &mut self.tachos {
+            tacho.set_sensors(sensors, self.pulses_per_turn, random);
+        }
+    }
+
+    /// Passengers aboard unless a procedure says otherwise, kg; what the train cannot carry stays behind.
+    pub fn set_usual_load(&mut self, passengers_kg: f64) {
+        let load_kg = passengers_kg.clamp(0.0, self.train.full_load_kg());
+        self.tcms_port.usual_load_kg = load_kg;
+        self.tcms_port.load_kg = load_kg;
     }
 
     /// What the train really does at the scan's end.

@@ -2,6 +2,7 @@
 
 use protocol::SCAN;
 
+use crate::conditions::Sensors;
 use crate::stimulus::TachoCondition;
 
 use super::motion::Motion;
@@ -14,6 +15,9 @@ pub const MAX_AGE_US: f64 = u16::MAX as f64;
 /// Most spurious pulses in one scan; what lies beyond is not told apart by any counter input.
 const MAX_NOISE_PER_SCAN: usize = 100;
 
+/// Farthest a tooth may lie from its place, pitches: never on the other side of its neighbour.
+const MAX_DISPLACED: f64 = 0.3;
+
 /// One channel's generator.
 #[derive(Debug)]
 pub struct Tacho {
@@ -24,6 +28,12 @@ pub struct Tacho {
     base_way_m: f64,
     base_phase: f64,
     phase: f64,
+    /// How far each tooth of a turn lies from its place, pitches; none = all lie right.
+    teeth: Vec<f64>,
+    /// The last tooth that passed.
+    passed: f64,
+    /// Spurious pulses of a good channel, 1/s.
+    spurious_per_s: f64,
     /// Time until the next spurious pulse, s.
     noise_in_s: f64,
     count: u16,
@@ -40,6 +50,9 @@ impl Tacho {
             base_way_m: 0.0,
             base_phase: PHASES[channel],
             phase: PHASES[channel],
+            teeth: Vec::new(),
+            passed: PHASES[channel].floor(),
+            spurious_per_s: 0.0,
             noise_in_s: f64::INFINITY,
             count: 0,
             age_us: MAX_AGE_US,
@@ -57,11 +70,53 @@ impl Tacho {
     pub fn set_condition(&mut self, condition: TachoCondition, way_m: f64) {
         self.base_phase = self.phase;
         self.base_way_m = way_m;
-        self.noise_in_s = match condition {
-            TachoCondition::Noisy { per_s } => self.random.waiting_time_s(per_s),
-            _ => f64::INFINITY,
-        };
         self.condition = condition;
+        self.await_noise();
+    }
+
+    /// Sets how a good channel with a wheel of so many teeth differs from an ideal one.
+    pub fn set_sensors(&mut self, sensors: &Sensors, teeth: u32, random: &mut Random) {
+        let places = (0..teeth).map(|_| sensors.tooth_pitch * random.normal());
+        self.teeth = places
+            .map(|place| place.clamp(-MAX_DISPLACED, MAX_DISPLACED))
+            .collect();
+        self.passed = self.tooth_at(self.phase);
+        self.spurious_per_s = sensors.spurious_pulses_per_s;
+        self.await_noise();
+    }
+
+    fn await_noise(&mut self) {
+        let per_s = self.noise_per_s();
+        self.noise_in_s = if per_s > 0.0 {
+            self.random.waiting_time_s(per_s)
+        } else {
+            f64::INFINITY
+        };
+    }
+
+    fn noise_per_s(&self) -> f64 {
+        match self.condition {
+            TachoCondition::Noisy { per_s } => self.spurious_per_s + per_s,
+            _ => self.spurious_per_s,
+        }
+    }
+
+    /// How far a tooth lies from its place, pitches.
+    fn displaced(&self, tooth: f64) -> f64 {
+        let place = tooth.rem_euclid(self.teeth.len().max(1) as f64);
+        self.teeth.get(place as usize).copied().unwrap_or_default()
+    }
+
+    /// The last tooth that has passed at this phase.
+    fn tooth_at(&self, phase: f64) -> f64 {
+        let nearest = phase.floor();
+        if phase < nearest + self.displaced(nearest) {
+            nearest - 1.0
+        } else if phase >= nearest + 1.0 + self.displaced(nearest + 1.0) {
+            nearest + 1.0
+        } else {
+            nearest
+        }
     }
 
     /// Its condition.
@@ -78,17 +133,19 @@ impl Tacho {
         };
         let pulse_m = self.metres_per_pulse / factor;
         let phase = self.base_phase + (motion.way_m - self.base_way_m) / pulse_m;
-        let edges = phase.floor() - self.phase.floor();
-        self.phase = phase;
+        let passed = self.tooth_at(phase);
+        let edges = passed - self.passed;
+        (self.phase, self.passed) = (phase, passed);
         if self.condition == TachoCondition::Dead {
             return;
         }
         if edges > 0.0 {
-            let edge_way_m = motion.way_m - (phase - phase.floor()) * pulse_m;
+            let edge_way_m = motion.way_m - (phase - (passed + self.displaced(passed))) * pulse_m;
             self.count = self.count.wrapping_add(edges as u16);
             self.age_us = self.age_us.min(motion.age_of_way_s(edge_way_m) * 1e6);
         }
-        if let TachoCondition::Noisy { per_s } = self.condition {
+        let per_s = self.noise_per_s();
+        if per_s > 0.0 {
             self.add_noise(per_s);
         }
     }

@@ -20,6 +20,8 @@ pub struct TcmsPort {
     pub ato_enable: bool,
     /// Passengers, kg.
     pub load_kg: f64,
+    /// Passengers as long as nobody says otherwise, kg.
+    pub usual_load_kg: f64,
     alive: u8,
     next_due: Instant,
     moved: Option<Instant>,
@@ -33,6 +35,7 @@ impl Default for TcmsPort {
             fault: None,
             ato_enable: true,
             load_kg: 0.0,
+            usual_load_kg: 0.0,
             alive: 0,
             next_due: Instant::ZERO,
             moved: None,
@@ -41,11 +44,11 @@ impl Default for TcmsPort {
 }
 
 impl TcmsPort {
-    /// Good, ATO permitted, empty; the alive counter goes on.
+    /// Good, ATO permitted, loaded as usual; the alive counter goes on.
     pub fn reset(&mut self) {
         self.condition = TcmsCondition::Good;
         self.ato_enable = true;
-        self.load_kg = 0.0;
+        self.load_kg = self.usual_load_kg;
     }
 
     /// Nothing comes through, either way.

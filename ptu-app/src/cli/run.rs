@@ -1,7 +1,9 @@
 //! `ptu run`: check procedures.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::procedure::loader::{Loaded, load};
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
@@ -13,7 +15,7 @@ use serde_json::json;
 
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
-use crate::data::{ScriptsDirectory, sha256};
+use crate::data::{ScriptsDirectory, read, sha256};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, did_you_mean};
@@ -21,6 +23,9 @@ use crate::link::Endpoint;
 use crate::report::Target;
 use crate::run::{self, BenchSetup, RunPlan, Task, select};
 use crate::stop::Stop;
+
+/// How good units, trains and benches differ, in the scripts directory.
+const BENCH_SCATTER: &str = "bench_scatter.toml";
 
 /// Run check procedures; by default all under scripts/ but those on request only
 ///
@@ -30,6 +35,7 @@ use crate::stop::Stop;
 ///   ptu run --unit serial:/dev/ttyUSB0@115200   on a unit on a port
 ///   ptu run --check                             all script errors, nothing driven
 ///   ptu run --list atp/overspeed                what would be done
+///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
 ///   ptu run --report out.json --report out.junit.xml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -64,6 +70,9 @@ pub struct RunArguments {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Draw by the seed what differs between good units, trains and benches: noise, wheels, load, timing
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
+    scatter: Option<Option<PathBuf>>,
     /// Run the embedded unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
@@ -201,9 +210,26 @@ impl RunArguments {
             train,
             faults,
             seed: self.seed,
+            scatter: self.scattered(directory)?,
             serial: self.serial_no.clone(),
             realtime: self.realtime,
         })
+    }
+
+    /// How units, trains and benches differ, if they shall.
+    fn scattered(
+        &self,
+        directory: &ScriptsDirectory,
+    ) -> Result<Option<Arc<BenchScatter>>, Failure> {
+        let Some(given) = &self.scatter else {
+            return Ok(None);
+        };
+        let file = given
+            .clone()
+            .unwrap_or_else(|| directory.path().join(BENCH_SCATTER));
+        let scatter = BenchScatter::from_toml(&read(&file)?)
+            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?;
+        Ok(Some(Arc::new(scatter)))
     }
 
     /// All when some are named, else those that are not run on request only.

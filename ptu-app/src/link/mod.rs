@@ -1,9 +1,11 @@
 //! Links to a unit: the embedded one, or one on a port.
 
+mod delayed;
 mod pace;
 mod sim;
 mod wire;
 
+pub use delayed::Delayed;
 pub use pace::Pace;
 pub use sim::{SIM_SERIAL, SimLink};
 pub use wire::{Endpoint, WireLink};

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
 use ato_under_test::Setup;
+use btu_rig::bench_scatter::{BenchScatter, DrawnBench};
 use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::stimulus::Stimulus;
@@ -24,13 +25,15 @@ use super::session::{Session, SessionEvent};
 use super::{RunPlan, Task, stream};
 use crate::data::DataFile;
 use crate::failure::Failure;
-use crate::link::{Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
+use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
 use crate::stop::Stop;
 
 /// Time a unit may take from power-up, or from first contact, until it is ready.
-const READY_WITHIN: Duration = Duration::from_ms(8_000);
+pub(crate) const READY_WITHIN: Duration = Duration::from_ms(8_000);
 /// Quiet time after a unit is ready, before anything is judged.
 const SETTLE: Duration = Duration::from_ms(500);
+/// Sets the scans whose frames are late apart from what else the same seed gives.
+const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
 /// What benches are made of.
 #[derive(Clone)]
@@ -47,6 +50,8 @@ pub struct BenchSetup {
     pub faults: Vec<FaultMode>,
     /// Seed of everything random.
     pub seed: u64,
+    /// How good units, trains and benches differ: drawn by the seed; none = all are nominal.
+    pub scatter: Option<Arc<BenchScatter>>,
     /// Serial number asked for.
     pub serial: Option<String>,
     /// Wall-clock pace also for the embedded unit.
@@ -96,8 +101,19 @@ impl BenchSetup {
     fn rig(&self, seed: u64, power_at: Instant) -> Rig {
         let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
         rig.set_train(self.train.clone());
+        if let Some(drawn) = self.drawn() {
+            rig.set_conditions(drawn.conditions);
+            rig.set_sensors(&drawn.sensors);
+            rig.set_usual_load(drawn.load_kg);
+        }
         rig.inject(&self.faults, power_at);
         rig
+    }
+
+    /// What was drawn for this run.
+    fn drawn(&self) -> Option<DrawnBench> {
+        let scatter = self.scatter.as_ref()?;
+        Some(scatter.draw(self.seed, self.train.full_load_kg()))
     }
 
     /// Contact, identity, the old log read, and a brake left from before acknowledged. The unit's log has
@@ -168,7 +184,7 @@ impl BenchSetup {
     }
 
     /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
-    fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<SimLink> {
+    pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimLink>> {
         let seed = seed_for(self.seed, procedure);
         let setup = Setup {
             serial: self.expected_serial(),
@@ -179,8 +195,11 @@ impl BenchSetup {
             seed,
             faults: of_unit(&self.faults),
         };
-        let link = SimLink::new(setup, Instant::ZERO + BEFORE);
-        let rig = self.rig(seed, Instant::ZERO + BEFORE);
+        let timing = self.drawn().map(|drawn| drawn.timing).unwrap_or_default();
+        let power_at = Instant::ZERO + BEFORE + timing.power_up;
+        let unit = SimLink::new(setup, power_at);
+        let link = Delayed::new(unit, &timing, seed ^ WIRE_SEQUENCE);
+        let rig = self.rig(seed, power_at);
         let pace = if self.realtime {
             Pace::real()
         } else {
@@ -229,7 +248,7 @@ pub fn start<'scope>(
                         task,
                         std::mem::take(&mut found),
                         began,
-                        &sender,
+                        &mut sending(&sender),
                     );
                 }
             });
@@ -243,7 +262,7 @@ pub fn start<'scope>(
                 let (work, setup) = (work.clone(), setup.clone());
                 scope.spawn(move || {
                     while let Some((task, sender)) = work.take(plan).filter(|_| stop.may_begin()) {
-                        run_sim_task(&setup, task, stop, &sender);
+                        run_here(&setup, task, stop, &mut sending(&sender));
                     }
                 });
             }
@@ -285,10 +304,16 @@ impl Work {
     }
 }
 
-fn run_sim_task(setup: &BenchSetup, task: &Task, stop: &Stop, sender: &SyncSender<SessionEvent>) {
+/// Runs a task on an embedded unit made for it, telling `sink` what happens.
+pub fn run_here(
+    setup: &BenchSetup,
+    task: &Task,
+    stop: &Stop,
+    sink: &mut dyn FnMut(SessionEvent),
+) {
     let mut session = setup.sim_session(&task.procedure.id, stop);
     let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
-    run_task(&mut session, task, faults, Instant::ZERO, sender);
+    run_task(&mut session, task, faults, Instant::ZERO, sink);
 }
 
 fn run_task<L: UnitLink>(
@@ -296,17 +321,20 @@ fn run_task<L: UnitLink>(
     task: &Task,
     found: Vec<FaultSeen>,
     began: Instant,
-    sender: &SyncSender<SessionEvent>,
+    sink: &mut dyn FnMut(SessionEvent),
 ) {
-    // The collector listens until the stream ends, so sending cannot fail.
-    let mut sink = |event| drop(sender.send(event));
-    session.run(&task.procedure, task.options.clone(), found, &mut sink);
+    session.run(&task.procedure, task.options.clone(), found, sink);
     let bench_time = session.now().since(began);
     sink(SessionEvent::Ended { bench_time });
 }
 
+/// The end of a stream that the collector listens to until it ends, so that sending cannot fail.
+fn sending(sender: &SyncSender<SessionEvent>) -> impl FnMut(SessionEvent) {
+    |event| drop(sender.send(event))
+}
+
 /// Whether the unit is ready and its log read, [`SETTLE`] after it first was; asked at each scan.
-fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
+pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
     let mut quiet_since = None;
     move |bench| {
         if !started(bench) || !bench.rig().log_up_to_date() {
@@ -430,6 +458,7 @@ mod tests {
             train: TrainData::line6(),
             faults: Vec::new(),
             seed: 1,
+            scatter: None,
             serial: None,
             realtime: false,
         };
