@@ -13,6 +13,7 @@
 
 mod care;
 pub mod diagnosis;
+mod dictionaries;
 mod error;
 mod fault_log;
 mod fault_state;
@@ -34,8 +35,8 @@ pub use fault_state::{FaultAction, FaultState, TransitionError};
 pub use id::{Id, IdSource};
 pub use query::{
     FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, Occurrence, QueryResult,
-    RunDetail, RunFault, RunFilter, RunState, RunSummary, SqlValue, StatKey, StepDetail,
-    TraceSummary, TrendPoint,
+    RunDetail, RunFault, RunFilter, RunOccurrence, RunState, RunSummary, SqlValue, StatKey,
+    StepDetail, TraceSummary, TrendPoint,
 };
 pub use record::{
     FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,

@@ -2,21 +2,29 @@
 //!
 //! * [`cli`]: one file per verb;
 //! * [`run`]: procedures on benches, one stream of events, recording;
+//! * [`replay`]: what was done to a bench done again: good twins, differences of traces, replays;
 //! * [`drive`]: station-to-station automatic runs, one or thousands;
 //! * [`link`]: the embedded unit and units on ports;
+//! * [`campaign`]: the suite against every fault mode, for the fault dictionary and its worth;
+//! * [`diagnosis`]: from a run to the part to replace;
 //! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
 //! * [`data`]: the scripts directory.
 //!
 //! Only here are clocks read, threads started and files opened.
 
+pub mod campaign;
 pub mod cli;
 pub mod clock;
 mod console;
 pub mod data;
+pub mod diagnosis;
 pub mod drive;
 pub mod failure;
 pub mod link;
 mod owner;
+mod pool;
+mod progress;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod stop;

@@ -19,6 +19,7 @@ mod observation;
 mod pairs;
 mod reasons;
 mod settings;
+mod strategy;
 mod verdict;
 
 pub use belief::{Belief, Suspect};
@@ -28,4 +29,5 @@ pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
 pub use observation::{CheckName, Observation, Result, Sign, StepSeen};
 pub use settings::Settings;
+pub use strategy::{Effort, Strategy, fixed_order, replayed};
 pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

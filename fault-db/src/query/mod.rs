@@ -3,12 +3,14 @@
 mod faults;
 mod filter;
 mod runs;
+mod signs;
 mod sql;
 mod stats;
 mod traces;
 
 pub use faults::{FaultDetail, FaultEvent, FaultFilter, FaultSummary, Occurrence};
 pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary, StepDetail};
+pub use signs::RunOccurrence;
 pub use sql::{QueryResult, SqlValue};
 pub use stats::{FaultStat, StatKey, TrendPoint};
 pub use traces::TraceSummary;

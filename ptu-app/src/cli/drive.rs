@@ -11,10 +11,11 @@ use super::{ScriptsOption, print_json, print_out};
 use crate::data::{ScriptsDirectory, check_writable, read, write};
 use crate::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use crate::drive::{
-    Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, cores, disturbance, drive_all,
+    Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, disturbance, drive_all,
     monte_carlo,
 };
 use crate::failure::{Exit, Failure, did_you_mean};
+use crate::pool::cores;
 use crate::report::drive::{self as report, Outcomes, Report, Results, Target, manual};
 use crate::stop::Stop;
 

@@ -1,5 +1,6 @@
 //! The command line: one file per verb.
 
+mod campaign;
 mod catalog;
 mod db;
 mod drive;
@@ -45,6 +46,7 @@ enum Verb {
     Drive(Box<drive::DriveArguments>),
     /// Show faults, signals, speed codes, lines or parts
     Catalog(catalog::CatalogArguments),
+    Campaign(Box<campaign::CampaignArguments>),
     /// Show recorded runs
     Runs(runs::RunsArguments),
     /// Query and keep the fault history
@@ -67,6 +69,7 @@ impl Cli {
             Verb::Run(arguments) => arguments.run(),
             Verb::Drive(arguments) => arguments.run(),
             Verb::Catalog(arguments) => arguments.run(),
+            Verb::Campaign(arguments) => arguments.run(),
             Verb::Runs(arguments) => arguments.run(),
             Verb::Faults(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),

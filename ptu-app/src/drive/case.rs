@@ -9,10 +9,11 @@ use protocol::config::{ControllerKind, checksum};
 use protocol::line::Line;
 
 use super::{
-    DriveBench, Fixed, LoadChoice, SectionChoice, Setting, drive, pool, train, unit_config,
+    DriveBench, Fixed, LoadChoice, SectionChoice, Setting, drive, train, unit_config,
 };
 use crate::data::{DataFile, ScriptsDirectory, sha256};
 use crate::failure::Failure;
+use crate::pool;
 use crate::stop::Stop;
 
 /// Key of the controller in the unit configuration.

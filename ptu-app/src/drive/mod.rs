@@ -11,14 +11,10 @@ mod case;
 mod choice;
 pub mod manual;
 pub mod monte_carlo;
-mod pool;
-mod progress;
 mod settings;
 pub mod train;
 
 pub use bench::{DriveBench, drive};
 pub use case::{Case, Driven, Request, drive_all};
 pub use choice::{Fixed, LoadChoice, SectionChoice, disturbance};
-pub use pool::cores;
-pub use progress::Progress;
 pub use settings::{Setting, unit_config};

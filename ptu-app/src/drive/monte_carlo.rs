@@ -2,7 +2,9 @@
 
 use btu_rig::drive::{Drawn, Ending, Metrics, Scatter};
 
-use super::{Case, Progress, pool};
+use super::Case;
+use crate::pool;
+use crate::progress::Progress;
 use crate::stop::Stop;
 
 /// Runs that are shown as the worst.

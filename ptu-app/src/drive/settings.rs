@@ -107,6 +107,7 @@ pub fn unit_config(
         edited(text, settings)
     })?;
     Ok(DataFile {
+        settings: settings.iter().map(ToString::to_string).collect(),
         crc: checksum(&text_used),
         sha256: sha256(&text_used),
         ..file

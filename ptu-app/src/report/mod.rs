@@ -1,5 +1,6 @@
 //! What a run came to, written to a file by its ending: `.json` or `.junit.xml`.
 
+pub mod campaign;
 pub mod drive;
 mod json;
 mod junit;

@@ -13,10 +13,20 @@ use super::tree::{Node, Tree};
 const CANDIDATES: usize = 8;
 
 /// Steps of work that rollout may take in all; one step reads one cell, about a nanosecond.
-const ROLLOUT_WORK: u64 = 8_000_000_000;
+const CRISP_ROLLOUT: u64 = 8_000_000_000;
 
-/// Share of the rollout work left that one choice may take.
-const SHARE: u64 = 4;
+/// The same in noisy matrices.
+const NOISY_ROLLOUT: u64 = 2_000_000_000;
+
+/// One part in so many of the rollout work left that one choice may take.
+const CRISP_SHARE: u64 = 4;
+
+/// The same in noisy matrices, where most large branches cannot be grown to their ends.
+const NOISY_SHARE: u64 = 64;
+
+/// Steps that ranking takes for each test beside its cells, and at all: logarithms, memory.
+const STEPS_PER_TEST: usize = 40;
+const STEPS_PER_RANKING: usize = 500;
 
 /// Steps of work to grow a noisy tree, which can be exponentially large.
 const NOISY_WORK: u64 = 12_000_000_000;
@@ -160,7 +170,10 @@ impl<'a> Grower<'a> {
             fails,
             noise,
             work: 0,
-            rollout_left: ROLLOUT_WORK,
+            rollout_left: match problem.is_crisp() {
+                true => CRISP_ROLLOUT,
+                false => NOISY_ROLLOUT,
+            },
         }
     }
 
@@ -169,7 +182,8 @@ impl<'a> Grower<'a> {
         if belief.members.len() < 2 {
             return Vec::new();
         }
-        self.work += (belief.members.len() * self.problem.tests.len()) as u64;
+        let cells = belief.members.len() + STEPS_PER_TEST;
+        self.work += (cells * self.problem.tests.len() + STEPS_PER_RANKING) as u64;
         let mut scored = match self.problem.is_crisp() {
             true => self.score_crisp(belief),
             false if self.problem.is_decided(belief) => Vec::new(),
@@ -255,7 +269,10 @@ impl<'a> Grower<'a> {
         if let [only] = ranked {
             return Some(*only);
         }
-        let mut left = self.rollout_left / SHARE;
+        let mut left = match self.problem.is_crisp() {
+            true => self.rollout_left / CRISP_SHARE,
+            false => self.rollout_left / NOISY_SHARE,
+        };
         let mut best: Option<(f64, usize)> = None;
         for &test in ranked {
             let Some(cost) = self.cost_after(belief, test, &mut left) else {

@@ -208,8 +208,10 @@ impl Space for NoisySpace<'_> {
         let slack = self.problem.tests.len() as f64 * USELESS_BITS;
         let mut needed = entropy(belief.members.iter().map(|(_, weight)| *weight))
             - self.doubt(belief.members.len())
-            - self.residue(&belief)
             - slack;
+        if needed > 0.0 {
+            needed -= self.residue(&belief);
+        }
         let mut offers: Vec<(f64, f64)> = (0..self.problem.tests.len())
             .filter(|test| !belief.used.contains(*test))
             .filter_map(|test| {

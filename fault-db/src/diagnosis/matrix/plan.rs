@@ -25,10 +25,10 @@ const CRISP_LIMITS: Limits = Limits {
     branches: 90_000_000,
 };
 
-/// Work where they are not: a point costs some microseconds.
+/// Work where they are not: a point costs about ten microseconds.
 const NOISY_LIMITS: Limits = Limits {
-    points: 700_000,
-    branches: 2_000_000,
+    points: 250_000,
+    branches: 1_000_000,
 };
 
 /// Nodes of an optimal tree at most, where ways that meet in the search are written out.

@@ -1,0 +1,132 @@
+//! Isolating a fault by itself: which procedure to begin, when to leave it, when to stop.
+//!
+//! The caller runs what [`Strategy::begin`] asks for from its first step on, tells every step to
+//! [`Strategy::saw`] and leaves the procedure when that says so.
+
+use std::collections::BTreeSet;
+
+use super::belief::Belief;
+use super::model::Model;
+use super::next_check::NextCheck;
+use super::observation::{CheckName, Observation, Result, StepSeen};
+
+/// Isolates a fault check by check.
+#[derive(Debug)]
+pub struct Strategy<'m, 'd> {
+    belief: Belief<'m, 'd>,
+    done: BTreeSet<CheckName>,
+    may: Option<BTreeSet<String>>,
+    target: Option<NextCheck>,
+    seen: Observation,
+}
+
+impl<'m, 'd> Strategy<'m, 'd> {
+    /// Nothing has been run. Only procedures in `may` can be, if that is given.
+    pub fn new(model: &'m Model<'d>, may: Option<BTreeSet<String>>) -> Self {
+        Self {
+            belief: Belief::new(model),
+            done: BTreeSet::new(),
+            may,
+            target: None,
+            seen: Observation::default(),
+        }
+    }
+
+    /// The check to go for, in a procedure that is to be begun; none when one part is found, the unit
+    /// is healthy, or nothing would tell more.
+    pub fn begin(&mut self) -> Option<NextCheck> {
+        self.aim(None);
+        self.target.clone()
+    }
+
+    /// A step was run; whether its procedure is to go on.
+    pub fn saw(&mut self, step: &StepSeen) -> bool {
+        let new = self.done.insert(step.check.clone());
+        if new {
+            self.belief.see(step);
+            self.seen.steps.push(step.clone());
+        }
+        let surprising = new && (step.result != Result::Passed || !step.signs.is_empty());
+        let reached = self.target.as_ref().is_none_or(|t| t.check == step.check);
+        if surprising || reached {
+            self.aim(Some(&step.check.procedure));
+        }
+        let here = |target: &NextCheck| target.check.procedure == step.check.procedure;
+        self.target.as_ref().is_some_and(here)
+    }
+
+    /// The procedure ended by itself; checks it has not come to cannot be made.
+    pub fn ended(&mut self, procedure: &str) {
+        let checks = &self.belief.model.dictionary.checks;
+        let of_procedure = checks.iter().filter(|check| check.procedure == procedure);
+        self.done.extend(of_procedure.cloned());
+    }
+
+    /// What was seen, and what is believed.
+    pub fn finish(self) -> (Observation, Belief<'m, 'd>) {
+        (self.seen, self.belief)
+    }
+
+    fn aim(&mut self, under_way: Option<&str>) {
+        self.target = if self.belief.is_settled() {
+            None
+        } else {
+            self.belief.next_check(&self.done, under_way, self.may.as_ref())
+        };
+    }
+}
+
+/// Effort until the question was settled, or all was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Steps run.
+    pub steps: u32,
+    /// Bench time, bringing the unit up for each procedure included, s.
+    pub time_s: f64,
+    /// One part found, or the unit healthy.
+    pub settled: bool,
+}
+
+/// Effort of the fixed order on a run that was made in full.
+pub fn fixed_order(model: &Model<'_>, run: &Observation) -> Effort {
+    let mut belief = Belief::new(model);
+    let mut effort = Effort::default();
+    let mut procedure = "";
+    for step in &run.steps {
+        if step.check.procedure != procedure {
+            procedure = &step.check.procedure;
+            effort.time_s += model.settings.bring_up_s;
+        }
+        effort.steps += 1;
+        effort.time_s += step.time_s;
+        belief.see(step);
+        if belief.is_settled() {
+            effort.settled = true;
+            break;
+        }
+    }
+    effort
+}
+
+/// What the strategy would have done, and what it would have seen, on a run that was made in full: each
+/// procedure works on a unit brought up for it, so that it shows the same in any order.
+pub fn replayed(model: &Model<'_>, run: &Observation) -> (Effort, Observation) {
+    let mut strategy = Strategy::new(model, None);
+    let mut effort = Effort::default();
+    while let Some(next) = strategy.begin() {
+        let procedure = &next.check.procedure;
+        effort.time_s += model.settings.bring_up_s;
+        let mut steps = run.steps.iter().filter(|s| s.check.procedure == *procedure);
+        let left = steps.any(|step| {
+            effort.steps += 1;
+            effort.time_s += step.time_s;
+            !strategy.saw(step)
+        });
+        if !left {
+            strategy.ended(procedure);
+        }
+    }
+    let (seen, belief) = strategy.finish();
+    effort.settled = belief.is_settled();
+    (effort, seen)
+}

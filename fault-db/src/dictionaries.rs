@@ -1,0 +1,73 @@
+//! Fault dictionaries in the file: kept for good, the newest first.
+
+use rusqlite::{OptionalExtension, params};
+
+use crate::diagnosis::Dictionary;
+use crate::error::StoreError;
+use crate::id::Id;
+use crate::store::Store;
+
+impl Store {
+    /// Keeps a dictionary.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn put_dictionary(
+        &self,
+        dictionary: &Dictionary,
+        made_at_us: i64,
+    ) -> Result<Id, StoreError> {
+        const DOING: &str = "storing a fault dictionary";
+        let id = self.mint()?;
+        let basis = &dictionary.basis;
+        let data = dictionary.to_bytes().map_err(|reason| StoreError::Io {
+            path: self.path().to_path_buf(),
+            reason,
+        })?;
+        self.write(DOING, |conn| {
+            conn.prepare_cached(
+                "INSERT INTO dictionary(id, made_at_us, app_version, basis_sha256, data)
+                 VALUES (?1, ?2, ?3, ?4, ?5)",
+            )
+            .and_then(|mut insert| {
+                insert.execute(params![
+                    id,
+                    made_at_us,
+                    basis.app_version,
+                    basis.sha256,
+                    data
+                ])
+            })
+            .map_err(|error| self.failed(DOING, error))
+        })?;
+        Ok(id)
+    }
+
+    /// The newest dictionary made of just this, or, if there is none, the newest of all, and when it
+    /// was made.
+    ///
+    /// # Errors
+    /// The file cannot be read, or what it holds is no dictionary.
+    pub fn dictionary(&self, basis_sha256: &str) -> Result<Option<(Dictionary, i64)>, StoreError> {
+        const DOING: &str = "reading a fault dictionary";
+        let found = self
+            .conn
+            .prepare_cached(
+                "SELECT made_at_us, data FROM dictionary
+                 ORDER BY basis_sha256 = ?1 DESC, made_at_us DESC, seq DESC LIMIT 1",
+            )
+            .and_then(|mut query| {
+                let row = |row: &rusqlite::Row<'_>| Ok((row.get(0)?, row.get::<_, Vec<u8>>(1)?));
+                query.query_row([basis_sha256], row).optional()
+            })
+            .map_err(|error| self.failed(DOING, error))?;
+        let Some((made_at_us, data)) = found else {
+            return Ok(None);
+        };
+        let dictionary = Dictionary::from_bytes(&data).map_err(|reason| StoreError::Io {
+            path: self.path().to_path_buf(),
+            reason: format!("a fault dictionary is damaged: {reason}"),
+        })?;
+        Ok(Some((dictionary, made_at_us)))
+    }
+}

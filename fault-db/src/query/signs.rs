@@ -1,0 +1,49 @@
+//! Every occurrence of a fault in one run, in order: what diagnosis reads.
+
+use crate::error::StoreError;
+use crate::id::Id;
+use crate::store::Store;
+
+/// An occurrence of a fault in a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunOccurrence {
+    /// Number of the fault.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// Part it points at.
+    pub lru: String,
+    /// Step that was under way.
+    pub step_index: Option<u32>,
+    /// When, on the bench's clock.
+    pub bench_us: i64,
+    /// Trace that shows it.
+    pub trace_id: Option<Id>,
+}
+
+impl Store {
+    /// The occurrences of faults in a run, in order.
+    pub fn run_occurrences(&self, run: Id) -> Result<Vec<RunOccurrence>, StoreError> {
+        let list = || -> rusqlite::Result<Vec<_>> {
+            self.conn
+                .prepare_cached(
+                    "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id
+                     FROM run r JOIN fault_occurrence o ON o.run = r.seq
+                     JOIN fault f ON f.seq = o.fault LEFT JOIN trace t ON t.seq = o.trace
+                     WHERE r.id = ?1 ORDER BY o.seq",
+                )?
+                .query_map([run], |row| {
+                    Ok(RunOccurrence {
+                        code: row.get(0)?,
+                        code_name: row.get(1)?,
+                        lru: row.get(2)?,
+                        step_index: row.get(3)?,
+                        bench_us: row.get(4)?,
+                        trace_id: row.get(5)?,
+                    })
+                })?
+                .collect()
+        };
+        list().map_err(|error| self.failed("listing a run's faults", error))
+    }
+}

@@ -1,0 +1,142 @@
+//! The whole suite on one embedded unit, in memory: nothing is recorded but what diagnosis reads.
+
+use std::sync::Arc;
+
+use btu_rig::bench_scatter::BenchScatter;
+use btu_rig::procedure::loader::load;
+use btu_rig::procedure::{PromptPolicy, RunEvent, RunOptions, Verdict};
+use fault_db::diagnosis::{CheckName, Observation};
+use protocol::injection::{FaultCatalogue, FaultMode};
+
+use crate::data::{ScriptsDirectory, read};
+use crate::diagnosis::{Gatherer, LINE, TRAIN, UNIT_CONFIG};
+use crate::drive::train::train;
+use crate::failure::Failure;
+use crate::link::Endpoint;
+use crate::run::{BenchSetup, SessionEvent, Task, run_here};
+use crate::stop::Stop;
+
+/// All procedures of the default suite, and the bench they run on.
+pub struct Suite {
+    setup: BenchSetup,
+    tasks: Vec<Task>,
+    /// Parts and fault modes.
+    pub catalogue: FaultCatalogue,
+}
+
+/// A run of the suite.
+#[derive(Clone, Debug, Default)]
+pub struct SuiteRun {
+    /// What was seen.
+    pub seen: Observation,
+    /// All procedures passed and no fault was found.
+    pub passed: bool,
+    /// What did not pass, for people.
+    pub not_passed: Vec<String>,
+}
+
+impl Suite {
+    /// Loads all procedures that are not on request.
+    ///
+    /// # Errors
+    /// A file is missing or wrong.
+    pub fn load(directory: &ScriptsDirectory) -> Result<Self, Failure> {
+        let config = directory.unit_config(UNIT_CONFIG)?;
+        let line = directory.line(LINE)?;
+        let train = train(directory, TRAIN)?;
+        let texts = directory.procedures()?;
+        let loaded = load(&texts, &config.content, &line.content, &train);
+        if let Some(error) = loaded.errors.first() {
+            return Err(Failure::usage(format!(
+                "{error}; `ptu run --check` shows all errors"
+            )));
+        }
+        let file = directory.path().join("bench_scatter.toml");
+        let scatter = BenchScatter::from_toml(&read(&file)?)
+            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?;
+        let options = RunOptions {
+            chosen: None,
+            repeat: 1,
+            stop_on_fail: false,
+            prompts: PromptPolicy::Refuse,
+        };
+        let procedures = loaded.procedures.into_iter().filter(|p| !p.on_request);
+        Ok(Self {
+            setup: BenchSetup {
+                endpoint: Endpoint::Sim,
+                config,
+                line,
+                train,
+                faults: Vec::new(),
+                seed: 0,
+                scatter: Some(Arc::new(scatter)),
+                serial: None,
+                realtime: false,
+            },
+            tasks: procedures
+                .map(|procedure| Task {
+                    procedure,
+                    options: options.clone(),
+                })
+                .collect(),
+            catalogue: directory.faults()?,
+        })
+    }
+
+    /// All checks in order.
+    pub fn checks(&self) -> Vec<CheckName> {
+        let of_task = |task: &Task| {
+            let procedure = task.procedure.clone();
+            let names = procedure.steps.iter().flat_map(|step| match step.repeat {
+                1 => vec![step.name.clone()],
+                n => (1..=n)
+                    .map(|turn| format!("{} ({turn}/{n})", step.name))
+                    .collect(),
+            });
+            let names: Vec<_> = names.collect();
+            names.into_iter().map(move |step| CheckName {
+                procedure: procedure.id.clone(),
+                step,
+            })
+        };
+        self.tasks.iter().flat_map(of_task).collect()
+    }
+
+    /// Runs it on a unit of its own. A stop leaves the run short.
+    pub fn run(&self, faults: Vec<FaultMode>, seed: u64, stop: &Stop) -> SuiteRun {
+        let setup = BenchSetup {
+            faults,
+            seed,
+            ..self.setup.clone()
+        };
+        let mut run = SuiteRun {
+            passed: true,
+            ..SuiteRun::default()
+        };
+        for task in self.tasks.iter().take_while(|_| stop.may_begin()) {
+            let mut gatherer = Gatherer::new(&task.procedure.id);
+            run_here(&setup, task, stop, &mut |event| {
+                gatherer.take(&event);
+                match event {
+                    SessionEvent::Fault(fault) => {
+                        run.passed = false;
+                        run.not_passed
+                            .push(format!("{}: {}", task.procedure.id, fault.message));
+                    }
+                    SessionEvent::Run(RunEvent::ProcedureFinished {
+                        verdict, message, ..
+                    }) => {
+                        if !matches!(verdict, Verdict::Passed | Verdict::Skipped) {
+                            run.passed = false;
+                            run.not_passed
+                                .push(format!("{}: {verdict} {message}", task.procedure.id));
+                        }
+                    }
+                    _ => {}
+                }
+            });
+            run.seen.steps.extend(gatherer.finish());
+        }
+        run
+    }
+}

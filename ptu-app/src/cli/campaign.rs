@@ -1,0 +1,103 @@
+//! `ptu campaign`: the suite against every fault mode.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use glob::Pattern;
+
+use super::{Database, ScriptsOption, print_json, print_out};
+use crate::campaign::{self, Request, Suite, figures, redundancy};
+use crate::clock;
+use crate::diagnosis::settings;
+use crate::failure::{Exit, Failure};
+use crate::pool::cores;
+use crate::progress::Progress;
+use crate::report::campaign::{campaign_json, campaign_text};
+use crate::stop::Stop;
+
+/// Make a fault dictionary: run the suite against every fault mode, and say what the dictionary is worth
+///
+/// Every mode is run at all its levels, setting in at different times, on units that differ as good ones
+/// do (bench_scatter.toml). Other seeds then assess it: detection, isolation, false alarms.
+///
+/// Examples:
+///   ptu campaign                             all fault modes, 5 seeds each
+///   ptu campaign --faults 'eb_relay.*' --seeds 2
+///   ptu campaign --held-out 5 --good 1000    the figures of the README
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct CampaignArguments {
+    /// Only fault modes whose name matches; such a dictionary knows no others
+    #[arg(long, value_name = "GLOB")]
+    faults: Option<Pattern>,
+    /// Seeds of each level of a mode, for the dictionary
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    seeds: u32,
+    /// Seeds of each level of a mode, kept out of the dictionary, to assess it
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    held_out: u32,
+    /// Good units, to assess it
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    good: u32,
+    /// Embedded units to test side by side [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    jobs: Option<u32>,
+    /// Write the dictionary to a file, too
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    database: Database,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl CampaignArguments {
+    /// Runs, keeps the dictionary and says what it is worth.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let directory = self.scripts.find()?;
+        let suite = Suite::load(&directory)?;
+        let settings = settings(&directory)?;
+        let asked = Request {
+            faults: self.faults.clone(),
+            seeds: self.seeds,
+            held_out: self.held_out,
+            good: self.good,
+            jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
+        };
+        let modes = campaign::chosen(&suite, &asked)?;
+        let count = campaign::samples(&modes, &asked).len();
+        if let Some(file) = &self.save {
+            crate::data::check_writable(file)?;
+        }
+        let store = self.database.open()?;
+        let stop = Stop::default();
+        stop.listen();
+        let mut progress = Progress::new(count, format!("{} fault modes", modes.len()));
+        let outcome = campaign::run(&directory, &suite, &asked, &settings, &stop, &mut |done| {
+            progress.tell(done);
+        })?;
+        drop(progress);
+        let Some(outcome) = outcome else {
+            eprintln!("stopped; no dictionary was made");
+            return Ok(Exit::Aborted);
+        };
+        store.put_dictionary(&outcome.dictionary, clock::now_us())?;
+        if let Some(file) = &self.save {
+            let bytes = outcome.dictionary.to_bytes().map_err(Failure::bench)?;
+            std::fs::write(file, bytes).map_err(|error| {
+                Failure::bench(format!("cannot write {}: {error}", file.display()))
+            })?;
+        }
+        let figures = figures(&outcome.assessments, &outcome.good);
+        let redundancy = redundancy(&outcome.dictionary);
+        store.close()?;
+        if self.json {
+            print_json(&campaign_json(&outcome, &figures, &redundancy))
+        } else {
+            print_out(&campaign_text(&outcome, &figures, &redundancy))
+        }
+    }
+}
