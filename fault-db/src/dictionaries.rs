@@ -26,8 +26,8 @@ impl Store {
         })?;
         self.write(DOING, |conn| {
             conn.prepare_cached(
-                "INSERT INTO dictionary(id, made_at_us, app_version, basis_sha256, data)
-                 VALUES (?1, ?2, ?3, ?4, ?5)",
+                "INSERT INTO dictionary(id, made_at_us, app_version, basis_sha256, modes, data)
+                 VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
             )
             .and_then(|mut insert| {
                 insert.execute(params![
@@ -43,8 +43,8 @@ impl Store {
         Ok(id)
     }
 
-    /// The newest dictionary made of just this, or, if there is none, the newest of all, and when it
-    /// was made.
+    /// The dictionary made of just this, else of anything, that knows the most fault modes, the newest
+    /// of those, and when it was made.
     ///
     /// # Errors
     /// The file cannot be read, or what it holds is no dictionary.
@@ -54,7 +54,8 @@ impl Store {
             .conn
             .prepare_cached(
                 "SELECT made_at_us, data FROM dictionary
-                 ORDER BY basis_sha256 = ?1 DESC, made_at_us DESC, seq DESC LIMIT 1",
+                 ORDER BY basis_sha256 = ?1 DESC, modes DESC, made_at_us DESC, seq DESC
+                 LIMIT 1",
             )
             .and_then(|mut query| {
                 let row = |row: &rusqlite::Row<'_>| Ok((row.get(0)?, row.get::<_, Vec<u8>>(1)?));

@@ -21,6 +21,7 @@ CREATE TABLE dictionary(
   made_at_us INTEGER NOT NULL,
   app_version TEXT NOT NULL,
   basis_sha256 TEXT NOT NULL,           -- over scripts, unit configuration, line, train and fault catalogue
+  modes INTEGER NOT NULL,               -- fault modes it knows
   data BLOB NOT NULL                    -- zstd of json
 ) STRICT;
 CREATE INDEX dictionary_by_time ON dictionary(made_at_us);

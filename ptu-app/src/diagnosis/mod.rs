@@ -1,7 +1,11 @@
 //! From a run to the part to replace: what was seen, the dictionary it is held against, the answer.
 
+mod answer;
 mod basis;
+mod dictionary;
 mod gather;
 
+pub use answer::{Answer, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
+pub use dictionary::{Chosen, choose};
 pub use gather::{Gatherer, of_run};

@@ -1,6 +1,7 @@
 //! What a run came to, written to a file by its ending: `.json` or `.junit.xml`.
 
 pub mod campaign;
+pub mod diagnosis;
 pub mod drive;
 mod json;
 mod junit;

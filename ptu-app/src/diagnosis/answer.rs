@@ -1,0 +1,115 @@
+//! A stored run diagnosed.
+
+use std::collections::BTreeMap;
+
+use fault_db::diagnosis::{Diagnosis, Dictionary, Model, Observation};
+use fault_db::{Id, RunDetail, Store};
+
+use super::dictionary::{Chosen, choose};
+use super::gather::of_run;
+use super::settings;
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+use crate::owner;
+
+/// What a run comes to.
+pub struct Answer {
+    /// The run.
+    pub run: RunDetail,
+    /// The diagnosis.
+    pub diagnosis: Diagnosis,
+    /// Traces that show a part's faults, by part.
+    pub traces: BTreeMap<String, Vec<Id>>,
+    /// What to bear in mind.
+    pub warnings: Vec<String>,
+    /// Where the dictionary is from.
+    pub dictionary_from: String,
+}
+
+/// Diagnoses a stored run.
+///
+/// # Errors
+/// There is no such run, no dictionary, or a file cannot be read.
+pub fn diagnose_run(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    id: Id,
+) -> Result<Answer, Failure> {
+    let run = store.run(id, &owner::is_alive)?;
+    let occurrences = store.run_occurrences(id)?;
+    let settings = settings(directory)?;
+    let Chosen {
+        dictionary,
+        from,
+        mut warnings,
+        ..
+    } = choose(Some(store), directory)?;
+    let seen = of_run(&run, &occurrences);
+    let seen = comparable(&run, seen, &dictionary, &mut warnings);
+    if seen.is_empty() {
+        warnings.push("the run has no step and no fault that could be diagnosed".into());
+    }
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+    let diagnosis = Diagnosis::of(&model, &seen);
+    let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
+    for occurrence in &occurrences {
+        let of_part = traces.entry(occurrence.lru.clone()).or_default();
+        of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
+    }
+    Ok(Answer {
+        run,
+        diagnosis,
+        traces,
+        warnings,
+        dictionary_from: from,
+    })
+}
+
+/// Leaves out what cannot be held against this dictionary, and says so: steps of scripts that were
+/// others then, steps it does not know.
+fn comparable(
+    run: &RunDetail,
+    mut seen: Observation,
+    dictionary: &Dictionary,
+    warnings: &mut Vec<String>,
+) -> Observation {
+    let basis = &dictionary.basis;
+    if run.run.unit_config_sha256 != basis.unit_config_sha256 {
+        warnings.push(format!(
+            "the run's unit configuration, {}, is not the one the dictionary was made with",
+            run.run.unit_config_name
+        ));
+    }
+    if !run.steps.is_empty() && run.run.line != basis.line {
+        warnings.push(format!(
+            "the run is on {}, the dictionary was made on {}",
+            run.run.line, basis.line
+        ));
+    }
+    let others = run.scripts.iter().filter(|script| {
+        let name = script.path.trim_end_matches(".star");
+        let sum = basis.procedures.get(name);
+        sum.is_some_and(|sum| *sum != script.sha256)
+    });
+    let others: Vec<_> = others
+        .map(|script| script.path.trim_end_matches(".star").to_owned())
+        .collect();
+    if !others.is_empty() {
+        warnings.push(format!(
+            "scripts of the run differ from those the dictionary was made with; their steps are left out: {}",
+            others.join(", ")
+        ));
+        seen.steps
+            .retain(|step| !others.contains(&step.check.procedure));
+    }
+    let before = seen.steps.len();
+    seen.steps
+        .retain(|step| dictionary.place(&step.check).is_some());
+    let unknown = before - seen.steps.len();
+    if unknown > 0 {
+        warnings.push(format!(
+            "{unknown} steps are not in the dictionary and say nothing"
+        ));
+    }
+    seen
+}

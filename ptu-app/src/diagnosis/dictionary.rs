@@ -1,0 +1,117 @@
+//! Which dictionary a run is held against: one made by a campaign on this machine, or the one that
+//! comes with the scripts.
+
+use fault_db::Store;
+use fault_db::diagnosis::{Basis, Dictionary};
+
+use super::basis;
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+
+/// The dictionary that comes with the scripts, in their directory.
+const SHIPPED: &str = "dictionary.zst";
+
+/// A dictionary, and what is to be said of it.
+pub struct Chosen {
+    /// The dictionary.
+    pub dictionary: Dictionary,
+    /// Where it is from.
+    pub from: String,
+    /// It was made of what the scripts directory holds now.
+    pub current: bool,
+    /// What it was made of is not what there is now, or it does not know all.
+    pub warnings: Vec<String>,
+}
+
+/// The best dictionary there is: made of what the scripts directory holds now, on this machine or
+/// shipped with it; else the newest that is stale.
+///
+/// # Errors
+/// There is none, or a file cannot be read.
+pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Chosen, Failure> {
+    let now = basis(directory)?;
+    let own = match store {
+        Some(store) => store
+            .dictionary(&now.sha256)?
+            .map(|(dictionary, _)| dictionary),
+        None => None,
+    };
+    let modes = |dictionary: &Dictionary| {
+        let current = dictionary.basis.sha256 == now.sha256;
+        (current, dictionary.modes.len())
+    };
+    let of_file = shipped(directory)?;
+    let candidates = [
+        own.map(|dictionary| (dictionary, "a campaign on this machine")),
+        of_file.map(|dictionary| (dictionary, "the scripts directory")),
+    ];
+    let best = candidates
+        .into_iter()
+        .flatten()
+        .max_by_key(|(dictionary, _)| modes(dictionary));
+    let Some((dictionary, from)) = best else {
+        return Err(Failure::usage(
+            "there is no fault dictionary; `ptu campaign` makes one in a few minutes",
+        ));
+    };
+    let mut warnings = Vec::new();
+    let current = dictionary.basis.sha256 == now.sha256;
+    if !current {
+        warnings.push(format!(
+            "the fault dictionary is stale, {}: make a new one with `ptu campaign`",
+            differences(&dictionary.basis, &now)
+        ));
+    }
+    let known = directory.faults()?.faults.len();
+    if dictionary.modes.len() < known {
+        warnings.push(format!(
+            "the fault dictionary knows {} of {known} fault modes only",
+            dictionary.modes.len()
+        ));
+    }
+    Ok(Chosen {
+        dictionary,
+        from: from.to_owned(),
+        current,
+        warnings,
+    })
+}
+
+fn shipped(directory: &ScriptsDirectory) -> Result<Option<Dictionary>, Failure> {
+    let file = directory.path().join(SHIPPED);
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
+    let packed = std::fs::read(&file).map_err(|error| wrong(error.to_string()))?;
+    Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
+}
+
+/// What differs, in a few words.
+fn differences(made_of: &Basis, now: &Basis) -> String {
+    let changed = now
+        .procedures
+        .iter()
+        .filter(|(name, sum)| made_of.procedures.get(*name) != Some(sum));
+    let changed: Vec<_> = changed.map(|(name, _)| name.as_str()).collect();
+    let gone = made_of
+        .procedures
+        .keys()
+        .filter(|name| !now.procedures.contains_key(*name))
+        .count();
+    if changed.is_empty() && gone == 0 {
+        return "made of another unit configuration, line, train, scatter or fault catalogue"
+            .into();
+    }
+    let shown = changed
+        .iter()
+        .take(3)
+        .copied()
+        .collect::<Vec<_>>()
+        .join(", ");
+    match changed.len() {
+        0 => format!("made with {gone} scripts that are gone"),
+        n if n > 3 => format!("made before {shown} and {} more scripts changed", n - 3),
+        _ => format!("made before {shown} changed"),
+    }
+}
