@@ -20,6 +20,7 @@ mod fault_state;
 mod id;
 mod insert;
 mod lookup;
+mod packed;
 mod query;
 mod record;
 mod recording;

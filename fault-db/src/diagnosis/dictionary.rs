@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
 use super::observation::{CheckName, Observation, Sign};
+use crate::packed::{pack, unpack};
 
 /// Compression of a packed dictionary: read often, written seldom.
 const ZSTD_LEVEL: i32 = 15;
 /// A dictionary unpacks to at most this many bytes.
-const MAX_BYTES: usize = 256 << 20;
+const MAX_BYTES: u64 = 256 << 20;
 
 /// What a dictionary was made of. Made of anything else it may be wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,11 +111,7 @@ impl Dictionary {
     /// There is no memory for it.
     pub fn to_bytes(&self) -> std::result::Result<Vec<u8>, String> {
         let json = serde_json::to_vec(self).map_err(|error| error.to_string())?;
-        let mut compressor =
-            zstd::bulk::Compressor::new(ZSTD_LEVEL).map_err(|error| error.to_string())?;
-        let packed = compressor.include_checksum(true);
-        let packed = packed.and_then(|()| compressor.compress(&json));
-        packed.map_err(|error| error.to_string())
+        pack(&json, ZSTD_LEVEL).map_err(|error| error.to_string())
     }
 
     /// Unpacks and checks a dictionary.
@@ -122,10 +119,7 @@ impl Dictionary {
     /// # Errors
     /// It is no dictionary, or not sound in itself.
     pub fn from_bytes(packed: &[u8]) -> std::result::Result<Self, String> {
-        let size = zstd::bulk::Decompressor::upper_bound(packed)
-            .filter(|size| *size <= MAX_BYTES)
-            .ok_or("it is not packed as a dictionary is")?;
-        let json = zstd::bulk::decompress(packed, size).map_err(|error| error.to_string())?;
+        let json = unpack(packed, MAX_BYTES).map_err(|error| error.to_string())?;
         let mut read: Self = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
         read.index();
         match read.unsound() {
