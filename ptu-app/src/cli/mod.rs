@@ -3,6 +3,8 @@
 mod campaign;
 mod catalog;
 mod db;
+mod diagnose;
+mod diagnose_matrix;
 mod drive;
 mod faults;
 mod ports;
@@ -47,6 +49,7 @@ enum Verb {
     /// Show faults, signals, speed codes, lines or parts
     Catalog(catalog::CatalogArguments),
     Campaign(Box<campaign::CampaignArguments>),
+    Diagnose(diagnose::DiagnoseArguments),
     /// Show recorded runs
     Runs(runs::RunsArguments),
     /// Query and keep the fault history
@@ -70,6 +73,7 @@ impl Cli {
             Verb::Drive(arguments) => arguments.run(),
             Verb::Catalog(arguments) => arguments.run(),
             Verb::Campaign(arguments) => arguments.run(),
+            Verb::Diagnose(arguments) => arguments.run(),
             Verb::Runs(arguments) => arguments.run(),
             Verb::Faults(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),

@@ -15,6 +15,7 @@
 //! (IEEE Trans. SMC 20(4), 1990) have it; information gain per cost with a one-step rollout for what
 //! is too large (Tu and Pattipati, IEEE Trans. SMC-A 33(1), 2003).
 
+mod answer;
 mod bits;
 mod crisp;
 mod error;

@@ -27,8 +27,8 @@ const CRISP_LIMITS: Limits = Limits {
 
 /// Work where they are not: a point costs about ten microseconds.
 const NOISY_LIMITS: Limits = Limits {
-    points: 250_000,
-    branches: 1_000_000,
+    points: 120_000,
+    branches: 500_000,
 };
 
 /// Nodes of an optimal tree at most, where ways that meet in the search are written out.

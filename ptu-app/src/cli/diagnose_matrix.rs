@@ -1,0 +1,224 @@
+//! `ptu diagnose --matrix`: the order of tests of any dependency matrix.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+use fault_db::diagnosis::matrix::{
+    DEFAULT_CONFIDENCE, Leaf, Matrix, MatrixError, Method, Node, Outcome, Plan, PlanOptions,
+    Posterior, plan, read_outcomes,
+};
+
+use super::print_out;
+use crate::failure::{Exit, Failure, did_you_mean};
+use crate::table::Table;
+
+/// States a table shows; JSON has all.
+const SHOWN_STATES: usize = 20;
+
+/// What is asked of a matrix.
+#[derive(Debug, Args)]
+pub struct MatrixOptions {
+    /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
+    #[arg(long, value_name = "OUTCOMES", requires = "matrix")]
+    outcomes: Option<String>,
+    /// How the tree is made [default: optimal if it can be found, else greedy]
+    #[arg(long, value_enum, requires = "matrix")]
+    tree: Option<TreeMethod>,
+    /// Probability that an answer must have where tests may err, above 0.5 and at most 1
+    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE)]
+    confidence: f64,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum TreeMethod {
+    /// The cheapest there is: 20 states × 20 tests for certain, up to 64 × 64 if luck has it
+    Optimal,
+    /// Most information for its cost, each choice checked by what follows
+    Greedy,
+}
+
+/// Answers for one matrix.
+pub(super) fn diagnose_matrix(
+    file: &Path,
+    options: &MatrixOptions,
+    json: bool,
+) -> Result<Exit, Failure> {
+    let place = file.display();
+    let matrix = Matrix::from_json(&read(file)?).map_err(|error| wrong(&place, &error))?;
+    let known = match &options.outcomes {
+        Some(given) => known(&matrix, given)?,
+        None => Posterior::prior(&matrix),
+    };
+    let asked = PlanOptions {
+        method: options.tree.map(|method| match method {
+            TreeMethod::Optimal => Method::Optimal,
+            TreeMethod::Greedy => Method::Greedy,
+        }),
+        confidence: options.confidence,
+    };
+    let plan = plan(&matrix, &known, asked).map_err(|error| match error {
+        MatrixError::Confidence(_) => wrong(&"--confidence", &error),
+        _ => wrong(&place, &error),
+    })?;
+    if json {
+        let text = plan
+            .to_json(&matrix, &known)
+            .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+        return print_out(&text);
+    }
+    print_out(&text(&matrix, &known, &plan, options.outcomes.is_some()))
+}
+
+fn read(file: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(file)
+        .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))
+}
+
+fn wrong(place: &impl Display, error: &MatrixError) -> Failure {
+    Failure::usage(format!("{place}: {error}"))
+}
+
+/// Weighs the outcomes given, in a file or on the command line.
+fn known(matrix: &Matrix, given: &str) -> Result<Posterior, Failure> {
+    let file = Path::new(given);
+    let (place, outcomes) = if given.contains('=') && !file.exists() {
+        ("--outcomes".to_owned(), inline(given)?)
+    } else {
+        let outcomes = read_outcomes(&read(file)?).map_err(|error| wrong(&given, &error))?;
+        (given.to_owned(), outcomes)
+    };
+    Posterior::given(matrix, &outcomes).map_err(|error| match &error {
+        MatrixError::OutcomeUnknown { test } => {
+            let names = matrix.tests().iter().map(|test| test.id.as_str());
+            let hint = did_you_mean(test, names);
+            Failure::usage(format!("{place}: {error}{hint}"))
+        }
+        _ => wrong(&place, &error),
+    })
+}
+
+fn inline(given: &str) -> Result<Vec<(String, Outcome)>, Failure> {
+    let one = |part: &str| {
+        let (test, word) = part.rsplit_once('=').unwrap_or((part, ""));
+        let outcome = Outcome::parse(word.trim()).ok_or_else(|| {
+            Failure::usage(format!(
+                "--outcomes: \"{part}\" is not TEST=0 (passed) or TEST=1 (failed)"
+            ))
+        })?;
+        Ok((test.trim().to_owned(), outcome))
+    };
+    given
+        .split(',')
+        .filter(|part| !part.trim().is_empty())
+        .map(one)
+        .collect()
+}
+
+/// The answer for a person: a table of steps with where each outcome leads, as maintenance manuals
+/// have it, so that no depth of the tree spoils it.
+fn text(matrix: &Matrix, known: &Posterior, plan: &Plan, with_posterior: bool) -> String {
+    let mut parts = Vec::new();
+    if with_posterior {
+        parts.push(posterior(matrix, known));
+    }
+    let next = match plan.tree.first_test() {
+        Some(test) => format!("next test {}", matrix.tests()[test].id),
+        None => "no test left that tells more".into(),
+    };
+    parts.push(format!(
+        "{next}\nexpected cost {:.4} ({})",
+        plan.expected_cost,
+        if plan.optimal {
+            "optimal: no order of tests costs less"
+        } else {
+            "greedy: another order may cost less"
+        }
+    ));
+    parts.push(steps(matrix, plan));
+    if !plan.warnings.is_empty() {
+        let lines: Vec<_> = plan
+            .warnings
+            .iter()
+            .map(|warning| format!("note: {warning}"))
+            .collect();
+        parts.push(lines.join("\n"));
+    }
+    parts.join("\n\n")
+}
+
+fn posterior(matrix: &Matrix, known: &Posterior) -> String {
+    let mut table = Table::new(&["STATE", "PROBABILITY"]);
+    let ranked = known.ranked();
+    for (state, p) in ranked.iter().take(SHOWN_STATES) {
+        table.row([matrix.states()[*state].id.clone(), format!("{p:.6}")]);
+    }
+    match ranked.len().checked_sub(SHOWN_STATES + 1) {
+        Some(more) => format!("{}\n… {} more", table.render(), more + 1),
+        None => table.render(),
+    }
+}
+
+fn steps(matrix: &Matrix, plan: &Plan) -> String {
+    let nodes = plan.tree.nodes();
+    let mut numbers = vec![0; nodes.len()];
+    let mut count = 0;
+    for (number, node) in numbers.iter_mut().zip(nodes) {
+        if matches!(node, Node::Test { .. }) {
+            count += 1;
+            *number = count;
+        }
+    }
+    let leads = |place: usize| match &nodes[place] {
+        Node::Test { .. } => format!("step {}", numbers[place]),
+        Node::Leaf(leaf) => answer(matrix, leaf),
+    };
+    if let [Node::Leaf(leaf)] = nodes {
+        return format!("answer {}", answer(matrix, leaf));
+    }
+    let headings = [
+        "STEP",
+        "TEST",
+        "COST",
+        "REACHED",
+        "IF IT PASSES",
+        "IF IT FAILS",
+    ];
+    let mut table = Table::new(&headings);
+    for (number, node) in numbers.iter().zip(nodes) {
+        if let Node::Test {
+            test,
+            reached,
+            pass,
+            fail,
+        } = node
+        {
+            let test = &matrix.tests()[*test];
+            table.row([
+                number.to_string(),
+                test.id.clone(),
+                test.cost.to_string(),
+                format!("{:.2} %", reached * 100.0),
+                leads(*pass),
+                leads(*fail),
+            ]);
+        }
+    }
+    table.render()
+}
+
+fn answer(matrix: &Matrix, leaf: &Leaf) -> String {
+    const SHOWN: usize = 5;
+    let names = leaf.states.iter().map(|s| matrix.states()[*s].id.as_str());
+    let mut text = names.take(SHOWN).collect::<Vec<_>>().join(" or ");
+    if let Some(more) = leaf.states.len().checked_sub(SHOWN + 1) {
+        text.push_str(&format!(" or {} more", more + 1));
+    }
+    if leaf.p < 1.0 {
+        text.push_str(&format!(" (p {:.4})", leaf.p));
+    }
+    if leaf.cut {
+        text.push_str(" (cut)");
+    }
+    text
+}
