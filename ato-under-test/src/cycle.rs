@@ -218,9 +218,8 @@ impl Unit {
     }
 
     fn send_cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
-        if !self.loses(Place::TcmsTransmitter) {
-            self.link.send(now, &report::to_tcms(self), out);
-        }
+        let to_tcms = report::to_tcms(self);
+        self.send_through(Place::TcmsTransmitter, now, &to_tcms, out);
         if self.maintenance.listened_to(now) {
             self.link.send(now, &report::status(self), out);
             self.maintenance.read_log(&self.log, &mut self.replies);

@@ -28,6 +28,8 @@ use crate::twc::{TrainState, Twc};
 
 /// Scans in a control cycle.
 const SCANS_PER_CYCLE: u8 = 5;
+/// Bits that a frame with errors has wrong, in one byte.
+const DAMAGE: u8 = 0x12;
 /// Level of the self-test's code over the least that the receiver must decode [default].
 const SELF_TEST_LEVEL: f64 = 1.2;
 
@@ -271,8 +273,29 @@ impl Unit {
         self.twc.take(now, data, &self.setup.line, &mut self.log);
         let Some(seq) = seq else { return };
         let answer = self.twc.answer(seq, &data, self.train_state());
-        if !self.loses(Place::FskTransmitter) && !self.loses(Place::TwcAntenna) {
-            self.link.send(now, &answer.into(), out);
+        if !self.loses(Place::TwcAntenna) {
+            self.send_through(Place::FskTransmitter, now, &answer.into(), out);
+        }
+    }
+
+    /// Sends by a modem or line driver that may lose or damage the frame.
+    pub(crate) fn send_through(
+        &mut self,
+        place: Place,
+        now: Instant,
+        message: &Message,
+        out: &mut Vec<u8>,
+    ) {
+        if matches!(self.faults.at(place), Some(Effect::Dead)) {
+            return;
+        }
+        let begin = out.len();
+        self.link.send(now, message, out);
+        if self.faults.loses(place) {
+            let middle = (begin + out.len()) / 2;
+            if let Some(byte) = out.get_mut(middle) {
+                *byte ^= DAMAGE;
+            }
         }
     }
 

@@ -4,14 +4,14 @@
 //! TCMS or the wayside is a finding, not a bench error.
 
 use protocol::frame::Reject;
-use protocol::link::{Counters, Link};
+use protocol::link::{Counters, Link, RESYNC};
 use protocol::message::Channel;
 use protocol::{Duration, Instant};
 
 /// Time a unit has to be heard for the first time: it may be starting.
 const FIRST_CONTACT: Duration = Duration::from_ms(3000);
-/// Silence that is an error.
-const SILENCE: Duration = Duration::from_ms(1000);
+/// Silence that is an error: longer than the link takes to hear a unit again that was started anew.
+const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 
 /// The watch.
 #[derive(Debug, Default)]

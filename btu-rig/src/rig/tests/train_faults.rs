@@ -8,7 +8,8 @@ use protocol::{Duration, Instant};
 use super::{FakeUnit, bench};
 use crate::rig::train_faults::TrainFaults;
 use crate::rig::{Bench, Misplaced, check_places};
-use crate::stimulus::Stimulus;
+use crate::stimulus::{Stimulus, TrainSwitch};
+use crate::tcms::EbSources;
 use crate::train::{CarSet, Equipment, TrainData};
 
 /// When the faults of these tests set in after power-up, s.
@@ -58,56 +59,121 @@ fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
 /// Whether a fault shows now.
 type Shows = fn(&mut Bench<FakeUnit>) -> bool;
 
-const CASES: [(&str, Shows); 13] = [
-    ("inverter.dead", |bench| {
-        braked_and_released(bench);
-        bench.rig().tcms.view().found.inverters == CarSet::one(1)
-    }),
+const CASES: [(&str, Shows); 26] = [
+    ("inverter.dead", |bench| inverter_silent(bench, 2)),
     ("inverter.regeneration_lost", |bench| {
         let [_, released] = braked_and_released(bench);
         released.regeneration_cut_out == CarSet::one(2)
     }),
-    ("brake_unit.dead", |bench| {
-        let [braked, _] = braked_and_released(bench);
-        braked.air_n[3] == 0.0 && bench.rig().tcms.view().found.brake_units == CarSet::one(3)
+    ("inverter.weak", |bench| {
+        (0.65..0.75).contains(&traction_share(bench, 6, 2))
     }),
+    ("inverter.trips_when_warm", |bench| {
+        inverter_silent(bench, 7)
+    }),
+    ("brake_unit.dead", |bench| brake_unit_silent(bench, 4)),
+    ("brake_unit.drops_out", |bench| brake_unit_silent(bench, 8)),
     ("brake_cylinder.not_releasing", |bench| {
-        let [braked, released] = braked_and_released(bench);
-        released.air_n[0] >= braked.air_n[0] && released.air_n[7] < 0.5 * braked.air_n[7]
+        keeps_its_air(bench, 1, 8)
     }),
     ("brake_cylinder.weak", |bench| {
         let [braked, _] = braked_and_released(bench);
         (0.45..0.55).contains(&air_share(&braked, 5, 4))
     }),
+    ("brake_cylinder.sticks", |bench| keeps_its_air(bench, 4, 5)),
     ("master_controller.pot_low", |bench| {
         signal(bench, Signal::ControllerVolts) == 0.0
     }),
     ("master_controller.pot_high", |bench| {
         signal(bench, Signal::ControllerVolts) == 10.0
     }),
-    ("door_contact.open", |bench| {
-        signal(bench, Signal::Doors) == 0.0
+    ("master_controller.pot_drifts", |bench| {
+        let [_, low, high, _] = bench.rig().tcms.data().controller_v;
+        (signal(bench, Signal::ControllerVolts) - (low + high) / 2.0 - 0.3).abs() < 0.01
     }),
+    ("master_controller.pot_drops_out", |bench| {
+        signal(bench, Signal::ControllerVolts) == 0.0
+    }),
+    ("door_contact.open", doors_say_open),
     ("door_contact.bridged", |bench| {
         bench.apply(Stimulus::Doors { closed: false });
         bench.run_ms(20);
         signal(bench, Signal::Doors) == 1.0
     }),
-    ("head_control_relay.dead", |bench| {
-        signal(bench, Signal::Hcr) == 0.0
-    }),
+    ("door_contact.loose", doors_say_open),
+    ("door_contact.loose_at_speed", doors_say_open),
+    ("head_control_relay.dead", relay_is_down),
     ("head_control_relay.stuck", |bench| {
         bench.apply(Stimulus::Hcr { on: false });
         bench.run_ms(20);
         signal(bench, Signal::Hcr) == 1.0
     }),
-    ("tcms.silent", |bench| {
-        signal(bench, Signal::TcmsAlive) == 0.0 && signal(bench, Signal::TcmsHears) == 1.0
-    }),
+    ("head_control_relay.drops_out", relay_is_down),
+    ("tcms.silent", tcms_is_silent),
     ("tcms.stale", |bench| {
         signal(bench, Signal::TcmsAlive) == 0.0
     }),
+    ("tcms.hangs", tcms_is_silent),
+    ("air_supply.low", reservoir_is_low),
+    ("air_supply.leak", reservoir_is_low),
+    ("air_supply.switch_dead", |bench| {
+        bench.apply(Stimulus::Switch {
+            switch: TrainSwitch::MainReservoirLow,
+            on: true,
+        });
+        bench.run_ms(40);
+        !reservoir_is_low(bench)
+    }),
 ];
+
+/// Traction of a car on departure, over that of the car it is like.
+fn traction_share(bench: &mut Bench<FakeUnit>, car: usize, like: usize) -> f64 {
+    bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
+    bench.apply(Stimulus::TrainDriven { on: true });
+    bench.link_mut().to_tcms = AtcToTcms {
+        bits: AtcToTcmsBits::POWER,
+        effort: 1023,
+        mode: Mode::AutomaticRun,
+        ..AtcToTcms::default()
+    };
+    bench.run_ms(1_500);
+    let given = bench.rig().train.equipment().traction_n;
+    given[car - 1] / given[like - 1]
+}
+
+fn inverter_silent(bench: &mut Bench<FakeUnit>, car: usize) -> bool {
+    braked_and_released(bench);
+    bench.rig().tcms.view().found.inverters == CarSet::one(car - 1)
+}
+
+fn brake_unit_silent(bench: &mut Bench<FakeUnit>, car: usize) -> bool {
+    let [braked, _] = braked_and_released(bench);
+    let found = bench.rig().tcms.view().found.brake_units;
+    braked.air_n[car - 1] == 0.0 && found == CarSet::one(car - 1)
+}
+
+fn keeps_its_air(bench: &mut Bench<FakeUnit>, car: usize, like: usize) -> bool {
+    let [braked, released] = braked_and_released(bench);
+    let kept = |car: usize| released.air_n[car - 1] / braked.air_n[car - 1];
+    kept(car) >= 1.0 && kept(like) < 0.5
+}
+
+fn doors_say_open(bench: &mut Bench<FakeUnit>) -> bool {
+    signal(bench, Signal::Doors) == 0.0
+}
+
+fn relay_is_down(bench: &mut Bench<FakeUnit>) -> bool {
+    signal(bench, Signal::Hcr) == 0.0
+}
+
+fn tcms_is_silent(bench: &mut Bench<FakeUnit>) -> bool {
+    signal(bench, Signal::TcmsAlive) == 0.0 && signal(bench, Signal::TcmsHears) == 1.0
+}
+
+fn reservoir_is_low(bench: &mut Bench<FakeUnit>) -> bool {
+    let sources = bench.rig().tcms.view().line.sources;
+    sources.contains(EbSources::MAIN_RESERVOIR)
+}
 
 fn make_safe(bench: &mut Bench<FakeUnit>) {
     let now = bench.now();
