@@ -2,6 +2,7 @@
 
 mod faults;
 mod filter;
+mod history;
 mod runs;
 mod signs;
 mod sql;
@@ -9,6 +10,7 @@ mod stats;
 mod traces;
 
 pub use faults::{FaultDetail, FaultEvent, FaultFilter, FaultSummary, Occurrence};
+pub use history::{LOG_SOURCE, PartHistory, PartRepair, SAME_ENTRY_US};
 pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary, StepDetail};
 pub use signs::RunOccurrence;
 pub use sql::{QueryResult, SqlValue};

@@ -1,0 +1,242 @@
+//! A unit's own history: which parts faults named before, and what was done about them; and what of a
+//! log read from the unit is known already.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rusqlite::{OptionalExtension, Row, params};
+
+use super::faults::json;
+use crate::error::StoreError;
+use crate::fault_log::REPAIR;
+use crate::id::Id;
+use crate::record::RepairRecord;
+use crate::store::Store;
+
+/// How the source of a run begins that is no test but a log read from the unit.
+pub const LOG_SOURCE: &str = "log of ";
+
+/// Two readings may date one entry of a unit's log so far apart, µs: its clock and ours drift, and an
+/// answer takes its time. A unit needs longer than this from one power-up to the same event after the
+/// next.
+pub const SAME_ENTRY_US: i64 = 5_000_000;
+
+/// What a unit's history says of one part.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PartHistory {
+    /// Runs in which a fault named it, since it was last repaired.
+    pub runs: u32,
+    /// Its last repair.
+    pub repair: Option<PartRepair>,
+}
+
+/// The last repair of a part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PartRepair {
+    /// When.
+    pub at_us: i64,
+    /// Another part was put in; else it was worked on.
+    pub replaced: bool,
+    /// Faults it was repaired for, here or before, by number and the part they named.
+    pub faults: BTreeSet<(i64, String)>,
+    /// One of these came back after it was repaired for it.
+    pub came_back: bool,
+}
+
+/// A fault seen once.
+struct Seen {
+    run: i64,
+    of_log: bool,
+    code: i64,
+    lru: String,
+    at_us: i64,
+    message: String,
+}
+
+/// A repair of a part for a fault.
+struct Repaired {
+    code: i64,
+    lru: String,
+    at_us: i64,
+    repair: RepairRecord,
+}
+
+impl Store {
+    /// What the history of the unit with this serial number says of its parts, by part, from `since_us`
+    /// until `before_us`. Neither the run `but` counts nor an entry of an imported log that another run
+    /// tells of, too.
+    pub fn part_history(
+        &self,
+        unit: &str,
+        (since_us, before_us): (i64, i64),
+        but: Id,
+    ) -> Result<BTreeMap<String, PartHistory>, StoreError> {
+        let read = || {
+            let seen = self.seen_before(unit, (since_us, before_us), but)?;
+            Ok((seen, self.repairs_before(unit, (since_us, before_us))?))
+        };
+        let (seen, repairs) =
+            read().map_err(|error| self.failed("reading a unit's history", error))?;
+        let mut parts: BTreeMap<String, PartHistory> = BTreeMap::new();
+        for (part, repairs) in by_part(repairs) {
+            let repair = part_repair(&repairs, &seen);
+            parts.entry(part).or_default().repair = repair;
+        }
+        let mut runs: BTreeMap<&str, BTreeSet<i64>> = BTreeMap::new();
+        for fault in &seen {
+            let part = parts.get(&fault.lru);
+            let repaired = part.and_then(|part| part.repair.as_ref());
+            if repaired.is_none_or(|repair| fault.at_us > repair.at_us) {
+                runs.entry(&fault.lru).or_default().insert(fault.run);
+            }
+        }
+        for (part, runs) in runs {
+            parts.entry(part.to_owned()).or_default().runs = runs.len() as u32;
+        }
+        Ok(parts)
+    }
+
+    fn seen_before(
+        &self,
+        unit: &str,
+        (since_us, before_us): (i64, i64),
+        but: Id,
+    ) -> rusqlite::Result<Vec<Seen>> {
+        let mut select = self.conn.prepare_cached(
+            "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
+             FROM unit u JOIN run r ON r.unit = u.seq
+             JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
+             WHERE u.serial = ?1 AND r.started_at_us < ?3 AND r.id <> ?4
+                AND o.at_us >= ?2 AND o.at_us < ?3
+             ORDER BY r.seq, o.seq",
+        )?;
+        let row = |row: &Row<'_>| {
+            Ok(Seen {
+                run: row.get(0)?,
+                of_log: row.get_ref(1)?.as_str()?.starts_with(LOG_SOURCE),
+                code: row.get(2)?,
+                lru: row.get(3)?,
+                at_us: row.get(4)?,
+                message: row.get(5)?,
+            })
+        };
+        let all: Vec<_> = select
+            .query_map(params![unit, since_us, before_us, but], row)?
+            .collect::<rusqlite::Result<_>>()?;
+        let told: Vec<bool> = all
+            .iter()
+            .map(|seen| seen.of_log && told_before(seen, &all))
+            .collect();
+        let kept = all.into_iter().zip(told).filter(|(_, told)| !told);
+        Ok(kept.map(|(seen, _)| seen).collect())
+    }
+
+    fn repairs_before(
+        &self,
+        unit: &str,
+        (since_us, before_us): (i64, i64),
+    ) -> rusqlite::Result<Vec<Repaired>> {
+        let mut select = self.conn.prepare_cached(
+            "SELECT f.code, f.lru, e.at_us, e.body
+             FROM unit u JOIN fault f ON f.unit = u.seq JOIN fault_event e ON e.fault = f.seq
+             WHERE u.serial = ?1 AND e.kind = ?2 AND e.at_us >= ?3 AND e.at_us < ?4
+             ORDER BY e.at_us, e.seq",
+        )?;
+        let repairs = select.query_map(params![unit, REPAIR, since_us, before_us], |row| {
+            Ok(Repaired {
+                code: row.get(0)?,
+                lru: row.get(1)?,
+                at_us: row.get(2)?,
+                repair: json(row, 3)?,
+            })
+        })?;
+        repairs.collect()
+    }
+
+    /// Whether an occurrence of this fault with these words is known of the unit, at about this time or,
+    /// with none, at any.
+    pub fn knows_occurrence(
+        &self,
+        unit: &str,
+        (code, message): (i64, &str),
+        at_us: Option<i64>,
+    ) -> Result<bool, StoreError> {
+        self.conn
+            .prepare_cached(
+                "SELECT 1 FROM unit u JOIN fault f ON f.unit = u.seq
+                 JOIN fault_occurrence o ON o.fault = f.seq
+                 WHERE u.serial = ?1 AND f.code = ?2 AND o.at_us BETWEEN ?3 AND ?4
+                    AND o.message = ?5 LIMIT 1",
+            )
+            .and_then(|mut select| {
+                let from_us = at_us.map_or(i64::MIN, |at| at.saturating_sub(SAME_ENTRY_US));
+                let until_us = at_us.map_or(i64::MAX, |at| at.saturating_add(SAME_ENTRY_US));
+                select
+                    .query_row(params![unit, code, from_us, until_us, message], |_| Ok(()))
+                    .optional()
+            })
+            .map(|found| found.is_some())
+            .map_err(|error| self.failed("looking for a fault", error))
+    }
+
+    /// When the unit itself, on a port, was under test: from and until, µs UTC. A run that was
+    /// interrupted lasted until its last step.
+    pub fn tested_spans(&self, unit: &str) -> Result<Vec<(i64, i64)>, StoreError> {
+        let list = || -> rusqlite::Result<Vec<_>> {
+            self.conn
+                .prepare_cached(
+                    "SELECT r.started_at_us, coalesce(r.finished_at_us, r.started_at_us
+                        + coalesce((SELECT max(s.started_bench_us + s.bench_time_us)
+                            FROM step s WHERE s.run = r.seq), 0))
+                     FROM unit u JOIN run r ON r.unit = u.seq
+                     WHERE u.serial = ?1 AND r.source <> 'sim' AND instr(r.source, ?2) <> 1
+                     ORDER BY r.started_at_us",
+                )?
+                .query_map(params![unit, LOG_SOURCE], |row| {
+                    Ok((row.get(0)?, row.get(1)?))
+                })?
+                .collect()
+        };
+        list().map_err(|error| self.failed("listing a unit's runs", error))
+    }
+}
+
+/// Another run tells of it, too: any that was a test, or a log that was imported earlier.
+fn told_before(seen: &Seen, all: &[Seen]) -> bool {
+    all.iter().any(|other| {
+        other.run != seen.run
+            && (!other.of_log || other.run < seen.run)
+            && other.code == seen.code
+            && other.message == seen.message
+            && other.at_us.abs_diff(seen.at_us) <= SAME_ENTRY_US.unsigned_abs()
+    })
+}
+
+/// People write a part as they like.
+fn by_part(repairs: Vec<Repaired>) -> BTreeMap<String, Vec<Repaired>> {
+    let mut parts: BTreeMap<String, Vec<Repaired>> = BTreeMap::new();
+    for repaired in repairs {
+        let part = repaired.repair.part.trim().to_ascii_lowercase();
+        parts.entry(part).or_default().push(repaired);
+    }
+    parts
+}
+
+/// The last of a part's repairs, which are in order; a fault is back when it was seen after the last
+/// one that was for it.
+fn part_repair(repairs: &[Repaired], seen: &[Seen]) -> Option<PartRepair> {
+    let last = repairs.last()?;
+    let mut repaired_at: BTreeMap<(i64, String), i64> = BTreeMap::new();
+    for repaired in repairs {
+        repaired_at.insert((repaired.code, repaired.lru.clone()), repaired.at_us);
+    }
+    let came_back = seen.iter().any(|fault| {
+        let of_fault = repaired_at.get(&(fault.code, fault.lru.clone()));
+        of_fault.is_some_and(|repaired| fault.at_us > *repaired)
+    });
+    Some(PartRepair {
+        at_us: last.at_us,
+        replaced: last.repair.serial_new.is_some() || last.repair.serial_old.is_some(),
+        faults: repaired_at.into_keys().collect(),
+        came_back,
+    })
+}
