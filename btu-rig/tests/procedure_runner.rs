@@ -726,6 +726,30 @@ fn a_failed_step_can_stop_the_procedure() {
     assert_eq!(outcome.steps()[1].verdict, Verdict::Skipped);
 }
 
+/// What is left is neither run nor reported, clean-up is, and the verdict is that of what was run.
+#[test]
+fn a_procedure_can_be_left_between_two_steps() {
+    let script = format!(
+        "{HEAD}step('a', expect = holds(eb, 'released', duration = ms(50)))\nstep('b')\nstep('c')"
+    );
+    let options = RunOptions {
+        one_by_one: true,
+        ..RunOptions::default()
+    };
+    let outcome = run_with(&script, options.clone(), |world| {
+        if world.ms() == 20 {
+            world.runner.leave();
+        }
+    });
+    let names: Vec<_> = outcome.steps().iter().map(|s| s.name.as_str()).collect();
+    assert_eq!(names, ["a"], "the step under way is finished");
+    assert_eq!(outcome.finished().0, Verdict::Passed);
+    assert_eq!(outcome.fake.applied, [ON, OFF]);
+    assert_eq!(outcome.fake.made_safe, 1);
+    let whole = run_with(&script, options, |_| {});
+    assert_eq!(whole.steps().len(), 3);
+}
+
 #[test]
 fn nothing_chosen_is_an_error() {
     for chosen in [vec![], vec![7]] {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::procedure::loader::load;
-use btu_rig::procedure::{PromptPolicy, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use fault_db::diagnosis::{CheckName, Observation};
 use protocol::injection::{FaultCatalogue, FaultMode};
 
@@ -54,12 +54,6 @@ impl Suite {
         let file = directory.path().join("bench_scatter.toml");
         let scatter = BenchScatter::from_toml(&read(&file)?)
             .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?;
-        let options = RunOptions {
-            chosen: None,
-            repeat: 1,
-            stop_on_fail: false,
-            prompts: PromptPolicy::Refuse,
-        };
         let procedures = loaded.procedures.into_iter().filter(|p| !p.on_request);
         Ok(Self {
             setup: BenchSetup {
@@ -76,7 +70,7 @@ impl Suite {
             tasks: procedures
                 .map(|procedure| Task {
                     procedure,
-                    options: options.clone(),
+                    options: RunOptions::default(),
                 })
                 .collect(),
             catalogue: directory.faults()?,

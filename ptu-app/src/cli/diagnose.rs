@@ -5,32 +5,59 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
+use super::{Database, ScriptsOption, print_json, print_out};
+use crate::diagnosis::diagnose_run;
 use crate::failure::{Exit, Failure};
+use crate::report::diagnosis::{diagnosis_json, diagnosis_text};
 
-/// Find what is at fault, and the next best test
+/// Find the part that failed, why it is that one, and the next best check
+///
+/// A run is held against the fault dictionary (`ptu campaign`); a matrix stands for itself.
 ///
 /// Examples:
+///   ptu diagnose latest                                        the last run
+///   ptu diagnose 7ae4aeef --json
 ///   ptu diagnose --matrix pump.json                            cheapest order of tests
 ///   ptu diagnose --matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
 ///   ptu diagnose --matrix pump.json --outcomes found.json --json
 ///
-/// Exit codes: 0 answered, 2 wrong matrix or outcomes.
+/// Exit codes: 0 answered, 2 no such run, no dictionary, wrong matrix or outcomes.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DiagnoseArguments {
+    /// The run: an id, its beginning or end (at least 4 digits), or `latest`
+    #[arg(value_name = "RUN", required_unless_present = "matrix")]
+    run: Option<String>,
     /// Dependency matrix of states and tests; its format is in scripts/README.md
-    #[arg(long, value_name = "FILE")]
-    matrix: PathBuf,
+    #[arg(long, value_name = "FILE", conflicts_with = "run")]
+    matrix: Option<PathBuf>,
     #[command(flatten)]
     matrix_options: MatrixOptions,
     /// Print JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    database: Database,
+    #[command(flatten)]
+    scripts: ScriptsOption,
 }
 
 impl DiagnoseArguments {
-    /// Does it.
+    /// Diagnoses.
     pub fn run(self) -> Result<Exit, Failure> {
-        diagnose_matrix(&self.matrix, &self.matrix_options, self.json)
+        if let Some(matrix) = &self.matrix {
+            return diagnose_matrix(matrix, &self.matrix_options, self.json);
+        }
+        let store = self.database.open_read_only()?;
+        let id = store.resolve_run(&self.run.unwrap_or_default())?;
+        let answer = diagnose_run(&store, &self.scripts.find()?, id)?;
+        for warning in &answer.warnings {
+            eprintln!("{warning}");
+        }
+        if self.json {
+            print_json(&diagnosis_json(&answer))
+        } else {
+            print_out(&diagnosis_text(&answer))
+        }
     }
 }

@@ -69,6 +69,7 @@ pub struct Runner {
     stop: Stop,
     answer: Option<bool>,
     link_lost: bool,
+    leaving: bool,
     verdict: Verdict,
     messages: Vec<String>,
     out: Vec<RunEvent>,
@@ -89,6 +90,7 @@ impl Runner {
             stop: Stop::No,
             answer: None,
             link_lost: false,
+            leaving: false,
             verdict: Verdict::Skipped,
             messages: Vec::new(),
             out: Vec::new(),
@@ -107,6 +109,12 @@ impl Runner {
             Stop::No => Stop::Once,
             Stop::Once | Stop::CutShort => Stop::CutShort,
         };
+    }
+
+    /// What is left of the procedure is not wanted: after the present step, clean-up. The verdict is that
+    /// of the steps that were run; those left are not reported.
+    pub fn leave(&mut self) {
+        self.leaving = true;
     }
 
     /// Operator's answer to the present prompt.

@@ -23,6 +23,9 @@ pub struct RunOptions {
     pub stop_on_fail: bool,
     /// What a prompt does.
     pub prompts: PromptPolicy,
+    /// A step begins one scan after the one before it ended, not with it, so that
+    /// [`Runner::leave`](super::Runner::leave) can come between.
+    pub one_by_one: bool,
 }
 
 impl Default for RunOptions {
@@ -32,6 +35,7 @@ impl Default for RunOptions {
             repeat: 1,
             stop_on_fail: false,
             prompts: PromptPolicy::Refuse,
+            one_by_one: false,
         }
     }
 }

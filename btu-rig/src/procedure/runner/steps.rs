@@ -25,7 +25,8 @@ impl Runner {
             let Phase::Steps { next, live } = &mut self.phase else {
                 return;
             };
-            let Some(turn) = self.schedule.get(*next).copied() else {
+            let wanted = !self.leaving || live.is_some();
+            let Some(turn) = self.schedule.get(*next).copied().filter(|_| wanted) else {
                 self.phase = Phase::CleanUp {
                     actions: ActionRun::default(),
                     since: now,
@@ -51,6 +52,9 @@ impl Runner {
                 return;
             }
             self.finish_step(now, sample, false);
+            if self.options.one_by_one {
+                return;
+            }
         }
     }
 
