@@ -177,7 +177,7 @@ mod tests {
         let (low, high) = of(|d| d.timing.to_unit.as_secs());
         assert!((0.0..0.001).contains(&low) && (0.015..=0.016).contains(&high));
         let (low, high) = of(|d| d.conditions.brake_factor);
-        assert!((0.95..0.96).contains(&low) && (1.04..1.05).contains(&high));
+        assert!((0.97..0.98).contains(&low) && (1.02..1.03).contains(&high));
     }
 
     #[test]
