@@ -29,7 +29,7 @@ const STEPS_PER_TEST: usize = 40;
 const STEPS_PER_RANKING: usize = 500;
 
 /// Steps of work to grow a noisy tree, which can be exponentially large.
-const NOISY_WORK: u64 = 4_000_000_000;
+const NOISY_WORK: u64 = 2_500_000_000;
 
 /// Nodes of a noisy tree at most.
 const MAX_NOISY_NODES: usize = 20_000;
