@@ -35,6 +35,7 @@ impl Store {
                     made_at_us,
                     basis.app_version,
                     basis.sha256,
+                    dictionary.modes.len(),
                     data
                 ])
             })

@@ -1,6 +1,8 @@
 //! What diagnosis promises: it finds the part when the evidence does, asks for the check that tells the
 //! most, and says "cannot tell" rather than something wrong.
 
+mod common;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use fault_db::diagnosis::{
@@ -280,4 +282,32 @@ fn repetitions_are_known_by_their_step() {
     );
     assert_eq!(dictionary.place(&name("a", "s9")), None);
     assert_eq!(dictionary.place(&name("a", "s1 (left)")), None);
+}
+
+/// The one made of just what is asked for comes first, then the one that knows the most.
+#[test]
+fn a_file_gives_the_dictionary_that_fits() {
+    let folder = tempfile::tempdir().expect("folder");
+    let store = common::open(&folder.path().join("a.db"));
+    assert!(store.dictionary("x").expect("reads").is_none());
+    let made_of = |sha256: &str, modes: usize| {
+        let mut made = dictionary();
+        made.basis.sha256 = sha256.into();
+        made.modes.truncate(modes);
+        made
+    };
+    for (at_us, made) in [
+        (1, made_of("x", 3)),
+        (2, made_of("x", 2)),
+        (3, made_of("y", 5)),
+    ] {
+        store.put_dictionary(&made, at_us).expect("stores");
+    }
+    let found = |sha256: &str| {
+        let (found, at_us) = store.dictionary(sha256).expect("reads").expect("one");
+        (found.modes.len(), at_us)
+    };
+    assert_eq!(found("x"), (3, 1));
+    assert_eq!(found("y"), (5, 3));
+    assert_eq!(found("z"), (5, 3));
 }
