@@ -10,6 +10,8 @@ use crate::procedure::{EventSource, UnitEvent};
 
 /// Entries kept until they are taken; reading pauses beyond, and the unit keeps the rest.
 pub const MAX_EVENTS: usize = 512;
+/// Times an entry may be lost on a bad line before it counts as gone in the unit.
+const PROBES: u32 = 4;
 /// Silence after which reading is asked for again.
 const TIMEOUT: Duration = Duration::from_ms(300);
 
@@ -26,6 +28,8 @@ pub struct LogReader {
     gap_at: Option<u32>,
     /// It was missed again: ask only where the log begins.
     probing: bool,
+    /// Times it was asked for since.
+    probes: u32,
     events: VecDeque<UnitEvent>,
     overwritten: u64,
 }
@@ -60,6 +64,7 @@ impl LogReader {
                 out,
             );
             self.asked = Some(now);
+            self.probes += u32::from(self.probing);
         }
     }
 
@@ -70,8 +75,13 @@ impl LogReader {
             self.probing = self.gap_at.replace(self.next) == Some(self.next);
             self.asked = None;
         }
+        if self.probes > PROBES {
+            // Not the line: the answer is waited out, asked again the unit would begin it anew.
+            self.asked = self.asked.map(|_| now);
+        }
         if entry.index == self.next && self.events.len() < MAX_EVENTS {
             self.next += 1;
+            self.probes = 0;
             self.asked = self.asked.map(|_| now);
             self.events.push_back(unit_event(entry));
         }
@@ -81,6 +91,7 @@ impl LogReader {
     pub fn hear_end(&mut self, end: &LogEnd) {
         self.asked = None;
         self.probing = false;
+        self.probes = 0;
         self.logged = self.logged.max(end.next_index);
         if end.oldest_index > self.next {
             self.overwritten += u64::from(end.oldest_index - self.next);
@@ -121,6 +132,9 @@ fn unit_event(entry: &LogEntry) -> UnitEvent {
 
 #[cfg(test)]
 mod tests {
+    use protocol::link::End;
+    use protocol::message::Message;
+
     use super::*;
 
     fn entry(index: u32) -> LogEntry {
@@ -128,6 +142,44 @@ mod tests {
             index,
             ..LogEntry::default()
         }
+    }
+
+    /// Goal: a log that lost its beginning is read, however long the answer takes. Method: a unit that
+    /// sends an entry every 50 ms and begins anew when it is asked again.
+    #[test]
+    fn a_long_log_that_lost_its_beginning_is_read_to_its_end() {
+        let mut reader = LogReader::default();
+        let (mut tester, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));
+        reader.note_logged(256);
+        let mut under_way = None;
+        let mut taken = Vec::new();
+        for now in (0..60_000).step_by(50).map(Instant::from_ms) {
+            let mut frames = Vec::new();
+            reader.step(now, &mut tester, &mut frames);
+            unit.push(&frames);
+            while let Some(received) = unit.poll(now) {
+                if let Message::ReadLog(asked) = received.message {
+                    under_way = Some(asked.from_index.max(56));
+                }
+            }
+            match under_way {
+                Some(256) => {
+                    under_way = None;
+                    reader.hear_end(&LogEnd {
+                        next_index: 256,
+                        oldest_index: 56,
+                    });
+                }
+                Some(index) => {
+                    under_way = Some(index + 1);
+                    reader.hear_entry(now, &entry(index));
+                }
+                None => {}
+            }
+            taken.extend(indices(&mut reader));
+        }
+        assert_eq!(taken, (56..256).collect::<Vec<_>>());
+        assert_eq!(reader.overwritten(), 56);
     }
 
     fn indices(reader: &mut LogReader) -> Vec<u32> {

@@ -16,6 +16,7 @@ mod desk;
 mod exchange;
 mod link_watch;
 mod log_reader;
+mod log_session;
 mod markers;
 mod motion;
 pub(crate) mod random;
@@ -51,6 +52,7 @@ use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
+pub use log_session::LogSession;
 pub use random::Random;
 pub use train_faults::{Misplaced, check_places};
 pub use truth::{PairEfforts, Truth};
