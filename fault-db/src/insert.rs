@@ -139,9 +139,12 @@ pub(crate) fn insert_fault(
         None => (open_fault(conn, unit, ids.fault, record)?, ids.fault, None),
     };
     // Every state but closed has an answer to a new occurrence, and closed was not asked for.
-    let after = before.map_or(FaultState::Open, |state| {
-        state.next(FaultAction::Occur).unwrap_or(FaultState::Open)
-    });
+    let after = match before {
+        None => FaultState::Open,
+        // Out of a log that was read late: what was done since was done about that, too.
+        Some(state) if acted_since(conn, fault, record.at_us)? => state,
+        Some(state) => state.next(FaultAction::Occur).unwrap_or(FaultState::Open),
+    };
     insert_occurrence(conn, fault, run, ids.occurrence, record)?;
     conn.prepare_cached(
         "UPDATE fault SET occurrences = occurrences + 1, state = ?2, severity = ?3,
@@ -179,6 +182,15 @@ pub(crate) fn insert_fault(
         is_new: before.is_none(),
         reopened,
     })
+}
+
+/// Somebody brought the fault to another state after this time.
+fn acted_since(conn: &Connection, fault: i64, at_us: i64) -> rusqlite::Result<bool> {
+    conn.prepare_cached(
+        "SELECT EXISTS (SELECT 1 FROM fault_event
+         WHERE fault = ?1 AND state IS NOT NULL AND at_us > ?2 AND kind NOT IN ('opened', 'recurred'))",
+    )?
+    .query_row(params![fault, at_us], |row| row.get(0))
 }
 
 fn open_fault(conn: &Connection, unit: i64, id: Id, record: &FaultRecord) -> rusqlite::Result<i64> {

@@ -4,7 +4,8 @@ mod common;
 
 use common::{T0_US, end, fault, open, run_record};
 use fault_db::{
-    FaultRecord, Id, LOG_SOURCE, PartHistory, RepairRecord, RunRecord, RunWriter, Store, Verdict,
+    FaultRecord, FaultState, Id, LOG_SOURCE, PartHistory, RepairRecord, RunRecord, RunWriter,
+    Store, Verdict,
 };
 
 const DAY_US: i64 = 86_400_000_000;
@@ -58,8 +59,7 @@ impl History {
     fn part(&self, part: &str, day: i64) -> PartHistory {
         let before_us = T0_US + day * DAY_US;
         let span = (before_us - 90 * DAY_US, before_us);
-        let none = Id::from_bytes([0; 16]);
-        let parts = self.store.part_history("U-1", span, none).expect("history");
+        let parts = self.store.part_history("U-1", span, None).expect("history");
         parts.get(part).cloned().unwrap_or_default()
     }
 }
@@ -103,7 +103,7 @@ fn the_run_itself_does_not_count() {
     let span = (T0_US, T0_US + 2 * DAY_US);
     let parts = history
         .store
-        .part_history("U-1", span, run)
+        .part_history("U-1", span, Some(run))
         .expect("history");
     assert!(parts.is_empty(), "{parts:?}");
 }
@@ -152,6 +152,26 @@ fn a_repair_counts_for_the_part_that_was_replaced() {
     let part = history.part(SENSOR, 4);
     assert_eq!(part.runs, 0);
     assert!(part.repair.expect("a repair").came_back);
+}
+
+/// A log is read late: an entry older than the repair does not undo it.
+#[test]
+fn an_old_entry_does_not_reopen_a_repaired_fault() {
+    let history = History::new();
+    let (_, faults) = history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
+    history.repair(faults[0], RELAY, 5);
+    let state = || {
+        history
+            .store
+            .fault(faults[0])
+            .expect("the fault")
+            .fault
+            .state
+    };
+    history.run(6, log_of_unit(), &[naming(RELAY, 4)]);
+    assert_eq!(state(), FaultState::Repaired);
+    history.run(7, log_of_unit(), &[naming(RELAY, 6)]);
+    assert_eq!(state(), FaultState::Open);
 }
 
 #[test]

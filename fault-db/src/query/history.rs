@@ -68,7 +68,7 @@ impl Store {
         &self,
         unit: &str,
         (since_us, before_us): (i64, i64),
-        but: Id,
+        but: Option<Id>,
     ) -> Result<BTreeMap<String, PartHistory>, StoreError> {
         let read = || {
             let seen = self.seen_before(unit, (since_us, before_us), but)?;
@@ -99,13 +99,14 @@ impl Store {
         &self,
         unit: &str,
         (since_us, before_us): (i64, i64),
-        but: Id,
+        but: Option<Id>,
     ) -> rusqlite::Result<Vec<Seen>> {
         let mut select = self.conn.prepare_cached(
             "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
              FROM unit u JOIN run r ON r.unit = u.seq
              JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
-             WHERE u.serial = ?1 AND r.started_at_us < ?3 AND r.id <> ?4
+             WHERE u.serial = ?1 AND r.started_at_us < ?3
+                AND (?4 IS NULL OR r.id <> ?4)
                 AND o.at_us >= ?2 AND o.at_us < ?3
              ORDER BY r.seq, o.seq",
         )?;
