@@ -40,10 +40,17 @@ pub fn rfc3339(at_us: i64) -> String {
 
 /// Local date and time, for tables.
 pub fn local(at_us: i64) -> String {
+    local_as(at_us, "%Y-%m-%d %H:%M:%S")
+}
+
+/// Local date, for sentences.
+pub fn local_day(at_us: i64) -> String {
+    local_as(at_us, "%Y-%m-%d")
+}
+
+fn local_as(at_us: i64, format: &str) -> String {
     let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
-    at.with_timezone(&Local)
-        .format("%Y-%m-%d %H:%M:%S")
-        .to_string()
+    at.with_timezone(&Local).format(format).to_string()
 }
 
 /// The point in time a span such as `30d` or `12h` ago, or a date such as `2026-03` or

@@ -103,7 +103,11 @@ impl Listener for Console {
 
 /// Procedures with their verdicts, what did not pass, and the faults found.
 pub fn verdict_table(run: &RunDetail) -> String {
-    let mut text = procedures(run).render();
+    let mut text = match run.steps[..] {
+        // A unit's own log, imported, or a run that never began.
+        [] => format!("{}, no steps", run.run.source),
+        _ => procedures(run).render(),
+    };
     let failed: Vec<_> = run
         .steps
         .iter()

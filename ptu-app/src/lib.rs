@@ -7,6 +7,7 @@
 //! * [`link`]: the embedded unit and units on ports;
 //! * [`campaign`]: the suite against every fault mode, for the fault dictionary and its worth;
 //! * [`diagnosis`]: from a run to the part to replace;
+//! * [`field`]: a unit's own event log becomes faults in the history;
 //! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
 //! * [`data`]: the scripts directory.
 //!
@@ -20,6 +21,7 @@ pub mod data;
 pub mod diagnosis;
 pub mod drive;
 pub mod failure;
+pub mod field;
 pub mod link;
 mod owner;
 mod pool;

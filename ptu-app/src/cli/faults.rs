@@ -1,9 +1,13 @@
 //! `ptu faults`: the fault history.
 
+mod figures;
+mod import;
+
 use clap::{Args, Subcommand, ValueEnum};
-use fault_db::{FaultDetail, FaultFilter, FaultState, FreezeSample, RepairRecord, StatKey, Store};
+use fault_db::{FaultDetail, FaultFilter, FaultState, FreezeSample, RepairRecord, Store};
 use serde_json::{Value, json};
 
+use self::figures::{stats, trend};
 use super::{Database, print_json, print_out, since_argument};
 use crate::clock::{local, now_us, rfc3339};
 use crate::failure::{Exit, Failure};
@@ -64,6 +68,7 @@ enum Verb {
         #[arg(long, default_value = "")]
         note: String,
     },
+    Import(import::ImportArguments),
     /// Record a repair
     Repair {
         /// The fault
@@ -128,7 +133,10 @@ enum By {
 impl FaultsArguments {
     /// Lists, shows, counts or records.
     pub fn run(self) -> Result<Exit, Failure> {
-        let writes = matches!(self.verb, Verb::State { .. } | Verb::Repair { .. });
+        let writes = matches!(
+            self.verb,
+            Verb::State { .. } | Verb::Repair { .. } | Verb::Import(_)
+        );
         let store = if writes {
             self.database.open()?
         } else {
@@ -136,6 +144,7 @@ impl FaultsArguments {
         };
         match self.verb {
             Verb::List(arguments) => arguments.list(&store),
+            Verb::Import(arguments) => arguments.import(store),
             Verb::Show { id, json } => {
                 let fault = store.fault(store.resolve_fault(&id)?)?;
                 if json {
@@ -322,87 +331,4 @@ fn freeze_frame(samples: &[FreezeSample]) -> String {
         table.row([sample.name.clone(), value]);
     }
     table.render()
-}
-
-fn stats(store: &Store, by: By, json: bool) -> Result<Exit, Failure> {
-    let key = match by {
-        By::Code => StatKey::Code,
-        By::Lru => StatKey::Lru,
-    };
-    let stats = store.stats(key)?;
-    if json {
-        let entry = |stat: &fault_db::FaultStat| {
-            json!({
-                "key": stat.key, "name": stat.name, "faults": stat.faults,
-                "not_closed": stat.not_closed, "occurrences": stat.occurrences,
-                "units": stat.units, "last_at": rfc3339(stat.last_at_us),
-            })
-        };
-        return print_json(&stats.iter().map(entry).collect::<Vec<_>>());
-    }
-    let mut table = Table::new(&[
-        "KEY",
-        "NAME",
-        "FAULTS",
-        "NOT CLOSED",
-        "SEEN",
-        "UNITS",
-        "LAST SEEN",
-    ]);
-    for stat in &stats {
-        table.row([
-            stat.key.clone(),
-            stat.name.clone(),
-            stat.faults.to_string(),
-            stat.not_closed.to_string(),
-            stat.occurrences.to_string(),
-            stat.units.to_string(),
-            local(stat.last_at_us),
-        ]);
-    }
-    print_out(&table.render())
-}
-
-fn trend(
-    store: &Store,
-    measurement: &str,
-    unit: Option<&str>,
-    json: bool,
-) -> Result<Exit, Failure> {
-    let names = store.measurement_names()?;
-    if !names.iter().any(|name| name == measurement) {
-        let hint = crate::failure::did_you_mean(measurement, names.iter().map(String::as_str));
-        return Err(Failure::usage(format!(
-            "no measurement \"{measurement}\" recorded{hint}; `ptu run --list` shows what is measured"
-        )));
-    }
-    let points = store.trend(measurement, unit)?;
-    if let Some(unit) = unit.filter(|_| points.is_empty()) {
-        return Err(Failure::usage(format!(
-            "no measurement \"{measurement}\" of unit {unit} recorded; `ptu runs list` shows the units"
-        )));
-    }
-    if json {
-        let entry = |point: &fault_db::TrendPoint| {
-            json!({
-                "at": rfc3339(point.at_us), "run_id": point.run_id.to_string(),
-                "unit_serial": point.unit_serial, "value": point.value, "unit": point.unit,
-                "low": point.low, "high": point.high, "verdict": point.verdict.as_str(),
-            })
-        };
-        return print_json(&points.iter().map(entry).collect::<Vec<_>>());
-    }
-    let mut table = Table::new(&["AT", "UNIT", "VALUE", "LOW", "HIGH", "VERDICT"]);
-    let number = |value: Option<f64>| value.map_or_else(|| "-".into(), |v| format!("{v:.2}"));
-    for point in &points {
-        table.row([
-            local(point.at_us),
-            point.unit_serial.clone(),
-            format!("{} {}", number(point.value), point.unit),
-            number(point.low),
-            number(point.high),
-            point.verdict.as_str().into(),
-        ]);
-    }
-    print_out(&table.render())
 }

@@ -7,6 +7,7 @@ use fault_db::{Id, RunDetail, Store};
 
 use super::dictionary::{Chosen, choose};
 use super::gather::of_run;
+use super::history::OwnHistory;
 use super::settings;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
@@ -49,8 +50,10 @@ pub fn diagnose_run(
     if seen.is_empty() {
         warnings.push("the run has no step and no fault that could be diagnosed".into());
     }
-    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
-    let diagnosis = Diagnosis::of(&model, &seen);
+    let history = OwnHistory::before(&run, &occurrences, store, &settings)?;
+    let model = Model::new(&dictionary, &settings, &history.factors);
+    let mut diagnosis = Diagnosis::of(&model, &seen);
+    history.explain(&mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
         let of_part = traces.entry(occurrence.lru.clone()).or_default();

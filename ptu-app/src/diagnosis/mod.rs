@@ -4,8 +4,10 @@ mod answer;
 mod basis;
 mod dictionary;
 mod gather;
+mod history;
 
 pub use answer::{Answer, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
 pub use dictionary::{Chosen, choose};
 pub use gather::{Gatherer, of_run};
+pub use history::OwnHistory;

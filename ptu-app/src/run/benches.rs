@@ -350,7 +350,7 @@ fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
 }
 
 /// ASCII filled up with zeros.
-fn text(field: &[u8]) -> String {
+pub(crate) fn text(field: &[u8]) -> String {
     let end = field
         .iter()
         .position(|byte| *byte == 0)

@@ -7,7 +7,7 @@
 //! Workers drive benches; the collector takes their streams in the order of the procedures, so the
 //! record does not depend on how many work side by side.
 
-mod benches;
+pub(crate) mod benches;
 mod collector;
 mod fault_watch;
 mod recorder;
@@ -21,9 +21,11 @@ use std::sync::mpsc::{self, Receiver};
 use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
+pub(crate) use benches::text;
 pub use benches::{BenchSetup, Connected};
 pub use collector::{Listener, Outcome, steps_of};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
+pub(crate) use fault_watch::{is_fault, of_event};
 pub use session::SessionEvent;
 
 use crate::clock;

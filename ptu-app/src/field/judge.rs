@@ -1,0 +1,237 @@
+//! Which entries of a unit's log are faults of the unit and its train: not information, not what a
+//! tester did to it, not that it lies on a bench with nothing connected.
+
+use std::ops::Range;
+
+use btu_rig::procedure::UnitEvent;
+use protocol::event::Event;
+use protocol::message::Channel;
+
+use super::read::Entry;
+use crate::run::is_fault;
+
+/// Inputs and TCMS that fall silent so close together, ms, were taken away at once: their time-outs
+/// differ by less, and no single fault of the unit silences both.
+const TOGETHER_MS: u32 = 2_000;
+/// What a unit logs because nothing is connected any more.
+const SILENCE: [Event; 4] = [
+    Event::InputsLost,
+    Event::TcmsLost,
+    Event::TwcLost,
+    Event::AtoFailed,
+];
+
+/// A log, judged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Judged {
+    /// Faults, in order.
+    pub faults: Vec<Entry>,
+    /// Why the others are none.
+    pub left_out: LeftOut,
+}
+
+/// Entries left out, by reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Information only.
+    pub information: u32,
+    /// Of the time before the one asked for.
+    pub too_old: u32,
+    /// Made while a run of the same history tested the unit, which has judged them.
+    pub under_test: u32,
+    /// Made while a tester had it armed, when it may do what it was told to; or a tester's own frames,
+    /// refused.
+    pub tester: u32,
+    /// Silence of a unit that nothing is connected to.
+    pub alone: u32,
+}
+
+/// Judges entries, which are in order; `tested` are the spans, µs UTC, in which runs tested the unit.
+pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) -> Judged {
+    let events: Vec<_> = entries.iter().map(|entry| entry.event).collect();
+    let armed = armed(&events);
+    let alone = alone(&events);
+    let within = |spans: &[Range<usize>], place| spans.iter().any(|span| span.contains(&place));
+    let mut judged = Judged::default();
+    for (place, entry) in entries.iter().enumerate() {
+        let silence = SILENCE.iter().any(|event| is(&entry.event, *event));
+        let left_out = &mut judged.left_out;
+        let dated = |holds: &dyn Fn(i64) -> bool| entry.at_us.is_some_and(holds);
+        let reason = if !is_fault(&entry.event) {
+            &mut left_out.information
+        } else if dated(&|at| since_us.is_some_and(|since| at < since)) {
+            &mut left_out.too_old
+        } else if dated(&|at| {
+            tested
+                .iter()
+                .any(|(from, until)| (*from..=*until).contains(&at))
+        }) {
+            &mut left_out.under_test
+        } else if within(&armed, place) || of_testers_line(&entry.event) {
+            &mut left_out.tester
+        } else if silence && within(&alone, place) {
+            &mut left_out.alone
+        } else {
+            judged.faults.push(*entry);
+            continue;
+        };
+        *reason += 1;
+    }
+    judged
+}
+
+fn is(entry: &UnitEvent, event: Event) -> bool {
+    entry.code == event.definition().code
+}
+
+/// Frames of a tester, refused: of its cable, or one that took over from another.
+fn of_testers_line(entry: &UnitEvent) -> bool {
+    is(entry, Event::FramesRejected) && entry.parameter == i32::from(Channel::Ptu.code())
+}
+
+/// Spans of entries in which a tester had the unit armed. Arming whose beginning is not kept began
+/// before.
+fn armed(events: &[UnitEvent]) -> Vec<Range<usize>> {
+    let mut spans = Vec::new();
+    let mut began = None;
+    for (place, entry) in events.iter().enumerate() {
+        if is(entry, Event::Armed) {
+            began.get_or_insert(place);
+        } else if is(entry, Event::ArmingLapsed) {
+            let from = began.take().or(spans.is_empty().then_some(0));
+            spans.extend(from.map(|from| from..place));
+        } else if is(entry, Event::PowerUp) {
+            spans.extend(began.take().map(|from| from..place));
+        }
+    }
+    spans.extend(began.map(|from| from..events.len()));
+    spans
+}
+
+/// Spans of entries in which nothing was connected to the unit: from inputs and TCMS gone, both, to the
+/// first of them back.
+fn alone(events: &[UnitEvent]) -> Vec<Range<usize>> {
+    let mut spans = Vec::new();
+    let (mut inputs, mut tcms): (Option<usize>, Option<usize>) = (None, None);
+    let mut began = None;
+    for (place, entry) in events.iter().enumerate() {
+        let any_back = is(entry, Event::InputsRestored) || is(entry, Event::TcmsRestored);
+        if any_back || is(entry, Event::PowerUp) {
+            spans.extend(began.take().map(|from| from..place));
+            let anew = is(entry, Event::PowerUp);
+            inputs = inputs.filter(|_| !anew && !is(entry, Event::InputsRestored));
+            tcms = tcms.filter(|_| !anew && !is(entry, Event::TcmsRestored));
+        } else if is(entry, Event::InputsLost) {
+            inputs = Some(place);
+        } else if is(entry, Event::TcmsLost) {
+            tcms = Some(place);
+        }
+        if let (Some(inputs), Some(tcms), None) = (inputs, tcms, began) {
+            let (first, second) = (inputs.min(tcms), inputs.max(tcms));
+            let apart_ms = events[second].at_ms.abs_diff(events[first].at_ms);
+            // One that was gone long before is a fault; the other went with the tester.
+            began = Some(if apart_ms <= TOGETHER_MS {
+                first
+            } else {
+                second
+            });
+        }
+    }
+    spans.extend(began.map(|from| from..events.len()));
+    spans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::read::tests::event;
+
+    /// Entries half a second apart from the first on, dated by their own time; names of the faults.
+    fn faults(events: &[Event], tested: &[(i64, i64)]) -> (Vec<u32>, LeftOut) {
+        let entries: Vec<_> = (0..)
+            .zip(events)
+            .map(|(index, code)| Entry {
+                event: event(index, *code, index * 500),
+                at_us: Some(i64::from(index) * 500_000),
+            })
+            .collect();
+        let judged = judge(&entries, tested, None);
+        let indices = judged.faults.iter().map(|entry| entry.event.index);
+        (indices.collect(), judged.left_out)
+    }
+
+    #[test]
+    fn a_unit_taken_off_the_bench_is_not_at_fault() {
+        let (found, left_out) = faults(
+            &[
+                Event::PowerUp,
+                Event::TachoDead1,
+                Event::InputsLost,
+                Event::TcmsLost,
+                Event::TwcLost,
+                Event::EbRelayWelded,
+            ],
+            &[],
+        );
+        assert_eq!(found, [1, 5], "what is not silence stays");
+        assert_eq!((left_out.information, left_out.alone), (1, 3));
+    }
+
+    #[test]
+    fn inputs_or_tcms_gone_alone_are_faults_and_so_is_what_was_gone_before() {
+        assert_eq!(faults(&[Event::InputsLost, Event::TwcLost], &[]).0, [0, 1]);
+        let gone_before = [
+            Event::TcmsLost,
+            Event::MarkerMissing,
+            Event::MarkerMissing,
+            Event::MarkerMissing,
+            Event::MarkerMissing,
+            Event::InputsLost,
+            Event::TwcLost,
+        ];
+        assert_eq!(faults(&gone_before, &[]).0, [0, 1, 2, 3, 4]);
+        let back = [
+            Event::InputsLost,
+            Event::TcmsLost,
+            Event::InputsRestored,
+            Event::TcmsRestored,
+            Event::TcmsLost,
+        ];
+        assert_eq!(faults(&back, &[]).0, [4]);
+    }
+
+    #[test]
+    fn what_a_tester_did_is_no_fault() {
+        let armed = [
+            Event::OverspeedEb,
+            Event::Armed,
+            Event::OverspeedEb,
+            Event::ArmingLapsed,
+            Event::TachoDead1,
+        ];
+        assert_eq!(faults(&armed, &[]).0, [0, 4]);
+        // The beginning is overwritten; a unit still armed.
+        let cut = [
+            Event::OverspeedEb,
+            Event::ArmingLapsed,
+            Event::TachoDead1,
+            Event::Armed,
+            Event::OverspeedEb,
+        ];
+        assert_eq!(faults(&cut, &[]).0, [2]);
+        let (found, left_out) = faults(&[Event::OverspeedEb; 6], &[(900_000, 2_100_000)]);
+        assert_eq!(found, [0, 1, 5]);
+        assert_eq!(left_out.under_test, 3);
+    }
+
+    #[test]
+    fn only_what_is_dated_can_be_too_old() {
+        let entry = |at_us| Entry {
+            event: event(0, Event::TachoDead1, 0),
+            at_us,
+        };
+        let judged = judge(&[entry(Some(1)), entry(Some(3)), entry(None)], &[], Some(2));
+        assert_eq!(judged.faults.len(), 2);
+        assert_eq!(judged.left_out.too_old, 1);
+    }
+}

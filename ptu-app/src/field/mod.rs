@@ -1,0 +1,16 @@
+//! A unit's own event log, read where the unit is, becomes faults in the history.
+//!
+//! ```text
+//! unit → LogSession → read (entries, dated) → judge (which are the unit's) → store (what is new)
+//! ```
+//! The unit is listened to and asked for its log; it is given no input and no stimulus, and nothing is
+//! armed.
+
+mod date;
+mod judge;
+mod read;
+mod store;
+
+pub use judge::{Judged, LeftOut, judge};
+pub use read::{Entry, LogRead, read_log};
+pub use store::{Imported, Source, import};

@@ -1,0 +1,373 @@
+//! Reads a unit's log to its end, or as far as it goes.
+
+use btu_rig::procedure::UnitEvent;
+use btu_rig::rig::{LogSession, UnitLink};
+use protocol::message::{Identity, StatusBits};
+use protocol::{Duration, Instant, SCAN};
+
+use super::date::{ClockPair, dates};
+use crate::link::Pace;
+use crate::stop::Stop;
+
+/// Time a log may take: a full one takes a tenth of it.
+const READ_WITHIN: Duration = Duration::from_ms(60_000);
+
+/// An entry with its date.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// The entry.
+    pub event: UnitEvent,
+    /// When it was made, µs UTC; none where the unit's clock does not tell.
+    pub at_us: Option<i64>,
+}
+
+/// A log as read.
+#[derive(Clone, Debug)]
+pub struct LogRead {
+    /// Who the unit is.
+    pub identity: Identity,
+    /// Its entries, in order.
+    pub entries: Vec<Entry>,
+    /// Entries the unit had overwritten or cleared before.
+    pub overwritten: u64,
+    /// Times the unit was started again meanwhile.
+    pub restarts: u32,
+    /// Its states at the end.
+    pub status: StatusBits,
+    /// Why reading ended before the log did.
+    pub broken_off: Option<String>,
+}
+
+/// Reads the log of the unit on `link`; times of the link begin after `from`, and `clock` gives our
+/// own, µs UTC.
+///
+/// # Errors
+/// The unit did not say who it is: why.
+pub fn read_log<L: UnitLink>(
+    link: &mut L,
+    from: Instant,
+    pace: &mut Pace,
+    stop: &Stop,
+    clock: &dyn Fn() -> i64,
+) -> Result<LogRead, String> {
+    let mut session = LogSession::default();
+    let mut entries = Vec::new();
+    let mut since_power_up: Vec<UnitEvent> = Vec::new();
+    let mut pair: Option<ClockPair> = None;
+    let (mut to_unit, mut from_unit) = (Vec::new(), Vec::new());
+    let mut restarts = 0;
+    let mut now = from;
+    let broken_off = loop {
+        pace.wait();
+        now += SCAN;
+        to_unit.clear();
+        from_unit.clear();
+        session.step(now, &mut to_unit);
+        let exchanged = link.exchange(now, &to_unit, &mut from_unit);
+        session.receive(now, &from_unit);
+        if session.restarts() != restarts {
+            // What was read before is of the clock before.
+            restarts = session.restarts();
+            entries.extend(dated(&mut since_power_up, pair.take()));
+        }
+        if let Some((told_at, uptime_ms)) = session.uptime_ms()
+            && told_at == now
+        {
+            let at_us = clock();
+            pair = Some(ClockPair { uptime_ms, at_us });
+        }
+        since_power_up.extend(session.take_events());
+        if let Err(failure) = exchanged {
+            break Some(failure.to_string());
+        }
+        if session.is_complete() {
+            break None;
+        }
+        if let Some(error) = session.link_error(now) {
+            break Some(error);
+        }
+        if stop.presses() > 0 {
+            break Some("stopped by the operator".to_owned());
+        }
+        if now.since(from) > READ_WITHIN {
+            break Some(format!("the log does not end within {READ_WITHIN}"));
+        }
+    };
+    entries.extend(dated(&mut since_power_up, pair));
+    let Some(identity) = session.identity().copied() else {
+        return Err(broken_off.unwrap_or_default());
+    };
+    Ok(LogRead {
+        identity,
+        entries,
+        overwritten: session.overwritten(),
+        restarts,
+        status: session.status().unwrap_or(StatusBits::empty()),
+        broken_off,
+    })
+}
+
+fn dated(events: &mut Vec<UnitEvent>, clock: Option<ClockPair>) -> Vec<Entry> {
+    let dates = dates(events, clock);
+    let events = events.drain(..).zip(dates);
+    events
+        .map(|(event, at_us)| Entry { event, at_us })
+        .collect()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::path::Path;
+
+    use btu_rig::procedure::EventSource;
+    use btu_rig::rig::LinkFailure;
+    use protocol::Speed;
+    use protocol::event::Event;
+    use protocol::link::{End, Link};
+    use protocol::message::{EbCause, IoOutput, LogEnd, LogEntry, Message, Mode, Status};
+
+    use super::*;
+    use crate::data::ScriptsDirectory;
+    use crate::link::{Delayed, Endpoint, SimLink};
+    use crate::run::{BenchSetup, Session};
+
+    /// An entry made standing.
+    pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
+        UnitEvent {
+            source: EventSource::Unit,
+            index,
+            code: event.definition().code,
+            at_ms,
+            parameter: 0,
+            speed: Speed::default(),
+            limit: Speed::default(),
+            position_m: 0.0,
+            mode: Mode::default(),
+            eb_cause: EbCause::default(),
+        }
+    }
+
+    /// A bench with an embedded unit, these faults injected.
+    pub fn bench(faults: &[&str]) -> Session<Delayed<SimLink>> {
+        let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+        let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
+        let faults: Vec<_> = faults.iter().map(|name| (*name).to_owned()).collect();
+        let setup = BenchSetup {
+            endpoint: Endpoint::Sim,
+            config: directory.unit_config("sg100").expect("configuration"),
+            line: directory.line("line8").expect("line"),
+            train: btu_rig::train::TrainData::line6(),
+            faults: directory.chosen_faults(&faults).expect("faults"),
+            seed: 1,
+            scatter: None,
+            serial: None,
+            realtime: false,
+        };
+        let mut session = setup.sim_session("field", &Stop::default());
+        session.judge_bring_up(Duration::from_ms(20_000), |_| false);
+        session
+    }
+
+    fn read<L: UnitLink>(link: &mut L, from: Instant) -> Result<LogRead, String> {
+        let mut pace = Pace::Virtual;
+        read_log(link, from, &mut pace, &Stop::default(), &|| NOW_US)
+    }
+
+    const NOW_US: i64 = 1_000_000_000_000;
+
+    fn codes(read: &LogRead) -> Vec<Option<Event>> {
+        let entries = read.entries.iter();
+        entries
+            .map(|entry| Event::from_code(entry.event.code))
+            .collect()
+    }
+
+    /// Goal: reading leaves the unit as it was. Method: a unit that its bench left ten seconds ago is
+    /// read twice.
+    #[test]
+    fn a_log_is_read_to_its_end_and_reading_adds_nothing_to_it() {
+        let mut bench = bench(&[]);
+        let mut now = bench.now();
+        let link = bench.bench().link_mut();
+        for _ in 0..1_000 {
+            now += SCAN;
+            link.exchange(now, &[], &mut Vec::new())
+                .expect("the embedded unit");
+        }
+        let first = read(link, now).expect("a log");
+        assert_eq!(first.broken_off, None);
+        assert_eq!(first.overwritten, 0);
+        let lost = [Event::InputsLost, Event::TcmsLost, Event::TwcLost];
+        for event in lost {
+            assert!(codes(&first).contains(&Some(event)), "{:?}", codes(&first));
+        }
+        assert!(!first.status.contains(StatusBits::ARMED));
+        let age_s = (NOW_US - first.entries[0].at_us.expect("a date")) / 1_000_000;
+        assert_eq!(age_s, 21, "10 s with the bench, 10 s left, 1 s held back");
+        let second = read(link, now + Duration::from_ms(20_000)).expect("a log");
+        assert_eq!(codes(&second), codes(&first));
+    }
+
+    /// A unit that answers as told: what a real one does only after days.
+    struct Told {
+        link: Link,
+        entries: Vec<LogEntry>,
+        uptime_ms: u32,
+        asked_from: Option<u32>,
+        /// What happens at a time, ms.
+        happens: Option<(u64, Happening)>,
+    }
+
+    #[derive(Clone, Copy, PartialEq)]
+    enum Happening {
+        CableOff,
+        Restart,
+    }
+
+    impl Told {
+        /// A unit with these entries in its log.
+        fn new(entries: impl IntoIterator<Item = (u32, u16, u32)>) -> Self {
+            let entries = entries.into_iter().map(|(index, code, at_ms)| LogEntry {
+                index,
+                code,
+                at_ms,
+                ..LogEntry::default()
+            });
+            Self {
+                link: Link::new(End::Unit),
+                entries: entries.collect(),
+                uptime_ms: 1_000_000,
+                asked_from: None,
+                happens: None,
+            }
+        }
+
+        fn next_index(&self) -> u32 {
+            self.entries.last().map_or(0, |entry| entry.index + 1)
+        }
+    }
+
+    impl UnitLink for Told {
+        fn exchange(
+            &mut self,
+            now: Instant,
+            to_unit: &[u8],
+            from_unit: &mut Vec<u8>,
+        ) -> Result<(), LinkFailure> {
+            match self
+                .happens
+                .filter(|(at_ms, _)| now >= Instant::from_ms(*at_ms))
+            {
+                Some((_, Happening::CableOff)) => {
+                    return Err(LinkFailure {
+                        link: "tcp:told".into(),
+                        reason: "closed at the other end".into(),
+                    });
+                }
+                Some((_, Happening::Restart)) => {
+                    self.happens = None;
+                    self.uptime_ms = 100;
+                    self.entries = Self::new([(0, 100, 0), (1, 222, 50)]).entries;
+                }
+                None => {}
+            }
+            self.link.push(to_unit);
+            while let Some(received) = self.link.poll(now) {
+                match received.message {
+                    Message::Identify(_) => {
+                        let mut identity = Identity {
+                            uptime_ms: self.uptime_ms,
+                            ..Identity::default()
+                        };
+                        identity.serial[..3].copy_from_slice(b"U-1");
+                        self.link.send(now, &identity.into(), from_unit);
+                    }
+                    Message::ReadLog(asked) => self.asked_from = Some(asked.from_index),
+                    _ => {}
+                }
+            }
+            if !now.as_us().is_multiple_of(50_000) {
+                return Ok(());
+            }
+            let events = self.next_index();
+            let status = Status {
+                events,
+                ..Status::default()
+            };
+            self.link.send(now, &status.into(), from_unit);
+            self.link.send(now, &IoOutput::default().into(), from_unit);
+            if let Some(from) = self.asked_from {
+                let wanted: Vec<_> = self.entries.iter().filter(|e| e.index >= from).collect();
+                for entry in wanted.iter().take(2) {
+                    self.link.send(now, &(**entry).into(), from_unit);
+                    self.asked_from = Some(entry.index + 1);
+                }
+                if wanted.len() <= 2 {
+                    self.asked_from = None;
+                    let end = LogEnd {
+                        next_index: events,
+                        oldest_index: self.entries.first().map_or(0, |entry| entry.index),
+                    };
+                    self.link.send(now, &end.into(), from_unit);
+                }
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn entries_that_fell_off_are_counted_and_unknown_codes_are_kept() {
+        let mut unit = Told::new((40..90).map(|index| (index, 999, index * 1000)));
+        let log = read(&mut unit, Instant::ZERO).expect("a log");
+        assert_eq!(log.overwritten, 40);
+        assert_eq!(log.entries.len(), 50);
+        assert!(log.entries.iter().all(|entry| entry.event.code == 999));
+        assert_eq!(log.entries[0].at_us, Some(NOW_US - 960_000_000));
+    }
+
+    #[test]
+    fn what_was_read_before_the_cable_came_off_is_kept() {
+        let mut unit = Told::new((0..90).map(|index| (index, 221, index * 1000)));
+        unit.happens = Some((2_000, Happening::CableOff));
+        let log = read(&mut unit, Instant::ZERO).expect("a log");
+        let why = log.broken_off.expect("broken off");
+        assert!(why.contains("closed at the other end"), "{why}");
+        let read_so_far = log.entries.len();
+        assert!((10..60).contains(&read_so_far), "{read_so_far}");
+        assert!(log.entries.iter().all(|entry| entry.at_us.is_some()));
+    }
+
+    /// Each entry is dated by the clock of its own power-up.
+    #[test]
+    fn a_unit_that_starts_again_while_it_is_read_has_two_clocks() {
+        let mut unit = Told::new((0..90).map(|index| (index, 221, 900_000 + index)));
+        unit.happens = Some((2_000, Happening::Restart));
+        let log = read(&mut unit, Instant::ZERO).expect("a log");
+        assert_eq!(log.restarts, 1);
+        let last = log.entries.last().expect("entries");
+        assert_eq!((last.event.code, last.event.index), (222, 1));
+        assert_eq!(last.at_us, Some(NOW_US - 50_000));
+        let first = log.entries[0];
+        assert_eq!(
+            (first.event.code, first.at_us),
+            (221, Some(NOW_US - 100_000_000))
+        );
+    }
+
+    #[test]
+    fn nobody_there_says_why() {
+        struct Nobody;
+        impl UnitLink for Nobody {
+            fn exchange(
+                &mut self,
+                _: Instant,
+                _: &[u8],
+                _: &mut Vec<u8>,
+            ) -> Result<(), LinkFailure> {
+                Ok(())
+            }
+        }
+        let why = read(&mut Nobody, Instant::ZERO).expect_err("no log");
+        assert!(why.contains("unit silent"), "{why}");
+    }
+}

@@ -1,0 +1,159 @@
+//! Faults of a unit's log that the history does not know yet, stored as a run without steps.
+
+use std::collections::BTreeMap;
+
+use btu_rig::procedure::UnitEvent;
+use fault_db::{
+    FaultRecord, FreezeSample, Id, LOG_SOURCE, RunEnd, RunRecord, RunWriter, Store, StoreError,
+    UnitRecord, Verdict,
+};
+use protocol::Instant;
+use protocol::signal::{Sample, Signal};
+
+use super::read::Entry;
+use crate::run::of_event;
+
+/// What is stored of a reading beside its entries.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Where the unit is: `serial:…`, `tcp:…`.
+    pub endpoint: String,
+    /// Its serial number.
+    pub serial: String,
+    /// Name of its unit configuration.
+    pub config_name: String,
+    /// SHA-256 of it in hex; empty where the file is not at hand.
+    pub unit_config_sha256: String,
+    /// Line.
+    pub line: String,
+    /// Who reads.
+    pub operator: String,
+    /// When reading began, µs UTC.
+    pub from_us: i64,
+    /// When it ended.
+    pub until_us: i64,
+    /// It ended before the log did.
+    pub broken_off: bool,
+}
+
+/// What became of the faults of a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imported {
+    /// The run they are stored as; none when nothing is new.
+    pub run: Option<Id>,
+    /// New ones, in order.
+    pub new: Vec<FaultRecord>,
+    /// Those known already.
+    pub known: usize,
+}
+
+/// Stores what is new of `faults`.
+///
+/// # Errors
+/// The database fails; what was stored stays, and the next import adds the rest.
+pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Imported, StoreError> {
+    let mut imported = Imported::default();
+    for entry in faults {
+        let record = record(entry, source.until_us);
+        let what = (record.code, record.message.as_str());
+        if store.knows_occurrence(&source.serial, what, entry.at_us)? {
+            imported.known += 1;
+        } else {
+            imported.new.push(record);
+        }
+    }
+    if imported.new.is_empty() {
+        return Ok(imported);
+    }
+    let mut writer = RunWriter::begin(store, &run_record(source))?;
+    for record in &imported.new {
+        writer.fault(record)?;
+    }
+    let verdict = if source.broken_off {
+        Verdict::Error
+    } else {
+        Verdict::Failed
+    };
+    writer.finish(&RunEnd {
+        verdict,
+        finished_at_us: source.until_us,
+        bench_time_us: 0,
+        wall_time_us: source.until_us - source.from_us,
+    })?;
+    imported.run = Some(writer.id());
+    Ok(imported)
+}
+
+fn run_record(source: &Source) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial: source.serial.clone(),
+            kind: "atc".into(),
+            config_name: source.config_name.clone(),
+            sw_versions: BTreeMap::new(),
+        },
+        line: source.line.clone(),
+        seed: 0,
+        operator: source.operator.clone(),
+        source: format!("{LOG_SOURCE}{}", source.endpoint),
+        started_at_us: source.from_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        scripts_sha256: String::new(),
+        unit_config_sha256: source.unit_config_sha256.clone(),
+        injected: None,
+        owner: crate::owner::this_process(),
+        scripts: Vec::new(),
+    }
+}
+
+/// The entry as a run would have stored it, on the unit's own clock, with what it froze.
+fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
+    let event = &entry.event;
+    let at = Instant::from_ms(u64::from(event.at_ms));
+    let fault = of_event(event, at, &frozen(event));
+    let mut freeze = fault.freeze;
+    freeze.retain(|sample| sample.value.is_some());
+    let number = |name: &str, value: f64, unit: &str| FreezeSample {
+        name: name.into(),
+        value: Some(value),
+        unit: unit.into(),
+        label: None,
+    };
+    let dated_by = match entry.at_us {
+        Some(_) => "the unit's clock",
+        None => "the time of reading",
+    };
+    freeze.extend([
+        number("parameter", f64::from(event.parameter), ""),
+        number("log_index", f64::from(event.index), ""),
+        number("unit_time", f64::from(event.at_ms) / 1000.0, "s"),
+        FreezeSample {
+            name: "dated_by".into(),
+            value: None,
+            unit: String::new(),
+            label: Some(dated_by.into()),
+        },
+    ]);
+    FaultRecord {
+        code: i64::from(fault.code),
+        code_name: fault.name,
+        lru: fault.lru,
+        severity: fault.severity.into(),
+        at_us: entry.at_us.unwrap_or(read_at_us),
+        bench_us: fault.at.as_us() as i64,
+        step_index: None,
+        message: fault.message,
+        freeze,
+    }
+}
+
+/// The signals an entry tells of.
+fn frozen(event: &UnitEvent) -> Sample {
+    let mut sample = Sample::default();
+    sample.set(Signal::Speed, event.speed.kmh());
+    sample.set(Signal::Limit, event.limit.kmh());
+    sample.set(Signal::Position, event.position_m);
+    sample.set(Signal::Mode, f64::from(event.mode.code()));
+    sample.set(Signal::EbCause, f64::from(event.eb_cause.code()));
+    sample
+}
