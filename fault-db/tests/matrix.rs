@@ -331,3 +331,25 @@ fn a_tree_of_a_thousand_levels_is_made_and_written() {
     assert_eq!(text.matches("\"test\"").count(), count - 1);
     assert!(text.len() < 1_000_000, "{} bytes", text.len());
 }
+
+/// Goal: where the work runs out, the answer says so instead of passing for a whole tree.
+#[test]
+fn a_tree_that_is_too_large_is_cut_and_says_so() {
+    let matrix = random(&mut Dice(3), 20, 20, 10);
+    let made = planned(&matrix, Method::Greedy);
+    let cut = made.tree.cut_probability();
+    assert!(!made.optimal);
+    assert!(
+        cut > 0.0,
+        "20 tests that err need more nodes than are allowed"
+    );
+    assert!(made.warnings.iter().any(|warning| warning.contains("cut")));
+    assert!((walked(&matrix, &made.tree) - made.expected_cost).abs() < 1e-9);
+    let written: serde_json::Value = serde_json::from_str(
+        &made
+            .to_json(&matrix, &Posterior::prior(&matrix))
+            .expect("JSON"),
+    )
+    .expect("JSON");
+    assert_eq!(written["cut_probability"].as_f64(), Some(cut));
+}

@@ -126,13 +126,15 @@ fn text(matrix: &Matrix, known: &Posterior, plan: &Plan, with_posterior: bool) -
         Some(test) => format!("next test {}", matrix.tests()[test].id),
         None => "no test left that tells more".into(),
     };
+    let cut = plan.tree.cut_probability() > 0.0;
     parts.push(format!(
-        "{next}\nexpected cost {:.4} ({})",
+        "{next}\nexpected cost {}{:.4} ({})",
+        if cut { "at least " } else { "" },
         plan.expected_cost,
-        if plan.optimal {
-            "optimal: no order of tests costs less"
-        } else {
-            "greedy: another order may cost less"
+        match (plan.optimal, cut) {
+            (true, _) => "optimal: no order of tests costs less",
+            (false, false) => "greedy: another order may cost less",
+            (false, true) => "greedy, and not grown to its ends",
         }
     ));
     parts.push(steps(matrix, plan));

@@ -10,6 +10,7 @@ use super::posterior::Posterior;
 struct Head<'a> {
     expected_cost: f64,
     optimal: bool,
+    cut_probability: f64,
     next_test: Option<&'a str>,
     posterior: Vec<StateProbability<'a>>,
     warnings: &'a [String],
@@ -22,13 +23,15 @@ struct StateProbability<'a> {
 }
 
 impl Plan {
-    /// `{"expected_cost", "optimal", "next_test", "posterior": [{"id", "p"}], "warnings", "tree"}`;
-    /// the posterior has the states that are possible, likeliest first.
+    /// `{"expected_cost", "optimal", "cut_probability", "next_test", "posterior": [{"id", "p"}], "warnings", "tree"}`;
+    /// the posterior has the states that are possible, likeliest first. A cut probability above 0
+    /// says that the tree was not grown to its ends and its cost is a lower limit.
     pub fn to_json(&self, matrix: &Matrix, known: &Posterior) -> Result<String, serde_json::Error> {
         let name = |state: usize| matrix.states()[state].id.as_str();
         let head = Head {
             expected_cost: self.expected_cost,
             optimal: self.optimal,
+            cut_probability: self.tree.cut_probability(),
             next_test: self
                 .tree
                 .first_test()
