@@ -24,6 +24,10 @@ pub struct ScriptsDirectory(PathBuf);
 /// A data file's content and checksums.
 #[derive(Clone, Debug)]
 pub struct DataFile<T> {
+    /// Name it was asked for by.
+    pub name: String,
+    /// What was changed in it from outside, `KEY=VALUE`, in order.
+    pub settings: Vec<String>,
     /// The checked content.
     pub content: T,
     /// CRC-32 of the text, as the unit reports it; a line's leaves its own `checksum` line out.
@@ -93,6 +97,8 @@ impl ScriptsDirectory {
         let file = self.load("lines", name, "line", read)?;
         let (content, crc) = file.content;
         Ok(DataFile {
+            name: file.name,
+            settings: file.settings,
             content,
             crc,
             sha256: file.sha256,
@@ -173,6 +179,8 @@ impl ScriptsDirectory {
         let content =
             parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", file.display())))?;
         Ok(DataFile {
+            name: name.to_owned(),
+            settings: Vec::new(),
             content,
             crc: checksum(&text),
             sha256: sha256(&text),

@@ -2,11 +2,12 @@
 //! them to the store, tells the listener.
 
 use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
-use fault_db::{FaultRecord, Id, MeasurementRecord, StepRecord};
+use fault_db::{FaultRecord, Id, MeasurementRecord, RecordingRecord, StepRecord};
 use protocol::Duration;
 
+use super::made::BenchMade;
 use super::recorder::Cut;
-use super::session::SessionEvent;
+use super::session::{SessionEvent, Taped};
 use super::store_thread::RunStore;
 use super::{FaultSeen, Task};
 use crate::clock;
@@ -42,7 +43,11 @@ impl Outcome {
 pub struct Collector<'a> {
     store: RunStore,
     listener: &'a mut dyn Listener,
+    /// What the benches are made of.
+    made: BenchMade,
     stop_on_fail: bool,
+    /// Place of the present procedure in the run, counted from 1.
+    ordinal: u32,
     procedure: Option<std::sync::Arc<Procedure>>,
     /// Bench time of the procedures before the present one.
     before: Duration,
@@ -59,11 +64,18 @@ pub struct Collector<'a> {
 
 impl<'a> Collector<'a> {
     /// A collector that records in `store`.
-    pub fn new(store: RunStore, listener: &'a mut dyn Listener, stop_on_fail: bool) -> Self {
+    pub fn new(
+        store: RunStore,
+        listener: &'a mut dyn Listener,
+        made: BenchMade,
+        stop_on_fail: bool,
+    ) -> Self {
         Self {
             store,
             listener,
+            made,
             stop_on_fail,
+            ordinal: 0,
             procedure: None,
             before: Duration::ZERO,
             steps: 0,
@@ -80,6 +92,7 @@ impl<'a> Collector<'a> {
     /// The next stream is of this procedure.
     pub fn begin(&mut self, procedure: &std::sync::Arc<Procedure>) {
         self.procedure = Some(procedure.clone());
+        self.ordinal += 1;
         self.steps_before = self.steps;
         self.faults_before = self.dates.len();
     }
@@ -107,6 +120,7 @@ impl<'a> Collector<'a> {
             SessionEvent::LinkLost(_) => self.link_lost = true,
             SessionEvent::Fault(fault) => self.fault(fault),
             SessionEvent::Trace(cut) => self.trace(*cut),
+            SessionEvent::Recording(taped) => self.recording(&procedure.id, &taped),
             SessionEvent::Ended { bench_time } => self.before += bench_time,
         }
     }
@@ -185,6 +199,15 @@ impl<'a> Collector<'a> {
             at_us - (bench_us - trace.t0_bench_us)
         });
         self.store.trace(faults, trace);
+    }
+
+    fn recording(&mut self, procedure: &str, taped: &Taped) {
+        let recording = self.made.recording(procedure, taped);
+        self.store.recording(RecordingRecord {
+            ordinal: self.ordinal,
+            t0_bench_us: self.before.as_us() as i64,
+            ..recording
+        });
     }
 
     /// The end of all streams.

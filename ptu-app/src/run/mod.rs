@@ -10,6 +10,7 @@
 pub(crate) mod benches;
 mod collector;
 mod fault_watch;
+mod made;
 mod recorder;
 pub mod select;
 mod session;
@@ -26,7 +27,10 @@ pub use benches::{BenchSetup, Connected};
 pub use collector::{Listener, Outcome, steps_of};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
-pub use session::SessionEvent;
+pub use made::{BenchMade, Made, Stimuli};
+pub(crate) use recorder::BEFORE;
+pub(crate) use session::{Session, Window};
+pub use session::{SessionEvent, Taped};
 
 use crate::clock;
 use crate::failure::{Exit, Failure};
@@ -88,7 +92,8 @@ pub fn run(
             return Err(failure);
         }
     };
-    let mut collector = Collector::new(run_store, listener, plan.stop_on_fail);
+    let made = BenchMade::of(&setup, connected.serial());
+    let mut collector = Collector::new(run_store, listener, made, plan.stop_on_fail);
     std::thread::scope(|scope| {
         let streams = benches::start(scope, plan, connected, stop);
         collect(plan, streams, &mut collector, stop);

@@ -95,18 +95,23 @@ impl Recorder {
     /// Ends the open window; `partial` when its time is not over.
     pub fn close(&mut self, partial: bool) -> Option<Cut> {
         let window = self.open.take()?;
-        let rows: Vec<&Row> = self
-            .rows
-            .iter()
-            .filter(|row| row.at >= window.from)
-            .collect();
+        let trace = self.trace(window.from, window.trigger, partial)?;
+        Some(Cut {
+            faults: window.faults,
+            trace,
+        })
+    }
+
+    /// All rows from `from` on as a trace.
+    pub fn trace(&self, from: Instant, trigger: Instant, partial: bool) -> Option<TraceData> {
+        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.at >= from).collect();
         let first = rows.first()?.at;
-        let trigger_row = rows.iter().position(|row| row.at >= window.trigger);
+        let trigger_row = rows.iter().position(|row| row.at >= trigger);
         let column = |signal: &Signal| {
             let values = rows.iter().map(|row| row.values[signal.index()]);
             values.map(|value| in_steps(*signal, value)).collect()
         };
-        let trace = TraceData {
+        Some(TraceData {
             t0_bench_us: first.as_us() as i64,
             t0_us: 0,
             period_us: CYCLE.as_us() as i64,
@@ -117,10 +122,6 @@ impl Recorder {
                 .any(|row| row.values.iter().any(|value| value.is_nan())),
             channels: Signal::ALL.iter().map(|signal| channel(*signal)).collect(),
             columns: Signal::ALL.iter().map(column).collect(),
-        };
-        Some(Cut {
-            faults: window.faults,
-            trace,
         })
     }
 }

@@ -1,11 +1,15 @@
 //! Runs one procedure on one bench, scan by scan, and says what happens as a stream.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
+use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{
     EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent,
 };
 use btu_rig::rig::{Bench, UnitLink};
+use btu_rig::tape::{Player, Tape, Taping};
+use fault_db::TraceData;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
@@ -23,6 +27,8 @@ pub enum SessionEvent {
     Fault(FaultSeen),
     /// The window around faults is complete.
     Trace(Box<Cut>),
+    /// What was done to the bench in a procedure whose traces came before.
+    Recording(Box<Taped>),
     /// The unit cannot be reached any more.
     LinkLost(String),
     /// Nothing more comes.
@@ -30,6 +36,15 @@ pub enum SessionEvent {
         /// Bench time this procedure took, bring-up included.
         bench_time: Duration,
     },
+}
+
+/// What was done to the bench in one procedure, on the bench's clock.
+#[derive(Clone, Debug)]
+pub struct Taped {
+    /// When the procedure began.
+    pub began: Instant,
+    /// What was done.
+    pub tape: Tape,
 }
 
 /// A bench, its recorder and its pace.
@@ -41,6 +56,17 @@ pub struct Session<L: UnitLink> {
     sample: Sample,
     link_error: Option<String>,
     fresh_unit: bool,
+}
+
+/// A window of time on a bench.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    /// First row.
+    pub from: Instant,
+    /// Row that is the trigger.
+    pub trigger: Instant,
+    /// Last row.
+    pub until: Instant,
 }
 
 /// What one procedure has come to so far.
@@ -165,6 +191,16 @@ impl<L: UnitLink> Session<L> {
         found: Vec<FaultSeen>,
         sink: &mut dyn FnMut(SessionEvent),
     ) {
+        let traced = Cell::new(false);
+        let mut sink = |event: SessionEvent| {
+            traced.set(traced.get() || matches!(event, SessionEvent::Trace(_)));
+            sink(event);
+        };
+        let sink = &mut sink;
+        let mut taped = Taped {
+            began: self.bench.now(),
+            tape: Tape::default(),
+        };
         let mut runner = Runner::new(procedure.clone(), options);
         let mut progress = Progress {
             procedure,
@@ -191,8 +227,8 @@ impl<L: UnitLink> Session<L> {
                 link_lost = true;
                 sink(SessionEvent::LinkLost(error.clone()));
             }
-            let rig = self.bench.rig_mut();
-            let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), rig);
+            let mut rig = Taping::new(self.bench.rig_mut(), &mut taped.tape);
+            let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
             for event in runner.take_events() {
                 self.note(&event, &mut progress, sink);
                 sink(SessionEvent::Run(event));
@@ -202,6 +238,47 @@ impl<L: UnitLink> Session<L> {
             }
         }
         self.finish_window(sink);
+        if traced.get() {
+            sink(SessionEvent::Recording(Box::new(taped)));
+        }
+    }
+
+    /// Does again what is on a tape, up to `until`, and keeps every scan from `from` on as a trace.
+    /// `None` when nothing could be recorded. What the bench refused goes to `refused`.
+    pub fn play(
+        &mut self,
+        mut player: Player<'_>,
+        window: Window,
+        refused: &mut Vec<String>,
+    ) -> Option<TraceData> {
+        // A unit that falls silent is what some traces show: only a broken connection ends it early.
+        while self.bench.now() < window.until
+            && self.stop.presses() == 0
+            && self.link_error.is_none()
+        {
+            self.scan(&mut |_| {});
+            self.take_events();
+            let now = self.bench.now();
+            let refusals = player.play(now, self.bench.rig_mut());
+            refused.extend(refusals.into_iter().map(|refusal| refusal.0));
+        }
+        let partial = self.bench.now() < window.until;
+        self.recorder.trace(window.from, window.trigger, partial)
+    }
+
+    /// Brings the bench to the quiescent state, for as long as that may take.
+    pub fn make_safe(&mut self) -> bool {
+        let until = self.bench.now() + SAFE_WITHIN;
+        while self.bench.now() < until && self.link_error().is_none() {
+            let now = self.bench.now();
+            self.bench.rig_mut().make_safe(now);
+            if self.bench.rig().safe() {
+                return true;
+            }
+            self.scan(&mut |_| {});
+            self.take_events();
+        }
+        false
     }
 
     /// Lets an open window run out on a quiet bench. What is logged meanwhile waits for whoever idles next.

@@ -7,7 +7,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use fault_db::{
-    FaultRecord, Id, RunEnd, RunRecord, RunWriter, StepRecord, Store, StoreError, TraceData,
+    FaultRecord, Id, RecordingRecord, RunEnd, RunRecord, RunWriter, StepRecord, Store, StoreError,
+    TraceData,
 };
 
 use crate::failure::Failure;
@@ -24,6 +25,8 @@ enum Entry {
     Fault(FaultRecord),
     /// A trace and the numbers of the faults it shows.
     Trace(Vec<usize>, TraceData),
+    /// What the traces since the last recording came from.
+    Recording(RecordingRecord),
     Finish(RunEnd),
 }
 
@@ -87,6 +90,11 @@ impl RunStore {
         self.send(Entry::Trace(faults, trace));
     }
 
+    /// Records what was done in the procedure whose traces were recorded last.
+    pub fn recording(&self, recording: RecordingRecord) {
+        self.send(Entry::Recording(recording));
+    }
+
     /// A send fails only after the writer has ended with an error, which `finish` returns.
     fn send(&self, entry: Entry) {
         let _ = self.entries.send(entry);
@@ -127,6 +135,7 @@ fn write(
 
 fn write_entries(writer: &mut RunWriter<'_>, entries: &Receiver<Entry>) -> Result<(), StoreError> {
     let mut occurrences = Vec::new();
+    let mut traces = Vec::new();
     let mut flushed = Instant::now();
     loop {
         match entries.recv_timeout(FLUSH) {
@@ -137,7 +146,11 @@ fn write_entries(writer: &mut RunWriter<'_>, entries: &Receiver<Entry>) -> Resul
                     .iter()
                     .filter_map(|i| occurrences.get(*i).copied())
                     .collect();
-                writer.trace(&shown, &trace)?;
+                traces.push(writer.trace(&shown, &trace)?);
+            }
+            Ok(Entry::Recording(recording)) => {
+                writer.recording(&recording, &traces)?;
+                traces.clear();
             }
             Ok(Entry::Finish(end)) => return writer.finish(&end),
             Err(RecvTimeoutError::Timeout) => {}

@@ -1,0 +1,120 @@
+//! A trace as lines of text.
+
+use std::fmt::Write as _;
+
+use fault_db::{Id, TraceData};
+
+use super::words::named;
+use crate::clock::local;
+
+/// Characters of a plotted line.
+const PLOT_WIDTH: usize = 60;
+/// Signals shown side by side.
+const LANES: usize = 12;
+/// Heights of a plotted line.
+const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// One line a channel: range and a plot that shows each part's extreme.
+pub fn plot(id: Id, trace: &TraceData) -> String {
+    let rows = trace.rows();
+    let seconds = |rows: usize| rows as f64 * trace.period_us as f64 / 1e6;
+    let trigger = trace.trigger_row.unwrap_or(0) as usize;
+    let mut text = format!(
+        "trace {id}\nbegins {}, {rows} rows, {:.1} s before the trigger and {:.1} s after{}\n",
+        local(trace.t0_us),
+        seconds(trigger),
+        seconds(rows.saturating_sub(trigger + 1)),
+        if trace.partial { ", cut short" } else { "" }
+    );
+    let width = trace
+        .channels
+        .iter()
+        .map(|c| c.name.len())
+        .max()
+        .unwrap_or(0);
+    let mark = trigger * PLOT_WIDTH / rows.max(1);
+    let _ = writeln!(text, "{:width$}  {:mark$}▼", "", "");
+    for (channel, column) in trace.channels.iter().zip(&trace.columns) {
+        let known = || column.iter().copied().filter(|v| !v.is_nan());
+        let (low, high) = (
+            known().fold(f64::MAX, f64::min),
+            known().fold(f64::MIN, f64::max),
+        );
+        let range = if low > high {
+            "not known".into()
+        } else if low == high {
+            named(channel, low)
+        } else {
+            format!("{} .. {}", named(channel, low), named(channel, high))
+        };
+        let _ = writeln!(
+            text,
+            "{:width$}  {}  {range}",
+            channel.name,
+            bars(column, low, high)
+        );
+    }
+    text.trim_end().to_owned()
+}
+
+fn bars(column: &[f64], low: f64, high: f64) -> String {
+    let part = |i: usize| {
+        let (from, to) = (
+            i * column.len() / PLOT_WIDTH,
+            (i + 1) * column.len() / PLOT_WIDTH,
+        );
+        let values = &column[from..to.max(from + 1).min(column.len())];
+        let value = values.iter().copied().fold(f64::NAN, f64::max);
+        match value {
+            value if value.is_nan() => ' ',
+            _ if high <= low => BARS[0],
+            value => BARS[((value - low) / (high - low) * 7.0).round() as usize],
+        }
+    };
+    (0..PLOT_WIDTH).map(part).collect()
+}
+
+/// Two lines a signal, what came above what was expected, on one scale and aligned at the triggers.
+pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
+    let rows = came.rows();
+    let trigger = came.trigger_row.unwrap_or(0) as usize;
+    let width = names.iter().map(|name| name.len()).max().unwrap_or(0);
+    let mark = trigger * PLOT_WIDTH / rows.max(1);
+    let mut text = format!("{:width$}           {:mark$}▼\n", "", "");
+    for name in names.iter().take(LANES) {
+        let channel = came.channels.iter().find(|channel| channel.name == **name);
+        let columns = came.column(name).zip(expected.column(name));
+        let (Some(channel), Some((ours, theirs))) = (channel, columns) else {
+            continue;
+        };
+        let shift = i64::from(expected.trigger_row.unwrap_or(0)) - trigger as i64;
+        let theirs: Vec<f64> = (0..rows as i64)
+            .map(|row| usize::try_from(row + shift).ok())
+            .map(|row| {
+                row.and_then(|row| theirs.get(row))
+                    .copied()
+                    .unwrap_or(f64::NAN)
+            })
+            .collect();
+        let known = || ours.iter().chain(&theirs).copied().filter(|v| !v.is_nan());
+        let (low, high) = (
+            known().fold(f64::MAX, f64::min),
+            known().fold(f64::MIN, f64::max),
+        );
+        let range = format!("{} .. {}", named(channel, low), named(channel, high));
+        let _ = writeln!(
+            text,
+            "{name:width$}  came     {}  {range}",
+            bars(ours, low, high)
+        );
+        let _ = writeln!(text, "{:width$}  expected {}", "", bars(&theirs, low, high));
+    }
+    if names.len() > LANES {
+        let _ = writeln!(
+            text,
+            "and {} more; choose with --signals",
+            names.len() - LANES
+        );
+    }
+    text.trim_end().to_owned()
+}

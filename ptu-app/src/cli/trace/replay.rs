@@ -1,0 +1,132 @@
+//! `ptu trace replay`: the situation of a trace set up again.
+
+use std::fmt::Write as _;
+
+use btu_rig::rig::check_places;
+use clap::Args;
+use serde_json::json;
+
+use super::explained::{deviations_json, deviations_text};
+use crate::cli::{Database, ScriptsOption, print_json, print_out};
+use crate::failure::{Exit, Failure};
+use crate::link::Endpoint;
+use crate::replay::{Likeness, Original, Rerun, Rerunning, rerun};
+use crate::report::Target;
+use crate::stop::Stop;
+
+/// Do again what was done in a trace, on the embedded unit or one on a port, and compare what comes
+///
+/// The replay is kept as a run with a trace of its own. It is `reproduced` when it does as the trace, `not
+/// reproduced` when it does not; as the good twin, or as neither. Its verdict is on the unit: passed when
+/// it does as the good twin, a sound unit given the same.
+///
+/// Examples:
+///   ptu trace replay latest                                on a sound embedded unit
+///   ptu trace replay latest --inject eb_relay.slow         is it this fault?
+///   ptu trace replay 59c2ce97 --unit serial:/dev/ttyUSB0   the unit on the bench
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct ReplayArguments {
+    /// The trace
+    id: String,
+    /// The unit: sim, serial:PATH[@BAUD] or tcp:HOST:PORT
+    #[arg(long, value_name = "UNIT", default_value = "sim")]
+    unit: Endpoint,
+    /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
+    #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
+    inject: Vec<String>,
+    /// Who tests
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    operator: String,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Write a report, .json or .junit.xml; repeatable
+    #[arg(long, value_name = "FILE")]
+    report: Vec<Target>,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl ReplayArguments {
+    pub fn run(self, database: &Database) -> Result<Exit, Failure> {
+        let directory = self.scripts.find()?;
+        let faults = directory.chosen_faults(&self.inject)?;
+        if self.unit != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
+            return Err(Failure::usage(
+                "--inject puts faults of a unit into the embedded one only; inject into a served one with \
+                 `ato-under-test --inject`",
+            ));
+        }
+        for target in &self.report {
+            target.check()?;
+        }
+        // A trace that is not there must not make a database.
+        let store = database.open_read_only()?;
+        let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
+        drop(store);
+        let train = original.made.setup(&directory)?.train;
+        check_places(&faults, &train).map_err(|wrong| Failure::usage(wrong.to_string()))?;
+        let store = database.open()?;
+        let stop = Stop::default();
+        stop.listen();
+        let rerunning = Rerunning {
+            endpoint: self.unit.clone(),
+            faults,
+            operator: self.operator.clone(),
+        };
+        let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
+        let detail = store.run(rerun.run_id, &crate::owner::is_alive)?;
+        if self.json {
+            print_json(&rerun_json(&original, &rerun))?;
+        } else {
+            print_out(&text(&original, &rerun))?;
+        }
+        for target in &self.report {
+            target.write(&detail)?;
+        }
+        store.close()?;
+        Ok(rerun.exit)
+    }
+}
+
+fn text(original: &Original, rerun: &Rerun) -> String {
+    let mut text = format!(
+        "trace {} of {}, {}\nreplay: trace {}, run {}, unit {}\n{}\n",
+        original.id.short(),
+        original.procedure,
+        original.made.source,
+        rerun.trace_id.short(),
+        rerun.run_id.short(),
+        rerun.serial,
+        rerun.likeness.words()
+    );
+    if let Some(why) = &rerun.cut_short {
+        let _ = writeln!(text, "cut short: {why}");
+    }
+    if !rerun.refused.is_empty() {
+        let _ = writeln!(text, "refused by the bench: {}", rerun.refused.join("; "));
+    }
+    if matches!(rerun.likeness, Likeness::AsTwin | Likeness::Otherwise) {
+        text.push_str(&deviations_text(&rerun.from_original, "REPLAY", "TRACE"));
+    }
+    if matches!(rerun.likeness, Likeness::Reproduced | Likeness::Otherwise) {
+        text.push_str(&deviations_text(&rerun.from_twin, "REPLAY", "GOOD TWIN"));
+    }
+    text.trim_end().to_owned()
+}
+
+fn rerun_json(original: &Original, rerun: &Rerun) -> serde_json::Value {
+    json!({
+        "trace": original.id.to_string(),
+        "procedure": original.procedure,
+        "run": rerun.run_id.to_string(),
+        "replay_trace": rerun.trace_id.to_string(),
+        "unit": rerun.serial,
+        "result": rerun.likeness.key(),
+        "cut_short": rerun.cut_short,
+        "refused": rerun.refused,
+        "from_trace": deviations_json(&rerun.from_original),
+        "from_twin": deviations_json(&rerun.from_twin),
+    })
+}

@@ -1,0 +1,102 @@
+//! `ptu trace show`: a trace, and what was expected beside it.
+
+use clap::Args;
+use fault_db::{Channel, Id, Store, TraceData};
+use serde_json::{Value, json};
+
+use super::explained::{explanation_json, explanation_text};
+use super::plot::{lanes, plot};
+use super::read;
+use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::clock::rfc3339;
+use crate::failure::{Exit, Failure};
+use crate::replay::{Explanation, explain};
+
+#[derive(Debug, Args)]
+pub struct ShowArguments {
+    /// The trace
+    id: String,
+    /// Only these signals
+    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
+    signals: Vec<String>,
+    /// Show deviating signals beside those of the good twin: the same stimuli on a sound unit
+    #[arg(long)]
+    twin: bool,
+    /// Print JSON with all samples; with --twin also where they deviate
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl ShowArguments {
+    pub fn run(self, store: &Store) -> Result<Exit, Failure> {
+        let (id, trace) = read(store, &self.id, &self.signals)?;
+        if self.json {
+            let mut document = trace_json(id, &trace);
+            if self.twin {
+                add(&mut document, explanation_json(&self.explained(store, id)?));
+            }
+            return print_json(&document);
+        }
+        // A trace that cannot be explained can still be looked at, unless the twin was asked for.
+        let explained = match self.explained(store, id) {
+            Err(failure) if self.twin => return Err(failure),
+            explained => explained,
+        };
+        let (told, twin) = match &explained {
+            Ok(explanation) => (explanation_text(explanation), Some(explanation)),
+            Err(failure) => (format!("what was expected is not known: {failure}"), None),
+        };
+        let mut text = plot(id, &trace);
+        if let Some(explanation) = twin.filter(|_| self.twin) {
+            let came = store.trace(id)?;
+            let names: Vec<_> = explanation
+                .comparison
+                .deviations
+                .iter()
+                .map(|deviation| deviation.signal.as_str())
+                .filter(|name| self.signals.is_empty() || self.signals.iter().any(|s| s == name))
+                .collect();
+            text.push_str("\n\n");
+            text.push_str(&lanes(&came, &explanation.twin, &names));
+        }
+        print_out(&format!("{text}\n\n{told}"))
+    }
+
+    fn explained(&self, store: &Store, id: Id) -> Result<Explanation, Failure> {
+        // Why there is no recording comes before why there are no scripts.
+        if store.recording(id)?.is_none() {
+            return Err(Failure::usage(
+                "the trace has no recording of what was done to the bench: it is of an earlier version, or \
+                 its run broke off",
+            ));
+        }
+        explain(store, &self.scripts.find()?, id)
+    }
+}
+
+fn add(document: &mut Value, more: Value) {
+    if let (Value::Object(document), Value::Object(more)) = (document, more) {
+        document.extend(more);
+    }
+}
+
+fn trace_json(id: Id, trace: &TraceData) -> Value {
+    let channel = |(channel, column): (&Channel, &Vec<f64>)| {
+        let samples: Vec<_> = column.iter().map(|v| (!v.is_nan()).then_some(*v)).collect();
+        json!({
+            "name": channel.name, "unit": channel.unit, "kind": channel.kind, "samples": samples,
+        })
+    };
+    json!({
+        "id": id.to_string(),
+        "t0": rfc3339(trace.t0_us),
+        "t0_bench_s": trace.t0_bench_us as f64 / 1e6,
+        "period_ms": trace.period_us as f64 / 1e3,
+        "rows": trace.rows(),
+        "trigger_row": trace.trigger_row,
+        "partial": trace.partial,
+        "channels": trace.channels.iter().zip(&trace.columns).map(channel).collect::<Vec<_>>(),
+    })
+}

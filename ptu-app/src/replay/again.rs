@@ -1,0 +1,105 @@
+//! Doing again what was done, on the embedded unit.
+
+use btu_rig::rig::UnitLink;
+use btu_rig::tape::Player;
+use fault_db::TraceData;
+use protocol::{CYCLE, Instant};
+
+use super::{Original, Rule};
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+use crate::run::benches::{READY_WITHIN, settled};
+use crate::run::{BEFORE, BenchSetup, Session, Taped};
+use crate::stop::Stop;
+
+/// What came of it.
+#[derive(Debug)]
+pub(super) struct Again {
+    /// The same window.
+    pub trace: TraceData,
+    /// How it compares with the original.
+    pub rule: Rule,
+    /// What was done, on the clock of this bench.
+    pub taped: Taped,
+    /// What this bench refused to do.
+    pub refused: Vec<String>,
+}
+
+/// The trace that the recorded stimuli give on an embedded unit without a fault, and how to compare it.
+///
+/// # Errors
+/// What the bench was made of is no longer to be had.
+pub fn good_twin(
+    original: &Original,
+    directory: &ScriptsDirectory,
+) -> Result<(TraceData, Rule), Failure> {
+    let setup = original.made.setup(directory)?;
+    let again = on_embedded(original, &setup, &Stop::default())?;
+    Ok((again.trace, again.rule))
+}
+
+/// The recorded stimuli on the embedded unit of `setup`.
+pub(super) fn on_embedded(
+    original: &Original,
+    setup: &BenchSetup,
+    stop: &Stop,
+) -> Result<Again, Failure> {
+    let mut session = setup.sim_session(&original.procedure, stop);
+    if !original.made.on_port() {
+        return play(original, &mut session, 0, Rule::exact());
+    }
+    // The unit on the port had been running for who knows how long.
+    let (ready, _) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    if !ready {
+        return Err(Failure::bench("the embedded unit does not become ready"));
+    }
+    from_here(original, &mut session)
+}
+
+/// The recorded stimuli on a bench whose unit is ready, from now on.
+pub(super) fn from_here<L: UnitLink>(
+    original: &Original,
+    session: &mut Session<L>,
+) -> Result<Again, Failure> {
+    let began_us = original.stimuli.began_us;
+    // Rows of both lie at whole cycles of their clocks.
+    session.idle(
+        CYCLE,
+        |_, _, _| {},
+        |bench| bench.now().as_us() % CYCLE.as_us() == began_us % CYCLE.as_us(),
+    );
+    let shift_us = session.now().since(Instant::ZERO).as_us() as i64 - began_us as i64;
+    play(
+        original,
+        session,
+        shift_us,
+        Rule::wall_clock(original.began_row()),
+    )
+}
+
+fn play<L: UnitLink>(
+    original: &Original,
+    session: &mut Session<L>,
+    shift_us: i64,
+    rule: Rule,
+) -> Result<Again, Failure> {
+    let tape = &original.stimuli.tape;
+    let mut refused = Vec::new();
+    let window = original.window(shift_us);
+    let trace = session.play(Player::new(tape, shift_us), window, &mut refused);
+    let trace = trace.ok_or_else(|| {
+        let why = session.link_error();
+        Failure::bench(why.unwrap_or_else(|| "stopped before anything was recorded".into()))
+    })?;
+    let mut tape = tape.clone();
+    for deed in &mut tape.deeds {
+        deed.at_us = deed.at_us.saturating_add_signed(shift_us);
+    }
+    let began = Instant::from_us(original.stimuli.began_us.saturating_add_signed(shift_us));
+    Ok(Again {
+        trace,
+        rule,
+        taped: Taped { began, tape },
+        refused,
+    })
+}

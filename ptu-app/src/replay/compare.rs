@@ -1,0 +1,362 @@
+//! Where two traces part, signal by signal.
+
+use std::collections::BTreeMap;
+
+use fault_db::{Channel, ChannelKind, TraceData};
+
+use super::path;
+use crate::failure::Failure;
+
+/// Signals without a unit that are quantities; all others are numbers of things, bits or codes, of which
+/// any other value is another thing.
+const PLAIN_QUANTITIES: [&str; 2] = ["effort", "tcms_value"];
+
+/// Where a unit runs by a clock of its own, a value may come so many rows sooner or later.
+const CLOCK_ROWS: usize = 2;
+
+/// Where a unit runs by a clock of its own, numbers may be so far apart, by their unit; what two runs of
+/// one good unit on a port differ by at most, doubled.
+const CLOCK_TOLERANCES: [(&str, f64); 9] = [
+    ("km/h", 0.5),
+    ("m", 0.5),
+    ("m/s²", 0.3),
+    ("m/s³", 5.0),
+    ("N", 10_000.0),
+    ("V", 0.1),
+    ("Hz", 0.1),
+    ("mV", 2.0),
+    ("%", 0.1),
+];
+/// The same for quantities without a unit: efforts of 1 024.
+const CLOCK_TOLERANCE_PLAIN: f64 = 30.0;
+
+/// Signals that go on counting from power-up: what counts is what was added since the procedure began.
+const COUNTERS: [&str; 6] = [
+    "train_position",
+    "position",
+    "marker_count",
+    "rejected_frames",
+    "twc_received",
+    "twc_answers",
+];
+
+/// What counts as a deviation. Numbers deviate by more than their smallest step and the tolerance, words
+/// and bits by any difference, a known value from an unknown one always.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// A value that came so many rows sooner or later is the same.
+    slack_rows: usize,
+    /// Numbers have the tolerances of a clock of its own, and counters begin anew at the first row.
+    wall_clock: bool,
+    /// First row compared, from the trigger.
+    from_row: i64,
+}
+
+/// One signal that differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deviation {
+    /// The signal.
+    pub signal: String,
+    /// Its channel.
+    pub channel: Channel,
+    /// Row of the first trace.
+    pub row: usize,
+    /// First difference.
+    pub first: Difference,
+    /// Largest difference: of a number by size, of a word the first.
+    pub largest: Difference,
+    /// Rows that differ.
+    pub rows: usize,
+}
+
+/// Two values at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// Seconds from the trigger.
+    pub at_s: f64,
+    /// What came; `None` = not known.
+    pub value: Option<f64>,
+    /// What was expected.
+    pub expected: Option<f64>,
+}
+
+/// Two traces compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Signals that differ, in the order in which they began to.
+    pub deviations: Vec<Deviation>,
+    /// Signals the first trace lacks.
+    pub missing: Vec<String>,
+    /// Signals the second one lacks.
+    pub missing_expected: Vec<String>,
+    /// Seconds from the trigger to the first and last row compared.
+    pub window_s: (f64, f64),
+}
+
+impl Rule {
+    /// Two benches in virtual time: the same stimuli give the same samples, to the last bit.
+    pub const fn exact() -> Self {
+        Self {
+            slack_rows: 0,
+            wall_clock: false,
+            from_row: i64::MIN,
+        }
+    }
+
+    /// One of them paced by the wall clock; rows before `from_row` are not compared, because what the
+    /// unit had been through is not known.
+    pub const fn wall_clock(from_row: i64) -> Self {
+        Self {
+            slack_rows: CLOCK_ROWS,
+            wall_clock: true,
+            from_row,
+        }
+    }
+
+    /// Rows before this one, from the trigger, are not compared.
+    pub fn from_row(&self) -> Option<i64> {
+        (self.from_row != i64::MIN).then_some(self.from_row)
+    }
+
+    fn tolerance(&self, channel: &Channel) -> Option<f64> {
+        let ChannelKind::Number { lsb } = channel.kind else {
+            return None;
+        };
+        let plain = channel.unit.is_empty();
+        if plain && !PLAIN_QUANTITIES.contains(&channel.name.as_str()) {
+            return None;
+        }
+        let tolerance = if !self.wall_clock {
+            0.0
+        } else if plain {
+            CLOCK_TOLERANCE_PLAIN
+        } else {
+            let known = CLOCK_TOLERANCES
+                .iter()
+                .find(|(unit, _)| *unit == channel.unit);
+            known.map_or(0.0, |(_, tolerance)| *tolerance)
+        };
+        // A crumb more, so that exactly one step apart is not apart.
+        Some(lsb.max(tolerance) * 1.000_001)
+    }
+}
+
+/// Compares what came with what was expected, aligned at their triggers; of `signals` only these, unless
+/// it is empty.
+///
+/// # Errors
+/// Rows of another period, no row in common, or a signal in neither.
+pub fn compare(
+    came: &TraceData,
+    expected: &TraceData,
+    rule: &Rule,
+    signals: &[String],
+) -> Result<Comparison, Failure> {
+    if came.period_us != expected.period_us {
+        return Err(Failure::usage(format!(
+            "the traces have rows of {} ms and {} ms: they cannot be laid side by side",
+            came.period_us / 1000,
+            expected.period_us / 1000
+        )));
+    }
+    let rows = Rows::of(came, expected, rule)?;
+    let wanted = |name: &str| {
+        !path::LEFT_OUT.contains(&name) && (signals.is_empty() || signals.iter().any(|s| s == name))
+    };
+    let theirs: BTreeMap<&str, &[f64]> = expected
+        .channels
+        .iter()
+        .zip(&expected.columns)
+        .map(|(channel, column)| (channel.name.as_str(), column.as_slice()))
+        .collect();
+    for signal in signals {
+        let in_came = came.column(signal).is_some();
+        if !in_came && !theirs.contains_key(signal.as_str()) {
+            return Err(Failure::usage(format!(
+                "no signal \"{signal}\" in the traces; `ptu catalog signals` lists them"
+            )));
+        }
+    }
+    let mut deviations = Vec::new();
+    let mut missing_expected = Vec::new();
+    for (channel, column) in came.channels.iter().zip(&came.columns) {
+        if !wanted(&channel.name) {
+            continue;
+        }
+        match theirs.get(channel.name.as_str()) {
+            None => missing_expected.push(channel.name.clone()),
+            Some(theirs) => deviations.extend(rows.deviation(channel, column, theirs, rule)),
+        }
+    }
+    let missing = expected
+        .channels
+        .iter()
+        .filter(|channel| wanted(&channel.name) && came.column(&channel.name).is_none())
+        .map(|channel| channel.name.clone())
+        .collect();
+    in_order(&mut deviations);
+    Ok(Comparison {
+        deviations,
+        missing,
+        missing_expected,
+        window_s: (rows.at_s(rows.first), rows.at_s(rows.last)),
+    })
+}
+
+/// By time, and within one report of the unit by their place on the way through it.
+fn in_order(deviations: &mut [Deviation]) {
+    deviations.sort_by_key(|deviation| deviation.row);
+    let mut from = 0;
+    while from < deviations.len() {
+        let report = deviations[from].row + path::REPORT_ROWS;
+        let rest = &deviations[from..];
+        let together = rest.iter().take_while(|d| d.row <= report).count();
+        deviations[from..from + together].sort_by_key(|d| (path::place(&d.signal), d.row));
+        from += together;
+    }
+}
+
+/// Rows that both traces have, counted in the first.
+struct Rows {
+    first: usize,
+    last: usize,
+    /// From a row of the first to that of the second.
+    shift: i64,
+    trigger: i64,
+    period_us: i64,
+}
+
+impl Rows {
+    fn of(came: &TraceData, expected: &TraceData, rule: &Rule) -> Result<Self, Failure> {
+        let trigger = |trace: &TraceData| i64::from(trace.trigger_row.unwrap_or(0));
+        let shift = trigger(expected) - trigger(came);
+        let begin = 0
+            .max(-shift)
+            .max(rule.from_row.saturating_add(trigger(came)));
+        let end = (came.rows() as i64 - 1).min(expected.rows() as i64 - 1 - shift);
+        if end < begin {
+            return Err(Failure::usage(
+                "the traces have no time in common around their triggers, or the recording begins after \
+                 the end of the trace",
+            ));
+        }
+        Ok(Self {
+            first: begin as usize,
+            last: end as usize,
+            shift,
+            trigger: trigger(came),
+            period_us: came.period_us,
+        })
+    }
+
+    fn at_s(&self, row: usize) -> f64 {
+        ((row as i64 - self.trigger) * self.period_us) as f64 / 1e6
+    }
+
+    fn deviation(
+        &self,
+        channel: &Channel,
+        came: &[f64],
+        expected: &[f64],
+        rule: &Rule,
+    ) -> Option<Deviation> {
+        let shifted = self.first.saturating_add_signed(self.shift as isize);
+        let came = came.get(self.first..=self.last)?;
+        let expected = expected.get(shifted..=shifted + (self.last - self.first))?;
+        let tolerance = rule.tolerance(channel);
+        // What is counted begins at the first row where both are known.
+        let counts = rule.wall_clock && COUNTERS.contains(&channel.name.as_str());
+        let both = came
+            .iter()
+            .zip(expected)
+            .find(|(a, b)| !a.is_nan() && !b.is_nan());
+        let offset = both.filter(|_| counts).map_or(0.0, |(a, b)| a - b);
+        let pair = Pair {
+            came,
+            expected,
+            offset,
+            tolerance,
+            slack: rule.slack_rows,
+        };
+        let mut apart = (0..came.len()).filter(|row| pair.apart(*row)).peekable();
+        let first = *apart.peek()?;
+        let difference = |row: usize| Difference {
+            at_s: self.at_s(self.first + row),
+            value: known(came[row]),
+            expected: known(expected[row]),
+        };
+        let (mut rows, mut largest) = (0, first);
+        for row in apart {
+            rows += 1;
+            if tolerance.is_some() && pair.size(row) > pair.size(largest) {
+                largest = row;
+            }
+        }
+        Some(Deviation {
+            signal: channel.name.clone(),
+            channel: channel.clone(),
+            row: self.first + first,
+            first: difference(first),
+            largest: difference(largest),
+            rows,
+        })
+    }
+}
+
+/// Two columns of the same rows.
+struct Pair<'a> {
+    came: &'a [f64],
+    expected: &'a [f64],
+    /// Taken off what came.
+    offset: f64,
+    /// `None`: any difference counts.
+    tolerance: Option<f64>,
+    slack: usize,
+}
+
+impl Pair<'_> {
+    /// Neither came what was expected around this row, nor was expected what came.
+    fn apart(&self, row: usize) -> bool {
+        let same = |a: f64, b: f64| match self.tolerance {
+            _ if a.is_nan() || b.is_nan() => a.is_nan() && b.is_nan(),
+            None => a == b,
+            Some(tolerance) => (a - b).abs() <= tolerance,
+        };
+        let value = self.came[row] - self.offset;
+        if same(value, self.expected[row]) {
+            return false;
+        }
+        if self.slack == 0 {
+            return true;
+        }
+        let near = row.saturating_sub(self.slack)..=(row + self.slack).min(self.came.len() - 1);
+        let came = |other: usize| self.came[other] - self.offset;
+        let is_near = near.clone().any(|other| same(value, self.expected[other]))
+            && near
+                .clone()
+                .any(|other| same(came(other), self.expected[row]));
+        // A value that moves fast passes between two rows.
+        let passes = |value: f64, column: &dyn Fn(usize) -> f64| {
+            let (low, high) = near
+                .clone()
+                .map(column)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (low.min(value), high.max(value))
+                });
+            low <= value && value <= high
+        };
+        let between = self.tolerance.is_some()
+            && passes(value, &|other| self.expected[other])
+            && passes(self.expected[row], &came);
+        !is_near && !between
+    }
+
+    fn size(&self, row: usize) -> f64 {
+        let size = (self.came[row] - self.offset - self.expected[row]).abs();
+        if size.is_nan() { 0.0 } else { size }
+    }
+}
+
+fn known(value: f64) -> Option<f64> {
+    (!value.is_nan()).then_some(value)
+}

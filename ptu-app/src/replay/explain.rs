@@ -1,0 +1,172 @@
+//! A trace told: where it first parts from its good twin, and what followed from there to the brake.
+
+use fault_db::{Id, Store, TraceData};
+
+use super::{Comparison, Deviation, Original, compare, good_twin, path};
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+
+/// Signals and events told on the way from the first deviation to the brake.
+const LONGEST_CHAIN: usize = 12;
+
+/// What a trace shows.
+#[derive(Debug)]
+pub struct Explanation {
+    /// The trace.
+    pub id: Id,
+    /// The procedure it comes from.
+    pub procedure: String,
+    /// What was expected: the trace of the good twin.
+    pub twin: TraceData,
+    /// Where they differ; the first one first.
+    pub comparison: Comparison,
+    /// From the first deviation to the brake, or to the end of the trace when none came.
+    pub chain: Vec<Link>,
+    /// What limits the comparison, in words.
+    pub notes: Vec<String>,
+}
+
+/// One link of the chain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Link {
+    /// A signal parts from what is expected.
+    Signal(Deviation),
+    /// A fault is found.
+    Fault {
+        /// Seconds from the trigger.
+        at_s: f64,
+        /// Its number.
+        code: i64,
+        /// Its name.
+        name: String,
+        /// Part it points at.
+        lru: String,
+    },
+}
+
+impl Link {
+    /// Seconds from the trigger.
+    pub fn at_s(&self) -> f64 {
+        match self {
+            Self::Signal(deviation) => deviation.first.at_s,
+            Self::Fault { at_s, .. } => *at_s,
+        }
+    }
+}
+
+impl Explanation {
+    /// The first deviation, if there is any.
+    pub fn first(&self) -> Option<&Deviation> {
+        self.comparison.deviations.first()
+    }
+}
+
+/// Explains a stored trace by its good twin.
+///
+/// # Errors
+/// There is no such trace, it has no recording, or what the bench was made of is no longer to be had.
+pub fn explain(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    id: Id,
+) -> Result<Explanation, Failure> {
+    explained(store, directory, &Original::read(store, id)?)
+}
+
+/// The same for a trace that is read already.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explained(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    original: &Original,
+) -> Result<Explanation, Failure> {
+    let (twin, rule) = good_twin(original, directory)?;
+    let comparison = compare(&original.trace, &twin, &rule, &[])?;
+    let faults = faults(store, original)?;
+    let chain = chain(&comparison, faults);
+    let mut notes = Vec::new();
+    if original.made.on_port() {
+        notes.push(format!(
+            "the unit was on a port ({}): times to within {} ms, and compared from the procedure's begin on",
+            original.made.source,
+            2 * original.trace.period_us / 1000
+        ));
+    }
+    if let Some(first) = comparison.deviations.first()
+        && first.first.at_s <= comparison.window_s.0
+    {
+        notes.push(format!(
+            "{} deviates from the first row on: it began to before the trace",
+            first.signal
+        ));
+    }
+    Ok(Explanation {
+        id: original.id,
+        procedure: original.procedure.clone(),
+        twin,
+        comparison,
+        chain,
+        notes,
+    })
+}
+
+/// Faults found in the trace's window.
+fn faults(store: &Store, original: &Original) -> Result<Vec<Link>, Failure> {
+    let fault = |occurrence: fault_db::RunOccurrence| Link::Fault {
+        at_s: original.at_s(occurrence.bench_us),
+        code: occurrence.code,
+        name: occurrence.code_name,
+        lru: occurrence.lru,
+    };
+    let occurrences = store.run_occurrences(original.run_id)?.into_iter();
+    Ok(occurrences
+        .filter(|occurrence| occurrence.trace_id == Some(original.id))
+        .map(fault)
+        .collect())
+}
+
+/// The first deviation, those on the way that follow until a brake parts from what is expected, and the
+/// faults found until then; without a brake, until the first fault.
+fn chain(comparison: &Comparison, faults: Vec<Link>) -> Vec<Link> {
+    let Some(first) = comparison.deviations.first() else {
+        return faults;
+    };
+    let brake = |deviation: &&Deviation| path::is_brake(&deviation.signal);
+    let braked_s = comparison
+        .deviations
+        .iter()
+        .find(brake)
+        .map(|d| d.first.at_s);
+    let found_s = faults
+        .iter()
+        .map(Link::at_s)
+        .filter(|at_s| *at_s >= first.first.at_s)
+        .reduce(f64::min);
+    let end_s = braked_s.or(found_s).unwrap_or(f64::INFINITY);
+    let follows = comparison.deviations.iter().skip(1);
+    let follows = follows.filter(|d| path::is_link(&d.signal) && d.first.at_s <= end_s);
+    let mut signals: Vec<_> = std::iter::once(first).chain(follows).collect();
+    if signals.len() > LONGEST_CHAIN {
+        // The way in and its end say most.
+        let rest = signals.split_off(LONGEST_CHAIN - 1);
+        let last = rest.iter().rev().find(|d| path::is_brake(&d.signal));
+        signals.extend(last.or(rest.last()));
+    }
+    let end_s = found_s.map_or(end_s, |found_s| end_s.max(found_s));
+    let mut faults = faults
+        .into_iter()
+        .filter(|fault| fault.at_s() <= end_s)
+        .peekable();
+    let mut chain = Vec::new();
+    for signal in signals {
+        // A fault is found after what shows it; signals keep their order on the way.
+        while let Some(fault) = faults.next_if(|fault| fault.at_s() < signal.first.at_s) {
+            chain.push(fault);
+        }
+        chain.push(Link::Signal(signal.clone()));
+    }
+    chain.extend(faults);
+    chain
+}

@@ -1,0 +1,22 @@
+//! Traces that explain themselves: what was done to a bench is done again.
+//!
+//! * [`Original`]: a stored trace with the recording it was cut from;
+//! * [`good_twin`]: the same stimuli at the same times, the same seed, on an embedded unit without the
+//!   fault. Stimuli are open loop; the train follows the twin's own demands;
+//! * [`compare`](fn@compare): where two traces part, signal by signal;
+//! * [`explain`]: first deviation of a trace from its twin, and the chain from there to the brake;
+//! * [`rerun`]: the same stimuli on the embedded unit or one on a port, recorded as a run of its own.
+
+mod again;
+mod compare;
+mod explain;
+mod original;
+mod path;
+mod rerun;
+
+pub use compare::{Comparison, Deviation, Difference, Rule, compare};
+pub use explain::{Explanation, Link, explain, explained};
+pub use original::Original;
+pub use rerun::{Likeness, Rerun, Rerunning, rerun};
+
+pub use again::good_twin;

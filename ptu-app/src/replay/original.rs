@@ -1,0 +1,90 @@
+//! A stored trace and the recording behind it.
+
+use fault_db::{Id, Store, TraceData};
+use protocol::Instant;
+
+use crate::failure::Failure;
+use crate::run::{BenchMade, Stimuli, Window};
+
+/// A trace that can be had again.
+#[derive(Debug)]
+pub struct Original {
+    /// The trace's id.
+    pub id: Id,
+    /// The run it was recorded in.
+    pub run_id: Id,
+    /// The procedure.
+    pub procedure: String,
+    /// What came.
+    pub trace: TraceData,
+    /// What the bench was made of.
+    pub made: BenchMade,
+    /// What was done to it.
+    pub stimuli: Stimuli,
+    /// Bench time of the run at which the bench's clock was 0, µs.
+    t0_bench_us: i64,
+}
+
+impl Original {
+    /// Reads a trace with its recording.
+    ///
+    /// # Errors
+    /// There is no such trace, or none that can be had again.
+    pub fn read(store: &Store, id: Id) -> Result<Self, Failure> {
+        let trace = store.trace(id)?;
+        let recording = store.recording(id)?.ok_or_else(|| {
+            Failure::usage(format!(
+                "trace {} has no recording of what was done to the bench: it is of an earlier version, or \
+                 its run broke off",
+                id.short()
+            ))
+        })?;
+        let (made, stimuli) = BenchMade::read(&recording)?;
+        if trace.rows() == 0 {
+            return Err(Failure::usage(format!("trace {} has no rows", id.short())));
+        }
+        Ok(Self {
+            id,
+            run_id: recording.run_id,
+            procedure: recording.procedure,
+            trace,
+            made,
+            stimuli,
+            t0_bench_us: recording.t0_bench_us,
+        })
+    }
+
+    /// Time on the bench's own clock at which a row was recorded, µs.
+    fn row_us(&self, row: usize) -> i64 {
+        self.trace.t0_bench_us - self.t0_bench_us + row as i64 * self.trace.period_us
+    }
+
+    /// The row of the trigger.
+    pub fn trigger_row(&self) -> usize {
+        self.trace.trigger_row.unwrap_or(0) as usize
+    }
+
+    /// Its window on a clock that runs `shift_us` ahead of the bench's own.
+    pub(crate) fn window(&self, shift_us: i64) -> Window {
+        let at = |row| Instant::from_us((self.row_us(row) + shift_us).max(0) as u64);
+        Window {
+            from: at(0),
+            trigger: at(self.trigger_row()),
+            until: at(self.trace.rows() - 1),
+        }
+    }
+
+    /// Rows from the trigger to where the procedure began; negative when that was earlier.
+    pub fn began_row(&self) -> i64 {
+        let began_us = i64::try_from(self.stimuli.began_us).unwrap_or(i64::MAX);
+        let since_us = began_us - self.row_us(self.trigger_row());
+        // The first row at or after it.
+        -(-since_us).div_euclid(self.trace.period_us)
+    }
+
+    /// Seconds from the trigger to a bench time of the run, µs.
+    pub(crate) fn at_s(&self, bench_us: i64) -> f64 {
+        let trigger_us = self.trace.t0_bench_us + self.trigger_row() as i64 * self.trace.period_us;
+        (bench_us - trigger_us) as f64 / 1e6
+    }
+}

@@ -1,0 +1,268 @@
+//! The recorded stimuli again, on the embedded unit or one on a port: the situation of a fault set up on
+//! the bench, and kept as a run of its own.
+
+use fault_db::{
+    Id, RunEnd, RunRecord, RunWriter, StepRecord, Store, TraceData, UnitRecord, Verdict,
+};
+use protocol::Instant;
+use protocol::injection::FaultMode;
+
+use super::again::{Again, from_here, on_embedded};
+use super::{Comparison, Original, compare, good_twin};
+use crate::clock;
+use crate::data::ScriptsDirectory;
+use crate::failure::{Exit, Failure};
+use crate::link::Endpoint;
+use crate::run::{BenchMade, BenchSetup, Connected};
+use crate::stop::Stop;
+
+/// What a replay is to be.
+#[derive(Clone, Debug)]
+pub struct Rerunning {
+    /// The unit.
+    pub endpoint: Endpoint,
+    /// Faults injected into the embedded unit, and into the train around any.
+    pub faults: Vec<FaultMode>,
+    /// Who tests.
+    pub operator: String,
+}
+
+/// What a replay is like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Likeness {
+    /// The original and its good twin are the same, and so is the replay.
+    Sound,
+    /// As the original: the fault shows again.
+    Reproduced,
+    /// As the good twin: the fault does not show.
+    AsTwin,
+    /// As neither.
+    Otherwise,
+}
+
+impl Likeness {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Sound => "reproduced, and as the good twin: the trace shows no fault",
+            Self::Reproduced => "reproduced",
+            Self::AsTwin => "not reproduced: as the good twin",
+            Self::Otherwise => "not reproduced: neither as the trace nor as the good twin",
+        }
+    }
+
+    /// For machines.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Sound => "sound",
+            Self::Reproduced => "reproduced",
+            Self::AsTwin => "as_good_twin",
+            Self::Otherwise => "otherwise",
+        }
+    }
+
+    /// The verdict on the unit: it is good when it does as the good twin.
+    fn verdict(self) -> Verdict {
+        match self {
+            Self::Sound | Self::AsTwin => Verdict::Passed,
+            Self::Reproduced | Self::Otherwise => Verdict::Failed,
+        }
+    }
+}
+
+/// What a replay came to.
+#[derive(Debug)]
+pub struct Rerun {
+    /// The run it was recorded as.
+    pub run_id: Id,
+    /// Its trace.
+    pub trace_id: Id,
+    /// Serial number of the unit.
+    pub serial: String,
+    /// What it is like.
+    pub likeness: Likeness,
+    /// The replay against the original.
+    pub from_original: Comparison,
+    /// The replay against the good twin.
+    pub from_twin: Comparison,
+    /// Stimuli this bench refused.
+    pub refused: Vec<String>,
+    /// Stopped before its end, or the bench could not be made safe.
+    pub cut_short: Option<String>,
+    /// Exit code.
+    pub exit: Exit,
+}
+
+/// Runs the stimuli of a stored trace again and records what comes.
+///
+/// # Errors
+/// What the bench was made of is no longer to be had, the unit cannot be reached or is another one, or the
+/// database fails.
+pub fn rerun(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    original: &Original,
+    rerunning: &Rerunning,
+    stop: &Stop,
+) -> Result<Rerun, Failure> {
+    let (twin, _) = good_twin(original, directory)?;
+    let mut setup = original.made.setup(directory)?;
+    setup.faults.clone_from(&rerunning.faults);
+    setup.endpoint = rerunning.endpoint.clone();
+    let began = std::time::Instant::now();
+    let started_at_us = clock::now_us();
+    let (again, serial, cut_short) = play(original, &mut setup, stop)?;
+    let from_original = compare(&again.trace, &original.trace, &again.rule, &[])?;
+    let from_twin = compare(&again.trace, &twin, &again.rule, &[])?;
+    let likeness = match (from_original.deviations.len(), from_twin.deviations.len()) {
+        (0, 0) => Likeness::Sound,
+        (0, _) => Likeness::Reproduced,
+        (_, 0) => Likeness::AsTwin,
+        _ => Likeness::Otherwise,
+    };
+    let record = run_record(original, &setup, &serial, rerunning, started_at_us);
+    let mut writer = RunWriter::begin(store, &record)?;
+    let verdict = match cut_short {
+        Some(_) if stop.presses() > 0 => Verdict::Aborted,
+        Some(_) => Verdict::Error,
+        None => likeness.verdict(),
+    };
+    let again_made = BenchMade::of(&setup, serial.clone());
+    let trace_id = write(
+        &mut writer,
+        original,
+        &again_made,
+        &again,
+        verdict,
+        likeness,
+    )?;
+    writer.finish(&RunEnd {
+        verdict,
+        finished_at_us: clock::now_us(),
+        bench_time_us: bench_time_us(&again.trace),
+        wall_time_us: i64::try_from(began.elapsed().as_micros()).unwrap_or(i64::MAX),
+    })?;
+    Ok(Rerun {
+        run_id: writer.id(),
+        trace_id,
+        serial,
+        likeness,
+        from_original,
+        from_twin,
+        refused: again.refused,
+        cut_short,
+        exit: match verdict {
+            Verdict::Passed | Verdict::Skipped => Exit::Passed,
+            Verdict::Failed => Exit::Failed,
+            Verdict::Error => Exit::Bench,
+            Verdict::Aborted => Exit::Aborted,
+        },
+    })
+}
+
+/// On the bench asked for; the unit's serial number, and why it was cut short, if it was.
+fn play(
+    original: &Original,
+    setup: &mut BenchSetup,
+    stop: &Stop,
+) -> Result<(Again, String, Option<String>), Failure> {
+    let port = setup.endpoint != Endpoint::Sim;
+    if port {
+        // Any unit of this configuration will do: that is what a bench is for.
+        setup.serial = None;
+    }
+    let stopped = |again: &Again| {
+        let stopped = (stop.presses() > 0).then(|| "stopped by the operator".to_owned());
+        stopped.filter(|_| again.trace.partial)
+    };
+    match setup.connect(stop)? {
+        Connected::Sim(setup) => {
+            let again = on_embedded(original, &setup, stop)?;
+            let cut_short = stopped(&again);
+            Ok((again, setup.expected_serial(), cut_short))
+        }
+        connected @ Connected::Port(..) => {
+            let serial = connected.serial();
+            let Connected::Port(mut session, ..) = connected else {
+                return Err(Failure::bench("the unit on the port is gone"));
+            };
+            let played = from_here(original, &mut session);
+            let safe = session.make_safe();
+            let again = played?;
+            let unsafe_ = (!safe).then(|| {
+                let why = session.link_error();
+                why.unwrap_or_else(|| "the outputs are not confirmed safe".to_owned())
+            });
+            let cut_short = unsafe_.or_else(|| stopped(&again));
+            Ok((again, serial, cut_short))
+        }
+    }
+}
+
+fn run_record(
+    original: &Original,
+    setup: &BenchSetup,
+    serial: &str,
+    rerunning: &Rerunning,
+    started_at_us: i64,
+) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial: serial.to_owned(),
+            kind: "atc".into(),
+            config_name: setup.config.content.name.clone(),
+            sw_versions: std::collections::BTreeMap::new(),
+        },
+        line: setup.line.content.name.clone(),
+        seed: setup.seed,
+        operator: rerunning.operator.clone(),
+        source: format!("replay of {} on {}", original.id.short(), setup.endpoint),
+        started_at_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        // No script is run.
+        scripts_sha256: String::new(),
+        unit_config_sha256: setup.config.sha256.clone(),
+        injected: setup.injected(),
+        owner: crate::owner::this_process(),
+        scripts: Vec::new(),
+    }
+}
+
+/// One step that says what the replay is like, the trace, and what was done.
+fn write(
+    writer: &mut RunWriter<'_>,
+    original: &Original,
+    made: &BenchMade,
+    again: &Again,
+    verdict: Verdict,
+    likeness: Likeness,
+) -> Result<Id, Failure> {
+    let mut trace = again.trace.clone();
+    trace.t0_us = clock::now_us() - bench_time_us(&trace);
+    let began_us = again.taped.began.since(Instant::ZERO).as_us() as i64;
+    writer.step(StepRecord {
+        index: 0,
+        procedure: original.procedure.clone(),
+        name: format!("replay of trace {}", original.id.short()),
+        verdict,
+        started_bench_us: began_us,
+        bench_time_us: (trace.t0_bench_us + bench_time_us(&trace) - began_us).max(0),
+        message: likeness.words().to_owned(),
+        script_line: None,
+        measurements: Vec::new(),
+    })?;
+    let id = writer.trace(&[], &trace)?;
+    let recording = made.recording(&original.procedure, &again.taped);
+    writer.recording(
+        &fault_db::RecordingRecord {
+            ordinal: 1,
+            ..recording
+        },
+        &[id],
+    )?;
+    Ok(id)
+}
+
+fn bench_time_us(trace: &TraceData) -> i64 {
+    trace.rows() as i64 * trace.period_us
+}

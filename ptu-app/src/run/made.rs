@@ -1,0 +1,204 @@
+//! What a bench was made of, kept with what was done to it: enough to make the same bench again,
+//! without the faults that were injected.
+
+use std::sync::Arc;
+
+use btu_rig::bench_scatter::BenchScatter;
+use btu_rig::tape::Tape;
+use btu_rig::train::TrainData;
+use fault_db::{Recording, RecordingRecord};
+use protocol::Instant;
+use serde::{Deserialize, Serialize};
+
+use super::{BenchSetup, Taped};
+use crate::data::{ScriptsDirectory, sha256};
+use crate::drive::train::train;
+use crate::drive::{Setting, unit_config};
+use crate::failure::Failure;
+use crate::link::Endpoint;
+
+/// A data file a bench was made of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Made {
+    /// Its name.
+    pub name: String,
+    /// What was changed in it by `--set`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<String>,
+    /// SHA-256 of it with its changes, in hex; of a train, of its content.
+    pub sha256: String,
+}
+
+/// What the benches of a run are made of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BenchMade {
+    /// Where the unit was: `sim`, `serial:…`, `tcp:…`.
+    pub source: String,
+    /// Serial number of the unit.
+    pub serial: String,
+    /// Unit configuration.
+    pub unit_config: Made,
+    /// Track database.
+    pub line: Made,
+    /// Train around the unit.
+    pub train: Made,
+    /// Seed of the run; that of a procedure follows from its name.
+    pub seed: u64,
+    /// How units, trains and benches were let differ.
+    pub scatter: Option<BenchScatter>,
+    /// At the wall clock's pace.
+    pub realtime: bool,
+}
+
+/// What was done to a bench, as it is kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stimuli {
+    /// When the procedure began, µs on the bench's clock: 0 where the unit was powered up for it.
+    pub began_us: u64,
+    /// What was done.
+    pub tape: Tape,
+}
+
+impl BenchMade {
+    /// What `setup` makes benches of, for a unit of this serial number.
+    pub fn of(setup: &BenchSetup, serial: String) -> Self {
+        let (config, line) = (&setup.config, &setup.line);
+        Self {
+            source: setup.endpoint.to_string(),
+            serial,
+            unit_config: Made {
+                name: config.name.clone(),
+                settings: config.settings.clone(),
+                sha256: config.sha256.clone(),
+            },
+            line: Made {
+                name: line.name.clone(),
+                settings: line.settings.clone(),
+                sha256: line.sha256.clone(),
+            },
+            train: Made {
+                name: setup.train.name().to_owned(),
+                settings: Vec::new(),
+                sha256: train_sha256(&setup.train),
+            },
+            seed: setup.seed,
+            scatter: setup.scatter.as_deref().copied(),
+            realtime: setup.realtime,
+        }
+    }
+
+    /// What was done in a procedure on such a bench, to be kept; its place in the run is left open.
+    pub fn recording(&self, procedure: &str, taped: &Taped) -> RecordingRecord {
+        let stimuli = Stimuli {
+            began_us: taped.began.since(Instant::ZERO).as_us(),
+            tape: taped.tape.clone(),
+        };
+        // Structs of numbers and texts always have a JSON form.
+        let json = |written: serde_json::Result<String>| written.unwrap_or_default();
+        RecordingRecord {
+            ordinal: 0,
+            procedure: procedure.to_owned(),
+            t0_bench_us: 0,
+            bench_json: json(serde_json::to_string(self)),
+            stimuli_json: json(serde_json::to_string(&stimuli)),
+        }
+    }
+
+    /// Reads a recording back.
+    ///
+    /// # Errors
+    /// It was written by another version, or more was done than could be kept.
+    pub fn read(recording: &Recording) -> Result<(Self, Stimuli), Failure> {
+        let other = |error: serde_json::Error| {
+            Failure::bench(format!(
+                "the recording of {} cannot be read by this version: {error}",
+                recording.procedure
+            ))
+        };
+        let made = serde_json::from_str(&recording.bench_json).map_err(other)?;
+        let stimuli: Stimuli = serde_json::from_str(&recording.stimuli_json).map_err(other)?;
+        if stimuli.tape.lost > 0 {
+            return Err(Failure::bench(format!(
+                "the recording of {} is not whole: {} stimuli found no room in it",
+                recording.procedure, stimuli.tape.lost
+            )));
+        }
+        Ok((made, stimuli))
+    }
+
+    /// Such a bench with the embedded unit, sound, in virtual time.
+    ///
+    /// # Errors
+    /// A data file is no longer there, or is another than it was.
+    pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
+        let settings: Vec<Setting> = self
+            .unit_config
+            .settings
+            .iter()
+            .map(|text| text.parse().map_err(Failure::usage))
+            .collect::<Result<_, _>>()?;
+        let config = gone(
+            "unit configuration",
+            &self.unit_config,
+            unit_config(directory, &self.unit_config.name, &settings),
+        )?;
+        let line = gone("line", &self.line, directory.line(&self.line.name))?;
+        let train = gone("train", &self.train, train(directory, &self.train.name))?;
+        for (what, made, found) in [
+            ("unit configuration", &self.unit_config, &config.sha256),
+            ("line", &self.line, &line.sha256),
+            ("train", &self.train, &train_sha256(&train)),
+        ] {
+            same(what, made, found)?;
+        }
+        Ok(BenchSetup {
+            endpoint: Endpoint::Sim,
+            config,
+            line,
+            train,
+            faults: Vec::new(),
+            seed: self.seed,
+            scatter: self.scatter.map(Arc::new),
+            serial: Some(self.serial.clone()),
+            realtime: false,
+        })
+    }
+
+    /// The unit was on a port: its clock is not the bench's, and what it had been through before is not
+    /// in the recording.
+    pub fn on_port(&self) -> bool {
+        self.source != Endpoint::Sim.to_string()
+    }
+}
+
+fn gone<T>(what: &str, made: &Made, found: Result<T, Failure>) -> Result<T, Failure> {
+    found.map_err(|failure| {
+        Failure::usage(format!(
+            "the recording was made with {what} \"{}\", which cannot be had any more: {failure}",
+            made.name
+        ))
+    })
+}
+
+fn same(what: &str, made: &Made, found: &str) -> Result<(), Failure> {
+    if made.sha256 == found {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "the {what} \"{}\" was changed since the recording (sha256 {}, now {}): what was expected then \
+         cannot be told; give the scripts directory of that time with --scripts",
+        made.name,
+        beginning(&made.sha256),
+        beginning(found)
+    )))
+}
+
+/// Enough of a hash to tell two apart.
+fn beginning(sha256: &str) -> &str {
+    sha256.get(..12).unwrap_or(sha256)
+}
+
+/// SHA-256 over all that a train is, in hex; trains from files and built-in ones alike.
+fn train_sha256(train: &TrainData) -> String {
+    sha256(&format!("{train:?}"))
+}
