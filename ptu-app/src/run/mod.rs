@@ -23,7 +23,7 @@ use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub(crate) use benches::text;
-pub use benches::{BenchSetup, Connected};
+pub use benches::{BenchSetup, Connected, run_here};
 pub use collector::{Listener, Outcome, steps_of};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
