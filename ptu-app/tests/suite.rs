@@ -5,18 +5,13 @@ mod common;
 
 use std::sync::OnceLock;
 
-use common::{Place, has_shape, list, number, text};
+use common::{Place, has_shape, list, normalised, number, text};
 use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
 use serde_json::Value;
 
 const VERDICTS: [&str; 5] = ["passed", "failed", "error", "skipped", "aborted"];
 /// Breaks the unit at random, so that a record depends on its seed.
 const RANDOM_FAULT: &str = "fsk_board.receiver_errors";
-/// Keys that differ between two runs of one seed: identities, times of day, and wall time.
-const IDENTITIES: [&str; 2] = ["id", "trace_id"];
-const TIMES_OF_DAY: [&str; 4] = ["started_at", "finished_at", "first_at", "last_at"];
-const WALL_TIME: [&str; 1] = ["wall_time_s"];
-
 /// One run of everything, shared by the tests that only look at it.
 fn whole_suite() -> &'static (Place, Value) {
     static SUITE: OnceLock<(Place, Value)> = OnceLock::new();
@@ -26,24 +21,6 @@ fn whole_suite() -> &'static (Place, Value) {
         said.exits(0);
         (place, report)
     })
-}
-
-/// The report without what may differ between two runs of one seed.
-fn normalised(mut report: Value) -> Value {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(entries) => {
-                for key in IDENTITIES.iter().chain(&TIMES_OF_DAY).chain(&WALL_TIME) {
-                    entries.remove(*key);
-                }
-                entries.values_mut().for_each(strip);
-            }
-            Value::Array(items) => items.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    strip(&mut report);
-    report
 }
 
 /// A run of everything on a fresh database, normalised.

@@ -10,6 +10,11 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
+/// Keys that differ between two runs of one seed: identities, times of day, and wall time.
+const IDENTITIES: [&str; 2] = ["id", "trace_id"];
+const TIMES_OF_DAY: [&str; 4] = ["started_at", "finished_at", "first_at", "last_at"];
+const WALL_TIME: [&str; 1] = ["wall_time_s"];
+
 /// A folder of its own with a database of its own; the user's data are never touched.
 pub struct Place {
     folder: TempDir,
@@ -168,6 +173,24 @@ pub fn relay_fault(place: &Place) -> Value {
 /// The scripts directory of the workspace.
 pub fn scripts() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts")
+}
+
+/// The report without what may differ between two runs of one seed.
+pub fn normalised(mut report: Value) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(entries) => {
+                for key in IDENTITIES.iter().chain(&TIMES_OF_DAY).chain(&WALL_TIME) {
+                    entries.remove(*key);
+                }
+                entries.values_mut().for_each(strip);
+            }
+            Value::Array(items) => items.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    strip(&mut report);
+    report
 }
 
 #[track_caller]
