@@ -70,7 +70,8 @@ pub struct RunArguments {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draw by the seed what differs between good units, trains and benches: noise, wheels, load, timing
+    /// Draw by the seed what differs between good units, trains and benches: sensor noise, wheels, load,
+    /// brakes, timing; from scripts/bench_scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     scatter: Option<Option<PathBuf>>,
     /// Run the embedded unit at the wall clock's pace
