@@ -77,3 +77,55 @@ pub fn at_rate(passed: Duration, rate: f64) -> Duration {
     }
     Duration::from_secs(passed.as_secs() * rate)
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use protocol::injection::{FaultMode, Occurrence};
+
+    use super::*;
+
+    fn faults(place: Place, effect: Effect) -> Faults {
+        let mode = FaultMode {
+            id: "a.b".into(),
+            lru: "a".into(),
+            mode: "m".into(),
+            severity: "major".into(),
+            weight: 1.0,
+            unsafe_: false,
+            place,
+            effect,
+            onset_s: 0.0,
+            car: None,
+            occurs: Occurrence::Always,
+            levels: Vec::new(),
+        };
+        Faults::new(&[mode], 1)
+    }
+
+    #[test]
+    fn a_dip_takes_the_voltage_for_its_time_and_tells_when_it_is_back() {
+        let mut faults = faults(Place::PowerSupply, Effect::Noise { per_s: 1.0 });
+        let mut power = PowerAndClock::default();
+        let mut course = Vec::new();
+        for i in 0..3_000 {
+            let now = Instant::from_ms(10 * i);
+            faults.step(now);
+            course.push(power.supply(now, &mut faults));
+        }
+        let backs = course.iter().filter(|s| **s == Supply::Back).count();
+        let downs = course.iter().filter(|s| **s == Supply::Down).count();
+        assert!((20..40).contains(&backs), "{backs} dips in 30 s");
+        assert!(downs >= 10 * backs, "{downs} scans without voltage");
+    }
+
+    #[test]
+    fn a_fast_clock_gains_what_it_is_fast_by() {
+        let mut power = PowerAndClock::restarted(Instant::from_ms(5_000));
+        let at = |ms| Instant::from_ms(ms);
+        assert_eq!(power.own(at(5_000), 1.03), Instant::ZERO);
+        assert_eq!(power.own(at(6_000), 1.03), at(1_030));
+        assert_eq!(power.own(at(7_000), 1.0), at(2_030));
+    }
+}
