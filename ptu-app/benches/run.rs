@@ -73,6 +73,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         stop_on_fail: false,
         operator: String::new(),
         scripts_sha256: String::new(),
+        adaptive: None,
     };
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();

@@ -9,6 +9,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use btu_rig::rig::check_places;
 use clap::Args;
+use fault_db::Store;
 use protocol::injection::FaultCatalogue;
 use protocol::message::Identity;
 use serde_json::json;
@@ -16,12 +17,14 @@ use serde_json::json;
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
 use crate::data::{ScriptsDirectory, read, sha256};
+use crate::diagnosis::{adaptive, diagnose_run};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, did_you_mean};
 use crate::link::Endpoint;
 use crate::report::Target;
-use crate::run::{self, BenchSetup, RunPlan, Task, select};
+use crate::report::diagnosis::diagnosis_text;
+use crate::run::{self, BenchSetup, Outcome, RunPlan, Task, select};
 use crate::stop::Stop;
 
 /// How good units, trains and benches differ, in the scripts directory.
@@ -36,6 +39,7 @@ const BENCH_SCATTER: &str = "bench_scatter.toml";
 ///   ptu run --check                             all script errors, nothing driven
 ///   ptu run --list atp/overspeed                what would be done
 ///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
+///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
 ///   ptu run --report out.json --report out.junit.xml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -98,6 +102,9 @@ pub struct RunArguments {
     /// End after the first step that does not pass
     #[arg(long)]
     stop_on_fail: bool,
+    /// Isolate a fault: after each step do what tells the most, until one part is found
+    #[arg(long, conflicts_with_all = ["check", "list", "step", "stop_on_fail"])]
+    adaptive: bool,
     /// Write a report, .json or .junit.xml; repeatable
     #[arg(long, value_name = "FILE")]
     report: Vec<Target>,
@@ -165,14 +172,15 @@ impl RunArguments {
         if self.list {
             return self.show(&tasks);
         }
-        let plan = RunPlan {
+        let mut plan = RunPlan {
             tasks,
             jobs: self.jobs as usize,
             stop_on_fail: self.stop_on_fail,
             operator: self.operator.clone(),
             scripts_sha256,
+            adaptive: None,
         };
-        self.execute(&plan, setup)
+        self.execute(&mut plan, setup, &directory)
     }
 
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
@@ -262,6 +270,7 @@ impl RunArguments {
                 repeat: self.repeat,
                 stop_on_fail: self.stop_on_fail,
                 prompts: PromptPolicy::Refuse,
+                one_by_one: self.adaptive,
             };
             Task { procedure, options }
         };
@@ -285,11 +294,25 @@ impl RunArguments {
         print_out(&lines.join("\n"))
     }
 
-    fn execute(&self, plan: &RunPlan, setup: BenchSetup) -> Result<Exit, Failure> {
+    fn execute(
+        &self,
+        plan: &mut RunPlan,
+        setup: BenchSetup,
+        directory: &ScriptsDirectory,
+    ) -> Result<Exit, Failure> {
         for target in &self.report {
             target.check()?;
         }
         let store = self.database.open()?;
+        if self.adaptive {
+            if self.repeat > 1 || self.jobs > 1 {
+                return Err(Failure::usage(
+                    "--adaptive does one step after the other, each once; leave --repeat and --jobs out",
+                ));
+            }
+            let serial = setup.expected_serial();
+            plan.adaptive = Some(adaptive(&store, directory, &serial)?);
+        }
         let stop = Stop::default();
         stop.listen();
         let mut console = Console::new(plan);
@@ -298,11 +321,37 @@ impl RunArguments {
         let (store, outcome) = result?;
         let detail = store.run(outcome.id, &crate::owner::is_alive)?;
         print_out(&verdict_table(&detail))?;
+        self.say_diagnosis(&store, directory, &outcome)?;
         for target in &self.report {
             target.write(&detail)?;
         }
         store.close()?;
         Ok(outcome.exit)
+    }
+
+    /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
+    /// had from a dictionary that is not of these scripts.
+    fn say_diagnosis(
+        &self,
+        store: &Store,
+        directory: &ScriptsDirectory,
+        outcome: &Outcome,
+    ) -> Result<(), Failure> {
+        if self.adaptive {
+            let answer = diagnose_run(store, directory, outcome.id)?;
+            for warning in &answer.warnings {
+                eprintln!("{warning}");
+            }
+            print_out(&format!("\n{}", diagnosis_text(&answer)))?;
+        } else if outcome.exit == Exit::Failed
+            && let Ok(answer) = diagnose_run(store, directory, outcome.id)
+            && answer.warnings.is_empty()
+        {
+            let id = outcome.id.short();
+            let conclusion = &answer.diagnosis.conclusion;
+            print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
+        }
+        Ok(())
     }
 }
 

@@ -12,6 +12,7 @@ use super::settings;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::owner;
+use crate::run::Adaptive;
 
 /// What a run comes to.
 pub struct Answer {
@@ -65,6 +66,32 @@ pub fn diagnose_run(
         traces,
         warnings,
         dictionary_from: from,
+    })
+}
+
+/// What an adaptive run on the unit called `serial` decides by.
+///
+/// # Errors
+/// There is no dictionary, or a stale one only.
+pub fn adaptive(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    serial: &str,
+) -> Result<Adaptive, Failure> {
+    let chosen = choose(Some(store), directory)?;
+    if !chosen.current {
+        // A step that does something else now would mislead it at every turn.
+        return Err(Failure::usage(chosen.warnings.join("; ")));
+    }
+    for warning in &chosen.warnings {
+        eprintln!("{warning}");
+    }
+    let settings = settings(directory)?;
+    let history = OwnHistory::up_to_now(serial, store, &settings)?;
+    Ok(Adaptive {
+        dictionary: chosen.dictionary,
+        settings,
+        lru_factors: history.factors,
     })
 }
 

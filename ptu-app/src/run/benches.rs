@@ -1,7 +1,7 @@
 //! Benches for a run: a fresh embedded unit for each procedure, or the one unit on a port.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
@@ -22,7 +22,7 @@ use protocol::{Duration, Instant};
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
-use super::{RunPlan, Task, stream};
+use super::{ProcedureStream, RunPlan, Task, stream};
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
@@ -225,31 +225,23 @@ impl Connected {
     }
 }
 
-/// Starts the workers; the streams come in the order of the tasks.
+/// Starts the workers; each procedure and its stream, in the order of the tasks.
 pub fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
     connected: Connected,
     stop: &'scope Stop,
-) -> Vec<Receiver<SessionEvent>> {
+) -> Vec<ProcedureStream> {
     let (senders, receivers): (Vec<_>, Vec<_>) = plan.tasks.iter().map(|_| stream()).unzip();
     match connected {
-        Connected::Port(mut session, _, found) => {
+        Connected::Port(..) => {
             scope.spawn(move || {
-                let mut found = found;
+                let mut worker = Worker::new(connected, stop);
                 for (task, sender) in plan.tasks.iter().zip(senders) {
                     if !stop.may_begin() {
                         break;
                     }
-                    let began = session.now();
-                    found.extend(between_procedures(&mut session));
-                    run_task(
-                        &mut session,
-                        task,
-                        std::mem::take(&mut found),
-                        began,
-                        &mut sending(&sender),
-                    );
+                    worker.run(task, &mut sending(&sender), &TO_THE_END);
                 }
             });
         }
@@ -268,7 +260,8 @@ pub fn start<'scope>(
             }
         }
     }
-    receivers
+    let procedures = plan.tasks.iter().map(|task| task.procedure.clone());
+    procedures.zip(receivers).collect()
 }
 
 /// Waits until the unit has settled. What the last procedure's end still makes it log is not the next one's,
@@ -304,16 +297,55 @@ impl Work {
     }
 }
 
+/// Procedures one after the other: each on an embedded unit made for it, or all on the one on a port.
+pub struct Worker<'a> {
+    connected: Connected,
+    stop: &'a Stop,
+}
+
+impl<'a> Worker<'a> {
+    /// On a unit that has been reached.
+    pub fn new(connected: Connected, stop: &'a Stop) -> Self {
+        Self { connected, stop }
+    }
+
+    /// Runs a task as long as `go_on` says so after a step, telling `sink` what happens.
+    pub fn run(
+        &mut self,
+        task: &Task,
+        sink: &mut dyn FnMut(SessionEvent),
+        go_on: &dyn Fn() -> bool,
+    ) {
+        match &mut self.connected {
+            Connected::Sim(setup) => run_on_fresh(setup, task, self.stop, sink, go_on),
+            Connected::Port(session, _, found) => {
+                let began = session.now();
+                found.extend(between_procedures(session));
+                let found = std::mem::take(found);
+                run_task(session, task, found, began, sink, go_on);
+            }
+        }
+    }
+}
+
+/// Every step is run.
+const TO_THE_END: fn() -> bool = || true;
+
 /// Runs a task on an embedded unit made for it, telling `sink` what happens.
-pub fn run_here(
+pub fn run_here(setup: &BenchSetup, task: &Task, stop: &Stop, sink: &mut dyn FnMut(SessionEvent)) {
+    run_on_fresh(setup, task, stop, sink, &TO_THE_END);
+}
+
+fn run_on_fresh(
     setup: &BenchSetup,
     task: &Task,
     stop: &Stop,
     sink: &mut dyn FnMut(SessionEvent),
+    go_on: &dyn Fn() -> bool,
 ) {
     let mut session = setup.sim_session(&task.procedure.id, stop);
     let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
-    run_task(&mut session, task, faults, Instant::ZERO, sink);
+    run_task(&mut session, task, faults, Instant::ZERO, sink, go_on);
 }
 
 fn run_task<L: UnitLink>(
@@ -322,8 +354,9 @@ fn run_task<L: UnitLink>(
     found: Vec<FaultSeen>,
     began: Instant,
     sink: &mut dyn FnMut(SessionEvent),
+    go_on: &dyn Fn() -> bool,
 ) {
-    session.run(&task.procedure, task.options.clone(), found, sink);
+    session.run(&task.procedure, task.options.clone(), found, sink, go_on);
     let bench_time = session.now().since(began);
     sink(SessionEvent::Ended { bench_time });
 }
@@ -414,7 +447,13 @@ mod tests {
                 }
                 _ => {}
             };
-            session.run(procedure, RunOptions::default(), Vec::new(), &mut sink);
+            session.run(
+                procedure,
+                RunOptions::default(),
+                Vec::new(),
+                &mut sink,
+                &TO_THE_END,
+            );
             assert_eq!(
                 verdict,
                 Some(Verdict::Passed),

@@ -7,6 +7,7 @@
 //! Workers drive benches; the collector takes their streams in the order of the procedures, so the
 //! record does not depend on how many work side by side.
 
+pub(crate) mod adaptive;
 pub(crate) mod benches;
 mod collector;
 mod fault_watch;
@@ -22,6 +23,7 @@ use std::sync::mpsc::{self, Receiver};
 use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
+pub use adaptive::Adaptive;
 pub(crate) use benches::text;
 pub use benches::{BenchSetup, Connected, run_here};
 pub use collector::{Listener, Outcome, steps_of};
@@ -61,7 +63,12 @@ pub struct RunPlan {
     pub operator: String,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,
+    /// Isolates a fault by itself, instead of running all tasks in order.
+    pub adaptive: Option<Adaptive>,
 }
+
+/// A procedure and the events of its run.
+type ProcedureStream = (Arc<Procedure>, Receiver<SessionEvent>);
 
 /// Runs the plan and records it; the store comes back for the report.
 ///
@@ -94,9 +101,15 @@ pub fn run(
     };
     let made = BenchMade::of(&setup, connected.serial());
     let mut collector = Collector::new(run_store, listener, made, plan.stop_on_fail);
-    std::thread::scope(|scope| {
-        let streams = benches::start(scope, plan, connected, stop);
-        collect(plan, streams, &mut collector, stop);
+    std::thread::scope(|scope| match &plan.adaptive {
+        Some(adaptive) => {
+            let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
+            collect(procedures, &mut collector, stop);
+        }
+        None => {
+            let procedures = benches::start(scope, plan, connected, stop);
+            collect(procedures, &mut collector, stop);
+        }
     });
     let (run_store, mut outcome) = collector.finish(id);
     let end = run_end(
@@ -113,13 +126,12 @@ pub fn run(
 
 /// Takes the procedures' streams one after the other.
 fn collect(
-    plan: &RunPlan,
-    streams: Vec<Receiver<SessionEvent>>,
+    procedures: impl IntoIterator<Item = ProcedureStream>,
     collector: &mut Collector<'_>,
     stop: &Stop,
 ) {
-    for (task, stream) in plan.tasks.iter().zip(streams) {
-        collector.begin(&task.procedure);
+    for (procedure, stream) in procedures {
+        collector.begin(&procedure);
         for event in stream {
             collector.take(event);
             if collector.recording_failed() && stop.presses() == 0 {

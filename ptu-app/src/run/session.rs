@@ -183,13 +183,15 @@ impl<L: UnitLink> Session<L> {
         (ready, faults)
     }
 
-    /// Runs a procedure to its end; `found` are faults of the bring-up.
+    /// Runs a procedure to its end, or as long as `go_on` says so after a step; `found` are faults of
+    /// the bring-up.
     pub fn run(
         &mut self,
         procedure: &Arc<Procedure>,
         options: RunOptions,
         found: Vec<FaultSeen>,
         sink: &mut dyn FnMut(SessionEvent),
+        go_on: &dyn Fn() -> bool,
     ) {
         let traced = Cell::new(false);
         let mut sink = |event: SessionEvent| {
@@ -232,6 +234,9 @@ impl<L: UnitLink> Session<L> {
             for event in runner.take_events() {
                 self.note(&event, &mut progress, sink);
                 sink(SessionEvent::Run(event));
+            }
+            if !go_on() {
+                runner.leave();
             }
             if poll == Poll::Done {
                 break;
