@@ -26,7 +26,7 @@ pub struct MatrixOptions {
     #[arg(long, value_enum, requires = "matrix")]
     tree: Option<TreeMethod>,
     /// Probability that an answer must have where tests may err, above 0.5 and at most 1
-    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE)]
+    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE, requires = "matrix")]
     confidence: f64,
 }
 
