@@ -20,13 +20,13 @@ const SHOWN_STATES: usize = 20;
 #[derive(Debug, Args)]
 pub struct MatrixOptions {
     /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
-    #[arg(long, value_name = "OUTCOMES", requires = "matrix")]
+    #[arg(long, value_name = "OUTCOMES", conflicts_with = "run")]
     outcomes: Option<String>,
     /// How the tree is made [default: optimal if it can be found, else greedy]
-    #[arg(long, value_enum, requires = "matrix")]
+    #[arg(long, value_enum, conflicts_with = "run")]
     tree: Option<TreeMethod>,
     /// Probability that an answer must have where tests may err, above 0.5 and at most 1
-    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE, requires = "matrix")]
+    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE, conflicts_with = "run")]
     confidence: f64,
 }
 
