@@ -130,4 +130,39 @@ mod tests {
         antenna.off();
         assert_eq!(antenna.carrier_hz(), 0);
     }
+
+    /// Level and frequencies are off as the sensors say, noise has its spread, and nothing stays nothing.
+    #[test]
+    fn what_arrives_is_off_and_noisy() {
+        let mut antenna = Antenna::new(Random::new(3));
+        antenna.set_sensors(Sensors {
+            level_factor: 0.8,
+            level_noise: 0.01,
+            carrier_offset_hz: -4.0,
+            rate_offset_hz: 0.1,
+            rate_jitter_hz: 0.05,
+            ..Sensors::default()
+        });
+        antenna.step();
+        assert_eq!(
+            (antenna.carrier_hz(), antenna.rate_chz(), antenna.level_mv()),
+            (0, 0, 0)
+        );
+        antenna.set(3000.0, 15.0, 500.0);
+        let scans: Vec<_> = (0..10_000)
+            .map(|_| {
+                antenna.step();
+                (f64::from(antenna.rate_chz()), f64::from(antenna.level_mv()))
+            })
+            .collect();
+        let spread = |of: fn(&(f64, f64)) -> f64| {
+            let mean = scans.iter().map(of).sum::<f64>() / 1e4;
+            let var = scans.iter().map(|s| (of(s) - mean).powi(2)).sum::<f64>() / 1e4;
+            (mean, var.sqrt())
+        };
+        let ((rate, rate_noise), (level, level_noise)) = (spread(|s| s.0), spread(|s| s.1));
+        assert!((rate - 1510.0).abs() < 0.5 && (rate_noise - 5.0).abs() < 0.2);
+        assert!((level - 400.0).abs() < 0.5 && (level_noise - 4.0).abs() < 0.2);
+        assert_eq!(antenna.carrier_hz(), 2996);
+    }
 }

@@ -287,4 +287,54 @@ mod tests {
         let (a, b, _) = run(&mut good, &mut bad);
         assert!((a - b).abs() <= 1.0);
     }
+
+    /// Goal: uneven teeth move edges and nothing else. Method: at constant speed a whole turn takes its
+    /// time to the microsecond, while single pitches differ by the spread that was asked for.
+    #[test]
+    fn uneven_teeth_repeat_with_the_turn_and_lose_no_pulse() {
+        let (mut wheel, [mut tacho, _]) = (Wheel::default(), channels());
+        let sensors = Sensors {
+            tooth_pitch: 0.05,
+            ..Sensors::default()
+        };
+        tacho.set_sensors(&sensors, 100, &mut Random::new(5));
+        // One pulse takes 4.05 scans, so each scan tells of one edge at most.
+        wheel.go_to(Speed::from_mps(PULSE_M / 0.0405), 1000.0);
+        let mut edges_us = Vec::new();
+        for scan in 1..2000u32 {
+            let before = tacho.count();
+            wheel.step();
+            tacho.step(wheel.motion());
+            if tacho.count() != before {
+                edges_us.push(f64::from(scan) * 1e4 - f64::from(tacho.age_us()));
+            }
+        }
+        let steady = &edges_us[2..];
+        let pitches: Vec<_> = steady.windows(2).map(|w| w[1] - w[0]).collect();
+        assert!(
+            steady
+                .windows(101)
+                .all(|w| (w[100] - w[0] - 4.05e6).abs() <= 2.0)
+        );
+        let var = pitches.iter().map(|p| (p - 40_500.0).powi(2)).sum::<f64>();
+        let sigma = (var / pitches.len() as f64).sqrt() / 40_500.0;
+        // Of the difference of two places, each 5 %.
+        assert!((sigma - 0.0707).abs() < 0.015, "{sigma}");
+    }
+
+    #[test]
+    fn a_good_channel_has_spurious_pulses_at_the_rate_asked_for() {
+        let (mut wheel, [mut tacho, _]) = (Wheel::default(), channels());
+        let sensors = Sensors {
+            spurious_pulses_per_s: 0.5,
+            ..Sensors::default()
+        };
+        tacho.set_sensors(&sensors, 100, &mut Random::new(5));
+        for _ in 0..100_000 {
+            wheel.step();
+            tacho.step(wheel.motion());
+        }
+        let pulses = i32::from(tacho.count());
+        assert!((pulses - 500).abs() < 70, "{pulses}");
+    }
 }
