@@ -11,6 +11,18 @@ pub struct Belief<'m, 'd> {
     /// What it is a belief in.
     pub model: &'m Model<'d>,
     ln: Vec<f64>,
+    steps: Vec<Weighed>,
+}
+
+/// A step the dictionary knows, weighed.
+#[derive(Clone, Debug)]
+pub(super) struct Weighed {
+    /// Its place in the observation, or among the steps taken in.
+    pub seen: usize,
+    /// Place of its check in the dictionary.
+    pub place: usize,
+    /// Logarithm of how likely it is under each hypothesis.
+    pub ln: Vec<f64>,
 }
 
 /// A part and its probability.
@@ -28,14 +40,15 @@ impl<'m, 'd> Belief<'m, 'd> {
         Self {
             model,
             ln: model.ln_priors.clone(),
+            steps: Vec::new(),
         }
     }
 
     /// After everything that was seen.
     pub fn after(model: &'m Model<'d>, seen: &Observation) -> Self {
         let mut belief = Self::new(model);
-        for step in &seen.steps {
-            belief.see(step);
+        for (place, step) in seen.steps.iter().enumerate() {
+            belief.see(place, step);
         }
         if !seen.signs.is_empty() {
             for (ln, hypothesis) in belief.ln.iter_mut().zip(&model.hypotheses) {
@@ -45,14 +58,25 @@ impl<'m, 'd> Belief<'m, 'd> {
         belief
     }
 
-    /// Takes a step in; one that the dictionary does not know says nothing.
-    pub fn see(&mut self, step: &StepSeen) {
+    /// Takes in a step, the one with this number; one that the dictionary does not know says nothing.
+    pub fn see(&mut self, number: usize, step: &StepSeen) {
         let Some(place) = self.model.dictionary.place(&step.check) else {
             return;
         };
-        for (ln, hypothesis) in self.ln.iter_mut().zip(&self.model.hypotheses) {
-            *ln += self.model.ln_likelihood(*hypothesis, place, step);
+        let ln = self.model.ln_likelihoods(place, step);
+        for (sum, ln) in self.ln.iter_mut().zip(&ln) {
+            *sum += ln;
         }
+        self.steps.push(Weighed {
+            seen: number,
+            place,
+            ln,
+        });
+    }
+
+    /// The steps taken in, each with what it says.
+    pub(super) fn steps(&self) -> &[Weighed] {
+        &self.steps
     }
 
     /// Probabilities in the order of the model's hypotheses; their sum is 1.
@@ -105,14 +129,20 @@ impl<'m, 'd> Belief<'m, 'd> {
         modes
     }
 
+    /// The part that is found, `Some("")` when the unit is healthy, nothing when the question is open.
+    pub fn answer(&self) -> Option<&'d str> {
+        let settings = self.model.settings;
+        if self.probability(Hypothesis::NoFault) >= settings.healthy_at {
+            return Some("");
+        }
+        let suspects = self.suspects();
+        let first = suspects.first()?;
+        (first.probability >= settings.found_at).then_some(first.lru)
+    }
+
     /// Whether the question is settled: one part found, or the unit healthy.
     pub fn is_settled(&self) -> bool {
-        let settings = self.model.settings;
-        self.probability(Hypothesis::NoFault) >= settings.healthy_at
-            || self
-                .suspects()
-                .first()
-                .is_some_and(|first| first.probability >= settings.found_at)
+        self.answer().is_some()
     }
 }
 

@@ -149,46 +149,29 @@ fn student4(t: f64) -> f64 {
     0.375 * (1.0 + t * t / 4.0).powf(-2.5)
 }
 
-/// Logarithm of how likely a step is, `scale` telling where a measurement's values lie.
-pub fn ln_step<'s>(
+/// How likely a step is as `expected` counts it, `scale` telling where a measurement's values lie.
+pub fn likelihood<'s>(
     expected: Expected<'_>,
     step: &StepSeen,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
-    let values: f64 = step
-        .values
-        .iter()
-        .filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?).ln()))
-        .sum();
-    expected.signature(&Signature::of(step)).ln() + values
+    let values = step.values.iter();
+    let of_values: f64 = values
+        .filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?)))
+        .product();
+    expected.signature(&Signature::of(step)) * of_values
 }
 
-/// The same of a fault that no dictionary knows: it may do anything, and mostly does nothing.
-pub fn ln_step_unknown<'s>(
-    healthy: Expected<'_>,
+/// The same where nothing is known of what happens.
+pub fn likelihood_of_anything<'s>(
     step: &StepSeen,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
-    /// Share of steps that an unknown fault leaves alone.
-    const LEFT_ALONE: f64 = 0.8;
-    /// Of those it does not, how they come out.
-    const HIT: [(Result, f64); 3] = [
-        (Result::Passed, 0.1),
-        (Result::Failed, 0.6),
-        (Result::Error, 0.3),
-    ];
-    let hit = HIT.iter().find(|(r, _)| *r == step.result);
+    let of_result = NOTHING_KNOWN.iter().find(|(r, _)| *r == step.result);
+    let result = of_result.map_or(0.0, |(_, p)| *p);
     let signs = SIGN_UNKNOWN.powi(step.signs.len() as i32);
-    let strange =
-        hit.map_or(0.0, |(_, p)| *p) * signs * 0.5_f64.powi(i32::from(step.signs.is_empty()));
-    let anywhere = ANYWHERE.powi(
-        step.values
-            .iter()
-            .filter(|(name, _)| scale(name).is_some())
-            .count() as i32,
-    );
-    let alone = ln_step(healthy, step, &scale).exp();
-    (LEFT_ALONE * alone + (1.0 - LEFT_ALONE) * strange * anywhere).ln()
+    let measured = step.values.iter().filter(|(name, _)| scale(name).is_some());
+    result * signs * ANYWHERE.powi(measured.count() as i32)
 }
 
 #[cfg(test)]
@@ -247,9 +230,8 @@ mod tests {
         let mut scale = Scale::of_healthy(&healthy.values["t"]);
         scale.widen(&slow.values["t"]);
         let ln = |cell: &Cell, value| {
-            ln_step(expected(cell), &step(Result::Failed, value), |_| {
-                Some(&scale)
-            })
+            let step = step(Result::Failed, value);
+            likelihood(expected(cell), &step, |_| Some(&scale)).ln()
         };
         assert!(ln(&slow, Some(643.0)) > ln(&dead, Some(643.0)) + 3.0);
         assert!(ln(&dead, None) > ln(&slow, None) + 2.0);

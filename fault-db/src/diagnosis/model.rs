@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 
 use super::cell::Cell;
 use super::dictionary::{Column, Dictionary};
-use super::likelihood::{Expected, Scale, ln_step, ln_step_unknown};
+use super::likelihood::{Expected, Scale, likelihood, likelihood_of_anything};
 use super::observation::StepSeen;
 use super::settings::Settings;
+
+/// Place of [`Hypothesis::NoFault`] in every model.
+pub const NO_FAULT: usize = 0;
 
 /// What may be the case. Modes and their varieties are named by their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,7 +38,11 @@ pub struct Model<'a> {
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
+    /// Hypotheses of each part, by their places.
+    parts: Vec<Vec<usize>>,
     scales: BTreeMap<usize, BTreeMap<String, Scale>>,
+    /// Share of checks that a healthy unit does not pass.
+    false_alarms: f64,
     empty: Cell,
 }
 
@@ -60,14 +67,29 @@ impl<'a> Model<'a> {
                 priors.push(known * weight(mode) / all / entry.columns.len() as f64);
             }
         }
+        let mut parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (i, hypothesis) in hypotheses.iter().enumerate() {
+            if let Hypothesis::Mode { mode, .. } = hypothesis {
+                let part = &dictionary.modes[*mode].name.lru;
+                parts.entry(part).or_default().push(i);
+            }
+        }
         Self {
             dictionary,
             settings,
             hypotheses,
+            parts: parts.into_values().collect(),
+            false_alarms: false_alarms(dictionary),
             ln_priors: priors.into_iter().map(f64::ln).collect(),
             scales: scales(dictionary),
             empty: Cell::default(),
         }
+    }
+
+    /// Place of a variety of a mode among the hypotheses.
+    pub fn position(&self, mode: usize, column: usize) -> Option<usize> {
+        let sought = Hypothesis::Mode { mode, column };
+        self.hypotheses.binary_search(&sought).ok()
     }
 
     /// Part a hypothesis puts the blame on.
@@ -94,7 +116,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// What a hypothesis expects of a check.
+    /// What a hypothesis expects of a check, as far as it was counted.
     pub fn expected(&self, hypothesis: Hypothesis, place: usize) -> Expected<'_> {
         let column = self.column(hypothesis);
         let own = column.cells.get(&place);
@@ -102,18 +124,62 @@ impl<'a> Model<'a> {
         Expected {
             cell: cell.unwrap_or(&self.empty),
             runs: column.runs,
-            doubt: self.settings.doubt_runs,
+            doubt: match hypothesis {
+                Hypothesis::NoFault => f64::from(column.runs) * self.false_alarms,
+                _ => self.settings.doubt_runs,
+            },
         }
     }
 
-    /// Logarithm of how likely a step at `place` is under a hypothesis.
-    pub fn ln_likelihood(&self, hypothesis: Hypothesis, place: usize, step: &StepSeen) -> f64 {
-        let expected = self.expected(hypothesis, place);
+    /// Logarithms of how likely a step at `place` is under each hypothesis.
+    ///
+    /// A mode's runs are few, and what comes and goes hits another check each time: besides what was
+    /// counted, a check may do what it does on a healthy unit, or under another mode of the same part.
+    pub fn ln_likelihoods(&self, place: usize, step: &StepSeen) -> Vec<f64> {
+        let settings = self.settings;
         let scale = |name: &str| self.scales.get(&place)?.get(name);
-        match hypothesis {
-            Hypothesis::Unknown => ln_step_unknown(expected, step, scale),
-            _ => ln_step(expected, step, scale),
+        let counted = |hypothesis| likelihood(self.expected(hypothesis, place), step, scale);
+        let anything = likelihood_of_anything(step, scale);
+        let healthy = counted(Hypothesis::Unknown);
+        let mut like_healthy: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut own: Vec<f64> = Vec::with_capacity(self.hypotheses.len());
+        for hypothesis in &self.hypotheses {
+            own.push(match hypothesis {
+                Hypothesis::NoFault => counted(*hypothesis),
+                Hypothesis::Unknown => {
+                    (1.0 - settings.unknown_hits) * healthy + settings.unknown_hits * anything
+                }
+                // Most modes leave most checks alone.
+                mode if self.is_like_healthy(*mode, place) => *like_healthy
+                    .entry(self.column(*mode).runs)
+                    .or_insert_with(|| counted(*mode)),
+                mode => counted(*mode),
+            });
         }
+        let mut ln: Vec<f64> = own.iter().map(|p| p.ln()).collect();
+        for part in &self.parts {
+            let same_part = part.iter().map(|i| own[*i]).sum::<f64>() / part.len() as f64;
+            let otherwise = settings.doubt_healthy * healthy
+                + settings.doubt_same_part * same_part
+                + (1.0 - settings.doubt_healthy - settings.doubt_same_part) * anything;
+            for i in part {
+                let doubt = self.doubt(self.hypotheses[*i]);
+                ln[*i] = ((1.0 - doubt) * own[*i] + doubt * otherwise).ln();
+            }
+        }
+        ln
+    }
+
+    /// Share of runs that may come out otherwise than those counted.
+    fn doubt(&self, hypothesis: Hypothesis) -> f64 {
+        let Hypothesis::Mode { mode, .. } = hypothesis else {
+            return 0.0;
+        };
+        let doubt = match self.dictionary.modes[mode].name.kind.as_str() {
+            "intermittent" => self.settings.doubt_runs_intermittent,
+            _ => self.settings.doubt_runs,
+        };
+        doubt / (f64::from(self.column(hypothesis).runs) + doubt)
     }
 
     /// Logarithm of how likely it is that signs showed, and others did not, in a unit's own log: what
@@ -148,6 +214,15 @@ impl<'a> Model<'a> {
             .map(|(_, count)| SILENCE * (1.0 - chance(*count)).ln());
         showing.chain(silent).sum()
     }
+}
+
+fn false_alarms(dictionary: &Dictionary) -> f64 {
+    let cells = dictionary.healthy.cells.values();
+    let (wrong, all) = cells.fold((0, 0), |(wrong, all), cell| {
+        let passed = cell.count(super::Result::Passed);
+        (wrong + cell.runs() - passed, all + cell.runs())
+    });
+    (f64::from(wrong) + 0.5) / (f64::from(all) + 1.0)
 }
 
 fn scales(dictionary: &Dictionary) -> BTreeMap<usize, BTreeMap<String, Scale>> {

@@ -76,7 +76,7 @@ impl TryFrom<String> for Sign {
 }
 
 /// A step that was run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepSeen {
     /// Which.
     pub check: CheckName,
@@ -91,7 +91,7 @@ pub struct StepSeen {
 }
 
 /// Everything that was seen, in order.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Steps, in the order they were run.
     pub steps: Vec<StepSeen>,

@@ -1,7 +1,7 @@
 //! Why: the steps that speak for a fault mode, and those that speak against it.
 
 use super::belief::Belief;
-use super::model::{Hypothesis, Model};
+use super::model::{Hypothesis, Model, NO_FAULT};
 use super::observation::{Observation, Result, StepSeen};
 
 /// At most so many reasons each way.
@@ -20,26 +20,26 @@ pub struct Reasons {
     pub against: Vec<String>,
 }
 
-/// The reasons for and against a mode.
-pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observation) -> Reasons {
+/// The reasons for and against a hypothesis, given by its place in the model.
+pub fn reasons(belief: &Belief<'_, '_>, hypothesis: usize, seen: &Observation) -> Reasons {
     let model = belief.model;
     let rivals = rivals(belief, hypothesis);
     let mut for_it = Vec::new();
     let mut against = Vec::new();
-    for step in &seen.steps {
-        let Some(place) = model.dictionary.place(&step.check) else {
-            continue;
-        };
-        let own = model.ln_likelihood(hypothesis, place, step);
-        let healthy = model.ln_likelihood(Hypothesis::NoFault, place, step);
-        let rival = rivals.iter().map(|r| model.ln_likelihood(*r, place, step));
+    for weighed in belief.steps() {
+        let own = weighed.ln[hypothesis];
+        let healthy = weighed.ln[NO_FAULT];
+        let rival = rivals.iter().map(|rival| weighed.ln[*rival]);
         let best_rival = rival.fold(healthy, f64::max);
+        let step = &seen.steps[weighed.seen];
+        let text = || text(model, model.hypotheses[hypothesis], weighed.place, step);
         if own - healthy > SPEAKS_AT {
-            for_it.push((own - healthy, text(model, hypothesis, place, step)));
+            for_it.push((own - healthy, text()));
         } else if best_rival - own > SPEAKS_AT {
-            against.push((best_rival - own, text(model, hypothesis, place, step)));
+            against.push((best_rival - own, text()));
         }
     }
+    let hypothesis = model.hypotheses[hypothesis];
     let strongest = |mut all: Vec<(f64, String)>| {
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         let all = all.into_iter().map(|(_, text)| text);
@@ -62,17 +62,18 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
     reasons
 }
 
-/// The likeliest hypotheses that blame another part.
-fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<Hypothesis> {
+/// The likeliest hypotheses that blame another part, by their places.
+fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
     let model = belief.model;
-    let own = model.lru(hypothesis);
-    let all = model.hypotheses.iter().copied().zip(belief.probabilities());
-    let mut rivals: Vec<_> = all
-        .filter(|(h, _)| model.lru(*h).is_some_and(|lru| Some(lru) != own))
-        .collect();
+    let own = model.lru(model.hypotheses[hypothesis]);
+    let mut rivals: Vec<_> = belief.probabilities().into_iter().enumerate().collect();
+    rivals.retain(|(i, _)| {
+        let lru = model.lru(model.hypotheses[*i]);
+        lru.is_some() && lru != own
+    });
     rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
     rivals.truncate(RIVALS);
-    rivals.into_iter().map(|(h, _)| h).collect()
+    rivals.into_iter().map(|(i, _)| i).collect()
 }
 
 /// A step, how it came out, and how it comes out under the mode and on a healthy unit.

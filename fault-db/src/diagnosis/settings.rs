@@ -18,8 +18,17 @@ pub struct Settings {
     pub healthy_at: f64,
     /// A check that is expected to tell less than this, bits, is not worth its time.
     pub least_gain_bits: f64,
-    /// Runs of the suite a cell's counts are worth that nobody made: smoothing.
+    /// Runs that nobody made, beside those that were counted, and that may come out otherwise: smoothing.
     pub doubt_runs: f64,
+    /// The same of a mode that comes and goes.
+    pub doubt_runs_intermittent: f64,
+    /// Of those runs, share in which a check does what it does on a healthy unit, and share in which it
+    /// does what another mode of the same part makes it do; the rest does anything.
+    pub doubt_healthy: f64,
+    /// See [`Self::doubt_healthy`].
+    pub doubt_same_part: f64,
+    /// Share of checks that a fault which stands in no dictionary hits.
+    pub unknown_hits: f64,
     /// Time to bring a unit up before a procedure, s, for the cost of a check.
     pub bring_up_s: f64,
     /// Factor on a part's prior for each earlier run in which a fault named it.
@@ -42,6 +51,9 @@ impl Settings {
             ("second_fault", self.second_fault),
             ("found_at", self.found_at),
             ("healthy_at", self.healthy_at),
+            ("doubt_healthy", self.doubt_healthy),
+            ("doubt_same_part", self.doubt_same_part),
+            ("unknown_hits", self.unknown_hits),
         ];
         for (key, value) in shares {
             if !(value > 0.0 && value < 1.0) {
@@ -51,9 +63,13 @@ impl Settings {
         if self.no_fault + self.unknown_fault >= 1.0 {
             return Err("no_fault and unknown_fault leave nothing for known faults".into());
         }
+        if self.doubt_healthy + self.doubt_same_part >= 1.0 {
+            return Err("doubt_healthy and doubt_same_part leave nothing for anything else".into());
+        }
         let positive = [
             ("least_gain_bits", self.least_gain_bits),
             ("doubt_runs", self.doubt_runs),
+            ("doubt_runs_intermittent", self.doubt_runs_intermittent),
             ("bring_up_s", self.bring_up_s),
             ("recurrence_factor", self.recurrence_factor),
             ("replaced_in_vain_factor", self.replaced_in_vain_factor),
@@ -77,6 +93,10 @@ impl Default for Settings {
             healthy_at: 0.99,
             least_gain_bits: 0.01,
             doubt_runs: 0.5,
+            doubt_runs_intermittent: 3.0,
+            doubt_healthy: 0.6,
+            doubt_same_part: 0.3,
+            unknown_hits: 0.03,
             bring_up_s: 3.0,
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,

@@ -43,7 +43,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
     pub fn saw(&mut self, step: &StepSeen) -> bool {
         let new = self.done.insert(step.check.clone());
         if new {
-            self.belief.see(step);
+            self.belief.see(self.seen.steps.len(), step);
             self.seen.steps.push(step.clone());
         }
         let surprising = new && (step.result != Result::Passed || !step.signs.is_empty());
@@ -71,7 +71,8 @@ impl<'m, 'd> Strategy<'m, 'd> {
         self.target = if self.belief.is_settled() {
             None
         } else {
-            self.belief.next_check(&self.done, under_way, self.may.as_ref())
+            self.belief
+                .next_check(&self.done, under_way, self.may.as_ref())
         };
     }
 }
@@ -87,25 +88,34 @@ pub struct Effort {
     pub settled: bool,
 }
 
-/// Effort of the fixed order on a run that was made in full.
+/// Effort of the fixed order on a run that was made in full: until the answer is the one that stays.
+/// Nobody stops a fixed order before, since only its end tells that nothing changes any more.
 pub fn fixed_order(model: &Model<'_>, run: &Observation) -> Effort {
     let mut belief = Belief::new(model);
     let mut effort = Effort::default();
     let mut procedure = "";
-    for step in &run.steps {
+    let mut answers = Vec::new();
+    for (number, step) in run.steps.iter().enumerate() {
         if step.check.procedure != procedure {
             procedure = &step.check.procedure;
             effort.time_s += model.settings.bring_up_s;
         }
         effort.steps += 1;
         effort.time_s += step.time_s;
-        belief.see(step);
-        if belief.is_settled() {
-            effort.settled = true;
-            break;
-        }
+        belief.see(number, step);
+        answers.push((belief.answer(), effort));
     }
-    effort
+    let Some((Some(last), _)) = answers.last().copied() else {
+        return effort;
+    };
+    let stays = answers
+        .iter()
+        .rev()
+        .take_while(|(answer, _)| *answer == Some(last));
+    stays.last().map_or(effort, |(_, effort)| Effort {
+        settled: true,
+        ..*effort
+    })
 }
 
 /// What the strategy would have done, and what it would have seen, on a run that was made in full: each

@@ -10,7 +10,7 @@ use super::model::{Hypothesis, Model};
 use super::next_check::NextCheck;
 use super::observation::Observation;
 use super::pairs::{Pair, pairs};
-use super::reasons::reasons;
+use super::reasons::{Reasons, reasons};
 
 /// Candidates less likely than this are not shown, beyond the first.
 const LEAST_SHOWN: f64 = 0.005;
@@ -227,7 +227,8 @@ impl Weights {
         places
             .map(|(_, mode)| {
                 let column = self.varieties[mode];
-                let why = reasons(belief, Hypothesis::Mode { mode, column }, seen);
+                let place = belief.model.position(mode, column);
+                let why = place.map_or_else(Reasons::default, |place| reasons(belief, place, seen));
                 let name = &names[mode].name;
                 Candidate {
                     lru: name.lru.clone(),
