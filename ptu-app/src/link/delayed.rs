@@ -78,8 +78,9 @@ impl Way {
             at = at.max(*before);
         }
         self.under_way.push_back((at, bytes.to_vec()));
-        while let Some((_, bytes)) = self.under_way.pop_front_if(|(at, _)| *at <= now) {
-            arrived.extend_from_slice(&bytes);
+        while let Some((_, bytes)) = self.under_way.front().filter(|(at, _)| *at <= now) {
+            arrived.extend_from_slice(bytes);
+            self.under_way.pop_front();
         }
     }
 }
