@@ -374,7 +374,7 @@ const FOUND_BY: &[(&str, &str, &str)] = &[
     (
         "brake_cylinder.sticks",
         "tcms/not_released",
-        "after a service brake",
+        "released at departure",
     ),
     (
         "master_controller.pot_drifts",
