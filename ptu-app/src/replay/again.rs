@@ -73,7 +73,7 @@ pub(super) fn from_here<L: UnitLink>(
         original,
         session,
         shift_us,
-        Rule::wall_clock(original.began_row()),
+        Rule::after_begin(original.began_row()),
     )
 }
 

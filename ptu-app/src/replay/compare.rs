@@ -30,6 +30,11 @@ const CLOCK_TOLERANCES: [(&str, f64); 9] = [
 /// The same for quantities without a unit: efforts of 1 024.
 const CLOCK_TOLERANCE_PLAIN: f64 = 30.0;
 
+/// The same for counters: frames come at their own times.
+const CLOCK_TOLERANCE_COUNT: f64 = 2.0;
+/// What the bench was left in before the procedure shows for so many rows.
+const LEFT_ROWS: i64 = 20;
+
 /// Signals that go on counting from power-up: what counts is what was added since the procedure began.
 const COUNTERS: [&str; 6] = [
     "train_position",
@@ -103,19 +108,22 @@ impl Rule {
         }
     }
 
-    /// One of them paced by the wall clock; rows before `from_row` are not compared, because what the
-    /// unit had been through is not known.
-    pub const fn wall_clock(from_row: i64) -> Self {
+    /// One of them paced by the wall clock.
+    pub const fn wall_clock() -> Self {
         Self {
             slack_rows: CLOCK_ROWS,
             wall_clock: true,
-            from_row,
+            from_row: i64::MIN,
         }
     }
 
-    /// Rows before this one, from the trigger, are not compared.
-    pub fn from_row(&self) -> Option<i64> {
-        (self.from_row != i64::MIN).then_some(self.from_row)
+    /// The same, where a procedure began in that row, from the trigger, on a bench that had been in use:
+    /// compared from one second after it.
+    pub const fn after_begin(began_row: i64) -> Self {
+        Self {
+            from_row: began_row.saturating_add(LEFT_ROWS),
+            ..Self::wall_clock()
+        }
     }
 
     fn tolerance(&self, channel: &Channel) -> Option<f64> {
@@ -123,6 +131,9 @@ impl Rule {
             return None;
         };
         let plain = channel.unit.is_empty();
+        if plain && self.wall_clock && COUNTERS.contains(&channel.name.as_str()) {
+            return Some(CLOCK_TOLERANCE_COUNT);
+        }
         if plain && !PLAIN_QUANTITIES.contains(&channel.name.as_str()) {
             return None;
         }
@@ -199,7 +210,7 @@ pub fn compare(
         deviations,
         missing,
         missing_expected,
-        window_s: (rows.at_s(rows.first), rows.at_s(rows.last)),
+        window_s: (rows.at_s(rows.from), rows.at_s(rows.last)),
     })
 }
 
@@ -219,6 +230,8 @@ fn in_order(deviations: &mut [Deviation]) {
 /// Rows that both traces have, counted in the first.
 struct Rows {
     first: usize,
+    /// First row that is compared; those before it only say what came around it.
+    from: usize,
     last: usize,
     /// From a row of the first to that of the second.
     shift: i64,
@@ -230,11 +243,10 @@ impl Rows {
     fn of(came: &TraceData, expected: &TraceData, rule: &Rule) -> Result<Self, Failure> {
         let trigger = |trace: &TraceData| i64::from(trace.trigger_row.unwrap_or(0));
         let shift = trigger(expected) - trigger(came);
-        let begin = 0
-            .max(-shift)
-            .max(rule.from_row.saturating_add(trigger(came)));
+        let begin = 0.max(-shift);
+        let from = begin.max(rule.from_row.saturating_add(trigger(came)));
         let end = (came.rows() as i64 - 1).min(expected.rows() as i64 - 1 - shift);
-        if end < begin {
+        if end < from {
             return Err(Failure::usage(
                 "the traces have no time in common around their triggers, or the recording begins after \
                  the end of the trace",
@@ -242,6 +254,7 @@ impl Rows {
         }
         Ok(Self {
             first: begin as usize,
+            from: from as usize,
             last: end as usize,
             shift,
             trigger: trigger(came),
@@ -278,11 +291,12 @@ impl Rows {
             tolerance,
             slack: rule.slack_rows,
         };
-        let mut apart = (0..came.len()).filter(|row| pair.apart(*row)).peekable();
+        let compared = self.from - self.first..came.len();
+        let mut apart = compared.filter(|row| pair.apart(*row)).peekable();
         let first = *apart.peek()?;
         let difference = |row: usize| Difference {
             at_s: self.at_s(self.first + row),
-            value: known(came[row]),
+            value: known(came[row] - offset),
             expected: known(expected[row]),
         };
         let (mut rows, mut largest) = (0, first);
@@ -359,4 +373,120 @@ impl Pair<'_> {
 
 fn known(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trace(name: &str, kind: ChannelKind, unit: &str, column: &[f64]) -> TraceData {
+        TraceData {
+            t0_bench_us: 0,
+            t0_us: 0,
+            period_us: 50_000,
+            trigger_row: Some(2),
+            partial: false,
+            gaps: false,
+            channels: vec![Channel {
+                name: name.into(),
+                unit: unit.into(),
+                kind,
+            }],
+            columns: vec![column.to_vec()],
+        }
+    }
+
+    /// Rows in which `came` deviates from `expected`, and the first of them.
+    fn apart(rule: Rule, name: &str, unit: &str, came: &[f64], expected: &[f64]) -> (usize, usize) {
+        let kind = || match unit {
+            "bit" => ChannelKind::Bit,
+            _ => ChannelKind::Number { lsb: 1.0 },
+        };
+        let unit = unit.trim_start_matches("bit");
+        let came = trace(name, kind(), unit, came);
+        let expected = trace(name, kind(), unit, expected);
+        let found = compare(&came, &expected, &rule, &[]).expect("compared");
+        found.deviations.first().map_or((0, 0), |d| (d.rows, d.row))
+    }
+
+    const STEP: [f64; 8] = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+    const LATE: [f64; 8] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    const LATER: [f64; 8] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0];
+    const PULSE: [f64; 8] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+
+    #[test]
+    fn two_rows_of_a_clock_are_no_deviation_and_three_are() {
+        let clock = Rule::wall_clock();
+        assert_eq!(apart(clock, "eb", "bit", &LATE, &STEP), (0, 0));
+        assert_eq!(apart(clock, "eb", "bit", &LATER, &STEP), (2, 3));
+        assert_eq!(
+            apart(clock, "eb", "bit", &[0.0; 8], &PULSE),
+            (1, 3),
+            "a pulse that did not come"
+        );
+        assert_eq!(apart(Rule::exact(), "eb", "bit", &LATE, &STEP), (2, 3));
+        assert_eq!(
+            apart(Rule::after_begin(-16), "eb", "bit", &LATER, &STEP),
+            (0, 0),
+            "before it began"
+        );
+    }
+
+    #[test]
+    fn quantities_have_a_tolerance_and_codes_have_none() {
+        let (came, expected) = ([5.0; 8], [6.0; 8]);
+        assert_eq!(
+            apart(Rule::exact(), "motor_1", "N", &came, &expected).0,
+            0,
+            "one step"
+        );
+        assert_eq!(
+            apart(Rule::exact(), "motor_1", "N", &[4.0; 8], &expected).0,
+            8
+        );
+        assert_eq!(apart(Rule::exact(), "effort", "", &came, &expected).0, 0);
+        assert_eq!(
+            apart(Rule::exact(), "refusals", "", &came, &expected).0,
+            8,
+            "another bit"
+        );
+        let unknown = [f64::NAN; 8];
+        assert_eq!(
+            apart(Rule::exact(), "motor_1", "N", &unknown, &expected).0,
+            8
+        );
+        assert_eq!(
+            apart(Rule::exact(), "motor_1", "N", &unknown, &unknown).0,
+            0
+        );
+    }
+
+    #[test]
+    fn counters_of_a_unit_that_ran_before_count_from_the_begin() {
+        let ours: Vec<f64> = STEP.iter().map(|n| n + 40.0).collect();
+        let clock = Rule::wall_clock();
+        assert_eq!(apart(clock, "marker_count", "", &ours, &STEP).0, 0);
+        let more: Vec<f64> = STEP.iter().map(|n| 4.0 * n + 40.0).collect();
+        assert_eq!(apart(clock, "marker_count", "", &more, &STEP), (5, 3));
+        assert_eq!(apart(Rule::exact(), "marker_count", "", &ours, &STEP).0, 8);
+    }
+
+    #[test]
+    fn within_one_report_the_way_through_the_unit_decides() {
+        let two = |first: &str, second: &str, columns: [&[f64]; 2]| {
+            let mut both = trace(first, ChannelKind::Bit, "", columns[0]);
+            let other = trace(second, ChannelKind::Bit, "", columns[1]);
+            both.channels.extend(other.channels);
+            both.columns.extend(other.columns);
+            both
+        };
+        let expected = two("eb", "speed1", [&[0.0; 8], &[0.0; 8]]);
+        let order = |columns| -> Vec<String> {
+            let came = two("eb", "speed1", columns);
+            let found = compare(&came, &expected, &Rule::exact(), &[]).expect("compared");
+            found.deviations.into_iter().map(|d| d.signal).collect()
+        };
+        assert_eq!(order([&STEP, &LATE]), ["speed1", "eb"]);
+        assert_eq!(order([&STEP, &LATER]), ["eb", "speed1"]);
+    }
 }

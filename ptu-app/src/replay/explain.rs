@@ -89,7 +89,8 @@ pub fn explained(
     let mut notes = Vec::new();
     if original.made.on_port() {
         notes.push(format!(
-            "the unit was on a port ({}): times to within {} ms, and compared from the procedure's begin on",
+            "the unit was on a port ({}): times to within {} ms, and compared from 1 s after the \
+             procedure's begin on",
             original.made.source,
             2 * original.trace.period_us / 1000
         ));

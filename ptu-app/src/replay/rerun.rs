@@ -81,6 +81,8 @@ pub struct Rerun {
     pub serial: String,
     /// What it is like.
     pub likeness: Likeness,
+    /// First deviating signal of the original, and whether it deviates again.
+    pub first_again: Option<(String, bool)>,
     /// The replay against the original.
     pub from_original: Comparison,
     /// The replay against the good twin.
@@ -105,7 +107,8 @@ pub fn rerun(
     rerunning: &Rerunning,
     stop: &Stop,
 ) -> Result<Rerun, Failure> {
-    let (twin, _) = good_twin(original, directory)?;
+    let (twin, rule) = good_twin(original, directory)?;
+    let expected = compare(&original.trace, &twin, &rule, &[])?;
     let mut setup = original.made.setup(directory)?;
     setup.faults.clone_from(&rerunning.faults);
     setup.endpoint = rerunning.endpoint.clone();
@@ -120,6 +123,7 @@ pub fn rerun(
         (_, 0) => Likeness::AsTwin,
         _ => Likeness::Otherwise,
     };
+    let first_again = first_again(&expected, &from_twin);
     let record = run_record(original, &setup, &serial, rerunning, started_at_us);
     let mut writer = RunWriter::begin(store, &record)?;
     let verdict = match cut_short {
@@ -147,6 +151,7 @@ pub fn rerun(
         trace_id,
         serial,
         likeness,
+        first_again,
         from_original,
         from_twin,
         refused: again.refused,
@@ -158,6 +163,17 @@ pub fn rerun(
             Verdict::Aborted => Exit::Aborted,
         },
     })
+}
+
+/// The signal that deviated first in the original, and whether the replay has it leave the good twin's
+/// again, whatever else came.
+fn first_again(original: &Comparison, replay: &Comparison) -> Option<(String, bool)> {
+    let first = &original.deviations.first()?.signal;
+    let again = replay
+        .deviations
+        .iter()
+        .any(|deviation| deviation.signal == *first);
+    Some((first.clone(), again))
 }
 
 /// On the bench asked for; the unit's serial number, and why it was cut short, if it was.

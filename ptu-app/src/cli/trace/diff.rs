@@ -55,7 +55,7 @@ impl DiffArguments {
             let rule = if exact {
                 Rule::exact()
             } else {
-                Rule::wall_clock(i64::MIN)
+                Rule::wall_clock()
             };
             (b.to_string(), store.trace(b)?, rule)
         };

@@ -101,6 +101,14 @@ fn text(original: &Original, rerun: &Rerun) -> String {
         rerun.serial,
         rerun.likeness.words()
     );
+    if let (Likeness::Otherwise, Some((signal, again))) = (rerun.likeness, &rerun.first_again) {
+        let again = if *again {
+            "deviates again"
+        } else {
+            "does not deviate"
+        };
+        let _ = writeln!(text, "{signal}, which deviated first in the trace, {again}");
+    }
     if let Some(why) = &rerun.cut_short {
         let _ = writeln!(text, "cut short: {why}");
     }
@@ -124,6 +132,8 @@ fn rerun_json(original: &Original, rerun: &Rerun) -> serde_json::Value {
         "replay_trace": rerun.trace_id.to_string(),
         "unit": rerun.serial,
         "result": rerun.likeness.key(),
+        "first_deviation": rerun.first_again.as_ref().map(|(signal, _)| signal),
+        "first_deviates_again": rerun.first_again.as_ref().map(|(_, again)| again),
         "cut_short": rerun.cut_short,
         "refused": rerun.refused,
         "from_trace": deviations_json(&rerun.from_original),
