@@ -68,7 +68,6 @@ pub struct Column {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
     /// Which.
-    #[serde(flatten)]
     pub name: ModeName,
     /// Its varieties.
     pub columns: Vec<Column>,

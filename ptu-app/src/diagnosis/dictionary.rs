@@ -115,3 +115,28 @@ fn differences(made_of: &Basis, now: &Basis) -> String {
         _ => format!("made before {shown} changed"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fault_db::diagnosis::{ModeName, Observation};
+
+    use super::*;
+
+    /// Goal: a dictionary that was kept can be read here, where another crate makes JSON's numbers texts
+    /// of any length, which not every way of reading them survives.
+    #[test]
+    fn a_dictionary_that_was_kept_is_read_again() {
+        let mode = ModeName {
+            id: "eb_relay.slow".into(),
+            lru: "eb_relay".into(),
+            text: "drops late".into(),
+            kind: "degraded".into(),
+            unsafe_: true,
+            weight: 0.75,
+        };
+        let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], Vec::new());
+        dictionary.add(&mode, "0.4".into(), &[Observation::default()]);
+        let kept = dictionary.to_bytes().expect("packed");
+        assert_eq!(Dictionary::from_bytes(&kept), Ok(dictionary));
+    }
+}
