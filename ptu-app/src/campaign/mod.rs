@@ -11,7 +11,7 @@ mod redundant;
 mod samples;
 mod suite;
 
-use fault_db::diagnosis::{Dictionary, Mode, ModeName, Settings};
+use fault_db::diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
 use protocol::injection::FaultMode;
 
@@ -100,30 +100,43 @@ pub fn run(
         return Ok(None);
     }
     let runs: Vec<SuiteRun> = runs.into_iter().map(|(_, run)| run).collect();
-    let dictionary = dictionary(directory, suite, &modes, &samples, &runs)?;
-    let (assessments, good) = evaluate::assess(&dictionary, settings, &samples, &runs, asked.jobs);
-    Ok(Some(Outcome {
+    let made_of = basis(directory)?;
+    let outcome = conclude(
+        made_of, suite, &modes, settings, &samples, &runs, asked.jobs,
+    );
+    Ok(Some(outcome))
+}
+
+/// Makes the dictionary of the runs that are for it, and assesses it by the others.
+pub fn conclude(
+    made_of: Basis,
+    suite: &Suite,
+    modes: &[&FaultMode],
+    settings: &Settings,
+    samples: &[Sample],
+    runs: &[SuiteRun],
+    jobs: usize,
+) -> Outcome {
+    let dictionary = dictionary(made_of, suite, modes, samples, runs);
+    let (assessments, good) = evaluate::assess(&dictionary, settings, samples, runs, jobs);
+    Outcome {
         dictionary,
         assessments,
         good,
         runs: samples.len(),
-    }))
+    }
 }
 
 fn dictionary(
-    directory: &ScriptsDirectory,
+    made_of: Basis,
     suite: &Suite,
     modes: &[&FaultMode],
     samples: &[Sample],
     runs: &[SuiteRun],
-) -> Result<Dictionary, Failure> {
+) -> Dictionary {
     let seeds = samples.iter().filter(|s| s.purpose == Purpose::Dictionary);
     let seeds: std::collections::BTreeSet<_> = seeds.map(|s| s.seed).collect();
-    let mut dictionary = Dictionary::new(
-        basis(directory)?,
-        seeds.into_iter().collect(),
-        suite.checks(),
-    );
+    let mut dictionary = Dictionary::new(made_of, seeds.into_iter().collect(), suite.checks());
     let of = |mode: Option<&str>, level: usize| {
         let chosen = samples.iter().zip(runs).filter(|(sample, _)| {
             sample.purpose == Purpose::Dictionary && sample.mode() == mode && sample.level == level
@@ -148,13 +161,5 @@ fn dictionary(
             dictionary.add(&name, label, &of(Some(&mode.id), level));
         }
     }
-    Ok(dictionary)
-}
-
-/// Names of a dictionary's modes.
-pub fn mode_names(dictionary: &Dictionary) -> impl Iterator<Item = &str> {
     dictionary
-        .modes
-        .iter()
-        .map(|mode: &Mode| mode.name.id.as_str())
 }
