@@ -69,7 +69,7 @@ fn shared_out(planned: &[Value]) -> Vec<Vec<String>> {
         .map(|p| (number(&p["worst_case_s"]), text(&p["procedure"]).to_owned()))
         .collect();
     longest.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut shares = vec![(0.0, Vec::new()); BENCHES];
+    let mut shares: Vec<(f64, Vec<String>)> = vec![(0.0, Vec::new()); BENCHES];
     for (time_s, procedure) in longest {
         let least = shares.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0));
         let share = least.expect("benches");

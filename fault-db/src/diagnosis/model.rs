@@ -191,18 +191,19 @@ impl<'a> Model<'a> {
     ) -> f64 {
         /// Weight of a sign that did not show.
         const SILENCE: f64 = 0.2;
-        /// Chance of a sign of which nothing is known.
+        /// Chance of a sign that has nothing to do with the fault: a log holds what testers did, too. The
+        /// same under every hypothesis, however many runs stand behind it.
         const STRAY: f64 = 0.02;
+        /// Chance of each sign under a fault that stands in no dictionary.
+        const OF_UNKNOWN: f64 = 0.1;
+        if hypothesis == Hypothesis::Unknown {
+            return signs.len() as f64 * OF_UNKNOWN.ln();
+        }
         let column = self.column(hypothesis);
-        let runs = f64::from(column.runs.min(50));
-        let doubt = self.settings.doubt_runs;
         let chance = |count: u32| {
             let share = f64::from(count) / f64::from(column.runs.max(1));
-            (runs * share + doubt * STRAY) / (runs + doubt)
+            (STRAY + (1.0 - STRAY) * share).min(1.0 - STRAY)
         };
-        if hypothesis == Hypothesis::Unknown {
-            return signs.len() as f64 * (5.0 * STRAY).ln();
-        }
         let known = |sign| column.signs.iter().find(|(s, _)| s == sign);
         let showing = signs
             .iter()

@@ -255,7 +255,7 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
         *taken_for.entry(what).or_default() += 1;
     }
     let mut taken_for: Vec<_> = taken_for.into_iter().collect();
-    taken_for.sort_by(|a, b| b.1.cmp(&a.1));
+    taken_for.sort_by_key(|(_, runs)| std::cmp::Reverse(*runs));
     Shortfall {
         fault: fault.to_owned(),
         share: Share::over(runs.iter().copied(), has),

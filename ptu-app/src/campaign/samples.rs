@@ -5,8 +5,9 @@ use protocol::injection::FaultMode;
 
 use super::Request;
 
-/// Good runs behind a dictionary: enough that what one in twenty of them does is seen.
-const HEALTHY_RUNS: u32 = 60;
+/// Good runs behind a dictionary for each seed of a mode: at five seeds enough that what one in twenty of
+/// them does is seen.
+const HEALTHY_RUNS_A_SEED: u32 = 12;
 /// A fault sets in at power-up for every other seed, and within this time after it for the rest, s.
 const LATEST_ONSET_S: f64 = 10.0;
 /// Seeds of one purpose are this far from those of the next, so that none is ever used twice.
@@ -44,7 +45,12 @@ impl Sample {
 /// All runs of a campaign: those of a dictionary first.
 pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
     let purposes = [
-        (Purpose::Dictionary, asked.seeds, HEALTHY_RUNS, APART),
+        (
+            Purpose::Dictionary,
+            asked.seeds,
+            HEALTHY_RUNS_A_SEED * asked.seeds,
+            APART,
+        ),
         (Purpose::Assessment, asked.held_out, asked.good, 2 * APART),
     ];
     let mut samples = Vec::new();

@@ -119,12 +119,10 @@ impl Suite {
                     }
                     SessionEvent::Run(RunEvent::ProcedureFinished {
                         verdict, message, ..
-                    }) => {
-                        if !matches!(verdict, Verdict::Passed | Verdict::Skipped) {
-                            run.passed = false;
-                            run.not_passed
-                                .push(format!("{}: {verdict} {message}", task.procedure.id));
-                        }
+                    }) if !matches!(verdict, Verdict::Passed | Verdict::Skipped) => {
+                        run.passed = false;
+                        run.not_passed
+                            .push(format!("{}: {verdict} {message}", task.procedure.id));
                     }
                     _ => {}
                 }
