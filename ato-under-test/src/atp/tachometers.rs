@@ -11,8 +11,10 @@ use crate::timer::{Edge, Lasting};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.
 const DEAD_BELOW: Speed = Speed::from_kmh(1.0);
-/// Scans with an impossible jump within [`NOISE_SPAN`] that make a channel noisy.
-const NOISE_SCANS: u32 = 3;
+/// Scans with an impossible jump within [`NOISE_SPAN`] that make a channel noisy: more than one spurious
+/// pulse can make. Beside the first ones after standing it stands out for less than 50 ms: for as long as
+/// one pulse more in so short a window is a jump, and until the pulse after that.
+const NOISE_SCANS: u32 = 6;
 /// Span in which they are counted.
 const NOISE_SPAN: Duration = Duration::from_ms(1000);
 
