@@ -17,7 +17,8 @@ use crate::run::BenchMade;
 ///
 /// Numbers differ beyond one step of their signal, words and bits at once; where one of the traces comes
 /// from a unit on a port, beyond what its clock explains (two rows, and a tolerance by the unit).
-/// The number of log entries (`events`) is left out.
+/// The number of log entries (`events`) is left out; on a port also efforts, accelerations and counts of
+/// frames.
 ///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest

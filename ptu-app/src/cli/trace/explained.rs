@@ -15,7 +15,12 @@ const SHOWN: usize = 15;
 pub fn explanation_text(explanation: &Explanation) -> String {
     let mut text = String::new();
     match explanation.first() {
-        None => text.push_str("as expected: no signal deviates from the good twin's\n"),
+        None => {
+            text.push_str("as expected: no signal deviates from the good twin's\n");
+            for link in &explanation.chain {
+                let _ = writeln!(text, "  {}", link_text(link));
+            }
+        }
         Some(first) => {
             let _ = writeln!(text, "first deviation from the good twin: {}", told(first));
             text.push_str("chain\n");

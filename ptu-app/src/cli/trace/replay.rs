@@ -101,6 +101,11 @@ fn text(original: &Original, rerun: &Rerun) -> String {
         rerun.serial,
         rerun.likeness.words()
     );
+    let (from_s, to_s) = rerun.from_original.window_s;
+    let _ = writeln!(
+        text,
+        "compared from {from_s:.2} s to {to_s:.2} s of the trigger"
+    );
     if let (Likeness::Otherwise, Some((signal, again))) = (rerun.likeness, &rerun.first_again) {
         let again = if *again {
             "deviates again"
@@ -134,6 +139,8 @@ fn rerun_json(original: &Original, rerun: &Rerun) -> serde_json::Value {
         "result": rerun.likeness.key(),
         "first_deviation": rerun.first_again.as_ref().map(|(signal, _)| signal),
         "first_deviates_again": rerun.first_again.as_ref().map(|(_, again)| again),
+        "from_s": rerun.from_original.window_s.0,
+        "to_s": rerun.from_original.window_s.1,
         "cut_short": rerun.cut_short,
         "refused": rerun.refused,
         "from_trace": deviations_json(&rerun.from_original),
