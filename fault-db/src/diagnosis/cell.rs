@@ -60,6 +60,19 @@ impl Values {
         self.squares += off * (value - self.mean);
     }
 
+    /// Whether they lie where those of a healthy unit do, as far as so few can tell.
+    fn is_like(&self, healthy: &Self) -> bool {
+        /// Standard deviations of one value, and of the mean of several.
+        const FAR: f64 = 3.0;
+        let sd = healthy.sd() + 1e-9 * healthy.mean.abs();
+        let of_mean = (FAR / f64::from(self.n.max(1)).sqrt()).max(1.0);
+        self.n > 0
+            && self.missing == 0
+            && self.low >= healthy.low - FAR * sd
+            && self.high <= healthy.high + FAR * sd
+            && (self.mean - healthy.mean).abs() <= of_mean * sd + 1e-9
+    }
+
     /// Standard deviation; 0 of fewer than two.
     pub fn sd(&self) -> f64 {
         if self.n < 2 {
@@ -124,23 +137,29 @@ impl Cell {
         }
     }
 
-    /// As good as `other`: the same signatures alone, and values where those of `other` lie.
-    pub fn is_like(&self, other: &Self) -> bool {
+    /// As good as a healthy unit's: the same signatures alone, and values where its lie.
+    pub fn is_like(&self, healthy: &Self) -> bool {
         let known = |(signature, _): &(Signature, u32)| {
-            let of_other = other.signatures.iter().find(|(s, _)| s == signature);
-            // Once in the runs of the other is an accident there, not its way.
-            of_other.is_some_and(|(_, count)| f64::from(*count) >= 0.5 * f64::from(other.runs()))
+            let of_healthy = healthy.signatures.iter().find(|(s, _)| s == signature);
+            // Once in many runs is an accident there, not its way.
+            of_healthy.is_some_and(|(_, count)| 2 * count >= healthy.runs())
         };
-        self.runs() > 0
-            && self.signatures.iter().all(known)
-            && self.values.iter().all(|(name, values)| {
-                other.values.get(name).is_some_and(|of_other| {
-                    let margin = 3.0 * of_other.sd() + 1e-9 * of_other.mean.abs();
-                    values.missing == 0
-                        && values.low >= of_other.low - margin
-                        && values.high <= of_other.high + margin
-                        && (values.mean - of_other.mean).abs() <= of_other.sd() + 1e-9
-                })
-            })
+        let lies_there = |(name, values): (&String, &Values)| {
+            let of_healthy = healthy.values.get(name);
+            of_healthy.is_some_and(|of_healthy| values.is_like(of_healthy))
+        };
+        self.runs() > 0 && self.signatures.iter().all(known) && self.values.iter().all(lies_there)
+    }
+
+    /// Values that lie where a healthy unit's lie are taken to be just those: a few runs would make them
+    /// look as narrow as chance has it.
+    pub fn take_values_from(&mut self, healthy: &Self) {
+        for (name, values) in &mut self.values {
+            if let Some(of_healthy) = healthy.values.get(name)
+                && values.is_like(of_healthy)
+            {
+                *values = *of_healthy;
+            }
+        }
     }
 }

@@ -170,9 +170,13 @@ impl Dictionary {
     pub fn add(&mut self, mode: &ModeName, level: String, runs: &[Observation]) {
         let mut column = self.count(level, runs);
         let healthy = &self.healthy.cells;
-        column
-            .cells
-            .retain(|place, cell| healthy.get(place).is_none_or(|h| !cell.is_like(h)));
+        column.cells.retain(|place, cell| {
+            let Some(healthy) = healthy.get(place) else {
+                return true;
+            };
+            cell.take_values_from(healthy);
+            !cell.is_like(healthy)
+        });
         match self.modes.iter_mut().find(|known| known.name.id == mode.id) {
             Some(known) => known.columns.push(column),
             None => self.modes.push(Mode {

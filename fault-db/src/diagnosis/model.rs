@@ -10,6 +10,8 @@ use super::settings::Settings;
 
 /// Place of [`Hypothesis::NoFault`] in every model.
 pub const NO_FAULT: usize = 0;
+/// Place of [`Hypothesis::Unknown`] in every model.
+const UNKNOWN: usize = 1;
 
 /// What may be the case. Modes and their varieties are named by their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -133,53 +135,56 @@ impl<'a> Model<'a> {
 
     /// Logarithms of how likely a step at `place` is under each hypothesis.
     ///
-    /// A mode's runs are few, and what comes and goes hits another check each time: besides what was
-    /// counted, a check may do what it does on a healthy unit, or under another mode of the same part.
+    /// A mode's runs are few, and what comes and goes hits another check each time. So besides what was
+    /// counted, a check that a mode changes may do what it does on a healthy unit, what another mode of
+    /// the same part makes it do, or anything; and a check that it was never seen to change may all the
+    /// same be hit now and then.
     pub fn ln_likelihoods(&self, place: usize, step: &StepSeen) -> Vec<f64> {
         let settings = self.settings;
         let scale = |name: &str| self.scales.get(&place)?.get(name);
         let counted = |hypothesis| likelihood(self.expected(hypothesis, place), step, scale);
         let anything = likelihood_of_anything(step, scale);
-        let healthy = counted(Hypothesis::Unknown);
-        let mut like_healthy: BTreeMap<u32, f64> = BTreeMap::new();
-        let mut own: Vec<f64> = Vec::with_capacity(self.hypotheses.len());
-        for hypothesis in &self.hypotheses {
-            own.push(match hypothesis {
-                Hypothesis::NoFault => counted(*hypothesis),
-                Hypothesis::Unknown => {
-                    (1.0 - settings.unknown_hits) * healthy + settings.unknown_hits * anything
-                }
-                // Most modes leave most checks alone.
-                mode if self.is_like_healthy(*mode, place) => *like_healthy
-                    .entry(self.column(*mode).runs)
-                    .or_insert_with(|| counted(*mode)),
-                mode => counted(*mode),
-            });
-        }
-        let mut ln: Vec<f64> = own.iter().map(|p| p.ln()).collect();
+        let healthy = counted(Hypothesis::NoFault);
+        let like_healthy = |i: usize| self.is_like_healthy(self.hypotheses[i], place);
+        let mut likelihoods = vec![healthy; self.hypotheses.len()];
+        likelihoods[UNKNOWN] = mixed(healthy, anything, settings.unknown_hits);
         for part in &self.parts {
-            let same_part = part.iter().map(|i| own[*i]).sum::<f64>() / part.len() as f64;
-            let otherwise = settings.doubt_healthy * healthy
-                + settings.doubt_same_part * same_part
-                + (1.0 - settings.doubt_healthy - settings.doubt_same_part) * anything;
+            for i in part.iter().filter(|i| !like_healthy(**i)) {
+                likelihoods[*i] = counted(self.hypotheses[*i]);
+            }
+            let same_part = part.iter().map(|i| likelihoods[*i]).sum::<f64>() / part.len() as f64;
+            let (same, any) = (settings.doubt_same_part, settings.doubt_anything);
+            let hit = (same * same_part + any * anything) / (same + any);
+            let otherwise = mixed(healthy, hit, same + any);
             for i in part {
                 let doubt = self.doubt(self.hypotheses[*i]);
-                ln[*i] = ((1.0 - doubt) * own[*i] + doubt * otherwise).ln();
+                likelihoods[*i] = if like_healthy(*i) {
+                    mixed(healthy, hit, doubt.new_hits)
+                } else {
+                    mixed(likelihoods[*i], otherwise, doubt.otherwise)
+                };
             }
         }
-        ln
+        likelihoods.into_iter().map(f64::ln).collect()
     }
 
-    /// Share of runs that may come out otherwise than those counted.
-    fn doubt(&self, hypothesis: Hypothesis) -> f64 {
-        let Hypothesis::Mode { mode, .. } = hypothesis else {
-            return 0.0;
+    fn doubt(&self, hypothesis: Hypothesis) -> Doubt {
+        let settings = self.settings;
+        let kind = match hypothesis {
+            Hypothesis::Mode { mode, .. } => self.dictionary.modes[mode].name.kind.as_str(),
+            _ => "",
         };
-        let doubt = match self.dictionary.modes[mode].name.kind.as_str() {
-            "intermittent" => self.settings.doubt_runs_intermittent,
-            _ => self.settings.doubt_runs,
+        let (runs, new_hits) = match kind {
+            "intermittent" => (
+                settings.doubt_runs_intermittent,
+                settings.new_hits_intermittent,
+            ),
+            _ => (settings.doubt_runs, settings.new_hits),
         };
-        doubt / (f64::from(self.column(hypothesis).runs) + doubt)
+        Doubt {
+            otherwise: runs / (f64::from(self.column(hypothesis).runs) + runs),
+            new_hits,
+        }
     }
 
     /// Logarithm of how likely it is that signs showed, and others did not, in a unit's own log: what
@@ -215,6 +220,19 @@ impl<'a> Model<'a> {
             .map(|(_, count)| SILENCE * (1.0 - chance(*count)).ln());
         showing.chain(silent).sum()
     }
+}
+
+/// How far a mode is to be trusted to do what it was counted to do.
+struct Doubt {
+    /// Share of runs in which a check that it changes does something else.
+    otherwise: f64,
+    /// Share of checks it was not seen to change that it hits all the same.
+    new_hits: f64,
+}
+
+/// One or the other: the other with this share.
+fn mixed(one: f64, other: f64, share: f64) -> f64 {
+    (1.0 - share) * one + share * other
 }
 
 fn false_alarms(dictionary: &Dictionary) -> f64 {

@@ -22,11 +22,14 @@ pub struct Settings {
     pub doubt_runs: f64,
     /// The same of a mode that comes and goes.
     pub doubt_runs_intermittent: f64,
-    /// Of those runs, share in which a check does what it does on a healthy unit, and share in which it
-    /// does what another mode of the same part makes it do; the rest does anything.
-    pub doubt_healthy: f64,
-    /// See [`Self::doubt_healthy`].
+    /// Share of those runs in which a check does what another mode of the same part makes it do.
     pub doubt_same_part: f64,
+    /// Share of those runs in which it does anything; in the rest, what it does on a healthy unit.
+    pub doubt_anything: f64,
+    /// Share of checks that a mode was never seen to change, and hits all the same.
+    pub new_hits: f64,
+    /// The same of a mode that comes and goes.
+    pub new_hits_intermittent: f64,
     /// Share of checks that a fault which stands in no dictionary hits.
     pub unknown_hits: f64,
     /// Time to bring a unit up before a procedure, s, for the cost of a check.
@@ -51,8 +54,10 @@ impl Settings {
             ("second_fault", self.second_fault),
             ("found_at", self.found_at),
             ("healthy_at", self.healthy_at),
-            ("doubt_healthy", self.doubt_healthy),
             ("doubt_same_part", self.doubt_same_part),
+            ("doubt_anything", self.doubt_anything),
+            ("new_hits", self.new_hits),
+            ("new_hits_intermittent", self.new_hits_intermittent),
             ("unknown_hits", self.unknown_hits),
         ];
         for (key, value) in shares {
@@ -63,8 +68,10 @@ impl Settings {
         if self.no_fault + self.unknown_fault >= 1.0 {
             return Err("no_fault and unknown_fault leave nothing for known faults".into());
         }
-        if self.doubt_healthy + self.doubt_same_part >= 1.0 {
-            return Err("doubt_healthy and doubt_same_part leave nothing for anything else".into());
+        if self.doubt_same_part + self.doubt_anything >= 1.0 {
+            return Err(
+                "doubt_same_part and doubt_anything leave nothing for a healthy check".into(),
+            );
         }
         let positive = [
             ("least_gain_bits", self.least_gain_bits),
@@ -94,8 +101,10 @@ impl Default for Settings {
             least_gain_bits: 0.01,
             doubt_runs: 0.5,
             doubt_runs_intermittent: 3.0,
-            doubt_healthy: 0.6,
             doubt_same_part: 0.3,
+            doubt_anything: 0.1,
+            new_hits: 0.002,
+            new_hits_intermittent: 0.03,
             unknown_hits: 0.03,
             bring_up_s: 3.0,
             recurrence_factor: 1.5,

@@ -11,7 +11,9 @@ const HEALTHY_RUNS_A_SEED: u32 = 12;
 /// A fault sets in at power-up for every other seed, and within this time after it for the rest, s.
 const LATEST_ONSET_S: f64 = 10.0;
 /// Seeds of one purpose are this far from those of the next, so that none is ever used twice.
-const APART: u64 = 1_000_000;
+const APART: u64 = 100_000_000;
+/// And those of one variety this far from those of the next.
+const VARIETY: u64 = 10_000;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,14 +63,18 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
             level: 0,
             seed: from + APART / 2 + u64::from(i),
         }));
+        let mut variety = 0;
         for mode in modes {
             for level in 0..=mode.levels.len() {
+                variety += 1;
                 samples.extend((0..seeds).filter_map(|i| {
                     Some(Sample {
                         purpose,
                         fault: Some(setting_in(mode.at_level(level)?, i)),
                         level,
-                        seed: from + u64::from(i),
+                        // Units of their own for each variety: of the same few, what they have in common would
+                        // look like the fault's doing.
+                        seed: from + VARIETY * variety + u64::from(i),
                     })
                 }));
             }
