@@ -165,7 +165,8 @@ impl<'a> Model<'a> {
                 };
             }
         }
-        likelihoods.into_iter().map(f64::ln).collect()
+        let weight = settings.weight_of_step;
+        likelihoods.into_iter().map(|p| weight * p.ln()).collect()
     }
 
     fn doubt(&self, hypothesis: Hypothesis) -> Doubt {

@@ -30,6 +30,9 @@ pub struct Settings {
     pub new_hits: f64,
     /// The same of a mode that comes and goes.
     pub new_hits_intermittent: f64,
+    /// Weight of a step's evidence: steps of one run are not independent of each other, so that it is less
+    /// than 1.
+    pub weight_of_step: f64,
     /// Share of checks that a fault which stands in no dictionary hits.
     pub unknown_hits: f64,
     /// Time to bring a unit up before a procedure, s, for the cost of a check.
@@ -76,6 +79,7 @@ impl Settings {
         let positive = [
             ("least_gain_bits", self.least_gain_bits),
             ("doubt_runs", self.doubt_runs),
+            ("weight_of_step", self.weight_of_step),
             ("doubt_runs_intermittent", self.doubt_runs_intermittent),
             ("bring_up_s", self.bring_up_s),
             ("recurrence_factor", self.recurrence_factor),
@@ -105,6 +109,7 @@ impl Default for Settings {
             doubt_anything: 0.1,
             new_hits: 0.002,
             new_hits_intermittent: 0.03,
+            weight_of_step: 0.7,
             unknown_hits: 0.03,
             bring_up_s: 3.0,
             recurrence_factor: 1.5,

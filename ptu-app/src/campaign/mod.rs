@@ -90,11 +90,7 @@ pub fn run(
 ) -> Result<Option<Outcome>, Failure> {
     let modes = chosen(suite, asked)?;
     let samples = samples(&modes, asked);
-    let run_one = |i: usize| {
-        let sample: &Sample = &samples[i];
-        let faults = sample.fault.iter().cloned().collect();
-        suite.run(faults, sample.seed, stop)
-    };
+    let run_one = |i: usize| suite.run(&samples[i], stop);
     let runs = pool::run(samples.len(), asked.jobs, stop, tell, run_one);
     if stop.presses() > 0 || runs.len() < samples.len() {
         return Ok(None);

@@ -1,15 +1,18 @@
 //! What is run in a campaign: fault modes at all their levels, setting in at different times, on units
 //! that differ; and good units.
 
-use protocol::injection::FaultMode;
+use protocol::injection::{FaultKind, FaultMode};
 
 use super::Request;
 
 /// Good runs behind a dictionary for each seed of a mode: at five seeds enough that what one in twenty of
 /// them does is seen.
 const HEALTHY_RUNS_A_SEED: u32 = 12;
-/// A fault sets in at power-up for every other seed, and within this time after it for the rest, s.
-const LATEST_ONSET_S: f64 = 10.0;
+/// Seeds for one of a mode that comes and goes: what it hits is another check each time.
+const INTERMITTENT_SEEDS: u32 = 4;
+/// A fault is there from the beginning for every other seed; for the rest it sets in within this time after
+/// the first power-up of the run, s.
+const LATEST_ONSET_S: f64 = 20.0;
 /// Seeds of one purpose are this far from those of the next, so that none is ever used twice.
 const APART: u64 = 100_000_000;
 /// And those of one variety this far from those of the next.
@@ -29,8 +32,10 @@ pub enum Purpose {
 pub struct Sample {
     /// What it is for.
     pub purpose: Purpose,
-    /// The fault, at its level and with its onset; none = a good unit.
+    /// The fault at its level; none = a good unit.
     pub fault: Option<FaultMode>,
+    /// When it sets in, s after the first power-up; what has set in is there at the next one.
+    pub sets_in_s: f64,
     /// Which of the mode's levels, 0 = nominal.
     pub level: usize,
     /// Seed of everything random.
@@ -60,6 +65,7 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
         samples.extend((0..good).map(|i| Sample {
             purpose,
             fault: None,
+            sets_in_s: 0.0,
             level: 0,
             seed: from + APART / 2 + u64::from(i),
         }));
@@ -67,10 +73,16 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
         for mode in modes {
             for level in 0..=mode.levels.len() {
                 variety += 1;
+                let intermittent = mode.kind() == FaultKind::Intermittent;
+                let seeds = match (purpose, intermittent) {
+                    (Purpose::Dictionary, true) => INTERMITTENT_SEEDS * seeds,
+                    _ => seeds,
+                };
                 samples.extend((0..seeds).filter_map(|i| {
                     Some(Sample {
                         purpose,
-                        fault: Some(setting_in(mode.at_level(level)?, i)),
+                        fault: Some(mode.at_level(level)?),
+                        sets_in_s: sets_in(mode, i),
                         level,
                         // Units of their own for each variety: of the same few, what they have in common would
                         // look like the fault's doing.
@@ -83,13 +95,11 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
     samples
 }
 
-/// The mode as it sets in for the seed with this number: at its own time, or later by a part of
-/// [`LATEST_ONSET_S`] that differs from seed to seed.
-fn setting_in(mut mode: FaultMode, number: u32) -> FaultMode {
-    if number % 2 == 1 && !mode.place.is_stored() {
-        // The golden ratio's multiples spread evenly however many there are.
-        let share = (f64::from(number) * 0.618_033_988_749_895).fract();
-        mode.onset_s += share * LATEST_ONSET_S;
+/// When the mode sets in for the seed with this number, s.
+fn sets_in(mode: &FaultMode, number: u32) -> f64 {
+    if number.is_multiple_of(2) || mode.place.is_stored() {
+        return 0.0;
     }
-    mode
+    // The golden ratio's multiples spread evenly however many there are.
+    (f64::from(number) * 0.618_033_988_749_895).fract() * LATEST_ONSET_S
 }

@@ -6,8 +6,9 @@ use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use fault_db::diagnosis::{CheckName, Observation};
-use protocol::injection::{FaultCatalogue, FaultMode};
+use protocol::injection::FaultCatalogue;
 
+use super::samples::Sample;
 use crate::data::{ScriptsDirectory, read};
 use crate::diagnosis::{Gatherer, LINE, TRAIN, UNIT_CONFIG};
 use crate::drive::train::train;
@@ -96,13 +97,18 @@ impl Suite {
         self.tasks.iter().flat_map(of_task).collect()
     }
 
-    /// Runs it on a unit of its own. A stop leaves the run short.
-    pub fn run(&self, faults: Vec<FaultMode>, seed: u64, stop: &Stop) -> SuiteRun {
-        let setup = BenchSetup {
-            faults,
-            seed,
+    /// Runs it on units of one kind, each procedure on one that is powered up for it. A stop leaves the
+    /// run short.
+    pub fn run(&self, sample: &Sample, stop: &Stop) -> SuiteRun {
+        let mut setup = BenchSetup {
+            faults: sample.fault.iter().cloned().collect(),
+            seed: sample.seed,
             ..self.setup.clone()
         };
+        let own_onset: Vec<_> = setup.faults.iter().map(|fault| fault.onset_s).collect();
+        for fault in &mut setup.faults {
+            fault.onset_s += sample.sets_in_s;
+        }
         let mut run = SuiteRun {
             passed: true,
             ..SuiteRun::default()
@@ -128,6 +134,9 @@ impl Suite {
                 }
             });
             run.seen.steps.extend(gatherer.finish());
+            for (fault, onset_s) in setup.faults.iter_mut().zip(&own_onset) {
+                fault.onset_s = *onset_s;
+            }
         }
         run
     }
