@@ -1,13 +1,12 @@
 //! Recordings: what was done to the bench in a procedure that found a fault, so that it can be done
 //! again. This crate keeps the two JSON texts and does not look into them.
 
-use std::io::Read;
-
 use rusqlite::{OptionalExtension, params};
 use serde::Serialize;
 
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::packed;
 use crate::run_writer::RunWriter;
 use crate::store::Store;
 
@@ -52,10 +51,13 @@ impl RunWriter<'_> {
         const DOING: &str = "storing a recording";
         self.check_unfinished()?;
         let (store, run) = (self.store, self.run);
-        let stimuli = pack(&record.stimuli_json).map_err(|error| StoreError::Io {
-            path: store.path().to_path_buf(),
-            reason: error.to_string(),
-        })?;
+        let stimuli =
+            packed::pack(record.stimuli_json.as_bytes(), ZSTD_LEVEL).map_err(|error| {
+                StoreError::Io {
+                    path: store.path().to_path_buf(),
+                    reason: error.to_string(),
+                }
+            })?;
         store.write(DOING, |conn| {
             let work = || {
                 conn.prepare_cached(
@@ -147,20 +149,8 @@ impl Store {
     }
 }
 
-/// One frame with a checksum of its content: a damaged one is found when it is unpacked.
-fn pack(json: &str) -> std::io::Result<Vec<u8>> {
-    let mut compressor = zstd::bulk::Compressor::new(ZSTD_LEVEL)?;
-    compressor.include_checksum(true)?;
-    compressor.compress(json.as_bytes())
-}
-
 fn unpack(packed: &[u8]) -> Result<String, String> {
-    let damaged = |error: std::io::Error| format!("the stimuli are damaged: {error}");
-    let mut json = String::new();
-    zstd::stream::read::Decoder::new(packed)
-        .map_err(damaged)?
-        .take(MAX_STIMULI_BYTES)
-        .read_to_string(&mut json)
-        .map_err(damaged)?;
-    Ok(json)
+    let damaged = |error: &dyn std::fmt::Display| format!("the stimuli are damaged: {error}");
+    let json = packed::unpack(packed, MAX_STIMULI_BYTES).map_err(|error| damaged(&error))?;
+    String::from_utf8(json).map_err(|error| damaged(&error))
 }

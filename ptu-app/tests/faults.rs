@@ -415,6 +415,22 @@ const FOUND_BY: &[(&str, &str, &str)] = &[
     ),
 ];
 
+/// Modes that diagnosis takes for another part's at the default seed, and why.
+const NOT_DIAGNOSED: &[(&str, &str)] = &[
+    (
+        "atp_receiver.drops_out",
+        "code lost in spells is code lost in spells, in the antenna or behind it",
+    ),
+    (
+        "twc_antenna.loose",
+        "frames lost in spells on both ways, which a CPU that hangs in spells loses, too",
+    ),
+    (
+        "twc_cpu.hangs",
+        "frames lost in spells, which a modem that fades loses, too",
+    ),
+];
+
 /// Parts of the train around the unit.
 const TRAIN_PARTS: [&str; 8] = [
     "inverter",
@@ -496,7 +512,10 @@ fn every_injectable_fault_is_found_and_kept_with_its_trace() {
 fn the_table_names_no_fault_that_is_gone() {
     let modes = modes(&Place::new());
     let named = FOUND_BY.iter().map(|(glob, ..)| *glob);
-    let excused = PART_NOT_NAMED.iter().chain(TRAIN_SUSPECTED);
+    let excused = PART_NOT_NAMED
+        .iter()
+        .chain(TRAIN_SUSPECTED)
+        .chain(NOT_DIAGNOSED);
     for glob in named.chain(excused.map(|(glob, _)| *glob)) {
         let matches = |mode: &Mode| fits(glob, &mode.id);
         assert!(modes.iter().any(matches), "no fault mode {glob}");
@@ -580,8 +599,24 @@ fn check(mode: &Mode, signals: &BTreeSet<String>) -> Vec<String> {
     problems.extend(check_parts(mode, &report));
     problems.extend(check_side(mode, &report));
     problems.extend(check_traces(&place, &report, signals));
+    problems.extend(check_diagnosis(mode, &place));
     let named = |problem| format!("{}: {problem}", mode.id);
     problems.into_iter().map(named).collect()
+}
+
+/// Diagnosis puts the broken part first, whatever the stored faults name.
+fn check_diagnosis(mode: &Mode, place: &Place) -> Option<String> {
+    let diagnosis = place.json(&["diagnose", "latest", "--json"]);
+    let first = &diagnosis["candidates"][0]["lru"];
+    let right = *first == *mode.lru;
+    let excused = NOT_DIAGNOSED.iter().find(|(id, _)| *id == mode.id);
+    match (right, excused) {
+        (false, None) => Some(format!("diagnosed as {first}: {}", diagnosis["conclusion"])),
+        (true, Some((_, reason))) => {
+            Some(format!("diagnosed now; strike out of the table: {reason}"))
+        }
+        _ => None,
+    }
 }
 
 fn check_steps(mode: &Mode, report: &Value) -> Vec<String> {

@@ -116,19 +116,6 @@ impl<'m, 'd> Belief<'m, 'd> {
         suspects
     }
 
-    /// Modes by their places, the likeliest first, varieties together.
-    pub fn modes(&self) -> Vec<(usize, f64)> {
-        let mut modes = vec![0.0; self.model.dictionary.modes.len()];
-        for (hypothesis, p) in self.model.hypotheses.iter().zip(self.probabilities()) {
-            if let Hypothesis::Mode { mode, .. } = hypothesis {
-                modes[*mode] += p;
-            }
-        }
-        let mut modes: Vec<_> = modes.into_iter().enumerate().collect();
-        modes.sort_by(|a, b| b.1.total_cmp(&a.1));
-        modes
-    }
-
     /// The part that is found, `Some("")` when the unit is healthy, nothing when the question is open.
     pub fn answer(&self) -> Option<&'d str> {
         let settings = self.model.settings;

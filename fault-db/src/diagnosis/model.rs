@@ -169,18 +169,25 @@ impl<'a> Model<'a> {
         likelihoods.into_iter().map(|p| weight * p.ln()).collect()
     }
 
+    /// The hypothesis is a mode that comes and goes.
+    pub fn is_intermittent(&self, hypothesis: Hypothesis) -> bool {
+        match hypothesis {
+            Hypothesis::Mode { mode, .. } => {
+                self.dictionary.modes[mode].name.kind == "intermittent"
+            }
+            _ => false,
+        }
+    }
+
     fn doubt(&self, hypothesis: Hypothesis) -> Doubt {
         let settings = self.settings;
-        let kind = match hypothesis {
-            Hypothesis::Mode { mode, .. } => self.dictionary.modes[mode].name.kind.as_str(),
-            _ => "",
-        };
-        let (runs, new_hits) = match kind {
-            "intermittent" => (
+        let (runs, new_hits) = if self.is_intermittent(hypothesis) {
+            (
                 settings.doubt_runs_intermittent,
                 settings.new_hits_intermittent,
-            ),
-            _ => (settings.doubt_runs, settings.new_hits),
+            )
+        } else {
+            (settings.doubt_runs, settings.new_hits)
         };
         Doubt {
             otherwise: runs / (f64::from(self.column(hypothesis).runs) + runs),

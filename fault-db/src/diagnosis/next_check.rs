@@ -1,8 +1,7 @@
 //! The next best check: the one that is expected to tell the most about the part, per second.
 //!
 //! Procedures begin with a unit that is brought up for them, and their steps build on each other. So
-//! a check costs all steps of its procedure before it that have not been run, and brings what they
-//! tell, too.
+//! a check costs all steps of its procedure before it, but for those just run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -50,11 +49,10 @@ impl Belief<'_, '_> {
         let settings = self.model.settings;
         let mut best: Option<(f64, NextCheck)> = None;
         let mut procedure = "";
-        let (mut cost_s, mut told) = (0.0, 0.0);
+        let mut cost_s = 0.0;
         for (place, check) in dictionary.checks.iter().enumerate() {
             if check.procedure != procedure {
                 procedure = &check.procedure;
-                told = 0.0;
                 cost_s = if under_way == Some(procedure) {
                     0.0
                 } else {
@@ -77,9 +75,6 @@ impl Belief<'_, '_> {
                 continue;
             }
             let gain_bits = self.gain_bits(place, &classes);
-            if gain_bits > told {
-                told = gain_bits;
-            }
             if gain_bits < settings.least_gain_bits {
                 continue;
             }

@@ -57,8 +57,8 @@ fn is_strange(step: &StepSeen) -> bool {
     step.result != Result::Passed || !step.signs.is_empty()
 }
 
-/// Hypotheses that make what went wrong likelier than on a healthy unit, the best variety of each
-/// mode, the most explaining first; by their place in the model.
+/// Lasting modes that make what went wrong likelier than on a healthy unit, the best variety of each,
+/// the most explaining first; by their place in the model.
 fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
     let steps = belief.steps().iter();
     let wrong: Vec<_> = steps.filter(|w| is_strange(&seen.steps[w.seen])).collect();
@@ -71,6 +71,10 @@ fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
         let Hypothesis::Mode { mode, .. } = hypothesis else {
             continue;
         };
+        // Two that come and go would explain whatever comes and goes.
+        if belief.model.is_intermittent(*hypothesis) {
+            continue;
+        }
         let score = explained(i);
         match best.last_mut().filter(|(_, of, _)| of == mode) {
             Some(known) if known.2 >= score => {}

@@ -62,6 +62,7 @@ impl Settings {
             ("new_hits", self.new_hits),
             ("new_hits_intermittent", self.new_hits_intermittent),
             ("unknown_hits", self.unknown_hits),
+            ("weight_of_step", self.weight_of_step),
         ];
         for (key, value) in shares {
             if !(value > 0.0 && value < 1.0) {
@@ -79,7 +80,6 @@ impl Settings {
         let positive = [
             ("least_gain_bits", self.least_gain_bits),
             ("doubt_runs", self.doubt_runs),
-            ("weight_of_step", self.weight_of_step),
             ("doubt_runs_intermittent", self.doubt_runs_intermittent),
             ("bring_up_s", self.bring_up_s),
             ("recurrence_factor", self.recurrence_factor),
@@ -99,7 +99,7 @@ impl Default for Settings {
         Self {
             no_fault: 0.5,
             unknown_fault: 0.02,
-            second_fault: 0.02,
+            second_fault: 1e-5,
             found_at: 0.95,
             healthy_at: 0.99,
             least_gain_bits: 0.01,

@@ -62,11 +62,6 @@ impl<'m, 'd> Strategy<'m, 'd> {
         self.done.extend(of_procedure.cloned());
     }
 
-    /// What is believed by now.
-    pub fn belief(&self) -> &Belief<'m, 'd> {
-        &self.belief
-    }
-
     /// What was seen, and what is believed.
     pub fn finish(self) -> (Observation, Belief<'m, 'd>) {
         (self.seen, self.belief)

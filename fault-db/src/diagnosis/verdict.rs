@@ -103,8 +103,9 @@ impl Diagnosis {
         };
         let weights = Weights::new(&belief, &pairs, single);
         let candidates = weights.candidates(&belief, seen);
-        let next_check = weights.next_check(&belief, seen);
-        let (finding, conclusion) = weights.conclusion(model, seen, &pairs, next_check.as_ref());
+        let two = pairs.iter().map(|pair| pair.probability).sum::<f64>() >= 0.5;
+        let next_check = weights.next_check(&belief, seen, two);
+        let (finding, conclusion) = weights.conclusion(model, seen, two, next_check.as_ref());
         let fault = |hypothesis: Hypothesis| match hypothesis {
             Hypothesis::Mode { mode, .. } => model.dictionary.modes[mode].name.id.clone(),
             _ => String::new(),
@@ -242,13 +243,18 @@ impl Weights {
             .collect()
     }
 
-    fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
+    fn next_check(
+        &self,
+        belief: &Belief<'_, '_>,
+        seen: &Observation,
+        two: bool,
+    ) -> Option<NextCheck> {
         let settings = belief.model.settings;
         let found = self
             .lrus
             .first()
             .is_some_and(|part| part.probability >= settings.found_at);
-        if found || self.no_fault >= settings.healthy_at {
+        if found && !two || self.no_fault >= settings.healthy_at {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
@@ -259,7 +265,7 @@ impl Weights {
         &self,
         model: &Model<'_>,
         seen: &Observation,
-        pairs: &[Pair],
+        two: bool,
         next: Option<&NextCheck>,
     ) -> (Finding, String) {
         let settings = model.settings;
@@ -278,7 +284,6 @@ impl Weights {
             .iter()
             .filter(|part| part.probability >= settings.found_at)
             .collect();
-        let two = pairs.first().is_some_and(|pair| pair.probability >= 0.5);
         match found[..] {
             [one] if !two => {
                 return (

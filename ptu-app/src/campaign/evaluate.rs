@@ -43,7 +43,7 @@ pub struct Assessment {
     pub fixed: Effort,
     /// The same, step after step as diagnosis asks for them.
     pub adaptive: Effort,
-    /// Part the adaptive run ends with.
+    /// Part the adaptive run finds.
     pub adaptive_part: Option<String>,
 }
 
@@ -88,7 +88,14 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
     let diagnosis = Diagnosis::of(model, &run.seen);
     let (adaptive, seen) = replayed(model, &run.seen);
     let after = Diagnosis::of(model, &seen);
-    let parts = diagnosis.credible_parts(SURE);
+    let parts: Vec<_> = match diagnosis.finding {
+        Finding::TwoFound => {
+            let found = diagnosis.lrus.iter();
+            let found = found.filter(|part| part.probability >= model.settings.found_at);
+            found.map(|part| part.lru.as_str()).collect()
+        }
+        _ => diagnosis.credible_parts(SURE),
+    };
     Some(Assessment {
         fault: mode.id.clone(),
         lru: mode.lru.clone(),
@@ -100,7 +107,9 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         parts: parts.into_iter().map(str::to_owned).collect(),
         fixed: fixed_order(model, &run.seen),
         adaptive,
-        adaptive_part: after.lrus.first().map(|part| part.lru.clone()),
+        adaptive_part: (after.finding == Finding::Found)
+            .then(|| after.lrus.first().map(|part| part.lru.clone()))
+            .flatten(),
         finding: diagnosis.finding,
         conclusion: diagnosis.conclusion,
     })
@@ -126,13 +135,9 @@ impl Share {
         })
     }
 
-    /// As a number; 1 of none.
-    pub fn value(self) -> f64 {
-        if self.all == 0 {
-            1.0
-        } else {
-            self.of as f64 / self.all as f64
-        }
+    /// As a number; there is none of none.
+    pub fn value(self) -> Option<f64> {
+        (self.all > 0).then(|| self.of as f64 / self.all as f64)
     }
 }
 
@@ -174,11 +179,11 @@ pub struct Figures {
     pub good_runs: usize,
     /// Good runs that did not pass.
     pub false_alarms: usize,
-    /// Median steps and time of the fixed order, over runs with a fault.
+    /// Median steps and time of the fixed order, over runs in which both orders isolate the part.
     pub fixed: (f64, f64),
     /// Median steps and time of the adaptive order.
     pub adaptive: (f64, f64),
-    /// Adaptive runs that end with the right part.
+    /// Adaptive runs that find the right part.
     pub adaptive_right: Share,
 }
 
@@ -191,7 +196,10 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
     let kinds: BTreeSet<_> = assessments.iter().map(|one| one.kind).collect();
     let all = || assessments.iter();
     let median_of = |of: &dyn Fn(&Assessment) -> Effort| {
-        let efforts: Vec<_> = assessments.iter().map(of).collect();
+        let isolating = assessments.iter().filter(|run| {
+            run.fixed.settled && run.isolated(1) && run.adaptive_part.as_ref() == Some(&run.lru)
+        });
+        let efforts: Vec<_> = isolating.map(of).collect();
         (
             median(efforts.iter().map(|e| f64::from(e.steps)).collect()),
             median(efforts.iter().map(|e| e.time_s).collect()),
@@ -227,7 +235,8 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         unsafe_detected: Share::over(all().filter(|run| run.unsafe_), |run| run.detected),
         isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
         wrong: Share::over(all(), |run| {
-            run.finding == Finding::Found && run.parts.first() != Some(&run.lru)
+            let certain = matches!(run.finding, Finding::Found | Finding::TwoFound);
+            certain && run.parts != [run.lru.as_str()]
         }),
         undetected: lacking(&|run| run.detected),
         not_isolated: lacking(&|run| run.isolated(1)),

@@ -1,5 +1,5 @@
-//! Which steps diagnosis needs: the fewest that still detect and tell apart all that the whole suite
-//! does. The rest may still be needed to accept a unit.
+//! Which steps tell fault modes apart by passing and failing alone; measured values and signs are not counted.
+//! Chosen greedily. The rest may still tell something, and be needed to accept a unit.
 
 use std::collections::BTreeSet;
 

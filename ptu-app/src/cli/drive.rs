@@ -11,8 +11,7 @@ use super::{ScriptsOption, print_json, print_out};
 use crate::data::{ScriptsDirectory, check_writable, read, write};
 use crate::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use crate::drive::{
-    Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, disturbance, drive_all,
-    monte_carlo,
+    Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
 use crate::failure::{Exit, Failure, did_you_mean};
 use crate::pool::cores;

@@ -17,7 +17,7 @@ use serde_json::json;
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
 use crate::data::{ScriptsDirectory, read, sha256};
-use crate::diagnosis::{adaptive, diagnose_run};
+use crate::diagnosis::{Bench, adaptive, diagnose_run};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, did_you_mean};
@@ -311,7 +311,12 @@ impl RunArguments {
                 ));
             }
             let serial = setup.expected_serial();
-            plan.adaptive = Some(adaptive(&store, directory, &serial)?);
+            let bench = Bench {
+                unit_config_sha256: &setup.config.sha256,
+                line: &self.line,
+                train: &self.train,
+            };
+            plan.adaptive = Some(adaptive(&store, directory, &serial, &bench)?);
         }
         let stop = Stop::default();
         stop.listen();

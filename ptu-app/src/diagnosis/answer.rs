@@ -2,17 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use fault_db::diagnosis::{Diagnosis, Dictionary, Model, Observation};
-use fault_db::{Id, RunDetail, Store};
+use fault_db::diagnosis::{Diagnosis, Dictionary, Finding, Model, Observation};
+use fault_db::{Id, RunDetail, Store, Verdict};
 
 use super::dictionary::{Chosen, choose};
 use super::gather::of_run;
 use super::history::OwnHistory;
-use super::settings;
+use super::{UNIT_CONFIG, settings};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::owner;
 use crate::run::Adaptive;
+
+/// What decides what a healthy unit measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bench<'a> {
+    /// SHA-256 of the unit configuration.
+    pub unit_config_sha256: &'a str,
+    /// Line.
+    pub line: &'a str,
+    /// Train.
+    pub train: &'a str,
+}
 
 /// What a run comes to.
 pub struct Answer {
@@ -55,6 +66,7 @@ pub fn diagnose_run(
     let model = Model::new(&dictionary, &settings, &history.factors);
     let mut diagnosis = Diagnosis::of(&model, &seen);
     history.explain(&mut diagnosis);
+    admit_what_was_left_out(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
         let of_part = traces.entry(occurrence.lru.clone()).or_default();
@@ -69,19 +81,49 @@ pub fn diagnose_run(
     })
 }
 
+/// A run that did not pass is not healthy because what did not pass could not be weighed.
+fn admit_what_was_left_out(run: &RunDetail, diagnosis: &mut Diagnosis) {
+    let passed = matches!(
+        run.run.verdict,
+        Some(Verdict::Passed | Verdict::Skipped) | None
+    );
+    let nothing_wrong = matches!(diagnosis.finding, Finding::NoFault | Finding::NotEnough);
+    if !passed && !run.steps.is_empty() && nothing_wrong {
+        diagnosis.finding = Finding::CannotTell;
+        diagnosis.conclusion =
+            "cannot tell: the run did not pass, and what did not pass was not run to \
+             its end or is not in the dictionary"
+                .into();
+    }
+}
+
 /// What an adaptive run on the unit called `serial` decides by.
 ///
 /// # Errors
-/// There is no dictionary, or a stale one only.
+/// There is no dictionary, or one of another bench or other scripts only.
 pub fn adaptive(
     store: &Store,
     directory: &ScriptsDirectory,
     serial: &str,
+    bench: &Bench<'_>,
 ) -> Result<Adaptive, Failure> {
     let chosen = choose(Some(store), directory)?;
     if !chosen.current {
         // A step that does something else now would mislead it at every turn.
         return Err(Failure::usage(chosen.warnings.join("; ")));
+    }
+    let basis = &chosen.dictionary.basis;
+    let made_on = Bench {
+        unit_config_sha256: &basis.unit_config_sha256,
+        line: &basis.line,
+        train: &basis.train,
+    };
+    if *bench != made_on {
+        return Err(Failure::usage(format!(
+            "the fault dictionary was made with unit configuration {UNIT_CONFIG}, {} and train {}; an \
+             adaptive run needs the same",
+            basis.line, basis.train
+        )));
     }
     for warning in &chosen.warnings {
         eprintln!("{warning}");

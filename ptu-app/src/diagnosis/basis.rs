@@ -28,7 +28,7 @@ const FILES: [&str; 5] = [
 /// # Errors
 /// A file cannot be read.
 pub fn basis(directory: &ScriptsDirectory) -> Result<Basis, Failure> {
-    let mut all = String::new();
+    let mut all = format!("version {}\n", env!("CARGO_PKG_VERSION"));
     let mut procedures = BTreeMap::new();
     for (path, text) in directory.procedures()? {
         let sum = sha256(&text);

@@ -24,7 +24,7 @@ pub struct Chosen {
 }
 
 /// The best dictionary there is: made of what the scripts directory holds now, on this machine or
-/// shipped with it; else the newest that is stale.
+/// shipped with it; else a stale one. Of several the one that knows the most, and was made of the most runs.
 ///
 /// # Errors
 /// There is none, or a file cannot be read.
@@ -38,12 +38,12 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
     };
     let modes = |dictionary: &Dictionary| {
         let current = dictionary.basis.sha256 == now.sha256;
-        (current, dictionary.modes.len())
+        (current, dictionary.modes.len(), dictionary.healthy.runs)
     };
     let of_file = shipped(directory)?;
     let candidates = [
-        own.map(|dictionary| (dictionary, "a campaign on this machine")),
         of_file.map(|dictionary| (dictionary, "the scripts directory")),
+        own.map(|dictionary| (dictionary, "a campaign on this machine")),
     ];
     let best = candidates
         .into_iter()

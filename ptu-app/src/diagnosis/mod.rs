@@ -6,7 +6,7 @@ mod dictionary;
 mod gather;
 mod history;
 
-pub use answer::{Answer, adaptive, diagnose_run};
+pub use answer::{Answer, Bench, adaptive, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
 pub use dictionary::{Chosen, choose};
 pub use gather::{Gatherer, of_run};

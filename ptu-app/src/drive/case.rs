@@ -8,9 +8,7 @@ use btu_rig::train::TrainData;
 use protocol::config::{ControllerKind, checksum};
 use protocol::line::Line;
 
-use super::{
-    DriveBench, Fixed, LoadChoice, SectionChoice, Setting, drive, train, unit_config,
-};
+use super::{DriveBench, Fixed, LoadChoice, SectionChoice, Setting, drive, train, unit_config};
 use crate::data::{DataFile, ScriptsDirectory, sha256};
 use crate::failure::Failure;
 use crate::pool;

@@ -75,8 +75,9 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     let mut line = |what: &str, s: Share| {
         let _ = writeln!(
             text,
-            "{what:34} {:6.2} %  ({} of {} runs)",
-            100.0 * s.value(),
+            "{what:34} {:>8}  ({} of {} runs)",
+            s.value()
+                .map_or_else(|| "-".into(), |value| format!("{:.2} %", 100.0 * value)),
             s.of,
             s.all
         );
@@ -95,7 +96,7 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         );
     }
     line("one part named, the wrong one", figures.wrong);
-    line("adaptive order ends with the part", figures.adaptive_right);
+    line("found by the adaptive order", figures.adaptive_right);
     let _ = writeln!(
         text,
         "{:34} {} of {} good runs",
@@ -126,7 +127,7 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     }
     let _ = writeln!(
         text,
-        "\nsteps: {} of {} are enough to tell all parts apart that can be told apart; {} more fail under \
+        "\nsteps: {} of {} tell apart, by passing or failing alone, all that the suite does; {} more fail under \
          some fault; {} fail under none",
         steps.needed.len(),
         dictionary.checks.len(),
