@@ -730,7 +730,7 @@ fn a_failed_step_can_stop_the_procedure() {
 #[test]
 fn a_procedure_can_be_left_between_two_steps() {
     let script = format!(
-        "{HEAD}step('a', expect = holds(eb, 'released', duration = ms(50)))\nstep('b')\nstep('c')"
+        "{HEAD}step('a', expect = holds(eb, 'released', for_ = ms(50)))\nstep('b')\nstep('c')"
     );
     let options = RunOptions {
         one_by_one: true,

@@ -414,8 +414,8 @@ fn a_wrong_fault_catalogue_is_refused_with_the_fault_and_the_reason() {
             "fault brake_cylinder.weak: brake_cylinder is on a car, name it with `car`",
         ),
         (
-            "factor = 0.5 }",
-            "factor = -1 }",
+            "place = \"brake_cylinder\"\neffect = { kind = \"gain\", factor = 0.5 }",
+            "place = \"brake_cylinder\"\neffect = { kind = \"gain\", factor = -1 }",
             "fault brake_cylinder.weak: effect.factor = -1 is outside 0 .. 1",
         ),
         (

@@ -133,14 +133,19 @@ fn a_healthy_unit_is_found_healthy_and_a_short_run_says_what_is_next() {
 fn the_record_of_what_was_injected_is_not_looked_at() {
     let place = Place::new();
     place
-        .ptu(&["run", "tcms/link", "--inject", "eb_relay.welded"])
+        .ptu(&[
+            "run",
+            "tcms/link",
+            "--inject",
+            "ato_cpu.wrong_track_database",
+        ])
         .exits(0);
     let said = diagnosis(&place);
-    let relay = list(&said["lrus"])
+    let cpu = list(&said["lrus"])
         .iter()
-        .find(|part| part["lru"] == "eb_relay")
+        .find(|part| part["lru"] == "ato_cpu")
         .map_or(0.0, |part| number(&part["probability"]));
-    assert!(relay < 0.3, "{said:#}");
+    assert!(cpu < 0.3, "{said:#}");
 }
 
 #[test]
@@ -172,7 +177,7 @@ fn steps_of_other_scripts_are_left_out() {
             "--scripts",
             &changed,
             "--inject",
-            "door_contact.open",
+            "io_board.door_enable_dead",
         ])
         .exits(1);
     let said = diagnosis(&place);
