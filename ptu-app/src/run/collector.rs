@@ -137,6 +137,8 @@ impl<'a> Collector<'a> {
             Verdict::Aborted => Verdict::Aborted,
             _ if self.link_lost => Verdict::Error,
             Verdict::Error if self.step_failed || !self.dates.is_empty() => Verdict::Failed,
+            // A fault that showed while a unit was brought up fails no step.
+            Verdict::Passed if !self.dates.is_empty() => Verdict::Failed,
             // Nothing ran: nothing was tested.
             Verdict::Skipped => Verdict::Error,
             verdict => verdict,
