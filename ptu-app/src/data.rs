@@ -5,6 +5,7 @@ use std::fmt::Display;
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 
+use btu_rig::bench_scatter::BenchScatter;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::{self, Line};
@@ -16,6 +17,8 @@ use crate::failure::{Failure, did_you_mean};
 const UNITS: &str = "units";
 /// The fault catalogue's name there.
 const FAULTS: &str = "faults";
+/// How good units, trains and benches differ, in the scripts directory.
+pub const BENCH_SCATTER: &str = "bench_scatter.toml";
 
 /// Where all data files are.
 #[derive(Clone, Debug)]
@@ -112,6 +115,16 @@ impl ScriptsDirectory {
     pub fn faults(&self) -> Result<FaultCatalogue, Failure> {
         let load = |text: &str| FaultCatalogue::from_toml(text);
         Ok(self.load(UNITS, FAULTS, "fault catalogue", load)?.content)
+    }
+
+    /// How good units, trains and benches differ: `bench_scatter.toml`, or a file given in its place.
+    ///
+    /// # Errors
+    /// The file is missing or wrong.
+    pub fn bench_scatter(&self, given: Option<&Path>) -> Result<BenchScatter, Failure> {
+        let file = given.map_or_else(|| self.0.join(BENCH_SCATTER), Path::to_path_buf);
+        BenchScatter::from_toml(&read(&file)?)
+            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
     }
 
     /// The fault modes of these names.

@@ -1,8 +1,6 @@
 //! What is believed after what was seen: a probability for every hypothesis, updated step by step.
 
-use std::collections::BTreeMap;
-
-use super::model::{Hypothesis, Model};
+use super::model::{Model, NO_FAULT};
 use super::observation::{Observation, StepSeen};
 
 /// Probabilities of all hypotheses, and what they rest on.
@@ -23,15 +21,6 @@ pub(super) struct Weighed {
     pub place: usize,
     /// Logarithm of how likely it is under each hypothesis.
     pub ln: Vec<f64>,
-}
-
-/// A part and its probability.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Suspect<'d> {
-    /// The part.
-    pub lru: &'d str,
-    /// Probability that it has failed.
-    pub probability: f64,
 }
 
 impl<'m, 'd> Belief<'m, 'd> {
@@ -89,42 +78,17 @@ impl<'m, 'd> Belief<'m, 'd> {
         &self.ln
     }
 
-    /// Probability of one hypothesis that is no mode.
-    pub fn probability(&self, of: Hypothesis) -> f64 {
-        let all = self.probabilities();
-        let hypotheses = self.model.hypotheses.iter();
-        hypotheses
-            .zip(all)
-            .filter(|(h, _)| **h == of)
-            .map(|(_, p)| p)
-            .sum()
-    }
-
-    /// Parts, the likeliest first.
-    pub fn suspects(&self) -> Vec<Suspect<'d>> {
-        let mut parts: BTreeMap<&'d str, f64> = BTreeMap::new();
-        for (hypothesis, p) in self.model.hypotheses.iter().zip(self.probabilities()) {
-            if let Some(lru) = self.model.lru(*hypothesis) {
-                *parts.entry(lru).or_default() += p;
-            }
-        }
-        let suspects = parts.into_iter();
-        let mut suspects: Vec<_> = suspects
-            .map(|(lru, probability)| Suspect { lru, probability })
-            .collect();
-        suspects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        suspects
-    }
-
     /// The part that is found, `Some("")` when the unit is healthy, nothing when the question is open.
     pub fn answer(&self) -> Option<&'d str> {
-        let settings = self.model.settings;
-        if self.probability(Hypothesis::NoFault) >= settings.healthy_at {
+        let model = self.model;
+        let probabilities = self.probabilities();
+        if probabilities[NO_FAULT] >= model.settings.healthy_at {
             return Some("");
         }
-        let suspects = self.suspects();
-        let first = suspects.first()?;
-        (first.probability >= settings.found_at).then_some(first.lru)
+        let probability = |part: &[usize]| part.iter().map(|i| probabilities[*i]).sum::<f64>();
+        let mut parts = model.parts().iter();
+        let found = parts.find(|part| probability(part) >= model.settings.found_at)?;
+        model.lru(model.hypotheses[*found.first()?])
     }
 
     /// Whether the question is settled: one part found, or the unit healthy.

@@ -22,7 +22,7 @@ mod settings;
 mod strategy;
 mod verdict;
 
-pub use belief::{Belief, Suspect};
+pub use belief::Belief;
 pub use cell::{Cell, Signature, Values};
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use model::{Hypothesis, Model};

@@ -109,12 +109,17 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// Hypotheses of each part, by their places.
+    pub(super) fn parts(&self) -> &[Vec<usize>] {
+        &self.parts
+    }
+
     /// The hypothesis does at this check what a healthy unit does.
     pub fn is_like_healthy(&self, hypothesis: Hypothesis, place: usize) -> bool {
         match hypothesis {
             Hypothesis::Mode { .. } => !self.column(hypothesis).cells.contains_key(&place),
-            Hypothesis::NoFault => true,
-            Hypothesis::Unknown => false,
+            // What an unknown fault changes was never counted.
+            Hypothesis::NoFault | Hypothesis::Unknown => true,
         }
     }
 

@@ -35,9 +35,9 @@ struct Classes {
 }
 
 impl Belief<'_, '_> {
-    /// The next best check, of the procedures in `may` if that is given; `begun` says which steps of
-    /// the procedure under way have been run. Checks made already are not asked for again.
-    /// None when nothing would tell enough.
+    /// The next best check, of the procedures in `may` if that is given. Checks in `done` are not asked
+    /// for again; those of the procedure `under_way` need not be run again for one after them. None when
+    /// nothing would tell enough.
     pub fn next_check(
         &self,
         done: &BTreeSet<CheckName>,
@@ -122,7 +122,7 @@ impl Belief<'_, '_> {
         if model
             .hypotheses
             .iter()
-            .all(|h| model.is_like_healthy(*h, place) || classes.is_unknown(*h))
+            .all(|hypothesis| model.is_like_healthy(*hypothesis, place))
         {
             return 0.0;
         }
@@ -146,12 +146,6 @@ impl Belief<'_, '_> {
             }
         }
         information_bits(&joint.into_values().collect::<Vec<_>>())
-    }
-}
-
-impl Classes {
-    fn is_unknown(&self, hypothesis: super::model::Hypothesis) -> bool {
-        hypothesis == super::model::Hypothesis::Unknown
     }
 }
 

@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use fault_db::diagnosis::{CheckName, Observation};
 use protocol::injection::FaultCatalogue;
 
 use super::samples::Sample;
-use crate::data::{ScriptsDirectory, read};
+use crate::data::ScriptsDirectory;
 use crate::diagnosis::{Gatherer, LINE, TRAIN, UNIT_CONFIG};
 use crate::drive::train::train;
 use crate::failure::Failure;
@@ -52,9 +51,7 @@ impl Suite {
                 "{error}; `ptu run --check` shows all errors"
             )));
         }
-        let file = directory.path().join("bench_scatter.toml");
-        let scatter = BenchScatter::from_toml(&read(&file)?)
-            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?;
+        let scatter = directory.bench_scatter(None)?;
         let procedures = loaded.procedures.into_iter().filter(|p| !p.on_request);
         Ok(Self {
             setup: BenchSetup {

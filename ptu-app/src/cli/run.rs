@@ -16,7 +16,7 @@ use serde_json::json;
 
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
-use crate::data::{ScriptsDirectory, read, sha256};
+use crate::data::{ScriptsDirectory, sha256};
 use crate::diagnosis::{Bench, adaptive, diagnose_run};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
@@ -26,9 +26,6 @@ use crate::report::Target;
 use crate::report::diagnosis::diagnosis_text;
 use crate::run::{self, BenchSetup, Outcome, RunPlan, Task, select};
 use crate::stop::Stop;
-
-/// How good units, trains and benches differ, in the scripts directory.
-const BENCH_SCATTER: &str = "bench_scatter.toml";
 
 /// Run check procedures; by default all under scripts/ but those on request only
 ///
@@ -233,11 +230,7 @@ impl RunArguments {
         let Some(given) = &self.scatter else {
             return Ok(None);
         };
-        let file = given
-            .clone()
-            .unwrap_or_else(|| directory.path().join(BENCH_SCATTER));
-        let scatter = BenchScatter::from_toml(&read(&file)?)
-            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?;
+        let scatter = directory.bench_scatter(given.as_deref())?;
         Ok(Some(Arc::new(scatter)))
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fault_db::diagnosis::{Basis, Settings};
 
-use crate::data::{ScriptsDirectory, read, sha256};
+use crate::data::{BENCH_SCATTER, ScriptsDirectory, read, sha256};
 use crate::failure::Failure;
 
 /// The bench that dictionaries are made on.
@@ -20,7 +20,7 @@ const FILES: [&str; 5] = [
     "units/faults.toml",
     "lines/line8.toml",
     "trains/line6.toml",
-    "bench_scatter.toml",
+    BENCH_SCATTER,
 ];
 
 /// What a dictionary made now would be made of.
