@@ -344,3 +344,18 @@ pub enum Stimulus {
     /// Clears the unit's event log.
     PtuClearLog,
 }
+
+impl Stimulus {
+    /// A test signal or request of the TEST board, which an armed unit only takes.
+    pub fn on_test_board(&self) -> bool {
+        matches!(
+            self,
+            Self::PtuCode { .. }
+                | Self::PtuSpeed { .. }
+                | Self::PtuMarker { .. }
+                | Self::PtuTwc(_)
+                | Self::PtuRelease
+                | Self::PtuClearLog
+        )
+    }
+}

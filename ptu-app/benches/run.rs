@@ -45,6 +45,7 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
         scatter: None,
         serial: None,
         realtime: false,
+        attendant: None,
     };
     (directory, setup)
 }

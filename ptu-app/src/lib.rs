@@ -29,5 +29,7 @@ mod progress;
 pub mod replay;
 pub mod report;
 pub mod run;
+pub mod station;
 pub mod stop;
 mod table;
+pub mod words;

@@ -119,6 +119,13 @@ pub enum RunEvent {
         /// When.
         at: Instant,
     },
+    /// The run is paused and the next step waits.
+    Paused {
+        /// Its name.
+        next: String,
+        /// When.
+        at: Instant,
+    },
     /// Something is being waited for; repeated twice a second.
     Waiting {
         /// What.

@@ -1,7 +1,15 @@
 //! A stimulus in words.
 
+use std::fmt;
+
 use super::describe::number;
 use crate::stimulus::{CutOut, StationData, Stimulus, TachoCondition};
+
+impl fmt::Display for Stimulus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&stimulus_text(self))
+    }
+}
 
 /// Each stimulus in words; long because it is a table.
 pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {

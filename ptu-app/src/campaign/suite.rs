@@ -64,6 +64,7 @@ impl Suite {
                 scatter: Some(Arc::new(scatter)),
                 serial: None,
                 realtime: false,
+                attendant: None,
             },
             tasks: procedures
                 .map(|procedure| Task {

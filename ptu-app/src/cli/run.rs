@@ -219,6 +219,7 @@ impl RunArguments {
             scatter: self.scattered(directory)?,
             serial: self.serial_no.clone(),
             realtime: self.realtime,
+            attendant: None,
         })
     }
 

@@ -162,6 +162,7 @@ pub(super) mod tests {
             scatter: None,
             serial: None,
             realtime: false,
+            attendant: None,
         };
         let mut session = setup.sim_session("field", &Stop::default());
         session.judge_bring_up(Duration::from_ms(20_000), |_| false);

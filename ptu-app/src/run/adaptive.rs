@@ -28,7 +28,7 @@ pub fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
     adaptive: &'scope Adaptive,
-    connected: Connected,
+    connected: &'scope mut Connected,
     stop: &'scope Stop,
 ) -> Receiver<ProcedureStream> {
     let (procedures, receiver) = mpsc::channel();

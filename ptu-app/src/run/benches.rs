@@ -22,7 +22,7 @@ use protocol::{Duration, Instant};
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
-use super::{ProcedureStream, RunPlan, Task, stream};
+use super::{Attendant, ProcedureStream, RunPlan, Task, stream};
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
@@ -56,6 +56,8 @@ pub struct BenchSetup {
     pub serial: Option<String>,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,
+    /// Who looks on.
+    pub attendant: Option<Arc<dyn Attendant>>,
 }
 
 /// A unit that has been reached.
@@ -91,7 +93,8 @@ impl BenchSetup {
         }
         let link = WireLink::open(&self.endpoint)?;
         let bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
-        let mut session = Session::new(bench, Pace::real(), stop.clone(), false);
+        let mut session = Session::new(bench, Pace::real(), stop.clone(), false)
+            .attended_by(self.attendant.clone());
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found)?;
         self.check_identity(&identity)?;
@@ -206,6 +209,7 @@ impl BenchSetup {
             Pace::Virtual
         };
         Session::new(Bench::new(rig, link), pace, stop.clone(), true)
+            .attended_by(self.attendant.clone())
     }
 }
 
@@ -223,18 +227,25 @@ impl Connected {
             Self::Port(_, identity, _) => text(&identity.serial),
         }
     }
+
+    /// From now on this stop is heeded.
+    pub fn heed(&mut self, stop: &Stop) {
+        if let Self::Port(session, ..) = self {
+            session.heed(stop);
+        }
+    }
 }
 
 /// Starts the workers; each procedure and its stream, in the order of the tasks.
 pub fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
-    connected: Connected,
+    connected: &'scope mut Connected,
     stop: &'scope Stop,
 ) -> Vec<ProcedureStream> {
     let (senders, receivers): (Vec<_>, Vec<_>) = plan.tasks.iter().map(|_| stream()).unzip();
     match connected {
-        Connected::Port(..) => {
+        connected @ Connected::Port(..) => {
             scope.spawn(move || {
                 let mut worker = Worker::new(connected, stop);
                 for (task, sender) in plan.tasks.iter().zip(senders) {
@@ -251,10 +262,11 @@ pub fn start<'scope>(
                 senders: Mutex::new(senders.into_iter().map(Some).collect()),
             });
             for _ in 0..plan.jobs.clamp(1, plan.tasks.len().max(1)) {
-                let (work, setup) = (work.clone(), setup.clone());
+                let work = work.clone();
+                let setup: &'scope BenchSetup = setup;
                 scope.spawn(move || {
                     while let Some((task, sender)) = work.take(plan).filter(|_| stop.may_begin()) {
-                        run_here(&setup, task, stop, &mut sending(&sender));
+                        run_here(setup, task, stop, &mut sending(&sender));
                     }
                 });
             }
@@ -299,13 +311,13 @@ impl Work {
 
 /// Procedures one after the other: each on an embedded unit made for it, or all on the one on a port.
 pub struct Worker<'a> {
-    connected: Connected,
+    connected: &'a mut Connected,
     stop: &'a Stop,
 }
 
 impl<'a> Worker<'a> {
     /// On a unit that has been reached.
-    pub fn new(connected: Connected, stop: &'a Stop) -> Self {
+    pub fn new(connected: &'a mut Connected, stop: &'a Stop) -> Self {
         Self { connected, stop }
     }
 
@@ -316,7 +328,7 @@ impl<'a> Worker<'a> {
         sink: &mut dyn FnMut(SessionEvent),
         go_on: &dyn Fn() -> bool,
     ) {
-        match &mut self.connected {
+        match &mut *self.connected {
             Connected::Sim(setup) => run_on_fresh(setup, task, self.stop, sink, go_on),
             Connected::Port(session, _, found) => {
                 let began = session.now();
@@ -500,6 +512,7 @@ mod tests {
             scatter: None,
             serial: None,
             realtime: false,
+            attendant: None,
         };
         (directory, setup)
     }

@@ -8,6 +8,7 @@
 //! record does not depend on how many work side by side.
 
 pub(crate) mod adaptive;
+mod attendant;
 pub(crate) mod benches;
 mod collector;
 mod fault_watch;
@@ -24,8 +25,9 @@ use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
-pub(crate) use benches::text;
+pub use attendant::Attendant;
 pub use benches::{BenchSetup, Connected, run_here};
+pub(crate) use benches::{READY_WITHIN, settled, text};
 pub use collector::{Listener, Outcome, steps_of};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
@@ -81,25 +83,36 @@ pub fn run(
     stop: &Stop,
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
-    let began = std::time::Instant::now();
-    let started_at_us = clock::now_us();
-    let connected = setup.connect(stop);
-    let serial = connected
-        .as_ref()
-        .map_or_else(|_| setup.expected_serial(), Connected::serial);
-    let record = run_record(plan, &setup, serial, started_at_us);
-    let run_store = RunStore::begin(store, record)?;
-    let id = run_store.id;
-    let connected = match connected {
-        Ok(connected) => connected,
+    let began = Began::now();
+    match setup.connect(stop) {
+        Ok(mut connected) => run_on(&mut connected, &began, plan, &setup, store, stop, listener),
         Err(failure) => {
             // A run that never started is kept, too.
-            let end = run_end(Verdict::Error, 0, began);
-            run_store.finish(end)?;
-            return Err(failure);
+            let record = run_record(plan, &setup, setup.expected_serial(), began.at_us);
+            RunStore::begin(store, record)?.finish(began.end(Verdict::Error, 0))?;
+            Err(failure)
         }
-    };
-    let made = BenchMade::of(&setup, connected.serial());
+    }
+}
+
+/// Runs the plan on a unit that has been reached and stays so.
+///
+/// # Errors
+/// The database fails; what was recorded stays.
+pub fn run_on(
+    connected: &mut Connected,
+    began: &Began,
+    plan: &RunPlan,
+    setup: &BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+) -> Result<(Store, Outcome), Failure> {
+    connected.heed(stop);
+    let record = run_record(plan, setup, connected.serial(), began.at_us);
+    let run_store = RunStore::begin(store, record)?;
+    let id = run_store.id;
+    let made = BenchMade::of(setup, connected.serial());
     let mut collector = Collector::new(run_store, listener, made, plan.stop_on_fail);
     std::thread::scope(|scope| match &plan.adaptive {
         Some(adaptive) => {
@@ -112,11 +125,7 @@ pub fn run(
         }
     });
     let (run_store, mut outcome) = collector.finish(id);
-    let end = run_end(
-        outcome.stored_verdict(),
-        outcome.bench_time.as_us() as i64,
-        began,
-    );
+    let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
     let store = run_store.finish(end)?;
     if stop.presses() > 0 {
         outcome.exit = Exit::Aborted;
@@ -178,11 +187,27 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
     }
 }
 
-fn run_end(verdict: Verdict, bench_time_us: i64, began: std::time::Instant) -> RunEnd {
-    RunEnd {
-        verdict,
-        finished_at_us: clock::now_us(),
-        bench_time_us,
-        wall_time_us: i64::try_from(began.elapsed().as_micros()).unwrap_or(i64::MAX),
+/// When a run began.
+pub struct Began {
+    at_us: i64,
+    at: std::time::Instant,
+}
+
+impl Began {
+    /// Now.
+    pub fn now() -> Self {
+        Self {
+            at_us: clock::now_us(),
+            at: std::time::Instant::now(),
+        }
+    }
+
+    fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
+        RunEnd {
+            verdict,
+            finished_at_us: clock::now_us(),
+            bench_time_us,
+            wall_time_us: i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX),
+        }
     }
 }

@@ -13,6 +13,7 @@ use fault_db::TraceData;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
+use super::Attendant;
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::{Cut, Recorder};
 use crate::link::Pace;
@@ -56,6 +57,7 @@ pub struct Session<L: UnitLink> {
     sample: Sample,
     link_error: Option<String>,
     fresh_unit: bool,
+    attendant: Option<Arc<dyn Attendant>>,
 }
 
 /// A window of time on a bench.
@@ -91,7 +93,24 @@ impl<L: UnitLink> Session<L> {
             sample: Sample::default(),
             link_error: None,
             fresh_unit,
+            attendant: None,
         }
+    }
+
+    /// From now on somebody looks on.
+    pub fn attended_by(mut self, attendant: Option<Arc<dyn Attendant>>) -> Self {
+        self.attendant = attendant;
+        self
+    }
+
+    /// From now on this stop is heeded.
+    pub fn heed(&mut self, stop: &Stop) {
+        self.stop = stop.clone();
+    }
+
+    /// From now on scans are paced like this.
+    pub fn set_pace(&mut self, pace: Pace) {
+        self.pace = pace;
     }
 
     /// The bench.
@@ -157,9 +176,13 @@ impl<L: UnitLink> Session<L> {
         }
         self.sample.clone_from(self.bench.rig().sample());
         let now = self.bench.now();
-        if now.as_us().is_multiple_of(CYCLE.as_us())
-            && let Some(done) = self.recorder.record(now, &self.sample)
-        {
+        if !now.as_us().is_multiple_of(CYCLE.as_us()) {
+            return;
+        }
+        if let Some(attendant) = &self.attendant {
+            attendant.see(now, self.bench.rig());
+        }
+        if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);
         }
     }
@@ -228,6 +251,9 @@ impl<L: UnitLink> Session<L> {
             if let Some(error) = link_error.as_ref().filter(|_| !link_lost) {
                 link_lost = true;
                 sink(SessionEvent::LinkLost(error.clone()));
+            }
+            if let Some(attendant) = &self.attendant {
+                attendant.direct(&mut runner);
             }
             let mut rig = Taping::new(self.bench.rig_mut(), &mut taped.tape);
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);

@@ -6,6 +6,7 @@
 
 mod closing;
 mod interrupt;
+mod pause;
 mod schedule;
 mod steps;
 mod unsolicited;
@@ -17,6 +18,7 @@ use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
 
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
+use pause::Pause;
 pub use schedule::{PromptPolicy, RunOptions};
 use schedule::{Turn, schedule};
 
@@ -70,6 +72,7 @@ pub struct Runner {
     answer: Option<bool>,
     link_lost: bool,
     leaving: bool,
+    pause: Pause,
     verdict: Verdict,
     messages: Vec<String>,
     out: Vec<RunEvent>,
@@ -91,6 +94,7 @@ impl Runner {
             answer: None,
             link_lost: false,
             leaving: false,
+            pause: Pause::default(),
             verdict: Verdict::Skipped,
             messages: Vec::new(),
             out: Vec::new(),

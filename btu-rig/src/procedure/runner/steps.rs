@@ -34,7 +34,11 @@ impl Runner {
                 return;
             };
             let step = &procedure.steps[turn.index];
-            if live.is_none() && !self.start_step(step, turn, now, sample) {
+            let idle = live.is_none();
+            if idle && self.holds_back(|| turn.name(step), now) {
+                return;
+            }
+            if idle && !self.start_step(step, turn, now, sample) {
                 continue;
             }
             let Phase::Steps {

@@ -1,0 +1,54 @@
+//! Pause and single step: between steps the bench keeps what it does, and the next step waits.
+
+use protocol::Instant;
+
+use super::Runner;
+use crate::procedure::report::RunEvent;
+
+/// Whether a step may begin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pause {
+    on: bool,
+    /// Steps that may begin all the same.
+    single: u32,
+    /// It has been said that the next step waits.
+    said: bool,
+}
+
+impl Runner {
+    /// No further step begins until [`resume`](Self::resume); the present one goes on to its end.
+    /// Stop, clean-up and safe outputs do not wait.
+    pub fn pause(&mut self) {
+        self.pause.on = true;
+    }
+
+    /// Steps begin again.
+    pub fn resume(&mut self) {
+        self.pause = Pause::default();
+    }
+
+    /// One more step may begin while paused.
+    pub fn single_step(&mut self) {
+        self.pause.single = self.pause.single.saturating_add(1);
+    }
+
+    /// Whether the next step, called `name`, must wait; says so once.
+    pub(super) fn holds_back(&mut self, name: impl FnOnce() -> String, now: Instant) -> bool {
+        if !self.pause.on {
+            return false;
+        }
+        if self.pause.single > 0 {
+            self.pause.single -= 1;
+            self.pause.said = false;
+            return false;
+        }
+        if !self.pause.said {
+            self.pause.said = true;
+            self.out.push(RunEvent::Paused {
+                next: name(),
+                at: now,
+            });
+        }
+        true
+    }
+}

@@ -1,0 +1,216 @@
+//! What a bench shows: its latest cycle, the rows before it, and what its operator wishes of a run.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time;
+
+use btu_rig::procedure::Runner;
+use btu_rig::rig::Rig;
+use protocol::link::Counters;
+use protocol::message::Identity;
+use protocol::signal::{Sample, Signal};
+use protocol::{CYCLE, Duration, Instant};
+
+use super::Wake;
+use crate::run::Attendant;
+
+/// Rows are kept for this long.
+pub const HISTORY: Duration = Duration::from_ms(120_000);
+const ROWS: usize = (HISTORY.as_us() / CYCLE.as_us()) as usize;
+/// Whoever looks on is woken at most this often …
+const OFTEN: time::Duration = time::Duration::from_millis(33);
+/// … and at least this often while nothing changes but the time.
+const SELDOM: time::Duration = time::Duration::from_millis(500);
+
+/// What the bench's thread is at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// No unit.
+    #[default]
+    Offline,
+    /// A unit is being reached.
+    Connecting,
+    /// A unit is connected and nothing is run.
+    Idle,
+    /// A run has the bench.
+    Running,
+    /// Outputs are being made safe, then the unit is let go.
+    MakingSafe,
+}
+
+/// Every signal at the end of one cycle.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// When, on the bench.
+    pub at: Instant,
+    values: [f64; Signal::COUNT],
+}
+
+impl Row {
+    /// A signal's value; NaN when it was not known.
+    pub fn value(&self, signal: Signal) -> f64 {
+        self.values[signal.index()]
+    }
+}
+
+/// A bench as it is now.
+#[derive(Debug, Default)]
+pub struct Live {
+    /// What the thread is at.
+    pub phase: Phase,
+    /// Time on the bench.
+    pub now: Instant,
+    /// Every signal.
+    pub sample: Sample,
+    /// Who the unit is.
+    pub identity: Option<Identity>,
+    /// Frames taken and refused.
+    pub counters: Counters,
+    /// Times the unit was started again.
+    pub restarts: u32,
+    /// The latest rows, oldest first, one per 50 ms; they begin anew with each bench.
+    pub rows: VecDeque<Row>,
+}
+
+/// What the operator wishes of a run.
+#[derive(Debug, Default)]
+struct Direction {
+    paused: bool,
+    single_steps: u32,
+    answer: Option<bool>,
+}
+
+/// Shared between the bench's thread and who looks on.
+pub struct Board {
+    live: Mutex<Live>,
+    direction: Mutex<Direction>,
+    pending: Mutex<Pending>,
+    wake: Wake,
+}
+
+/// The bench's own side: rows that could not be shown yet.
+struct Pending {
+    rows: Vec<Row>,
+    woken: time::Instant,
+    shown: [u64; Signal::COUNT],
+}
+
+impl Board {
+    /// An empty board; `wake` is called when it changes.
+    pub fn new(wake: Wake) -> Self {
+        Self {
+            live: Mutex::default(),
+            direction: Mutex::default(),
+            pending: Mutex::new(Pending {
+                rows: Vec::new(),
+                woken: time::Instant::now(),
+                shown: [0; Signal::COUNT],
+            }),
+            wake,
+        }
+    }
+
+    /// The bench as it is now; hold it shortly.
+    pub fn read(&self) -> MutexGuard<'_, Live> {
+        held(&self.live)
+    }
+
+    /// No further step begins, or steps begin again.
+    pub fn pause(&self, paused: bool) {
+        let mut direction = held(&self.direction);
+        direction.paused = paused;
+        direction.single_steps = 0;
+    }
+
+    /// Whether the run is to pause.
+    pub fn paused(&self) -> bool {
+        held(&self.direction).paused
+    }
+
+    /// One more step of a paused run.
+    pub fn single_step(&self) {
+        held(&self.direction).single_steps += 1;
+    }
+
+    /// The answer to the present prompt.
+    pub fn answer(&self, yes: bool) {
+        held(&self.direction).answer = Some(yes);
+    }
+
+    /// Nothing is wished of the next run.
+    pub(super) fn clear_direction(&self) {
+        *held(&self.direction) = Direction::default();
+    }
+
+    /// The bench's thread is at something else.
+    pub(super) fn enter(&self, phase: Phase) {
+        {
+            let mut live = held(&self.live);
+            live.phase = phase;
+            if phase == Phase::Offline {
+                *live = Live::default();
+            }
+        }
+        (self.wake)();
+    }
+
+    pub(super) fn wake(&self) {
+        (self.wake)();
+    }
+}
+
+impl Attendant for Board {
+    fn see(&self, now: Instant, rig: &Rig) {
+        let mut pending = held(&self.pending);
+        pending.rows.push(Row {
+            at: now,
+            values: *rig.sample().values(),
+        });
+        // Somebody reads at this moment: the next cycle will be shown with this one.
+        let Ok(mut live) = self.live.try_lock() else {
+            return;
+        };
+        for row in pending.rows.drain(..) {
+            if live.rows.back().is_some_and(|last| row.at < last.at) {
+                live.rows.clear();
+            }
+            if live.rows.len() == ROWS {
+                live.rows.pop_front();
+            }
+            live.rows.push_back(row);
+        }
+        live.now = now;
+        live.sample.clone_from(rig.sample());
+        live.identity = rig.identity().copied();
+        live.counters = *rig.counters();
+        live.restarts = rig.unit_restarts();
+        drop(live);
+        let shown = rig.sample().values().map(f64::to_bits);
+        let since = pending.woken.elapsed();
+        if since >= SELDOM || (since >= OFTEN && shown != pending.shown) {
+            pending.woken = time::Instant::now();
+            pending.shown = shown;
+            (self.wake)();
+        }
+    }
+
+    fn direct(&self, runner: &mut Runner) {
+        let Ok(mut direction) = self.direction.try_lock() else {
+            return;
+        };
+        if direction.paused {
+            runner.pause();
+            (0..std::mem::take(&mut direction.single_steps)).for_each(|_| runner.single_step());
+        } else {
+            runner.resume();
+        }
+        if let Some(answer) = direction.answer.take() {
+            runner.answer(answer);
+        }
+    }
+}
+
+/// What a lock holds, also after whoever held it panicked: everything in here is whole at any time.
+fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
+}

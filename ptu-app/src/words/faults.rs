@@ -1,0 +1,10 @@
+//! Fault history.
+
+use super::wordings;
+
+wordings! {
+    /// Fault history.
+    Faults {
+        title: "Faults", "고장 이력";
+    }
+}

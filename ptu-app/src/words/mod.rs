@@ -1,0 +1,223 @@
+//! What people read, in their language: the one catalogue of the window and of printed reports.
+//!
+//! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
+//! the field writes them; what scripts say is theirs and stays in their language.
+
+mod bench;
+mod common;
+mod diagnosis;
+mod faults;
+mod fill;
+mod frame;
+mod procedures;
+mod report;
+mod traces;
+
+pub use bench::Bench;
+pub use common::Common;
+pub use diagnosis::Diagnosis;
+pub use faults::Faults;
+pub use fill::fill;
+pub use frame::Frame;
+pub use procedures::Procedures;
+pub use report::Report;
+pub use traces::Traces;
+
+use serde::{Deserialize, Serialize};
+
+/// Declares one part of the catalogue: `key: "English", "한국어";` per wording. `{name}` in a wording
+/// is filled in by [`fill`].
+macro_rules! wordings {
+    ($(#[$doc:meta])* $part:ident { $($key:ident: $english:literal, $korean:literal;)* }) => {
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub struct $part { $(#[doc = $english] pub $key: &'static str,)* }
+
+        impl $part {
+            pub(super) const ENGLISH: Self = Self { $($key: $english,)* };
+            pub(super) const KOREAN: Self = Self { $($key: $korean,)* };
+
+            #[cfg(test)]
+            pub(super) fn all() -> Vec<(&'static str, &'static str, &'static str)> {
+                vec![$((stringify!($key), $english, $korean),)*]
+            }
+        }
+    };
+}
+use wordings;
+
+/// A language people read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// Korean.
+    Korean,
+}
+
+impl Language {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::English, Self::Korean];
+
+    /// Its name in itself.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::English => "English",
+            Self::Korean => "한국어",
+        }
+    }
+
+    /// Its code as web pages have it (BCP 47).
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::Korean => "ko",
+        }
+    }
+
+    /// Its wordings.
+    pub fn words(self) -> &'static Words {
+        match self {
+            Self::English => &ENGLISH,
+            Self::Korean => &KOREAN,
+        }
+    }
+}
+
+impl std::str::FromStr for Language {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL
+            .into_iter()
+            .find(|language| language.code() == text);
+        known.ok_or_else(|| "a language is en or ko".into())
+    }
+}
+
+/// All wordings in one language.
+#[derive(Debug)]
+pub struct Words {
+    /// Whose.
+    pub language: Language,
+    /// Verdicts, states, units and what every page says.
+    pub common: Common,
+    /// Connection bar, navigation, messages.
+    pub frame: Frame,
+    /// Live view and stimuli.
+    pub bench: Bench,
+    /// Choosing and running procedures.
+    pub procedures: Procedures,
+    /// Recorded traces.
+    pub traces: Traces,
+    /// Fault history.
+    pub faults: Faults,
+    /// Parts to replace.
+    pub diagnosis: Diagnosis,
+    /// Test sheet.
+    pub report: Report,
+}
+
+static ENGLISH: Words = Words {
+    language: Language::English,
+    common: Common::ENGLISH,
+    frame: Frame::ENGLISH,
+    bench: Bench::ENGLISH,
+    procedures: Procedures::ENGLISH,
+    traces: Traces::ENGLISH,
+    faults: Faults::ENGLISH,
+    diagnosis: Diagnosis::ENGLISH,
+    report: Report::ENGLISH,
+};
+
+static KOREAN: Words = Words {
+    language: Language::Korean,
+    common: Common::KOREAN,
+    frame: Frame::KOREAN,
+    bench: Bench::KOREAN,
+    procedures: Procedures::KOREAN,
+    traces: Traces::KOREAN,
+    faults: Faults::KOREAN,
+    diagnosis: Diagnosis::KOREAN,
+    report: Report::KOREAN,
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<(&'static str, &'static str, &'static str)> {
+        [
+            Common::all(),
+            Frame::all(),
+            Bench::all(),
+            Procedures::all(),
+            Traces::all(),
+            Faults::all(),
+            Diagnosis::all(),
+            Report::all(),
+        ]
+        .concat()
+    }
+
+    #[test]
+    fn no_wording_is_missing_in_either_language() {
+        for (key, english, korean) in all() {
+            assert!(!english.trim().is_empty(), "{key} has no English");
+            assert!(!korean.trim().is_empty(), "{key} has no Korean");
+        }
+    }
+
+    #[test]
+    fn both_languages_have_the_same_places_to_fill_in() {
+        for (key, english, korean) in all() {
+            assert_eq!(places(english), places(korean), "{key}");
+        }
+    }
+
+    /// A word in capitals (EB, FSB, TCMS) is the field's and has no translation.
+    #[test]
+    fn technical_words_stay_as_the_field_writes_them() {
+        let technical = |text: &'static str| {
+            let words = text.split(|c: char| !c.is_ascii_alphanumeric());
+            words.filter(|word| {
+                word.len() > 1
+                    && word
+                        .chars()
+                        .all(|c| c.is_ascii_uppercase() || c.is_ascii_digit())
+                    && word.chars().any(|c| c.is_ascii_uppercase())
+            })
+        };
+        for (key, english, korean) in all() {
+            for word in technical(english) {
+                assert!(
+                    korean.contains(word),
+                    "{key}: \"{word}\" is not in \"{korean}\""
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn korean_is_not_english_left_over() {
+        let left: Vec<_> = all()
+            .into_iter()
+            .filter(|(_, english, korean)| english == korean)
+            .filter(|(_, english, _)| english.split(' ').count() > 2)
+            .map(|(key, ..)| key)
+            .collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
+
+    fn places(text: &str) -> Vec<&str> {
+        let mut places: Vec<_> = text
+            .split('{')
+            .skip(1)
+            .filter_map(|rest| rest.split_once('}').map(|(name, _)| name))
+            .collect();
+        places.sort_unstable();
+        places
+    }
+}
