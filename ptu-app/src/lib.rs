@@ -22,6 +22,7 @@ pub mod diagnosis;
 pub mod drive;
 pub mod failure;
 pub mod field;
+pub mod fonts;
 pub mod link;
 mod owner;
 mod pool;
