@@ -3,28 +3,22 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use btu_rig::bench_scatter::BenchScatter;
-use btu_rig::procedure::loader::{Loaded, load};
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
-use btu_rig::rig::check_places;
 use clap::Args;
 use fault_db::Store;
-use protocol::injection::FaultCatalogue;
-use protocol::message::Identity;
 use serde_json::json;
 
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
-use crate::data::{ScriptsDirectory, sha256};
+use crate::data::ScriptsDirectory;
 use crate::diagnosis::{Bench, adaptive, diagnose_run};
-use crate::drive::train::train;
-use crate::drive::{Setting, unit_config};
-use crate::failure::{Exit, Failure, did_you_mean};
+use crate::drive::Setting;
+use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
 use crate::report::Target;
 use crate::report::diagnosis::diagnosis_text;
-use crate::run::{self, BenchSetup, Outcome, RunPlan, Task, select};
+use crate::run::{self, BenchSetup, Choice, Outcome, RunPlan, Suite, Task, select};
 use crate::stop::Stop;
 
 /// Run check procedures; by default all under scripts/ but those on request only
@@ -116,19 +110,14 @@ impl RunArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
         let setup = self.setup(&directory)?;
-        let texts = select::scripts(&directory, &self.procedures)?;
-        let scripts_sha256 = sha256(&texts.values().map(String::as_str).collect::<String>());
-        let Loaded {
+        let Suite {
             procedures,
             errors,
             need_cars,
             printed,
-        } = load(
-            &texts,
-            &setup.config.content,
-            &setup.line.content,
-            &setup.train,
-        );
+            sha256: scripts_sha256,
+            ..
+        } = Suite::load(&directory, &self.procedures, &setup)?;
         for line in &printed {
             eprintln!("{line}");
         }
@@ -153,7 +142,6 @@ impl RunArguments {
             }
             eprintln!("left out: {why}");
         }
-        check_suspects(&procedures, &directory.faults()?)?;
         if self.check {
             let steps: usize = procedures
                 .iter()
@@ -181,58 +169,24 @@ impl RunArguments {
     }
 
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
-        let faults = directory.chosen_faults(&self.inject)?;
-        if self.unit != Endpoint::Sim {
-            let misplaced = [
-                (
-                    faults.iter().any(|fault| !fault.place.on_train()),
-                    "--inject puts faults of a unit into the embedded one only; inject into a served one with `ato-under-test --inject`",
-                ),
-                (
-                    self.jobs > 1,
-                    "--jobs works on embedded units only; one port is one unit",
-                ),
-            ];
-            if let Some((_, message)) = misplaced.iter().find(|(wrong, _)| *wrong) {
-                return Err(Failure::usage(*message));
-            }
+        if self.unit != Endpoint::Sim && self.jobs > 1 {
+            return Err(Failure::usage(
+                "--jobs works on embedded units only; one port is one unit",
+            ));
         }
-        if let Some(serial) = &self.serial_no {
-            let longest = size_of_val(&Identity::default().serial);
-            if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {
-                return Err(Failure::usage(format!(
-                    "--serial-no must be 1 to {longest} ASCII characters"
-                )));
-            }
-        }
-        let config = unit_config(directory, &self.unit_config, &self.set)?;
-        let line = directory.line(&self.line)?;
-        let train = train(directory, &self.train)?;
-        check_places(&faults, &train).map_err(|wrong| Failure::usage(wrong.to_string()))?;
-        Ok(BenchSetup {
-            endpoint: self.unit.clone(),
-            config,
-            line,
-            train,
-            faults,
-            seed: self.seed,
-            scatter: self.scattered(directory)?,
+        Choice {
+            unit: self.unit.clone(),
+            line: self.line.clone(),
+            unit_config: self.unit_config.clone(),
+            train: self.train.clone(),
+            settings: self.set.clone(),
             serial: self.serial_no.clone(),
+            faults: self.inject.clone(),
+            seed: self.seed,
+            scatter: self.scatter.clone(),
             realtime: self.realtime,
-            attendant: None,
-        })
-    }
-
-    /// How units, trains and benches differ, if they shall.
-    fn scattered(
-        &self,
-        directory: &ScriptsDirectory,
-    ) -> Result<Option<Arc<BenchScatter>>, Failure> {
-        let Some(given) = &self.scatter else {
-            return Ok(None);
-        };
-        let scatter = directory.bench_scatter(given.as_deref())?;
-        Ok(Some(Arc::new(scatter)))
+        }
+        .setup(directory)
     }
 
     /// All when some are named, else those that are not run on request only.
@@ -351,38 +305,6 @@ impl RunArguments {
             print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
         }
         Ok(())
-    }
-}
-
-/// Parts that scripts suspect must be parts that can be replaced.
-fn check_suspects(
-    procedures: &[Arc<Procedure>],
-    catalogue: &FaultCatalogue,
-) -> Result<(), Failure> {
-    let known = || catalogue.lrus.iter().map(|lru| lru.id.as_str());
-    let mut errors = Vec::new();
-    for procedure in procedures {
-        let of_steps = procedure
-            .steps
-            .iter()
-            .map(|s| (s.line, s.suspect.as_deref()));
-        let of_procedure = (1, Some(procedure.suspect.as_str()));
-        for (line, suspect) in std::iter::once(of_procedure).chain(of_steps) {
-            // "-" is a procedure that suspects none.
-            let named = suspect.filter(|part| !matches!(*part, "" | "-"));
-            if let Some(part) = named.filter(|p| !known().any(|k| k == *p)) {
-                errors.push(format!(
-                    "{}:{line}:1: no part \"{part}\" to suspect{}; `ptu catalog lrus` lists them",
-                    procedure.path,
-                    did_you_mean(part, known())
-                ));
-            }
-        }
-    }
-    if errors.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::usage(errors.join("\n")))
     }
 }
 

@@ -10,6 +10,7 @@
 pub(crate) mod adaptive;
 mod attendant;
 pub(crate) mod benches;
+mod choice;
 mod collector;
 mod fault_watch;
 mod made;
@@ -17,6 +18,7 @@ mod recorder;
 pub mod select;
 mod session;
 mod store_thread;
+mod suite;
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
@@ -28,6 +30,7 @@ pub use adaptive::Adaptive;
 pub use attendant::Attendant;
 pub use benches::{BenchSetup, Connected, run_here};
 pub(crate) use benches::{READY_WITHIN, settled, text};
+pub use choice::Choice;
 pub use collector::{Listener, Outcome, steps_of};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
@@ -35,6 +38,7 @@ pub use made::{BenchMade, Made, Stimuli};
 pub(crate) use recorder::BEFORE;
 pub(crate) use session::{Session, Window};
 pub use session::{SessionEvent, Taped};
+pub use suite::Suite;
 
 use crate::clock;
 use crate::failure::{Exit, Failure};
