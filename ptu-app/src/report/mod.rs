@@ -5,6 +5,7 @@ pub mod diagnosis;
 pub mod drive;
 mod json;
 mod junit;
+mod plot;
 
 use std::path::PathBuf;
 

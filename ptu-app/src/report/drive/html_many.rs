@@ -5,9 +5,9 @@ use maud::{Markup, html};
 
 use super::figures::{FIGURES, conditions, off, stop, title};
 use super::html::facts;
-use super::plot::{Place, Plot, Series, Style};
 use super::text::PERCENTILES;
 use crate::drive::monte_carlo::{MonteCarlo, percentile};
+use crate::report::plot::{Place, Plot, Series, Style};
 
 /// Bars of the histogram.
 const BARS: usize = 60;

@@ -7,7 +7,6 @@ mod html;
 mod html_many;
 mod json;
 pub mod manual;
-mod plot;
 mod plots;
 mod text;
 

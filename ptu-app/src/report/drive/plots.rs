@@ -3,8 +3,8 @@
 use btu_rig::drive::Row;
 
 use super::figures::off;
-use super::plot::{Place, Plot, Series, Style};
 use crate::drive::Driven;
+use crate::report::plot::{Place, Plot, Series, Style};
 
 /// Way before the stop point that is shown larger, m.
 const LAST_M: f64 = 12.0;
@@ -37,7 +37,7 @@ pub fn plots(runs: &[Driven]) -> Vec<Plot> {
                 y_reach,
                 series,
                 places: places(runs, along == "time"),
-                shaded: Vec::new(),
+                ..Plot::default()
             });
         };
         add("Speed", "km/h", speed(runs, x), Some((0.0, 1.0)));

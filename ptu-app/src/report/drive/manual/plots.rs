@@ -2,8 +2,8 @@
 
 use btu_rig::drive::manual::Row;
 
-use super::super::plot::{Place, Plot, Series, Style};
 use crate::drive::manual::ManualRun;
+use crate::report::plot::{Place, Plot, Series, Style};
 
 /// Colours of what is plotted, the same in all plots.
 const TOTAL: usize = 0;
@@ -30,7 +30,7 @@ pub fn plots(run: &ManualRun) -> Vec<Plot> {
         y_reach: Some(y_reach),
         series,
         places: places(run),
-        shaded: Vec::new(),
+        ..Plot::default()
     };
     let mut speed = plot(
         "Speed",

@@ -1,30 +1,30 @@
 //! Curves: what can be seen of their points, as few as show the same.
 
-use std::fmt::Write;
-
-use maud::{Markup, html};
-
+use super::mark::{Mark, Role};
 use super::scale::Scale;
 use super::{Series, Style};
 
 /// Points this near the line between their neighbours show nothing, in units of the drawing.
 const UNSEEN: f64 = 0.25;
+/// Share of the room between two points that a bar takes.
+const BAR: f64 = 0.96;
 
 /// The curve.
-pub fn drawn(series: &Series, x: &Scale, y: &Scale) -> Markup {
+pub fn drawn(series: &Series, x: &Scale, y: &Scale) -> Vec<Mark> {
     let known = |point: &&(f64, f64)| point.1.is_finite() && x.holds(point.0);
     let place = |point: &(f64, f64)| (x.at(point.0), y.at(y.clamp(point.1)));
+    let role = role(series);
+    let places = || series.points.iter().filter(known).map(place);
     match series.style {
         Style::Line | Style::Dashed => {
             let pieces = series.points.split(|point| !known(&point));
-            let lines = pieces.map(|piece| simple(&piece.iter().map(place).collect::<Vec<_>>()));
-            html! { path class=(class(series)) d=(lines.map(|line| path(&line)).collect::<String>()) {} }
+            let pieces = pieces.map(|piece| simple(&piece.iter().map(place).collect::<Vec<_>>()));
+            vec![Mark::Line {
+                role,
+                pieces: pieces.filter(|piece| !piece.is_empty()).collect(),
+            }]
         }
-        Style::Dots => html! {
-            @for (px, py) in series.points.iter().filter(known).map(place) {
-                circle class=(class(series)) cx=(super::num(px)) cy=(super::num(py)) r="2" {}
-            }
-        },
+        Style::Dots => places().map(|at| Mark::Dot { role, at }).collect(),
         Style::Bars => {
             let apart = series
                 .points
@@ -34,34 +34,25 @@ pub fn drawn(series: &Series, x: &Scale, y: &Scale) -> Markup {
                 .unwrap_or(1.0);
             let width = (x.at(apart) - x.at(0.0)).abs();
             let zero = y.at(y.clamp(0.0));
-            html! {
-                @for (px, py) in series.points.iter().filter(known).map(place) {
-                    rect class=(class(series)) x=(super::num(px - width / 2.0)) y=(super::num(py.min(zero)))
-                        width=(super::num(width * 0.96)) height=(super::num((zero - py).abs())) {}
-                }
-            }
+            let bar = |(px, py): (f64, f64)| Mark::Area {
+                role,
+                at: (px - width / 2.0, py.min(zero)),
+                size: (width * BAR, (zero - py).abs()),
+            };
+            places().map(bar).collect()
         }
     }
 }
 
-/// CSS classes of a curve.
-pub fn class(series: &Series) -> String {
-    let style = match series.style {
-        Style::Line => "curve",
-        Style::Dashed => "curve dashed",
-        Style::Dots => "dots",
-        Style::Bars => "bars",
-    };
-    format!("{style} c{}", series.colour % 6)
-}
-
-fn path(points: &[(f64, f64)]) -> String {
-    let mut text = String::new();
-    for (i, (x, y)) in points.iter().enumerate() {
-        // Writing to a text cannot fail.
-        let _ = write!(text, "{}{x:.1} {y:.1}", if i == 0 { "M" } else { "L" });
+/// What a curve's marks are.
+pub fn role(series: &Series) -> Role {
+    let colour = series.colour % 6;
+    match series.style {
+        Style::Line => Role::Curve(colour),
+        Style::Dashed => Role::Dashed(colour),
+        Style::Dots => Role::Dots(colour),
+        Style::Bars => Role::Bars(colour),
     }
-    text
 }
 
 /// The points without those that lie on the line between kept neighbours.

@@ -1,0 +1,98 @@
+//! What a plot is drawn with, whatever it is drawn on.
+
+/// What a mark is there for; how it looks follows from that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Name of the plot.
+    Title,
+    /// Name of an axis.
+    Label,
+    /// Value at an axis.
+    Tick,
+    /// Name of a curve.
+    Legend,
+    /// A named place.
+    Place,
+    /// What a curve says at a point.
+    Note,
+    /// Line of the grid.
+    Grid,
+    /// Line of the grid at 0.
+    Zero,
+    /// Edge of the plot.
+    Frame,
+    /// A shaded stretch.
+    Shaded,
+    /// A curve of this colour.
+    Curve(usize),
+    /// A dashed curve of this colour.
+    Dashed(usize),
+    /// Dots of this colour.
+    Dots(usize),
+    /// Bars of this colour.
+    Bars(usize),
+}
+
+/// Which point of a text its place is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Its beginning.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Its end.
+    End,
+}
+
+/// A mark, in units of the drawing from its upper left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A text on a line.
+    Text {
+        /// What for.
+        role: Role,
+        /// Where, on the base line.
+        at: (f64, f64),
+        /// Which of its points is there.
+        anchor: Anchor,
+        /// Runs upwards.
+        turned: bool,
+        /// The text.
+        text: String,
+    },
+    /// A line through points.
+    Line {
+        /// What for.
+        role: Role,
+        /// The points of each of its pieces.
+        pieces: Vec<Vec<(f64, f64)>>,
+    },
+    /// A rectangle.
+    Area {
+        /// What for.
+        role: Role,
+        /// Upper left corner.
+        at: (f64, f64),
+        /// Width and height.
+        size: (f64, f64),
+    },
+    /// A dot.
+    Dot {
+        /// What for.
+        role: Role,
+        /// Its middle.
+        at: (f64, f64),
+    },
+}
+
+/// About the room a text takes at the size plots are written in: Hangul is twice as wide as Latin.
+pub fn room(text: &str) -> f64 {
+    text.chars()
+        .map(|letter| if letter >= '\u{1100}' { WIDE } else { NARROW })
+        .sum()
+}
+
+/// Room a Latin letter takes.
+const NARROW: f64 = 6.4;
+/// Room a Hangul syllable takes.
+const WIDE: f64 = 11.5;

@@ -1,0 +1,331 @@
+//! Line plots: axes with round ticks, light grid, legend, named places as vertical lines. A plot
+//! becomes marks, and those SVG or whatever else can draw them.
+
+mod curve;
+mod mark;
+mod scale;
+mod svg;
+
+use maud::Markup;
+
+pub use mark::{Anchor, Mark, Role};
+
+use mark::room;
+use scale::Scale;
+
+/// Size of the drawing in a page, in its own units.
+const WIDTH: f64 = 1000.0;
+const HEIGHT: f64 = 300.0;
+/// What is left around the plot: room for labels.
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 46.0;
+const BOTTOM: f64 = 42.0;
+/// Rows above the plot for names of places.
+const ROW: f64 = 12.0;
+/// Share of an axis left free beyond what is shown.
+const FREE: f64 = 0.04;
+/// Width of the thinnest stretch that can be seen.
+const THINNEST: f64 = 1.0;
+/// From the left edge of the drawing to the longest value at the vertical axis.
+const BESIDE_TICKS: f64 = 26.0;
+/// Line in the legend, and what is free around it.
+const SAMPLE: f64 = 20.0;
+const SAMPLE_ROOM: f64 = 34.0;
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// A line between points.
+    Line,
+    /// A thin dashed line.
+    Dashed,
+    /// Dots.
+    Dots,
+    /// Bars from 0, as wide as points are apart.
+    Bars,
+}
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// Colour, 0 to 5.
+    pub colour: usize,
+    /// How it is drawn.
+    pub style: Style,
+    /// Its points; those that are not numbers interrupt it.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A place on the horizontal axis.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Where.
+    pub x: f64,
+    /// Its name.
+    pub name: String,
+}
+
+/// What a curve says at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Note {
+    /// Where it begins.
+    pub at: (f64, f64),
+    /// It is written if it ends before here.
+    pub until: f64,
+    /// The text.
+    pub text: String,
+}
+
+/// A plot.
+#[derive(Clone, Debug, Default)]
+pub struct Plot {
+    /// What it shows.
+    pub title: String,
+    /// Horizontal axis with its unit.
+    pub x_label: String,
+    /// Vertical axis with its unit.
+    pub y_label: String,
+    /// The horizontal axis reaches from here to there; none = as far as the points.
+    pub x_range: Option<(f64, f64)>,
+    /// The vertical axis reaches at least so far.
+    pub y_reach: Option<(f64, f64)>,
+    /// Curves, the last on top.
+    pub series: Vec<Series>,
+    /// Places.
+    pub places: Vec<Place>,
+    /// Stretches of the horizontal axis that are shaded, each from its first end to its second.
+    pub shaded: Vec<(f64, f64)>,
+    /// Names at the vertical axis instead of values, each where it stands.
+    pub names: Vec<(f64, String)>,
+    /// What curves say.
+    pub notes: Vec<Note>,
+    /// Height, in units of the drawing; none = 300.
+    pub height: Option<f64>,
+}
+
+/// Where the plot is within its drawing.
+struct Edges {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Plot {
+    /// Shades where cars slip or slide, and says so.
+    pub fn shade_slides<R>(
+        &mut self,
+        rows: &[R],
+        sliding: impl Fn(&R) -> bool,
+        x: impl Fn(&R) -> f64,
+    ) {
+        self.shaded = rows
+            .chunk_by(|a, b| sliding(a) == sliding(b))
+            .filter(|stretch| sliding(&stretch[0]))
+            .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
+            .collect();
+        if !self.shaded.is_empty() {
+            self.title += " (shaded: a car slips or slides)";
+        }
+    }
+
+    /// The drawing for a page.
+    pub fn svg(&self) -> Markup {
+        svg::svg(&self.title, self.size(WIDTH), &self.marks(WIDTH))
+    }
+
+    /// Width and height of the drawing when it is so wide.
+    pub fn size(&self, width: f64) -> (f64, f64) {
+        (width, self.height.unwrap_or(HEIGHT))
+    }
+
+    /// All there is to draw, from back to front.
+    pub fn marks(&self, width: f64) -> Vec<Mark> {
+        let (width, height) = self.size(width);
+        let names = self.names.iter().map(|name| room(&name.1) + BESIDE_TICKS);
+        let edges = Edges {
+            left: names.fold(LEFT, f64::max),
+            right: width - RIGHT,
+            top: TOP,
+            bottom: height - BOTTOM,
+        };
+        let free = if self.x_range.is_some() { 0.0 } else { FREE };
+        let x = Scale::new(self.x_extent(), (edges.left, edges.right), free);
+        let y = Scale::new(self.y_extent(&x), (edges.bottom, edges.top), FREE);
+        let middle = |a: f64, b: f64| (a + b) / 2.0;
+        let (across, down) = (
+            middle(edges.left, edges.right),
+            middle(edges.top, edges.bottom),
+        );
+        let mut marks = vec![text(Role::Title, (edges.left, 13.0), &self.title)];
+        marks.extend(self.legend(&edges));
+        marks.extend(self.shades(&x, &edges));
+        marks.extend(self.grid(&x, &y, &edges));
+        marks.extend(self.named_places(&x, &edges, width));
+        for series in &self.series {
+            marks.extend(curve::drawn(series, &x, &y));
+        }
+        marks.extend(self.said(&x, &y));
+        let label = text(Role::Label, (across, height - 6.0), &self.x_label);
+        marks.push(anchored(label, Anchor::Middle));
+        marks.push(Mark::Text {
+            role: Role::Label,
+            at: (13.0, down),
+            anchor: Anchor::Middle,
+            turned: true,
+            text: self.y_label.clone(),
+        });
+        marks
+    }
+
+    fn x_extent(&self) -> (f64, f64) {
+        let points = self.series.iter().flat_map(|series| &series.points);
+        self.x_range
+            .unwrap_or_else(|| extent(points.map(|point| point.0)))
+    }
+
+    /// Of what is to be seen.
+    fn y_extent(&self, x: &Scale) -> (f64, f64) {
+        let points = self.series.iter().flat_map(|series| &series.points);
+        let seen = points.filter(|point| x.holds(point.0)).map(|point| point.1);
+        let reach = self.y_reach.map(|(low, high)| [low, high]);
+        extent(seen.chain(reach.into_iter().flatten()))
+    }
+
+    /// From the right edge, in the order of the curves; one entry a name.
+    fn legend(&self, edges: &Edges) -> Vec<Mark> {
+        let mut entries: Vec<&Series> = Vec::new();
+        for series in &self.series {
+            if !series.name.is_empty() && entries.iter().all(|entry| entry.name != series.name) {
+                entries.push(series);
+            }
+        }
+        let mut at = edges.right;
+        let mut marks = Vec::new();
+        for series in entries.into_iter().rev() {
+            at -= room(&series.name) + SAMPLE_ROOM;
+            marks.push(Mark::Line {
+                role: curve::role(series),
+                pieces: vec![vec![(at, 9.0), (at + SAMPLE, 9.0)]],
+            });
+            marks.push(text(Role::Legend, (at + SAMPLE + 5.0, 13.0), &series.name));
+        }
+        marks
+    }
+
+    fn shades(&self, x: &Scale, edges: &Edges) -> Vec<Mark> {
+        let seen = self
+            .shaded
+            .iter()
+            .filter(|(from, to)| x.holds(*from) && x.holds(*to));
+        seen.map(|(from, to)| Mark::Area {
+            role: Role::Shaded,
+            at: (x.at(*from), edges.top),
+            size: (
+                (x.at(*to) - x.at(*from)).max(THINNEST),
+                edges.bottom - edges.top,
+            ),
+        })
+        .collect()
+    }
+
+    /// Names stand in the first row above the plot in which there is room.
+    fn named_places(&self, x: &Scale, edges: &Edges, width: f64) -> Vec<Mark> {
+        let mut ends = [f64::NEG_INFINITY; 2];
+        let mut marks = Vec::new();
+        for place in self.places.iter().filter(|place| x.holds(place.x)) {
+            let at = x.at(place.x);
+            marks.push(line(Role::Place, (at, edges.top), (at, edges.bottom)));
+            let long = room(&place.name) + 4.0;
+            // Within the drawing, also where a long name belongs to its edge.
+            let begin = (at - long / 2.0).min(width - long).max(edges.left);
+            if let Some(row) = ends.iter().position(|end| begin > *end) {
+                ends[row] = begin + long;
+                let above = edges.top - 4.0 - row as f64 * ROW;
+                marks.push(text(Role::Place, (begin, above), &place.name));
+            }
+        }
+        marks
+    }
+
+    fn grid(&self, x: &Scale, y: &Scale, edges: &Edges) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        for (value, name) in x.ticks() {
+            let at = x.at(value);
+            marks.push(line(Role::Grid, (at, edges.top), (at, edges.bottom)));
+            let tick = text(Role::Tick, (at, edges.bottom + 15.0), &name);
+            marks.push(anchored(tick, Anchor::Middle));
+        }
+        let values = if self.names.is_empty() {
+            y.ticks()
+        } else {
+            self.names.clone()
+        };
+        for (value, name) in values {
+            let at = y.at(value);
+            if self.names.is_empty() {
+                let role = if value == 0.0 { Role::Zero } else { Role::Grid };
+                marks.push(line(role, (edges.left, at), (edges.right, at)));
+            }
+            let tick = text(Role::Tick, (edges.left - 6.0, at + 4.0), &name);
+            marks.push(anchored(tick, Anchor::End));
+        }
+        marks.push(Mark::Area {
+            role: Role::Frame,
+            at: (edges.left, edges.top),
+            size: (edges.right - edges.left, edges.bottom - edges.top),
+        });
+        marks
+    }
+
+    /// Notes for which there is room.
+    fn said(&self, x: &Scale, y: &Scale) -> Vec<Mark> {
+        let fits = |note: &&Note| {
+            x.holds(note.at.0)
+                && x.at(note.at.0) + room(&note.text) + 4.0 < x.at(x.clamp(note.until))
+        };
+        let written = self.notes.iter().filter(fits);
+        written
+            .map(|note| {
+                let at = (x.at(note.at.0) + 3.0, y.at(note.at.1));
+                text(Role::Note, at, &note.text)
+            })
+            .collect()
+    }
+}
+
+fn text(role: Role, at: (f64, f64), text: &str) -> Mark {
+    Mark::Text {
+        role,
+        at,
+        anchor: Anchor::Start,
+        turned: false,
+        text: text.to_owned(),
+    }
+}
+
+fn anchored(mut mark: Mark, to: Anchor) -> Mark {
+    if let Mark::Text { anchor, .. } = &mut mark {
+        *anchor = to;
+    }
+    mark
+}
+
+fn line(role: Role, from: (f64, f64), to: (f64, f64)) -> Mark {
+    Mark::Line {
+        role,
+        pieces: vec![vec![from, to]],
+    }
+}
+
+/// Least and greatest of what is a number; 0 to 1 of nothing.
+fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let known = values.filter(|value| value.is_finite());
+    let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+        (l.min(v), h.max(v))
+    });
+    if low > high { (0.0, 1.0) } else { (low, high) }
+}
