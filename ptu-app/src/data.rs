@@ -153,6 +153,16 @@ impl ScriptsDirectory {
         self.names("lines")
     }
 
+    /// Names of the unit configurations there are.
+    pub fn unit_config_names(&self) -> Vec<String> {
+        self.names(UNITS)
+    }
+
+    /// Names of the trains there are.
+    pub fn train_names(&self) -> Vec<String> {
+        self.names("trains")
+    }
+
     /// Names of what `folder` holds; the fault catalogue among unit configurations is none of them.
     fn names(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.join(folder))

@@ -23,6 +23,7 @@ pub mod drive;
 pub mod failure;
 pub mod field;
 pub mod fonts;
+pub mod gui;
 pub mod link;
 mod owner;
 mod pool;

@@ -7,6 +7,7 @@ mod diagnose;
 mod diagnose_matrix;
 mod drive;
 mod faults;
+mod gui;
 mod ports;
 mod run;
 mod runs;
@@ -25,6 +26,7 @@ use crate::failure::{Exit, Failure};
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///
 /// Examples:
+///   ptu gui                                  the technician's window
 ///   ptu run                                  whole acceptance suite on the embedded unit
 ///   ptu run atp/overspeed --unit serial:/dev/ttyUSB0
 ///   ptu run --inject eb_relay.slow --report result.json
@@ -43,7 +45,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    // A comment for users here would hide exit codes and examples, which these two tell themselves.
+    // A comment for users here would hide exit codes and examples, which these tell themselves.
+    Gui(Box<gui::GuiArguments>),
     Run(Box<run::RunArguments>),
     Drive(Box<drive::DriveArguments>),
     /// Show faults, signals, speed codes, lines or parts
@@ -69,6 +72,7 @@ impl Cli {
     /// With a message for a person and an exit code.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
+            Verb::Gui(arguments) => arguments.run(),
             Verb::Run(arguments) => arguments.run(),
             Verb::Drive(arguments) => arguments.run(),
             Verb::Catalog(arguments) => arguments.run(),

@@ -1,12 +1,10 @@
 //! `ptu ports`: serial ports found on this machine.
 
-use std::path::Path;
-
 use clap::Args;
-use serde::Serialize;
 
 use super::{print_json, print_out};
 use crate::failure::{Exit, Failure};
+use crate::link::ports::found;
 
 /// List serial ports; a pseudo-terminal is not listed but can be named
 #[derive(Debug, Args)]
@@ -14,12 +12,6 @@ pub struct PortsArguments {
     /// Print JSON
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Serialize)]
-struct Port {
-    path: String,
-    kind: &'static str,
 }
 
 impl PortsArguments {
@@ -38,26 +30,4 @@ impl PortsArguments {
             .collect();
         print_out(&lines.join("\n"))
     }
-}
-
-fn found() -> Result<Vec<Port>, Failure> {
-    // The library panics on a Linux without /sys, as in a bare container.
-    if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
-        return Ok(Vec::new());
-    }
-    let ports = serialport::available_ports()
-        .map_err(|error| Failure::bench(format!("cannot list serial ports: {error}")))?;
-    let kind = |port: &serialport::SerialPortInfo| match port.port_type {
-        serialport::SerialPortType::UsbPort(_) => "usb",
-        serialport::SerialPortType::BluetoothPort => "bluetooth",
-        serialport::SerialPortType::PciPort => "pci",
-        serialport::SerialPortType::Unknown => "unknown",
-    };
-    Ok(ports
-        .iter()
-        .map(|port| Port {
-            path: port.port_name.clone(),
-            kind: kind(port),
-        })
-        .collect())
 }

@@ -2,6 +2,7 @@
 
 mod delayed;
 mod pace;
+pub mod ports;
 mod sim;
 mod wire;
 

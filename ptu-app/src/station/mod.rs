@@ -10,6 +10,7 @@
 mod board;
 mod news;
 mod permit;
+mod progress;
 mod serve;
 
 use std::sync::Arc;
@@ -19,9 +20,10 @@ use std::thread::JoinHandle;
 use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
 
-pub use board::{Board, HISTORY, Live, Phase};
+pub use board::{Board, HISTORY, Live, Phase, Row};
 pub use news::{News, RunNews};
 pub use permit::{Refused, permit};
+pub use progress::{Present, ProcedureProgress, Progress, Waiting};
 
 use crate::failure::Failure;
 use crate::run::{BenchSetup, RunPlan};
@@ -46,6 +48,7 @@ enum Order {
     Connect(Box<BenchSetup>, Stop),
     Disconnect,
     Apply(Stimulus),
+    Arm,
     MakeSafe,
     Run(Box<RunOrder>, Stop),
 }
@@ -107,6 +110,11 @@ impl Station {
         self.permits(&stimulus)?;
         self.send(Order::Apply(stimulus));
         Ok(())
+    }
+
+    /// Turns the maintenance key on if the bench has it in hand, and arms the unit.
+    pub fn arm(&self) {
+        self.send(Order::Arm);
     }
 
     /// Whether something can be done to the unit by hand now.

@@ -6,7 +6,9 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 
 use btu_rig::procedure::Procedure;
 use btu_rig::rig::UnitLink;
-use protocol::SCAN;
+use btu_rig::stimulus::Stimulus;
+use protocol::signal::Signal;
+use protocol::{Duration, SCAN};
 
 use super::board::{Board, Phase};
 use super::news::{News, RunNews};
@@ -25,6 +27,9 @@ pub(super) struct Server {
     board: Arc<Board>,
     news: Sender<News>,
 }
+
+/// From turning the maintenance key until the unit has seen it.
+const KEY_SEEN: Duration = Duration::from_ms(300);
 
 /// Why the unit is no longer just watched.
 enum Leave {
@@ -126,17 +131,18 @@ impl Server {
     ) -> Leave {
         let mut restarts = session.bench().rig().unit_restarts();
         let mut asked = None;
+        let mut arm_at = None;
         loop {
             match orders.try_recv() {
-                Ok(Order::Apply(stimulus)) => {
-                    let now = session.now();
-                    asked = Some(stimulus.to_string());
-                    if let Err(why) = session.bench().rig_mut().apply(now, &stimulus) {
-                        self.tell(News::NotDone {
-                            asked: stimulus.to_string(),
-                            why: why.0,
-                        });
+                Ok(Order::Apply(stimulus)) => asked = self.apply(session, &stimulus),
+                Ok(Order::Arm) => {
+                    let mut wait = Duration::ZERO;
+                    let rig = session.bench().rig();
+                    if rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
+                        self.apply(session, &Stimulus::MaintenanceKey { on: true });
+                        wait = KEY_SEEN;
                     }
+                    arm_at = Some(session.now() + wait);
                 }
                 Ok(Order::MakeSafe) => {
                     let now = session.now();
@@ -153,6 +159,10 @@ impl Server {
                 |entry, _, _| self.tell(News::Logged(entry.clone())),
                 |_| false,
             );
+            if arm_at.is_some_and(|at| session.now() >= at) {
+                arm_at = None;
+                asked = self.apply(session, &Stimulus::PtuArm);
+            }
             // What the unit refuses stays refused until the next stimulus, and is told once.
             if let Err(why) = session.bench().rig().settled()
                 && let Some(asked) = asked.take()
@@ -166,6 +176,19 @@ impl Server {
             if now_restarts != restarts {
                 restarts = now_restarts;
                 self.tell(News::UnitRestarted);
+            }
+        }
+    }
+
+    /// What was asked, if the bench began it.
+    fn apply<L: UnitLink>(&self, session: &mut Session<L>, stimulus: &Stimulus) -> Option<String> {
+        let now = session.now();
+        let asked = stimulus.to_string();
+        match session.bench().rig_mut().apply(now, stimulus) {
+            Ok(()) => Some(asked),
+            Err(why) => {
+                self.tell(News::NotDone { asked, why: why.0 });
+                None
             }
         }
     }

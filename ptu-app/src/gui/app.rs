@@ -1,0 +1,167 @@
+//! The window's one object: polls what other threads have for it, then shows frame and page.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
+
+use super::desk::{Desk, Go, Messages};
+use super::frame::Frame;
+use super::library::{Library, Shelf};
+use super::pages::{Page, Pages};
+use super::settings::Settings;
+use super::units::Units;
+use super::{fonts, theme};
+use crate::failure::Failure;
+use crate::station::Wake;
+
+/// How often a window that is being closed looks whether all units are let go.
+const CLOSING: Duration = Duration::from_millis(50);
+
+/// What a window is opened with.
+pub struct Options {
+    /// Where database and scripts are.
+    pub shelf: Shelf,
+    /// What was kept from the last time.
+    pub settings: Settings,
+    /// Where it is kept; none = nowhere.
+    pub settings_file: Option<PathBuf>,
+}
+
+/// The window.
+pub struct App {
+    library: Library,
+    units: Units,
+    settings: Settings,
+    saved: Settings,
+    settings_file: Option<PathBuf>,
+    messages: Messages,
+    frame: Frame,
+    pages: Pages,
+    go: Vec<Go>,
+    closing: bool,
+}
+
+impl App {
+    /// A window that is not shown yet; `wake` has it shown again.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn new(context: &Context, options: Options, wake: Wake) -> Result<Self, Failure> {
+        fonts::set(context);
+        theme::set(context);
+        let settings = options.settings;
+        Ok(Self {
+            units: Units::new(settings.unit.clone(), wake.clone())?,
+            library: Library::new(options.shelf, wake)?,
+            saved: settings.clone(),
+            settings,
+            settings_file: options.settings_file,
+            messages: Messages::default(),
+            frame: Frame::default(),
+            pages: Pages::default(),
+            go: Vec::new(),
+            closing: false,
+        })
+    }
+
+    /// One frame.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let words = self.settings.language.words();
+        self.units.poll(words, &mut self.messages);
+        self.apply_settings(ui.ctx());
+        self.close_in_order(ui.ctx());
+        let mut desk = Desk {
+            words,
+            library: &self.library,
+            units: &mut self.units,
+            settings: &mut self.settings,
+            messages: &mut self.messages,
+            go: &mut self.go,
+        };
+        self.frame.keys(ui, &mut desk);
+        Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut desk));
+        Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut desk));
+        Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut desk));
+        let page = desk.settings.page;
+        CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut desk));
+        if self.closing {
+            self.frame.closing(ui, words);
+        }
+        for to in std::mem::take(&mut self.go) {
+            let mut desk = Desk {
+                words,
+                library: &self.library,
+                units: &mut self.units,
+                settings: &mut self.settings,
+                messages: &mut self.messages,
+                go: &mut self.go,
+            };
+            let page = self.pages.go(to, &mut desk);
+            self.settings.page = page;
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// The units, for who drives the window from outside.
+    pub fn units(&self) -> &Units {
+        &self.units
+    }
+
+    /// The page shown.
+    pub fn page(&self) -> Page {
+        self.settings.page
+    }
+
+    fn apply_settings(&mut self, context: &Context) {
+        let theme = if self.settings.dark {
+            egui::Theme::Dark
+        } else {
+            egui::Theme::Light
+        };
+        if context.theme() != theme {
+            context.set_theme(theme);
+        }
+        context.set_zoom_factor(self.settings.zoom);
+    }
+
+    /// The window closes when runs are stopped and recorded, outputs safe and units disarmed.
+    fn close_in_order(&mut self, context: &Context) {
+        if context.input(|input| input.viewport().close_requested()) {
+            self.closing = true;
+            self.save(context);
+        }
+        if !self.closing {
+            return;
+        }
+        if self.units.close() {
+            context.send_viewport_cmd(ViewportCommand::Close);
+        } else {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+            context.request_repaint_after(CLOSING);
+        }
+    }
+
+    fn save(&mut self, context: &Context) {
+        self.settings.unit = self.units.chosen().choice.clone();
+        let size =
+            context.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));
+        self.settings.window_size = size.or(self.settings.window_size);
+        if self.settings == self.saved {
+            return;
+        }
+        let Some(file) = &self.settings_file else {
+            return;
+        };
+        // Not worth keeping the window open for.
+        if self.settings.save(file).is_ok() {
+            self.saved = self.settings.clone();
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}

@@ -1,0 +1,71 @@
+//! Opening the window on whatever display there is, or saying that there is none.
+
+use std::sync::Arc;
+use std::sync::mpsc;
+use std::time::Duration;
+
+use super::app::{App, Options};
+use crate::failure::Failure;
+use crate::station::Wake;
+
+/// Smallest window in which every page can be used, and the first one's size.
+const SMALLEST: [f32; 2] = [900.0, 600.0];
+const USUAL: [f32; 2] = [1280.0, 800.0];
+/// Repaints asked for from other threads are this far apart at least.
+const REPAINT: Duration = Duration::from_millis(16);
+
+/// Opens the window and stays until it is closed.
+///
+/// # Errors
+/// There is no display, or it cannot show a window.
+pub fn open(options: Options) -> Result<(), Failure> {
+    let named = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    if cfg!(target_os = "linux") && !named("DISPLAY") && !named("WAYLAND_DISPLAY") {
+        return Err(Failure::bench(
+            "no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); start it from a \
+             desktop, or use `ptu run`, `ptu faults` and `ptu diagnose` here",
+        ));
+    }
+    let size = options.settings.window_size.unwrap_or(USUAL);
+    let native = eframe::NativeOptions {
+        viewport: eframe::egui::ViewportBuilder::default()
+            .with_title("PTU")
+            .with_app_id("ptu")
+            .with_inner_size(size)
+            .with_min_inner_size(SMALLEST),
+        renderer: eframe::Renderer::Glow,
+        ..Default::default()
+    };
+    eframe::run_native(
+        "ptu",
+        native,
+        Box::new(|creation| {
+            let wake = waker(&creation.egui_ctx)?;
+            Ok(Box::new(App::new(&creation.egui_ctx, options, wake)?))
+        }),
+    )
+    .map_err(|error| {
+        Failure::bench(format!(
+            "cannot open a window: {error}; check the display and its OpenGL driver, or use `ptu run` here"
+        ))
+    })
+}
+
+/// Wakes the window from other threads, which never wait for it: a thread in between takes the
+/// window's lock.
+fn waker(context: &eframe::egui::Context) -> std::io::Result<Wake> {
+    let (sender, receiver) = mpsc::sync_channel::<()>(1);
+    let context = context.clone();
+    std::thread::Builder::new()
+        .name("waker".into())
+        .spawn(move || {
+            while receiver.recv().is_ok() {
+                context.request_repaint();
+                std::thread::sleep(REPAINT);
+            }
+        })?;
+    Ok(Arc::new(move || {
+        // Full: it is about to be woken anyway.
+        let _ = sender.try_send(());
+    }))
+}

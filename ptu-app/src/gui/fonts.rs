@@ -1,0 +1,20 @@
+//! Fonts: the shipped one for everything people read, those of the toolkit for scripts and symbols.
+
+use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
+
+use crate::fonts::PRETENDARD;
+
+const NAME: &str = "Pretendard";
+
+/// Gives the window its fonts.
+pub fn set(context: &Context) {
+    let mut fonts = FontDefinitions::default();
+    fonts
+        .font_data
+        .insert(NAME.into(), FontData::from_static(PRETENDARD).into());
+    for (family, place) in [(FontFamily::Proportional, 0), (FontFamily::Monospace, 1)] {
+        let fallbacks = fonts.families.entry(family).or_default();
+        fallbacks.insert(place.min(fallbacks.len()), NAME.into());
+    }
+    context.set_fonts(fonts);
+}

@@ -1,0 +1,27 @@
+//! Keys that work on every page.
+
+use eframe::egui::{Context, Key, Modifiers};
+
+use crate::gui::{Desk, Page};
+
+/// Stops everything, whatever has the keyboard.
+pub const STOP_ALL: Key = Key::F12;
+
+/// Acts on them.
+pub fn keys(context: &Context, desk: &mut Desk<'_>) {
+    if context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
+        stop_all(desk);
+    }
+    for page in Page::ALL {
+        if context.input_mut(|input| input.consume_key(Modifiers::NONE, page.key())) {
+            desk.settings.page = page;
+        }
+    }
+}
+
+/// Stops every run and takes every stimulus away, at all units.
+pub fn stop_all(desk: &mut Desk<'_>) {
+    for unit in desk.units.iter() {
+        unit.station.stop_all();
+    }
+}

@@ -1,0 +1,60 @@
+//! The frame around the pages: connection bar, navigation, messages, keys.
+
+mod connection;
+mod keys;
+mod messages;
+mod navigation;
+mod setup;
+
+use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
+
+use super::Desk;
+use crate::words::Words;
+use setup::Setup;
+
+/// What the frame keeps while the window is open.
+#[derive(Default)]
+pub struct Frame {
+    setup: Setup,
+}
+
+impl Frame {
+    /// Keys that work on every page.
+    pub fn keys(&mut self, ui: &Ui, desk: &mut Desk<'_>) {
+        keys::keys(ui.ctx(), desk);
+    }
+
+    /// The connection bar.
+    pub fn connection(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        connection::bar(ui, desk, &mut self.setup);
+    }
+
+    /// Pages, language, light, size.
+    pub fn navigation(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        navigation::bar(ui, desk);
+    }
+
+    /// The latest message, and all of them.
+    pub fn messages(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        messages::bar(ui, desk);
+    }
+
+    /// Over everything while the window is being closed.
+    pub fn closing(&self, ui: &mut Ui, words: &Words) {
+        over_everything(ui.ctx(), |ui| {
+            ui.horizontal(|ui| {
+                ui.add(Spinner::new());
+                ui.label(RichText::new(words.frame.closing).heading());
+            });
+        });
+    }
+}
+
+fn over_everything(context: &Context, content: impl FnOnce(&mut Ui)) {
+    Area::new(Id::unique("over everything"))
+        .order(Order::Foreground)
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .show(context, |ui| {
+            eframe::egui::Frame::popup(ui.style()).show(ui, content);
+        });
+}

@@ -1,0 +1,52 @@
+//! Pages, language, light and size.
+
+use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
+
+use crate::gui::{Desk, Page};
+use crate::words::Language;
+
+const SMALLEST: f32 = 0.7;
+const LARGEST: f32 = 2.5;
+const STEP: f32 = 0.1;
+
+/// The bar.
+pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
+    ui.horizontal(|ui| {
+        for page in Page::ALL {
+            let chosen = desk.settings.page == page;
+            let text = RichText::new(page.name(desk.words)).size(16.0);
+            let button = ui.selectable_label(chosen, text);
+            if button.on_hover_text(page.key().name()).clicked() {
+                desk.settings.page = page;
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| look(ui, desk));
+    });
+}
+
+fn look(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let frame = &desk.words.frame;
+    let settings = &mut *desk.settings;
+    let smaller = ui.button("A-").on_hover_text(frame.scale);
+    if smaller.clicked() {
+        settings.zoom = (settings.zoom - STEP).max(SMALLEST);
+    }
+    let larger = ui.button("A+").on_hover_text(frame.scale);
+    if larger.clicked() {
+        settings.zoom = (settings.zoom + STEP).min(LARGEST);
+    }
+    let light = if settings.dark {
+        frame.light
+    } else {
+        frame.dark
+    };
+    if ui.button(light).clicked() {
+        settings.dark = !settings.dark;
+    }
+    let combo = ComboBox::from_id_salt("language").selected_text(settings.language.name());
+    combo.show_ui(ui, |ui| {
+        for language in Language::ALL {
+            ui.selectable_value(&mut settings.language, language, language.name());
+        }
+    });
+}

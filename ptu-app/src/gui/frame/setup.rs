@@ -1,0 +1,186 @@
+//! Where the unit is and what is around it.
+
+use eframe::egui::{ComboBox, DragValue, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
+
+use crate::gui::Desk;
+use crate::gui::library::Asked;
+use crate::gui::units::UnitChoice;
+use crate::link::ports;
+use crate::station::Phase;
+use crate::words::Words;
+
+/// Names to choose from.
+struct Names {
+    ports: Vec<String>,
+    lines: Vec<String>,
+    configs: Vec<String>,
+    trains: Vec<String>,
+    faults: Vec<(String, String)>,
+}
+
+/// The setup's own state.
+#[derive(Default)]
+pub struct Setup {
+    names: Asked<Names>,
+    find: String,
+}
+
+impl Setup {
+    /// Where the unit is; what is around it behind a button.
+    pub fn endpoint(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        if self.names.is_not() {
+            self.ask(desk);
+        }
+        self.names.poll();
+        let free = desk.units.chosen().phase() == Phase::Offline;
+        let words = desk.words;
+        let choice = &mut desk.units.chosen_mut().choice;
+        let shown = if choice.is_simulated() {
+            words.frame.simulated.to_owned()
+        } else {
+            choice.endpoint.clone()
+        };
+        let mut opened = false;
+        ui.add_enabled_ui(free, |ui| {
+            let combo = ComboBox::from_id_salt("endpoint")
+                .selected_text(shown)
+                .width(150.0);
+            let combo = combo.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            let response = combo.show_ui(ui, |ui| self.endpoints(ui, words, choice));
+            opened = response.response.clicked();
+            ui.menu_button(words.frame.setup, |ui| self.surroundings(ui, words, choice));
+        });
+        if opened {
+            self.ask(desk);
+        }
+    }
+
+    fn ask(&mut self, desk: &Desk<'_>) {
+        self.names = Asked::Pending(desk.library.ask(|shelf| {
+            let scripts = &shelf.scripts;
+            let faults = scripts.faults()?.faults;
+            Ok(Names {
+                ports: ports::found()?.into_iter().map(|port| port.path).collect(),
+                lines: scripts.line_names(),
+                configs: scripts.unit_config_names(),
+                trains: scripts.train_names(),
+                faults: faults
+                    .into_iter()
+                    .map(|fault| (fault.id, fault.mode))
+                    .collect(),
+            })
+        }));
+    }
+
+    fn endpoints(&self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
+        ui.set_min_width(260.0);
+        let endpoint = &mut choice.endpoint;
+        if ui
+            .selectable_value(endpoint, "sim".into(), words.frame.simulated)
+            .clicked()
+        {
+            ui.close();
+        }
+        for port in self
+            .names
+            .value()
+            .map(|names| &names.ports)
+            .into_iter()
+            .flatten()
+        {
+            let value = format!("serial:{port}");
+            if ui.selectable_value(endpoint, value, port).clicked() {
+                ui.close();
+            }
+        }
+        let label = ui.label(words.frame.other_port);
+        ui.add(TextEdit::singleline(endpoint).desired_width(250.0))
+            .labelled_by(label.id);
+    }
+
+    fn surroundings(&mut self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
+        let frame = &words.frame;
+        ui.set_min_width(340.0);
+        ui.horizontal(|ui| {
+            ui.label(frame.connection_kind);
+            ui.selectable_value(&mut choice.as_ptu, false, frame.as_btu);
+            ui.selectable_value(&mut choice.as_ptu, true, frame.as_ptu);
+        });
+        let none = Vec::new();
+        let names = self.names.value();
+        let of = |pick: fn(&Names) -> &Vec<String>| names.map_or(&none, pick);
+        pick(ui, frame.line, &mut choice.line, of(|names| &names.lines));
+        pick(
+            ui,
+            frame.unit_config,
+            &mut choice.unit_config,
+            of(|names| &names.configs),
+        );
+        pick(
+            ui,
+            frame.train,
+            &mut choice.train,
+            of(|names| &names.trains),
+        );
+        ui.horizontal(|ui| {
+            let label = ui.label(frame.serial);
+            ui.add(TextEdit::singleline(&mut choice.serial).desired_width(140.0))
+                .labelled_by(label.id);
+        });
+        if choice.is_simulated() {
+            ui.horizontal(|ui| {
+                let label = ui.label(frame.seed);
+                ui.add(DragValue::new(&mut choice.seed))
+                    .labelled_by(label.id);
+                ui.checkbox(&mut choice.scatter, frame.scatter);
+            });
+            ui.checkbox(&mut choice.realtime, frame.realtime);
+            ui.separator();
+            self.injected(ui, words, choice);
+        }
+    }
+
+    fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
+        let chosen = match choice.faults.as_slice() {
+            [] => words.frame.none.to_owned(),
+            faults => faults.join(", "),
+        };
+        ui.label(format!("{}: {chosen}", words.frame.inject));
+        let label = ui.label(words.frame.find);
+        ui.add(TextEdit::singleline(&mut self.find))
+            .labelled_by(label.id);
+        let known = self
+            .names
+            .value()
+            .map(|names| names.faults.as_slice())
+            .unwrap_or_default();
+        let wanted = self.find.to_lowercase();
+        ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
+            for (id, mode) in known {
+                if !id.contains(&wanted) && !mode.to_lowercase().contains(&wanted) {
+                    continue;
+                }
+                let mut on = choice.faults.contains(id);
+                if ui.checkbox(&mut on, id).on_hover_text(mode).clicked() {
+                    choice.faults.retain(|fault| fault != id);
+                    if on {
+                        choice.faults.push(id.clone());
+                    }
+                }
+            }
+        });
+    }
+}
+
+fn pick(ui: &mut Ui, label: &str, chosen: &mut String, names: &[String]) {
+    ui.horizontal(|ui| {
+        ui.label(label);
+        ComboBox::from_id_salt(label)
+            .selected_text(chosen.as_str())
+            .show_ui(ui, |ui| {
+                for name in names {
+                    ui.selectable_value(chosen, name.clone(), name);
+                }
+            });
+    });
+}

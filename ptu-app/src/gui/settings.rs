@@ -1,0 +1,99 @@
+//! What the window keeps between starts.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::Page;
+use super::units::UnitChoice;
+use crate::words::Language;
+
+/// What the window keeps between starts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Language.
+    pub language: Language,
+    /// Dark window, as in a dark cab.
+    pub dark: bool,
+    /// Size of everything, 1 = as the desktop has it.
+    pub zoom: f32,
+    /// Size of the window, points.
+    pub window_size: Option<[f32; 2]>,
+    /// Page shown last.
+    pub page: Page,
+    /// Who tests.
+    pub operator: String,
+    /// The unit connected last.
+    pub unit: UnitChoice,
+    /// Signals of the rolling plot, by name.
+    pub plotted: Vec<String>,
+    /// Lanes of the trace page, by channel.
+    pub lanes: Vec<String>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            language: Language::default(),
+            dark: true,
+            zoom: 1.0,
+            window_size: None,
+            page: Page::default(),
+            operator: String::new(),
+            unit: UnitChoice::default(),
+            plotted: ["measured_speed", "speed_limit", "eb"]
+                .map(str::to_owned)
+                .to_vec(),
+            lanes: Vec::new(),
+        }
+    }
+}
+
+impl Settings {
+    /// Where they are kept for this user.
+    pub fn usual_file() -> Option<PathBuf> {
+        let directories = directories::ProjectDirs::from("", "", "ptu")?;
+        Some(directories.config_dir().join("window.json"))
+    }
+
+    /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
+    pub fn load(file: &Path) -> Self {
+        let text = std::fs::read_to_string(file).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    }
+
+    /// Keeps them in `file`, at once or not at all.
+    ///
+    /// # Errors
+    /// The file or its folder cannot be written.
+    pub fn save(&self, file: &Path) -> std::io::Result<()> {
+        if let Some(folder) = file.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        let beside = file.with_extension("new");
+        std::fs::write(&beside, serde_json::to_vec_pretty(self)?)?;
+        std::fs::rename(beside, file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_comes_back_and_a_damaged_file_gives_the_usual() {
+        let folder = tempfile::tempdir().expect("folder");
+        let file = folder.path().join("config/window.json");
+        let kept = Settings {
+            language: Language::Korean,
+            zoom: 1.25,
+            operator: "김".into(),
+            ..Settings::default()
+        };
+        kept.save(&file).expect("saved");
+        assert_eq!(Settings::load(&file), kept);
+        std::fs::write(&file, "{\"zoom\":").expect("damaged");
+        assert_eq!(Settings::load(&file), Settings::default());
+    }
+}

@@ -1,0 +1,114 @@
+//! Colours of meaning, in light and dark. Nothing is told by colour alone: a word or a shape stands
+//! beside it.
+
+use btu_rig::procedure::Verdict;
+use eframe::egui::{Color32, Context, TextStyle, Ui};
+
+/// Colours of meaning.
+#[derive(Clone, Copy, Debug)]
+pub struct Palette {
+    /// Dark window.
+    pub dark: bool,
+    /// As it should be.
+    pub good: Color32,
+    /// Not as it should be.
+    pub bad: Color32,
+    /// Could not be told, or wants a look.
+    pub warn: Color32,
+    /// Neither.
+    pub quiet: Color32,
+    /// What is chosen, and the first curve.
+    pub accent: Color32,
+    /// An armed unit: outranks everything else on the screen.
+    pub armed: Color32,
+    /// Lines behind curves.
+    pub grid: Color32,
+    /// Curves, in the order they are added; told apart with the common kinds of colour blindness.
+    pub curves: [Color32; 6],
+}
+
+const DARK: Palette = Palette {
+    dark: true,
+    good: Color32::from_rgb(86, 196, 122),
+    bad: Color32::from_rgb(255, 104, 94),
+    warn: Color32::from_rgb(245, 184, 65),
+    quiet: Color32::from_rgb(140, 148, 158),
+    accent: Color32::from_rgb(90, 169, 255),
+    armed: Color32::from_rgb(214, 40, 40),
+    grid: Color32::from_rgb(58, 62, 68),
+    curves: [
+        Color32::from_rgb(86, 180, 233),
+        Color32::from_rgb(230, 159, 0),
+        Color32::from_rgb(0, 190, 140),
+        Color32::from_rgb(240, 228, 66),
+        Color32::from_rgb(224, 140, 190),
+        Color32::from_rgb(255, 120, 60),
+    ],
+};
+
+const LIGHT: Palette = Palette {
+    dark: false,
+    good: Color32::from_rgb(24, 120, 60),
+    bad: Color32::from_rgb(190, 30, 30),
+    warn: Color32::from_rgb(160, 98, 0),
+    quiet: Color32::from_rgb(100, 108, 116),
+    accent: Color32::from_rgb(0, 92, 184),
+    armed: Color32::from_rgb(200, 20, 20),
+    grid: Color32::from_rgb(214, 217, 221),
+    curves: [
+        Color32::from_rgb(0, 114, 178),
+        Color32::from_rgb(180, 110, 0),
+        Color32::from_rgb(0, 130, 95),
+        Color32::from_rgb(140, 120, 0),
+        Color32::from_rgb(170, 70, 130),
+        Color32::from_rgb(200, 80, 0),
+    ],
+};
+
+/// Gives the window its look: text large enough to be read at arm's length.
+pub fn set(context: &Context) {
+    context.all_styles_mut(|style| {
+        for (text, size) in [
+            (TextStyle::Body, 14.5),
+            (TextStyle::Button, 14.5),
+            (TextStyle::Monospace, 13.0),
+            (TextStyle::Heading, 19.0),
+            (TextStyle::Small, 11.5),
+        ] {
+            if let Some(font) = style.text_styles.get_mut(&text) {
+                font.size = size;
+            }
+        }
+        style.spacing.item_spacing = [8.0, 5.0].into();
+        style.spacing.button_padding = [8.0, 3.0].into();
+        // What cannot be seen moving need not be painted again and again.
+        style.animation_time = 0.0;
+    });
+}
+
+impl Palette {
+    /// Of the window as it is.
+    pub fn of(ui: &Ui) -> Self {
+        if ui.visuals().dark_mode { DARK } else { LIGHT }
+    }
+
+    /// A verdict's colour.
+    pub fn verdict(&self, verdict: Verdict) -> Color32 {
+        match verdict {
+            Verdict::Passed => self.good,
+            Verdict::Failed => self.bad,
+            Verdict::Error | Verdict::Aborted => self.warn,
+            Verdict::Skipped => self.quiet,
+        }
+    }
+
+    /// A stored verdict's colour.
+    pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> Color32 {
+        match verdict {
+            fault_db::Verdict::Passed => self.good,
+            fault_db::Verdict::Failed => self.bad,
+            fault_db::Verdict::Error | fault_db::Verdict::Aborted => self.warn,
+            fault_db::Verdict::Skipped => self.quiet,
+        }
+    }
+}

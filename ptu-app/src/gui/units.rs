@@ -1,0 +1,332 @@
+//! Units that are tested from this window: what is chosen for each, and what is heard from it.
+
+use std::collections::VecDeque;
+use std::str::FromStr;
+
+use btu_rig::procedure::UnitEvent;
+use btu_rig::procedure::plan::Connection;
+use protocol::message::Identity;
+use serde::{Deserialize, Serialize};
+
+use super::desk::Messages;
+use super::library::{Asked, Library};
+use crate::failure::Failure;
+use crate::link::Endpoint;
+use crate::run::{BenchSetup, Choice};
+use crate::station::{News, Phase, Progress, RunOrder, Station, Wake};
+use crate::words::{Words, fill};
+
+/// Entries of a unit's log that are shown.
+const LOG: usize = 500;
+
+/// What is chosen for a unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct UnitChoice {
+    /// `sim`, `serial:PATH[@BAUD]` or `tcp:HOST:PORT`.
+    pub endpoint: String,
+    /// The laptop on the maintenance port, which has no bench harness.
+    pub as_ptu: bool,
+    /// Line.
+    pub line: String,
+    /// Unit configuration.
+    pub unit_config: String,
+    /// Train.
+    pub train: String,
+    /// Serial number expected, or given to the embedded unit; empty = any.
+    pub serial: String,
+    /// Faults injected.
+    pub faults: Vec<String>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Good units differ.
+    pub scatter: bool,
+    /// Runs on the embedded unit take as long as on a real one.
+    pub realtime: bool,
+}
+
+impl Default for UnitChoice {
+    fn default() -> Self {
+        Self {
+            endpoint: "sim".into(),
+            as_ptu: false,
+            line: "line8".into(),
+            unit_config: "sg100".into(),
+            train: "line6".into(),
+            serial: String::new(),
+            faults: Vec::new(),
+            seed: 1,
+            scatter: false,
+            realtime: false,
+        }
+    }
+}
+
+impl UnitChoice {
+    /// The embedded unit.
+    pub fn is_simulated(&self) -> bool {
+        self.endpoint == "sim"
+    }
+
+    /// How it is connected.
+    pub fn connection(&self) -> Connection {
+        if self.as_ptu {
+            Connection::Ptu
+        } else {
+            Connection::Btu
+        }
+    }
+
+    /// As the command line would have it.
+    ///
+    /// # Errors
+    /// The endpoint is none.
+    pub fn named(&self) -> Result<Choice, Failure> {
+        let unit = Endpoint::from_str(&self.endpoint).map_err(Failure::usage)?;
+        let faults = match unit {
+            Endpoint::Sim => self.faults.clone(),
+            _ => Vec::new(),
+        };
+        Ok(Choice {
+            unit,
+            line: self.line.clone(),
+            unit_config: self.unit_config.clone(),
+            train: self.train.clone(),
+            settings: Vec::new(),
+            serial: (!self.serial.is_empty()).then(|| self.serial.clone()),
+            faults,
+            seed: self.seed,
+            scatter: self.scatter.then_some(None),
+            realtime: self.realtime,
+        })
+    }
+}
+
+/// One unit.
+pub struct Unit {
+    /// What is chosen for it.
+    pub choice: UnitChoice,
+    /// Its bench.
+    pub station: Station,
+    /// What its bench is made of, once it was asked to connect.
+    pub setup: Asked<BenchSetup>,
+    /// What it and TCMS logged outside runs, oldest first.
+    pub log: VecDeque<UnitEvent>,
+    /// Its present or last run.
+    pub run: Option<Progress>,
+}
+
+impl Unit {
+    fn new(choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
+        Ok(Self {
+            choice,
+            station: Station::new(wake)?,
+            setup: Asked::Not,
+            log: VecDeque::new(),
+            run: None,
+        })
+    }
+
+    /// What its bench's thread is at.
+    pub fn phase(&self) -> Phase {
+        match self.setup {
+            Asked::Pending(_) => Phase::Connecting,
+            _ => self.station.live().phase,
+        }
+    }
+
+    /// A unit is there, run or not.
+    pub fn is_connected(&self) -> bool {
+        matches!(self.phase(), Phase::Idle | Phase::Running)
+    }
+
+    /// Who it is.
+    pub fn identity(&self) -> Option<Identity> {
+        self.station.live().identity
+    }
+
+    /// What it is called: its serial number, or where it is.
+    pub fn name(&self) -> String {
+        match self.identity() {
+            Some(identity) => crate::run::text(&identity.serial),
+            None => self.choice.endpoint.clone(),
+        }
+    }
+
+    /// Reaches it.
+    pub fn connect(&mut self, library: &Library) {
+        let choice = self.choice.clone();
+        self.setup =
+            Asked::Pending(library.ask(move |shelf| choice.named()?.setup(&shelf.scripts)));
+    }
+
+    /// Begins a run.
+    pub fn begin(&mut self, order: RunOrder) {
+        self.run = Some(Progress::new(&order.plan));
+        self.station.run(order);
+    }
+
+    /// Takes what happened since the last time, and tells the person what matters.
+    fn poll(&mut self, words: &Words, messages: &mut Messages) {
+        if self.setup.poll() {
+            match &self.setup {
+                Asked::There(setup) => self
+                    .station
+                    .connect(setup.clone(), self.choice.connection()),
+                Asked::Failed(why) => messages.trouble(words.frame.cannot_connect, why.clone()),
+                _ => {}
+            }
+        }
+        let news: Vec<_> = self.station.news().collect();
+        for news in news {
+            self.hear(news, words, messages);
+        }
+    }
+
+    fn hear(&mut self, news: News, words: &Words, messages: &mut Messages) {
+        let frame = &words.frame;
+        match news {
+            News::Connected { serial } => {
+                self.log.clear();
+                messages.tell(fill(frame.is_connected, &[("unit", &serial)]));
+            }
+            News::NotConnected(why) => messages.trouble(frame.cannot_connect, why),
+            News::Disconnected => messages.tell(frame.is_disconnected),
+            News::LinkLost(why) => messages.trouble(frame.link_lost, why),
+            News::NotSafe => messages.trouble(frame.not_safe, ""),
+            News::UnitRestarted => messages.trouble(frame.unit_restarted, ""),
+            News::NotDone { asked, why } => {
+                messages.trouble(fill(frame.not_done, &[("what", &asked)]), why);
+            }
+            News::Logged(entry) => {
+                if self.log.len() == LOG {
+                    self.log.pop_front();
+                }
+                self.log.push_back(entry);
+            }
+            News::Run { procedure, what } => {
+                if let crate::station::RunNews::LinkLost(why) = &what {
+                    messages.trouble(frame.link_lost, why.clone());
+                }
+                if let Some(run) = &mut self.run {
+                    run.hear(&procedure, &what);
+                }
+            }
+            News::RunEnded(outcome) => {
+                let verdict = words.common.verdict(outcome.verdict);
+                messages.tell(fill(frame.run_ended, &[("verdict", &verdict)]));
+                if let Some(run) = &mut self.run {
+                    run.end(Some(outcome));
+                }
+            }
+            News::RunFailed(why) => {
+                messages.trouble(frame.run_failed, why);
+                if let Some(run) = &mut self.run {
+                    run.end(None);
+                }
+            }
+        }
+    }
+}
+
+/// All units of the window; there is always one.
+pub struct Units {
+    first: Unit,
+    more: Vec<Unit>,
+    chosen: usize,
+    wake: Wake,
+}
+
+impl Units {
+    /// One unit that is not connected.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn new(choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
+        Ok(Self {
+            first: Unit::new(choice, wake.clone())?,
+            more: Vec::new(),
+            chosen: 0,
+            wake,
+        })
+    }
+
+    /// One more beside those there are, and chooses it.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn add(&mut self, choice: UnitChoice) -> Result<(), Failure> {
+        self.more.push(Unit::new(choice, self.wake.clone())?);
+        self.chosen = self.more.len();
+        Ok(())
+    }
+
+    /// Takes away one that is not connected, but never the last.
+    pub fn remove(&mut self, place: usize) {
+        if self.more.is_empty() {
+            return;
+        }
+        if place == 0 {
+            std::mem::swap(&mut self.first, &mut self.more[0]);
+            self.more.remove(0);
+        } else if place <= self.more.len() {
+            self.more.remove(place - 1);
+        }
+        self.chosen = self.chosen.min(self.more.len());
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Unit> {
+        std::iter::once(&self.first).chain(&self.more)
+    }
+
+    /// All of them, to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Unit> {
+        std::iter::once(&mut self.first).chain(&mut self.more)
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        1 + self.more.len()
+    }
+
+    /// The place of the one the pages show.
+    pub fn chosen_place(&self) -> usize {
+        self.chosen
+    }
+
+    /// The pages show this one from now on.
+    pub fn choose(&mut self, place: usize) {
+        self.chosen = place.min(self.more.len());
+    }
+
+    /// The one the pages show.
+    pub fn chosen(&self) -> &Unit {
+        match self.chosen {
+            0 => &self.first,
+            more => self.more.get(more - 1).unwrap_or(&self.first),
+        }
+    }
+
+    /// The one the pages show, to be changed.
+    pub fn chosen_mut(&mut self) -> &mut Unit {
+        match self.chosen {
+            0 => &mut self.first,
+            more => self.more.get_mut(more - 1).unwrap_or(&mut self.first),
+        }
+    }
+
+    /// Takes what happened at all of them.
+    pub(super) fn poll(&mut self, words: &Words, messages: &mut Messages) {
+        for unit in self.iter_mut() {
+            unit.poll(words, messages);
+        }
+    }
+
+    /// Stops all and lets all go; true once every bench's thread has ended.
+    pub(super) fn close(&mut self) -> bool {
+        self.iter_mut()
+            .map(|unit| unit.station.close())
+            .fold(true, |all, closed| all && closed)
+    }
+}

@@ -1,0 +1,278 @@
+//! How far a run is, put together from what it says.
+
+use std::sync::Arc;
+use std::time;
+
+use btu_rig::procedure::plan::Step;
+use btu_rig::procedure::{Measurement, Procedure, RunEvent, StepResult, Verdict};
+use protocol::Duration;
+
+use super::RunNews;
+use crate::run::{FaultSeen, Outcome, RunPlan, steps_of};
+
+/// A run's procedures, steps, measurements and faults so far.
+#[derive(Debug)]
+pub struct Progress {
+    /// Procedures in order.
+    pub procedures: Vec<ProcedureProgress>,
+    /// Steps in all, repetitions counted.
+    pub steps: usize,
+    /// Steps that are over.
+    pub done: usize,
+    /// Steps over that neither passed nor were skipped.
+    pub not_passed: usize,
+    /// Where it is.
+    pub present: Option<Present>,
+    /// Faults found, in order.
+    pub faults: Vec<FaultSeen>,
+    /// It is over, and what it came to; none = it could not be begun or recorded.
+    pub ended: Option<Option<Outcome>>,
+    began: time::Instant,
+    /// Worst-case time of all steps, and of those that are over, with the time these took.
+    worst: Duration,
+    worst_done: Duration,
+    took: Duration,
+}
+
+/// A procedure of a run.
+#[derive(Debug)]
+pub struct ProcedureProgress {
+    /// It.
+    pub procedure: Arc<Procedure>,
+    /// Steps chosen of it.
+    pub chosen: Vec<usize>,
+    /// What its steps came to, in the order they were run.
+    pub results: Vec<StepResult>,
+    /// What it came to.
+    pub verdict: Option<Verdict>,
+    /// What went wrong outside its steps.
+    pub message: String,
+}
+
+/// Where a run is.
+#[derive(Clone, Debug)]
+pub struct Present {
+    /// Place of the procedure in the run.
+    pub procedure: usize,
+    /// Place of the step in its procedure, once one has begun.
+    pub step: Option<usize>,
+    /// The step's name, with its repetition.
+    pub name: String,
+    /// What is waited for, and until when.
+    pub waiting: Option<Waiting>,
+    /// What the operator is asked, and until when.
+    pub prompt: Option<Waiting>,
+    /// Paused, before this step.
+    pub paused: Option<String>,
+    /// Measurements of the step so far.
+    pub measured: Vec<Measurement>,
+}
+
+/// Something that may take until a moment on the wall clock.
+#[derive(Clone, Debug)]
+pub struct Waiting {
+    /// What.
+    pub what: String,
+    /// How long it might still take when it was said.
+    pub left: Duration,
+    /// When it was said.
+    pub said: time::Instant,
+}
+
+impl Waiting {
+    fn new(what: &str, left: Duration) -> Self {
+        Self {
+            what: what.into(),
+            left,
+            said: time::Instant::now(),
+        }
+    }
+
+    /// Seconds still left now.
+    pub fn left_s(&self) -> f64 {
+        (self.left.as_secs() - self.said.elapsed().as_secs_f64()).max(0.0)
+    }
+}
+
+impl Progress {
+    /// Of a plan that has not begun.
+    pub fn new(plan: &RunPlan) -> Self {
+        let procedure = |task: &crate::run::Task| {
+            let all = || (0..task.procedure.steps.len()).collect();
+            ProcedureProgress {
+                procedure: task.procedure.clone(),
+                chosen: task.options.chosen.clone().unwrap_or_else(all),
+                results: Vec::new(),
+                verdict: None,
+                message: String::new(),
+            }
+        };
+        let procedures: Vec<_> = plan.tasks.iter().map(procedure).collect();
+        let worst = procedures
+            .iter()
+            .zip(&plan.tasks)
+            .flat_map(|(progress, task)| {
+                let repeat = u64::from(task.options.repeat);
+                progress.chosen.iter().filter_map(move |place| {
+                    let step = progress.procedure.steps.get(*place)?;
+                    let turns = repeat * u64::from(step.repeat);
+                    Some(Duration::from_us(step.worst_case.as_us() * turns))
+                })
+            })
+            .fold(Duration::ZERO, |sum, step| sum + step);
+        Self {
+            steps: steps_of(&plan.tasks),
+            procedures,
+            done: 0,
+            not_passed: 0,
+            present: None,
+            faults: Vec::new(),
+            ended: None,
+            began: time::Instant::now(),
+            worst,
+            worst_done: Duration::ZERO,
+            took: Duration::ZERO,
+        }
+    }
+
+    /// Takes what the procedure called `id` says.
+    pub fn hear(&mut self, id: &str, news: &RunNews) {
+        let Some(place) = self.place(id) else { return };
+        match news {
+            RunNews::Event(event) => self.event(place, event),
+            RunNews::Fault(fault) => self.faults.push(fault.clone()),
+            RunNews::LinkLost(_) => {}
+            RunNews::Ended => self.present = None,
+        }
+    }
+
+    /// The run is over.
+    pub fn end(&mut self, outcome: Option<Outcome>) {
+        self.present = None;
+        self.ended = Some(outcome);
+    }
+
+    /// It goes on.
+    pub fn is_running(&self) -> bool {
+        self.ended.is_none()
+    }
+
+    /// Its id, once it is over and recorded.
+    pub fn id(&self) -> Option<fault_db::Id> {
+        self.ended.as_ref()?.as_ref().map(|outcome| outcome.id)
+    }
+
+    /// The step under way.
+    pub fn step(&self) -> Option<&Step> {
+        let present = self.present.as_ref()?;
+        let procedure = &self.procedures.get(present.procedure)?.procedure;
+        procedure.steps.get(present.step?)
+    }
+
+    /// Share of the steps that are over, 0 to 1.
+    pub fn share(&self) -> f32 {
+        if self.steps == 0 {
+            return 0.0;
+        }
+        (self.done as f32 / self.steps as f32).min(1.0)
+    }
+
+    /// Bench time still to come, s: worst cases of the steps left, as much shorter as those done were.
+    pub fn left_s(&self) -> Option<f64> {
+        if self.worst_done == Duration::ZERO {
+            return None;
+        }
+        let left = self.worst.as_secs() - self.worst_done.as_secs();
+        Some((left * self.took.as_secs() / self.worst_done.as_secs()).max(0.0))
+    }
+
+    /// Time since it was begun, s.
+    pub fn elapsed_s(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    /// The place of a procedure that is not over, as an adaptive run may do one twice; else of any.
+    fn place(&self, id: &str) -> Option<usize> {
+        let named = |progress: &ProcedureProgress| progress.procedure.id == id;
+        let open = |progress: &ProcedureProgress| named(progress) && progress.verdict.is_none();
+        let places = self.procedures.iter();
+        places
+            .clone()
+            .position(open)
+            .or_else(|| self.procedures.iter().position(named))
+    }
+
+    fn event(&mut self, place: usize, event: &RunEvent) {
+        match event {
+            RunEvent::ProcedureStarted { .. } => self.present = Some(Present::of(place)),
+            RunEvent::StepStarted { index, name, .. } => {
+                self.present = Some(Present {
+                    step: Some(*index),
+                    name: name.clone(),
+                    ..Present::of(place)
+                });
+            }
+            RunEvent::Paused { next, .. } => {
+                let present = self.present.get_or_insert_with(|| Present::of(place));
+                present.waiting = None;
+                present.paused = Some(next.clone());
+            }
+            RunEvent::Waiting { what, left } => {
+                if let Some(present) = &mut self.present {
+                    present.waiting = Some(Waiting::new(what, *left));
+                }
+            }
+            RunEvent::Prompt { text, left } => {
+                if let Some(present) = &mut self.present {
+                    present.prompt = Some(Waiting::new(text, *left));
+                }
+            }
+            RunEvent::Measured { measurement, .. } => {
+                if let Some(present) = &mut self.present {
+                    present.measured.push(measurement.clone());
+                }
+            }
+            RunEvent::StepFinished(result) => self.step_finished(place, result),
+            RunEvent::ProcedureFinished {
+                verdict, message, ..
+            } => {
+                let progress = &mut self.procedures[place];
+                progress.verdict = Some(*verdict);
+                progress.message.clone_from(message);
+                self.present = None;
+            }
+            RunEvent::UnsolicitedEvent(_) | RunEvent::UnsolicitedBrake { .. } => {}
+        }
+    }
+
+    fn step_finished(&mut self, place: usize, result: &StepResult) {
+        self.done += 1;
+        if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) {
+            self.not_passed += 1;
+        }
+        let progress = &mut self.procedures[place];
+        if let Some(step) = progress.procedure.steps.get(result.index) {
+            self.worst_done += step.worst_case;
+            self.took += result.bench_time;
+        }
+        progress.results.push(result.clone());
+        if let Some(present) = &mut self.present {
+            present.waiting = None;
+            present.prompt = None;
+        }
+    }
+}
+
+impl Present {
+    fn of(procedure: usize) -> Self {
+        Self {
+            procedure,
+            step: None,
+            name: String::new(),
+            waiting: None,
+            prompt: None,
+            paused: None,
+            measured: Vec::new(),
+        }
+    }
+}
