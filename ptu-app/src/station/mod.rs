@@ -143,6 +143,11 @@ impl Station {
         self.stop.press();
     }
 
+    /// How often the present run was told to stop.
+    pub fn stop_presses(&self) -> u32 {
+        self.stop.presses()
+    }
+
     /// What the run's operator does: pause, single step, answers.
     pub fn board(&self) -> &Arc<Board> {
         &self.board

@@ -10,6 +10,10 @@ use protocol::Duration;
 use super::RunNews;
 use crate::run::{FaultSeen, Outcome, RunPlan, steps_of};
 
+/// Results and faults kept to be looked at: of a longer run those that did not pass, and all in the
+/// database.
+const KEPT: usize = 5_000;
+
 /// A run's procedures, steps, measurements and faults so far.
 #[derive(Debug)]
 pub struct Progress {
@@ -140,7 +144,8 @@ impl Progress {
         let Some(place) = self.place(id) else { return };
         match news {
             RunNews::Event(event) => self.event(place, event),
-            RunNews::Fault(fault) => self.faults.push(fault.clone()),
+            RunNews::Fault(fault) if self.faults.len() < KEPT => self.faults.push(fault.clone()),
+            RunNews::Fault(_) => {}
             RunNews::LinkLost(_) => {}
             RunNews::Ended => self.present = None,
         }
@@ -255,7 +260,10 @@ impl Progress {
             self.worst_done += step.worst_case;
             self.took += result.bench_time;
         }
-        progress.results.push(result.clone());
+        let passed = matches!(result.verdict, Verdict::Passed | Verdict::Skipped);
+        if self.done < KEPT || (!passed && self.not_passed < KEPT) {
+            progress.results.push(result.clone());
+        }
         if let Some(present) = &mut self.present {
             present.waiting = None;
             present.prompt = None;

@@ -6,5 +6,49 @@ wordings! {
     /// Choosing and running procedures.
     Procedures {
         title: "Procedures", "시험 절차";
+        find: "find", "찾기";
+        reload: "Reload scripts", "스크립트 다시 읽기";
+        all: "All", "전체";
+        none: "None", "해제";
+        chosen: "{steps} steps chosen, at most {time}", "{steps}개 단계 선택, 최대 {time}";
+        on_request: "on request", "요청 시만";
+        run: "Run", "시험 시작";
+        run_all: "Run on all units", "모든 유닛에서 시작";
+        find_part: "Find the part", "고장 부품 찾기";
+        find_part_hint: "As few of the chosen procedures' steps as it takes to find the part to replace", "교체할 부품을 찾는 데 필요한 만큼만 선택한 절차의 단계를 실행합니다";
+        pause: "Pause", "일시 정지";
+        resume: "Go on", "계속";
+        single_step: "One step", "한 단계";
+        stop: "Stop", "정지";
+        stop_again: "Cut clean-up short", "정리 단축";
+        repeat: "times", "반복";
+        stop_on_fail: "stop at the first failure", "첫 불합격에서 정지";
+        connect_first: "Connect a unit first", "먼저 유닛을 연결하십시오";
+        operator: "operator", "시험자";
+        script_errors: "The scripts have errors; nothing can be run until they are corrected", "스크립트에 오류가 있습니다. 고칠 때까지 실행할 수 없습니다";
+        scripts_changed: "Scripts changed since they were shown: look again, then run", "표시된 뒤 스크립트가 바뀌었습니다. 다시 확인한 후 시작하십시오";
+        not_loaded: "The scripts cannot be read", "스크립트를 읽을 수 없습니다";
+        not_begun: "The run was not begun", "시험을 시작하지 못했습니다";
+        no_such_step: "There is no such step in these scripts", "이 스크립트에는 그런 단계가 없습니다";
+        progress: "{done} of {all} steps, {bad} not passed", "{all}개 중 {done}개 단계, 합격 아님 {bad}";
+        elapsed: "{time} elapsed", "경과 {time}";
+        left: "about {time} of bench time left", "벤치 시간 약 {time} 남음";
+        bringing_up: "bringing the unit up", "유닛 준비 중";
+        waiting: "waiting for {what}: {left} s left", "대기 중: {what}, {left}초 남음";
+        paused: "Paused before: {step}", "일시 정지, 다음 단계: {step}";
+        asked: "The script asks", "스크립트 질문";
+        yes: "Yes", "예";
+        no: "No", "아니요";
+        script: "script", "스크립트";
+        measurements: "measurements", "측정값";
+        no_measurements: "This step measures nothing", "이 단계에는 측정이 없습니다";
+        results: "results", "결과";
+        only_bad: "only those not passed", "합격이 아닌 것만";
+        faults_found: "faults found", "발견된 고장";
+        suspect: "suspect: {part}", "의심 부품: {part}";
+        to_diagnosis: "Diagnosis", "진단";
+        to_report: "Report", "성적서";
+        all_units: "units", "유닛";
+        choose_and_run: "Choose on the left what to run. Without a choice of your own everything runs but what is on request.", "왼쪽에서 실행할 절차를 고르십시오. 따로 고르지 않으면 요청 시만 하는 것을 빼고 모두 실행합니다.";
     }
 }

@@ -1,0 +1,90 @@
+//! Run, pause, single step, stop.
+
+use eframe::egui::{Button, DragValue, RichText, TextEdit, Ui};
+
+use super::ProceduresPage;
+use crate::gui::library::Asked;
+use crate::gui::{Desk, Palette};
+use crate::station::Phase;
+
+/// Most repetitions of a run.
+const MOST: u32 = 10_000;
+
+impl ProceduresPage {
+    pub(super) fn controls(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        ui.horizontal_wrapped(|ui| {
+            let phase = desk.units.chosen().phase();
+            if phase == Phase::Running {
+                running(ui, desk);
+            } else {
+                self.begin(ui, desk, phase);
+            }
+        });
+    }
+
+    fn begin(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, phase: Phase) {
+        let words = &desk.words.procedures;
+        let sound = matches!(&self.suite, Asked::There(suite) if suite.errors.is_empty());
+        let may = phase == Phase::Idle && sound && self.order.is_empty();
+        let run = Button::new(RichText::new(words.run).strong().size(17.0));
+        let run = ui.add_enabled(may, run);
+        if run.on_disabled_hover_text(words.connect_first).clicked() {
+            self.order(desk.units.chosen_place(), false, desk);
+        }
+        let find = ui.add_enabled(may, Button::new(words.find_part));
+        if find.on_hover_text(words.find_part_hint).clicked() {
+            self.order(desk.units.chosen_place(), true, desk);
+        }
+        if desk.units.count() > 1 {
+            let idle = |place: &usize| {
+                let unit = desk.units.iter().nth(*place);
+                unit.is_some_and(|unit| unit.phase() == Phase::Idle)
+            };
+            let ready: Vec<_> = (0..desk.units.count()).filter(idle).collect();
+            let all = ui.add_enabled(sound && !ready.is_empty(), Button::new(words.run_all));
+            if all.clicked() {
+                for place in ready {
+                    self.order(place, false, desk);
+                }
+            }
+        }
+        ui.add(
+            DragValue::new(&mut self.repeat)
+                .range(1..=MOST)
+                .suffix(format!(" × {}", words.repeat)),
+        );
+        ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
+        let label = ui.label(words.operator);
+        ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(120.0))
+            .labelled_by(label.id);
+        if phase != Phase::Idle {
+            ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));
+        }
+    }
+}
+
+fn running(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let words = &desk.words.procedures;
+    let station = &desk.units.chosen().station;
+    let board = station.board();
+    let paused = board.paused();
+    let pause = if paused { words.resume } else { words.pause };
+    if ui.button(pause).clicked() {
+        board.pause(!paused);
+    }
+    if ui
+        .add_enabled(paused, Button::new(words.single_step))
+        .clicked()
+    {
+        board.single_step();
+    }
+    let stop = if station.stop_presses() == 0 {
+        words.stop
+    } else {
+        words.stop_again
+    };
+    let stop = Button::new(RichText::new(stop).strong());
+    if ui.add(stop).clicked() {
+        station.stop_run();
+    }
+}

@@ -1,0 +1,105 @@
+//! Loads the suite for a unit, and makes an order of what is chosen; on the library's thread.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
+
+use super::selection::Selection;
+use crate::diagnosis;
+use crate::failure::Failure;
+use crate::gui::UnitChoice;
+use crate::gui::library::Shelf;
+use crate::run::{RunPlan, Suite};
+use crate::station::RunOrder;
+
+/// How what is chosen is run.
+#[derive(Clone, Debug)]
+pub struct How {
+    /// Who tests.
+    pub operator: String,
+    /// So often.
+    pub repeat: u32,
+    /// End after the first step that does not pass.
+    pub stop_on_fail: bool,
+    /// As few steps as it takes to find the part.
+    pub adaptive: bool,
+}
+
+/// The suite as it is on the disk now, for this unit.
+///
+/// # Errors
+/// A file cannot be read, or something chosen is not there.
+pub fn load(shelf: &Shelf, choice: &UnitChoice) -> Result<Suite, Failure> {
+    let setup = choice.named()?.setup(&shelf.scripts)?;
+    Suite::load(&shelf.scripts, &[], &setup)
+}
+
+/// What loading for an order came to.
+pub enum Prepared {
+    /// It can be run.
+    Order(Box<RunOrder>),
+    /// Scripts are no longer those that were shown: look at these first.
+    Changed(Box<Suite>),
+}
+
+/// An order of what is chosen. The list shown is the list run: scripts that changed since are not run.
+///
+/// # Errors
+/// Nothing is chosen, or a dictionary for an adaptive run is missing.
+pub fn order(
+    shelf: &Shelf,
+    choice: &UnitChoice,
+    serial: &str,
+    selection: &Selection,
+    how: How,
+    shown_sha256: &str,
+) -> Result<Prepared, Failure> {
+    let suite = load(shelf, choice)?;
+    if suite.sha256 != shown_sha256 || !suite.errors.is_empty() {
+        return Ok(Prepared::Changed(Box::new(suite)));
+    }
+    let tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
+    if tasks.is_empty() {
+        return Err(Failure::usage("no step is chosen"));
+    }
+    let adaptive = match how.adaptive {
+        true => {
+            let setup = choice.named()?.setup(&shelf.scripts)?;
+            let bench = diagnosis::Bench {
+                unit_config_sha256: &setup.config.sha256,
+                line: &choice.line,
+                train: &choice.train,
+            };
+            let store = shelf.read()?;
+            Some(diagnosis::adaptive(&store, &shelf.scripts, serial, &bench)?)
+        }
+        false => None,
+    };
+    let own = shelf.clone();
+    Ok(Prepared::Order(Box::new(RunOrder {
+        plan: RunPlan {
+            tasks,
+            jobs: 1,
+            stop_on_fail: how.stop_on_fail,
+            operator: how.operator,
+            scripts_sha256: suite.sha256,
+            adaptive,
+        },
+        open_store: Box::new(move || own.open()),
+        realtime: choice.realtime,
+    })))
+}
+
+/// Procedures by their folder, in order.
+pub fn folders(procedures: &[Arc<Procedure>]) -> Vec<(&str, &[Arc<Procedure>])> {
+    let folder = |procedure: &Arc<Procedure>| procedure.id.rfind('/').unwrap_or(0);
+    let name = |procedure: &'_ Arc<Procedure>| procedure.id[..folder(procedure)].to_owned();
+    procedures
+        .chunk_by(|a, b| name(a) == name(b))
+        .filter_map(|chunk| {
+            chunk
+                .first()
+                .map(|first| (&first.id[..folder(first)], chunk))
+        })
+        .collect()
+}

@@ -1,0 +1,126 @@
+//! The step under way: what it waits for, what it asks, its script line, what it measures.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
+
+use super::results::{measurements, source};
+use super::tree::{minutes, title};
+use crate::gui::Palette;
+use crate::gui::parts::verdict_chip;
+use crate::station::{Board, Present, Progress};
+use crate::words::{Words, fill};
+
+/// Lines shown before and after the script's present one.
+const AROUND: Range<u32> = 2..5;
+
+/// How far the run is, and the step under way.
+pub fn present(
+    ui: &mut Ui,
+    words: &Words,
+    run: &Progress,
+    board: &Board,
+    texts: Option<&BTreeMap<String, String>>,
+) {
+    head(ui, words, run);
+    if !run.is_running() {
+        return;
+    }
+    let Some(present) = &run.present else {
+        ui.label(words.procedures.bringing_up);
+        return;
+    };
+    let Some(progress) = run.procedures.get(present.procedure) else {
+        return;
+    };
+    let procedure = &progress.procedure;
+    ui.label(
+        RichText::new(format!("{}: {}", procedure.id, present.name))
+            .strong()
+            .size(17.0),
+    );
+    ui.label(RichText::new(title(procedure, words)).italics());
+    waits(ui, words, present);
+    prompt(ui, words, present, board);
+    let Some(step) = run.step() else { return };
+    if let Some(note) = &step.note {
+        ui.label(format!("{}: {note}", words.common.note));
+    }
+    source(ui, texts, &procedure.path, step.line, AROUND);
+    measurements(ui, &present.measured);
+}
+
+fn head(ui: &mut Ui, words: &Words, run: &Progress) {
+    let procedures = &words.procedures;
+    ui.horizontal(|ui| {
+        ui.add(
+            ProgressBar::new(run.share())
+                .desired_width(260.0)
+                .show_percentage(),
+        );
+        let counts: [(&str, &dyn std::fmt::Display); 3] = [
+            ("done", &run.done),
+            ("all", &run.steps),
+            ("bad", &run.not_passed),
+        ];
+        ui.label(fill(procedures.progress, &counts));
+        match &run.ended {
+            Some(Some(outcome)) => {
+                verdict_chip(ui, outcome.verdict, words);
+            }
+            Some(None) => {
+                ui.colored_label(Palette::of(ui).bad, words.frame.run_failed);
+            }
+            None => {
+                let elapsed = minutes(run.elapsed_s());
+                ui.label(fill(procedures.elapsed, &[("time", &elapsed)]));
+                if let Some(left) = run.left_s() {
+                    ui.label(fill(procedures.left, &[("time", &minutes(left))]));
+                }
+            }
+        }
+    });
+}
+
+fn waits(ui: &mut Ui, words: &Words, present: &Present) {
+    let palette = Palette::of(ui);
+    if let Some(next) = &present.paused {
+        let said = fill(words.procedures.paused, &[("step", next)]);
+        ui.label(RichText::new(said).color(palette.warn).strong());
+    } else if let Some(waiting) = &present.waiting {
+        let left = format!("{:.1}", waiting.left_s());
+        let said = fill(
+            words.procedures.waiting,
+            &[("what", &waiting.what), ("left", &left)],
+        );
+        ui.label(RichText::new(said).color(palette.quiet));
+    }
+}
+
+fn prompt(ui: &mut Ui, words: &Words, present: &Present, board: &Board) {
+    let Some(prompt) = &present.prompt else {
+        return;
+    };
+    let warn = Palette::of(ui).warn;
+    Frame::new()
+        .stroke((2.0, warn))
+        .inner_margin(Margin::same(10))
+        .corner_radius(4)
+        .show(ui, |ui| {
+            ui.label(RichText::new(words.procedures.asked).color(warn).small());
+            ui.label(RichText::new(&prompt.what).size(17.0));
+            ui.horizontal(|ui| {
+                if ui
+                    .button(RichText::new(words.procedures.yes).strong())
+                    .clicked()
+                {
+                    board.answer(true);
+                }
+                if ui.button(words.procedures.no).clicked() {
+                    board.answer(false);
+                }
+                ui.label(format!("{:.0} s", prompt.left_s()));
+            });
+        });
+}

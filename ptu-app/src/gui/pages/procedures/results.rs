@@ -1,0 +1,216 @@
+//! What the steps came to, and the details of the chosen one.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use btu_rig::procedure::{Measurement, StepResult, Verdict};
+use eframe::egui::{Button, Grid, RichText, ScrollArea, Ui};
+
+use crate::gui::parts::{limit_bar, value_text, verdict_chip};
+use crate::gui::{Go, Palette};
+use crate::station::Progress;
+use crate::words::{Words, fill};
+
+/// Lines shown before and after a step's.
+const AROUND: Range<u32> = 1..4;
+
+/// What of the results is shown.
+#[derive(Default)]
+pub struct Shown {
+    all: bool,
+    /// Places of the procedure and of the result in it.
+    chosen: Option<(usize, usize)>,
+}
+
+/// Ways on from a run that is over.
+pub fn after_run(ui: &mut Ui, words: &Words, run: &Progress, go: &mut Vec<Go>) {
+    let Some(id) = run.id() else { return };
+    ui.horizontal(|ui| {
+        let found = !run.faults.is_empty() || run.not_passed > 0;
+        let button = Button::new(RichText::new(words.procedures.to_diagnosis).strong());
+        if ui.add_enabled(found, button).clicked() {
+            go.push(Go::Diagnosis(id));
+        }
+        if ui.button(words.procedures.to_report).clicked() {
+            go.push(Go::Report(id));
+        }
+    });
+}
+
+/// Steps that did not pass, or all, and faults.
+pub fn results(
+    ui: &mut Ui,
+    words: &Words,
+    run: &Progress,
+    shown: &mut Shown,
+    texts: Option<&BTreeMap<String, String>>,
+) {
+    ui.separator();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(words.procedures.results).strong());
+        let mut only_bad = !shown.all;
+        ui.checkbox(&mut only_bad, words.procedures.only_bad);
+        shown.all = !only_bad;
+    });
+    let all = shown.all;
+    let rows: Vec<(usize, usize, &StepResult)> = run
+        .procedures
+        .iter()
+        .enumerate()
+        .flat_map(|(p, progress)| {
+            let results = progress.results.iter().enumerate();
+            results.map(move |(r, result)| (p, r, result))
+        })
+        .filter(|(.., result)| all || !matches!(result.verdict, Verdict::Passed | Verdict::Skipped))
+        .collect();
+    if let Some(result) = chosen(run, shown) {
+        details(ui, words, run, result, texts);
+        ui.separator();
+    }
+    if !run.faults.is_empty() {
+        faults(ui, words, run);
+    }
+    let height = ui.text_style_height(&eframe::egui::TextStyle::Body) + 4.0;
+    ScrollArea::vertical()
+        .id_salt("results")
+        .auto_shrink(false)
+        .stick_to_bottom(run.is_running())
+        .show_rows(ui, height, rows.len(), |ui, range| {
+            for (p, r, result) in rows.get(range).into_iter().flatten() {
+                let on = shown.chosen == Some((*p, *r));
+                row(ui, words, run, (*p, *r), result, on, shown);
+            }
+        });
+}
+
+fn row(
+    ui: &mut Ui,
+    words: &Words,
+    run: &Progress,
+    place: (usize, usize),
+    result: &StepResult,
+    on: bool,
+    shown: &mut Shown,
+) {
+    ui.horizontal(|ui| {
+        verdict_chip(ui, result.verdict, words);
+        let id = run.procedures.get(place.0).map(|p| p.procedure.id.as_str());
+        let name = format!("{}: {}", id.unwrap_or_default(), result.name);
+        if ui.selectable_label(on, name).clicked() {
+            shown.chosen = (!on).then_some(place);
+        }
+        if !result.message.is_empty() {
+            let message = RichText::new(&result.message).color(Palette::of(ui).quiet);
+            ui.add(eframe::egui::Label::new(message).truncate());
+        }
+    });
+}
+
+fn chosen<'a>(run: &'a Progress, shown: &Shown) -> Option<(usize, &'a StepResult)> {
+    let (procedure, result) = shown.chosen?;
+    Some((
+        procedure,
+        run.procedures.get(procedure)?.results.get(result)?,
+    ))
+}
+
+fn details(
+    ui: &mut Ui,
+    words: &Words,
+    run: &Progress,
+    (procedure, result): (usize, &StepResult),
+    texts: Option<&BTreeMap<String, String>>,
+) {
+    let Some(progress) = run.procedures.get(procedure) else {
+        return;
+    };
+    let procedure = &progress.procedure;
+    ui.label(RichText::new(format!("{}: {}", procedure.id, result.name)).strong());
+    if !result.message.is_empty() {
+        ui.label(&result.message);
+    }
+    if result.verdict == Verdict::Failed && !result.suspect.is_empty() {
+        ui.label(fill(words.procedures.suspect, &[("part", &result.suspect)]));
+    }
+    if let Some(note) = procedure
+        .steps
+        .get(result.index)
+        .and_then(|step| step.note.as_ref())
+    {
+        ui.label(format!("{}: {note}", words.common.note));
+    }
+    if result.measurements.is_empty() {
+        ui.label(RichText::new(words.procedures.no_measurements).color(Palette::of(ui).quiet));
+    }
+    measurements(ui, &result.measurements);
+    source(ui, texts, &procedure.path, result.line, AROUND);
+}
+
+/// Measurements with their limits as bars.
+pub fn measurements(ui: &mut Ui, measured: &[Measurement]) {
+    if measured.is_empty() {
+        return;
+    }
+    Grid::new("measurements").num_columns(3).show(ui, |ui| {
+        for measurement in measured {
+            ui.label(&measurement.name);
+            limit_bar(ui, measurement);
+            let colour = Palette::of(ui).verdict(measurement.verdict);
+            ui.colored_label(colour, value_text(measurement));
+            ui.end_row();
+        }
+    });
+}
+
+/// The script around a line, which is marked.
+pub fn source(
+    ui: &mut Ui,
+    texts: Option<&BTreeMap<String, String>>,
+    path: &str,
+    line: u32,
+    around: Range<u32>,
+) {
+    let Some(text) = texts.and_then(|texts| texts.get(path)) else {
+        return;
+    };
+    let palette = Palette::of(ui);
+    let first = line.saturating_sub(around.start).max(1);
+    let lines = (first..).zip(text.lines().skip(first as usize - 1));
+    let job = lines
+        .take_while(|(number, _)| *number < line + around.end)
+        .map(|(number, text)| {
+            let mark = if number == line { "▶" } else { " " };
+            (number == line, format!("{mark}{number:>4}  {text}"))
+        });
+    ui.label(
+        RichText::new(format!("{path}:{line}"))
+            .small()
+            .color(palette.quiet),
+    );
+    for (present, text) in job {
+        let text = RichText::new(text).monospace();
+        let text = if present {
+            text.color(palette.accent)
+        } else {
+            text.color(palette.quiet)
+        };
+        ui.add(eframe::egui::Label::new(text).truncate());
+    }
+}
+
+fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
+    ui.label(RichText::new(words.procedures.faults_found).strong());
+    ScrollArea::vertical()
+        .id_salt("faults")
+        .max_height(110.0)
+        .show(ui, |ui| {
+            for fault in &run.faults {
+                let bad = Palette::of(ui).bad;
+                ui.horizontal(|ui| {
+                    ui.colored_label(bad, format!("{} {}", fault.code, fault.name));
+                    ui.label(fill(words.procedures.suspect, &[("part", &fault.lru)]));
+                    ui.label(&fault.message);
+                });
+            }
+        });
+}
