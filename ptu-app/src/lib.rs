@@ -8,6 +8,7 @@
 //! * [`campaign`]: the suite against every fault mode, for the fault dictionary and its worth;
 //! * [`diagnosis`]: from a run to the part to replace;
 //! * [`field`]: a unit's own event log becomes faults in the history;
+//! * [`trace_view`]: recorded signals as lanes of a plot, without anything of a window;
 //! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
 //! * [`data`]: the scripts directory.
 //!
@@ -34,4 +35,5 @@ pub mod run;
 pub mod station;
 pub mod stop;
 mod table;
+pub mod trace_view;
 pub mod words;

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use fault_db::RunDetail;
 
 pub use json::{fault_json, run_json, run_summary_json};
+pub(crate) use plot::round_step;
 
 use crate::data;
 use crate::failure::Failure;

@@ -1,6 +1,7 @@
 //! Small widgets that several pages use.
 
 mod chip;
+pub mod lane;
 mod limit_bar;
 
 pub use chip::{chip, verdict_chip};

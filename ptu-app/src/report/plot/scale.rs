@@ -65,7 +65,7 @@ impl Scale {
 }
 
 /// The least of 1, 2 and 5 times a power of ten that is not below `step`.
-fn round_step(step: f64) -> f64 {
+pub fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
     let mantissa = step / power;
     let round = [1.0, 2.0, 5.0, 10.0]

@@ -1,0 +1,264 @@
+//! One lane of a plot: a quantity, a choice or a bit along an axis that lanes share. Paints columns and
+//! stretches of pixels ([`crate::trace_view`]); samples are none of its business.
+
+use eframe::egui::epaint::Vertex;
+use eframe::egui::{
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2,
+};
+
+use crate::gui::Palette;
+use crate::trace_view::ticks::Ticks;
+use crate::trace_view::{Column, Shown, Span, Window};
+
+/// Size of the text beside an axis and in boxes.
+pub const TEXT: f32 = 11.5;
+/// Height of an axis shared by lanes, with its text.
+pub const AXIS_HEIGHT: f32 = 20.0;
+/// Room between two values beside an axis.
+const TICK_ROOM: (f32, f32) = (90.0, 24.0);
+/// Left free above and below what a lane shows.
+const FREE: f32 = 3.0;
+/// Half the width of a curve, and of the blur at its edge.
+const HALF_WIDTH: f32 = 0.7;
+const BLUR: f32 = 0.6;
+/// Narrowest box with text in it.
+const NARROWEST: f32 = 18.0;
+
+/// Vertical lines at round values, behind lanes, over the whole height of `rect`.
+pub fn grid(painter: &Painter, rect: Rect, window: Window, palette: &Palette) {
+    for x in x_ticks(rect, window).values() {
+        painter.vline(
+            x_at(rect, window, x),
+            rect.y_range(),
+            Stroke::new(1.0, palette.grid),
+        );
+    }
+}
+
+/// Values along the axis that lanes share, with its unit at the right end.
+pub fn x_axis(painter: &Painter, rect: Rect, window: Window, unit: &str, palette: &Palette) {
+    let ticks = x_ticks(rect, window);
+    let font = FontId::proportional(TEXT);
+    let y = rect.top() + 3.0;
+    let end = painter.text(
+        pos2(rect.right(), y),
+        Align2::RIGHT_TOP,
+        unit,
+        font.clone(),
+        palette.quiet,
+    );
+    for value in ticks.values() {
+        let x = x_at(rect, window, value);
+        painter.vline(
+            x,
+            rect.top()..=rect.top() + 3.0,
+            Stroke::new(1.0, palette.quiet),
+        );
+        if x + TICK_ROOM.1 < end.left() {
+            let at = pos2(x, y);
+            painter.text(
+                at,
+                Align2::CENTER_TOP,
+                ticks.written(value),
+                font.clone(),
+                palette.quiet,
+            );
+        }
+    }
+}
+
+/// Values beside a quantity's lane, right-aligned in `gutter`, with a line through `rect` at each.
+pub fn y_axis(painter: &Painter, gutter: Rect, rect: Rect, range: (f64, f64), palette: &Palette) {
+    let room = rect.height() / TICK_ROOM.1;
+    let ticks = Ticks::of(range, f64::from(room.clamp(1.0, 6.0)));
+    let font = FontId::proportional(TEXT);
+    for value in ticks.values() {
+        let y = y_at(rect, range, value);
+        painter.hline(rect.x_range(), y, Stroke::new(1.0, palette.grid));
+        // Half a line of text away from the edges, or it would be cut or meet its neighbour's.
+        let half = TEXT / 2.0 + 1.0;
+        if y - half >= rect.top() && y + half <= rect.bottom() {
+            painter.text(
+                pos2(gutter.right() - 4.0, y),
+                Align2::RIGHT_CENTER,
+                ticks.written(value),
+                font.clone(),
+                palette.quiet,
+            );
+        }
+    }
+}
+
+/// A quantity: one mesh, with an edge that is smooth without the tessellator's help.
+pub fn quantity(
+    painter: &Painter,
+    rect: Rect,
+    columns: &[Column],
+    range: (f64, f64),
+    colour: Color32,
+) {
+    let width = rect.width() / columns.len().max(1) as f32;
+    let y = |value: f32| y_at(rect, range, f64::from(value));
+    let mut mesh = Mesh::default();
+    mesh.reserve_vertices(4 * columns.len() + 8);
+    mesh.reserve_triangles(6 * columns.len());
+    let mut before: Option<Column> = None;
+    for (i, column) in columns.iter().enumerate() {
+        if !column.is_known() {
+            before = None;
+            continue;
+        }
+        let left = rect.left() + i as f32 * width;
+        let (top, bottom) = (y(column.high), y(column.low));
+        let after = columns.get(i + 1).filter(|after| after.is_known());
+        if before.is_none() {
+            rib(&mut mesh, left, top, bottom, colour);
+        }
+        // Amid equal ones it adds nothing.
+        if before != Some(*column) || after != Some(column) {
+            rib(&mut mesh, left + width / 2.0, top, bottom, colour);
+            join(&mut mesh);
+        }
+        if after.is_none() {
+            rib(&mut mesh, left + width, top, bottom, colour);
+            join(&mut mesh);
+        }
+        before = Some(*column);
+    }
+    if !mesh.is_empty() {
+        painter
+            .with_clip_rect(painter.clip_rect().intersect(rect))
+            .add(Shape::mesh(mesh));
+    }
+}
+
+/// A choice: a box per stretch with its label.
+pub fn choice(
+    painter: &Painter,
+    rect: Rect,
+    spans: &[Span],
+    colour: Color32,
+    palette: &Palette,
+    label: impl Fn(f64) -> String,
+) {
+    let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
+    let text = if palette.dark {
+        Color32::WHITE
+    } else {
+        Color32::BLACK
+    };
+    for span in spans {
+        let area = span_rect(rect, span);
+        let Shown::Value(value) = span.shown else {
+            busy(&painter, area, colour);
+            continue;
+        };
+        painter.rect(
+            area,
+            2.0,
+            colour.gamma_multiply(0.18),
+            Stroke::new(1.0, colour),
+            StrokeKind::Inside,
+        );
+        if area.width() >= NARROWEST {
+            let clip = area.shrink2(vec2(3.0, 0.0));
+            painter
+                .with_clip_rect(painter.clip_rect().intersect(clip))
+                .text(
+                    pos2(clip.left(), area.center().y),
+                    Align2::LEFT_CENTER,
+                    label(value),
+                    FontId::proportional(TEXT),
+                    text,
+                );
+        }
+    }
+}
+
+/// A bit: a line that is up where it is set, with the ground below it filled.
+pub fn bit(painter: &Painter, rect: Rect, spans: &[Span], colour: Color32) {
+    let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
+    let inner = rect.shrink2(vec2(0.0, FREE));
+    let line = Stroke::new(1.5, colour);
+    let mut before: Option<(f32, f32)> = None;
+    for span in spans {
+        let area = span_rect(inner, span);
+        let Shown::Value(value) = span.shown else {
+            busy(&painter, area, colour);
+            before = None;
+            continue;
+        };
+        let y = if value == 0.0 {
+            area.bottom()
+        } else {
+            painter.rect_filled(area, 0.0, colour.gamma_multiply(0.25));
+            area.top()
+        };
+        painter.hline(area.x_range(), y, line);
+        if let Some((x, at)) = before
+            && (x - area.left()).abs() < 1.0
+            && at != y
+        {
+            painter.vline(area.left(), inner.y_range(), line);
+        }
+        before = Some((area.right(), y));
+    }
+}
+
+/// Where a value of the shared axis lies.
+pub fn x_at(rect: Rect, window: Window, value: f64) -> f32 {
+    rect.left() + (window.share(value) * f64::from(rect.width())) as f32
+}
+
+/// Where a value of a lane lies.
+pub fn y_at(rect: Rect, (low, high): (f64, f64), value: f64) -> f32 {
+    let inner = rect.shrink2(vec2(0.0, FREE));
+    inner.bottom() - ((value - low) / (high - low) * f64::from(inner.height())) as f32
+}
+
+fn x_ticks(rect: Rect, window: Window) -> Ticks {
+    let about = rect.width() / TICK_ROOM.0;
+    Ticks::of((window.from, window.to), f64::from(about))
+}
+
+fn span_rect(rect: Rect, span: &Span) -> Rect {
+    Rect::from_min_max(
+        pos2(rect.left() + span.from, rect.top() + 1.0),
+        pos2(rect.left() + span.to, rect.bottom() - 1.0),
+    )
+}
+
+/// Changes too fast to be told apart: a solid bar, hatched where there is room.
+fn busy(painter: &Painter, area: Rect, colour: Color32) {
+    painter.rect_filled(area, 0.0, colour.gamma_multiply(0.6));
+    let mut x = area.left() + 3.0;
+    while x < area.right() {
+        painter.vline(x, area.y_range(), Stroke::new(1.0, colour));
+        x += 3.0;
+    }
+}
+
+/// Four points across a curve: blurred edge, edge, edge, blurred edge.
+fn rib(mesh: &mut Mesh, x: f32, top: f32, bottom: f32, colour: Color32) {
+    let clear = Color32::TRANSPARENT;
+    let (top, bottom) = (top - HALF_WIDTH, bottom + HALF_WIDTH);
+    for (y, colour) in [
+        (top - BLUR, clear),
+        (top, colour),
+        (bottom, colour),
+        (bottom + BLUR, clear),
+    ] {
+        let pos: Pos2 = pos2(x, y);
+        mesh.vertices.push(Vertex::untextured(pos, colour));
+    }
+}
+
+/// Joins the last two ribs.
+fn join(mesh: &mut Mesh) {
+    let after = mesh.vertices.len() as u32 - 4;
+    let before = after - 4;
+    for i in 0..3 {
+        mesh.add_triangle(before + i, before + i + 1, after + i);
+        mesh.add_triangle(before + i + 1, after + i, after + i + 1);
+    }
+}

@@ -1,0 +1,70 @@
+//! Round values along an axis.
+
+use crate::report::round_step;
+
+/// Round values along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ticks {
+    step: f64,
+    first: i64,
+    last: i64,
+}
+
+impl Ticks {
+    /// Of an axis from one value to another, about as many as are asked for and never many more.
+    pub fn of((low, high): (f64, f64), about: f64) -> Self {
+        let step = round_step((high - low).max(f64::MIN_POSITIVE) / about.max(1.0));
+        Self {
+            step,
+            first: (low / step - 1e-9).ceil() as i64,
+            last: (high / step + 1e-9).floor() as i64,
+        }
+    }
+
+    /// The values.
+    pub fn values(self) -> impl Iterator<Item = f64> {
+        (self.first..=self.last).map(move |i| i as f64 * self.step)
+    }
+
+    /// A value as it is written beside the axis.
+    pub fn written(self, value: f64) -> String {
+        let decimals = (-self.step.log10().floor()).max(0.0) as usize;
+        format!("{value:.decimals$}").replace('-', "−")
+    }
+}
+
+/// An axis' range for an extent: room above and below, and no range of nothing.
+pub fn range((low, high): (f64, f64)) -> (f64, f64) {
+    const FREE: f64 = 0.06;
+    if high - low <= 1e-9 * high.abs().max(1.0) {
+        return (low - 0.5, high + 0.5);
+    }
+    let room = (high - low) * FREE;
+    (low - room, high + room)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(extent: (f64, f64), about: f64) -> String {
+        let ticks = Ticks::of(extent, about);
+        let all: Vec<_> = ticks.values().map(|value| ticks.written(value)).collect();
+        all.join(" ")
+    }
+
+    #[test]
+    fn ticks_are_round_and_as_many_as_fit() {
+        assert_eq!(written((0.0, 63.0), 6.0), "0 20 40 60");
+        assert_eq!(written((-0.7, 0.9), 3.0), "0");
+        assert_eq!(written((-0.7, 0.9), 6.0), "−0.5 0.0 0.5");
+        assert_eq!(written((0.0, 0.12), 3.0), "0.00 0.05 0.10");
+    }
+
+    #[test]
+    fn a_constant_has_a_range_too() {
+        assert_eq!(range((3.0, 3.0)), (2.5, 3.5));
+        assert_eq!(range((0.0, 100.0)), (-6.0, 106.0));
+        assert_eq!(written(range((3.0, 3.0)), 2.0), "2.5 3.0 3.5");
+    }
+}
