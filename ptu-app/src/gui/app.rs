@@ -40,6 +40,7 @@ pub struct App {
     pages: Pages,
     go: Vec<Go>,
     closing: bool,
+    closed: bool,
 }
 
 impl App {
@@ -62,6 +63,7 @@ impl App {
             pages: Pages::default(),
             go: Vec::new(),
             closing: false,
+            closed: false,
         })
     }
 
@@ -108,6 +110,11 @@ impl App {
         &self.units
     }
 
+    /// It is closed: every run recorded, every unit disarmed.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     /// The page shown.
     pub fn page(&self) -> Page {
         self.settings.page
@@ -135,6 +142,7 @@ impl App {
             return;
         }
         if self.units.close() {
+            self.closed = true;
             context.send_viewport_cmd(ViewportCommand::Close);
         } else {
             context.send_viewport_cmd(ViewportCommand::CancelClose);

@@ -13,7 +13,7 @@ use super::library::{Asked, Library};
 use crate::failure::Failure;
 use crate::link::Endpoint;
 use crate::run::{BenchSetup, Choice};
-use crate::station::{News, Phase, Progress, RunOrder, Station, Wake};
+use crate::station::{News, Phase, Progress, RunNews, RunOrder, Station, Wake};
 use crate::words::{Words, fill};
 
 /// Entries of a unit's log that are shown.
@@ -114,6 +114,8 @@ pub struct Unit {
     pub log: VecDeque<UnitEvent>,
     /// Its present or last run.
     pub run: Option<Progress>,
+    /// The person knows that it cannot be reached.
+    lost: bool,
 }
 
 impl Unit {
@@ -124,6 +126,7 @@ impl Unit {
             setup: Asked::Not,
             log: VecDeque::new(),
             run: None,
+            lost: false,
         })
     }
 
@@ -188,11 +191,12 @@ impl Unit {
         match news {
             News::Connected { serial } => {
                 self.log.clear();
+                self.lost = false;
                 messages.tell(fill(frame.is_connected, &[("unit", &serial)]));
             }
             News::NotConnected(why) => messages.trouble(frame.cannot_connect, why),
             News::Disconnected => messages.tell(frame.is_disconnected),
-            News::LinkLost(why) => messages.trouble(frame.link_lost, why),
+            News::LinkLost(why) => self.lose(why, words, messages),
             News::NotSafe => messages.trouble(frame.not_safe, ""),
             News::UnitRestarted => messages.trouble(frame.unit_restarted, ""),
             News::NotDone { asked, why } => {
@@ -205,8 +209,8 @@ impl Unit {
                 self.log.push_back(entry);
             }
             News::Run { procedure, what } => {
-                if let crate::station::RunNews::LinkLost(why) = &what {
-                    messages.trouble(frame.link_lost, why.clone());
+                if let RunNews::LinkLost(why) = &what {
+                    self.lose(why.clone(), words, messages);
                 }
                 if let Some(run) = &mut self.run {
                     run.hear(&procedure, &what);
@@ -225,6 +229,15 @@ impl Unit {
                     run.end(None);
                 }
             }
+        }
+    }
+}
+
+impl Unit {
+    /// Said once, though every procedure of a run finds it out for itself.
+    fn lose(&mut self, why: String, words: &Words, messages: &mut Messages) {
+        if !std::mem::replace(&mut self.lost, true) {
+            messages.trouble(words.frame.link_lost, why);
         }
     }
 }

@@ -45,7 +45,7 @@ wordings! {
         scatter: "vary as good units do", "정상 유닛의 편차 적용";
         realtime: "real-time runs", "실시간 시험";
         inject: "injected faults", "주입 고장";
-        find: "find", "찾기";
+        find: "find a fault", "고장 찾기";
         none: "none", "없음";
         link_good: "link {share} %", "링크 {share} %";
         add_unit: "Add a unit", "유닛 추가";

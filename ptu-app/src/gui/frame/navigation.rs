@@ -2,6 +2,7 @@
 
 use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 
+use crate::gui::parts::named_combo;
 use crate::gui::{Desk, Page};
 use crate::words::Language;
 
@@ -44,9 +45,10 @@ fn look(ui: &mut Ui, desk: &mut Desk<'_>) {
         settings.dark = !settings.dark;
     }
     let combo = ComboBox::from_id_salt("language").selected_text(settings.language.name());
-    combo.show_ui(ui, |ui| {
+    let shown = combo.show_ui(ui, |ui| {
         for language in Language::ALL {
             ui.selectable_value(&mut settings.language, language, language.name());
         }
     });
+    named_combo(&shown.response, frame.language, settings.language.name());
 }

@@ -4,6 +4,7 @@ use eframe::egui::{ComboBox, DragValue, PopupCloseBehavior, ScrollArea, TextEdit
 
 use crate::gui::Desk;
 use crate::gui::library::Asked;
+use crate::gui::parts::named_combo;
 use crate::gui::units::UnitChoice;
 use crate::link::ports;
 use crate::station::Phase;
@@ -43,10 +44,11 @@ impl Setup {
         let mut opened = false;
         ui.add_enabled_ui(free, |ui| {
             let combo = ComboBox::from_id_salt("endpoint")
-                .selected_text(shown)
+                .selected_text(&shown)
                 .width(150.0);
             let combo = combo.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             let response = combo.show_ui(ui, |ui| self.endpoints(ui, words, choice));
+            named_combo(&response.response, words.common.unit, &shown);
             opened = response.response.clicked();
             ui.menu_button(words.frame.setup, |ui| self.surroundings(ui, words, choice));
         });
@@ -175,12 +177,13 @@ impl Setup {
 fn pick(ui: &mut Ui, label: &str, chosen: &mut String, names: &[String]) {
     ui.horizontal(|ui| {
         ui.label(label);
-        ComboBox::from_id_salt(label)
-            .selected_text(chosen.as_str())
-            .show_ui(ui, |ui| {
-                for name in names {
-                    ui.selectable_value(chosen, name.clone(), name);
-                }
-            });
+        let before = chosen.clone();
+        let combo = ComboBox::from_id_salt(label).selected_text(&before);
+        let shown = combo.show_ui(ui, |ui| {
+            for name in names {
+                ui.selectable_value(chosen, name.clone(), name);
+            }
+        });
+        named_combo(&shown.response, label, &before);
     });
 }

@@ -3,6 +3,8 @@
 mod chip;
 pub mod lane;
 mod limit_bar;
+mod named;
 
 pub use chip::{chip, verdict_chip};
 pub use limit_bar::{limit_bar, value_text};
+pub use named::named_combo;

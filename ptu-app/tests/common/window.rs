@@ -1,0 +1,157 @@
+//! The window without a screen: driven and read by what a screen reader would find.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use ptu_app::data::ScriptsDirectory;
+use ptu_app::gui::library::Shelf;
+use ptu_app::gui::{App, Options, Page, Settings};
+
+use super::{Place, scripts};
+
+/// Patience with what other threads do; a busy machine may hold them up.
+const PATIENCE: Duration = Duration::from_secs(90);
+const STEP: Duration = Duration::from_millis(15);
+
+/// A window in a place of its own.
+pub struct Window {
+    harness: Harness<'static, Option<App>>,
+    pub place: Place,
+}
+
+impl Window {
+    /// A window on the shipped scripts, with this page in front.
+    pub fn open(page: Page) -> Self {
+        let settings = Settings {
+            page,
+            ..Settings::default()
+        };
+        Self::with(Place::new(), scripts(), settings)
+    }
+
+    /// A window with these settings on these scripts.
+    pub fn with(place: Place, scripts: impl AsRef<std::path::Path>, settings: Settings) -> Self {
+        let shelf = Shelf {
+            database: place.path("history.db"),
+            scripts: ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts"),
+        };
+        let settings_file = Some(place.path("config/window.json"));
+        let mut options = Some(Options {
+            shelf,
+            settings,
+            settings_file,
+        });
+        let show = move |ui: &mut eframe::egui::Ui, app: &mut Option<App>| match app {
+            Some(app) => app.show(ui),
+            // Fonts are there from the next frame on.
+            None => {
+                let options = options.take().expect("made once");
+                *app = Some(App::new(ui.ctx(), options, Arc::new(|| {})).expect("a window"));
+            }
+        };
+        let harness = Harness::builder()
+            .with_size([1280.0, 800.0])
+            .with_max_steps(8)
+            .build_ui_state(show, None);
+        Self { harness, place }
+    }
+
+    /// One frame, and a moment for the other threads.
+    pub fn step(&mut self) {
+        std::thread::sleep(STEP);
+        self.harness.step();
+    }
+
+    /// Frames until this holds.
+    pub fn until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
+        let began = Instant::now();
+        while !holds(self) {
+            assert!(
+                began.elapsed() < PATIENCE,
+                "waited in vain for {what}; shown: {:#?}",
+                self.shown()
+            );
+            self.step();
+        }
+    }
+
+    /// Frames until something of this name is shown.
+    pub fn wait_for(&mut self, label: &str) {
+        self.until(label, |window| window.shows(label));
+    }
+
+    /// Frames until something whose name contains this is shown.
+    pub fn wait_for_part(&mut self, part: &str) {
+        self.until(part, |window| window.shows_part(part));
+    }
+
+    /// Something of this name is shown.
+    pub fn shows(&self, label: &str) -> bool {
+        self.harness.query_all_by_label(label).next().is_some()
+    }
+
+    /// Something whose name contains this is shown.
+    pub fn shows_part(&self, part: &str) -> bool {
+        self.harness
+            .query_all_by_label_contains(part)
+            .next()
+            .is_some()
+    }
+
+    /// Clicks what has this name, once it is there and enabled.
+    pub fn click(&mut self, label: &str) {
+        self.until(&format!("{label} (enabled)"), |window| {
+            window.enabled(label)
+        });
+        self.harness
+            .query_all_by_label(label)
+            .find(|node| !node.accesskit_node().is_disabled())
+            .expect("just seen")
+            .click();
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// What has this name can be clicked.
+    pub fn enabled(&self, label: &str) -> bool {
+        let mut nodes = self.harness.query_all_by_label(label);
+        nodes.any(|node| !node.accesskit_node().is_disabled())
+    }
+
+    /// Writes into the field of this name.
+    pub fn write(&mut self, label: &str, text: &str) {
+        let field = |window: &Self| window.harness.query_all_by_label(label).count() > 0;
+        self.until(label, field);
+        let node = self.harness.query_all_by_label(label).last().expect("seen");
+        node.focus();
+        node.type_text(text);
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// Presses a key.
+    pub fn key(&mut self, key: eframe::egui::Key) {
+        self.harness.key_press(key);
+        self.harness.step();
+    }
+
+    /// The window itself.
+    pub fn app(&self) -> &App {
+        self.harness.state().as_ref().expect("made")
+    }
+
+    /// The harness, for what only some tests do.
+    pub fn harness(&mut self) -> &mut Harness<'static, Option<App>> {
+        &mut self.harness
+    }
+
+    /// Everything that has a name.
+    pub fn shown(&self) -> Vec<String> {
+        self.harness
+            .query_all_by_label_contains("")
+            .filter_map(|node| node.accesskit_node().label().or_else(|| node.value()))
+            .collect()
+    }
+}
