@@ -6,6 +6,7 @@ use super::{Database, ScriptsOption};
 use crate::failure::{Exit, Failure};
 use crate::gui::library::Shelf;
 use crate::gui::{Options, Page, Settings, open};
+use crate::link::Endpoint;
 use crate::words::Language;
 
 /// Open the technician's window
@@ -14,6 +15,7 @@ use crate::words::Language;
 ///   ptu gui                     as it was left
 ///   ptu gui --lang ko           in Korean
 ///   ptu gui --page traces       with the traces in front
+///   ptu gui --unit sim          connected to the embedded unit at once
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct GuiArguments {
@@ -23,6 +25,17 @@ pub struct GuiArguments {
     /// Page to show first: bench, procedures, traces, faults, diagnosis or report
     #[arg(long, value_name = "PAGE")]
     page: Option<Page>,
+    /// Connect at once: sim, serial:PATH[@BAUD] or tcp:HOST:PORT
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<Endpoint>,
+    /// Faults to inject into the embedded unit, see `ptu catalog faults`
+    #[arg(
+        long,
+        value_name = "FAULT[,FAULT]",
+        value_delimiter = ',',
+        requires = "unit"
+    )]
+    inject: Vec<String>,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -43,10 +56,17 @@ impl GuiArguments {
             database: self.database.path()?,
             scripts: self.scripts.find()?,
         };
+        if let Some(unit) = &self.unit {
+            settings.unit.endpoint = unit.to_string();
+            settings.unit.faults = self.inject;
+            // Before there is a window to say it in.
+            settings.unit.named()?.setup(&shelf.scripts)?;
+        }
         open(Options {
             shelf,
             settings,
             settings_file,
+            connect: self.unit.is_some(),
         })?;
         Ok(Exit::Passed)
     }

@@ -26,6 +26,8 @@ pub struct Options {
     pub settings: Settings,
     /// Where it is kept; none = nowhere.
     pub settings_file: Option<PathBuf>,
+    /// Connect the unit at once.
+    pub connect: bool,
 }
 
 /// The window.
@@ -52,9 +54,14 @@ impl App {
         fonts::set(context);
         theme::set(context);
         let settings = options.settings;
+        let mut units = Units::new(settings.unit.clone(), wake.clone())?;
+        let library = Library::new(options.shelf, wake)?;
+        if options.connect {
+            units.chosen_mut().connect(&library);
+        }
         Ok(Self {
-            units: Units::new(settings.unit.clone(), wake.clone())?,
-            library: Library::new(options.shelf, wake)?,
+            units,
+            library,
             saved: settings.clone(),
             settings,
             settings_file: options.settings_file,

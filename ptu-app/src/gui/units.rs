@@ -35,7 +35,8 @@ pub struct UnitChoice {
     pub train: String,
     /// Serial number expected, or given to the embedded unit; empty = any.
     pub serial: String,
-    /// Faults injected.
+    /// Faults injected; nobody wants to find one left over from yesterday.
+    #[serde(skip)]
     pub faults: Vec<String>,
     /// Seed of everything random.
     pub seed: u64,
@@ -114,6 +115,8 @@ pub struct Unit {
     pub log: VecDeque<UnitEvent>,
     /// Its present or last run.
     pub run: Option<Progress>,
+    /// Runs that have ended.
+    runs_ended: usize,
     /// The person knows that it cannot be reached.
     lost: bool,
 }
@@ -126,6 +129,7 @@ impl Unit {
             setup: Asked::Not,
             log: VecDeque::new(),
             run: None,
+            runs_ended: 0,
             lost: false,
         })
     }
@@ -217,6 +221,7 @@ impl Unit {
                 }
             }
             News::RunEnded(outcome) => {
+                self.runs_ended += 1;
                 let verdict = words.common.verdict(outcome.verdict);
                 messages.tell(fill(frame.run_ended, &[("verdict", &verdict)]));
                 if let Some(run) = &mut self.run {
@@ -327,6 +332,11 @@ impl Units {
             0 => &mut self.first,
             more => self.more.get_mut(more - 1).unwrap_or(&mut self.first),
         }
+    }
+
+    /// Runs that have ended here: what the database holds has changed when this has.
+    pub fn runs_ended(&self) -> usize {
+        self.iter().map(|unit| unit.runs_ended).sum()
     }
 
     /// Takes what happened at all of them.

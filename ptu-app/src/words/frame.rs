@@ -46,6 +46,7 @@ wordings! {
         realtime: "real-time runs", "실시간 시험";
         inject: "injected faults", "주입 고장";
         find: "find a fault", "고장 찾기";
+        injected: "injected: {faults}", "주입됨: {faults}";
         none: "none", "없음";
         link_good: "link {share} %", "링크 {share} %";
         add_unit: "Add a unit", "유닛 추가";

@@ -42,6 +42,7 @@ impl Window {
             shelf,
             settings,
             settings_file,
+            connect: false,
         });
         let show = move |ui: &mut eframe::egui::Ui, app: &mut Option<App>| match app {
             Some(app) => app.show(ui),

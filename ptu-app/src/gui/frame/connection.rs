@@ -97,6 +97,14 @@ fn identity(ui: &mut Ui, desk: &Desk<'_>) {
         ui.label(RichText::new(frame.not_connected).color(palette.quiet));
         return;
     }
+    if let Some(setup) = unit.setup.value().filter(|setup| !setup.faults.is_empty()) {
+        let names = setup.injected().unwrap_or_default();
+        chip(
+            ui,
+            &fill(frame.injected, &[("faults", &names)]),
+            palette.warn,
+        );
+    }
     if let Some(identity) = identity {
         let serial = crate::run::text(&identity.serial);
         ui.label(RichText::new(serial).strong());

@@ -4,7 +4,9 @@ mod chip;
 pub mod lane;
 mod limit_bar;
 mod named;
+mod run_list;
 
 pub use chip::{chip, verdict_chip};
 pub use limit_bar::{limit_bar, value_text};
 pub use named::named_combo;
+pub use run_list::RunList;

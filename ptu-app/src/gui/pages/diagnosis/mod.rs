@@ -1,24 +1,131 @@
-//! The page `diagnosis`.
+//! Diagnosis: the part to replace, why, and what to check next.
 
-use eframe::egui::Ui;
+mod candidates;
+
+use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::Id;
 
-use crate::gui::Desk;
+use crate::clock;
+use crate::diagnosis::{Answer, diagnose_run};
+use crate::gui::library::Asked;
+use crate::gui::parts::RunList;
+use crate::gui::{Desk, Go, Palette};
+use crate::words::fill;
 
 /// The page.
 #[derive(Default)]
 pub struct DiagnosisPage {
-    chosen: Option<Id>,
+    runs: RunList,
+    run: Option<Id>,
+    answer: Asked<Answer>,
 }
 
 impl DiagnosisPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        ui.heading(desk.words.diagnosis.title);
+        self.answer.poll();
+        let list = Panel::left("diagnosed runs").default_size(270.0);
+        let clicked = list.show(ui, |ui| self.runs.show(ui, desk, self.run)).inner;
+        let unasked = if self.run.is_none() {
+            self.runs.foremost()
+        } else {
+            None
+        };
+        if let Some(run) = clicked.or(unasked) {
+            self.open(run, desk);
+        }
+        CentralPanel::default().show(ui, |ui| {
+            ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| self.answer(ui, desk));
+        });
     }
 
-    /// Shows this one.
-    pub fn open(&mut self, run: Id, _desk: &mut Desk<'_>) {
-        self.chosen = Some(run);
+    /// Shows what this run comes to.
+    pub fn open(&mut self, run: Id, desk: &mut Desk<'_>) {
+        self.run = Some(run);
+        self.answer = Asked::Pending(
+            desk.library
+                .ask(move |shelf| diagnose_run(&shelf.read()?, &shelf.scripts, run)),
+        );
     }
+
+    fn answer(&self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let words = &desk.words.diagnosis;
+        let palette = Palette::of(ui);
+        let answer = match &self.answer {
+            Asked::There(answer) => answer,
+            Asked::Not => {
+                ui.label(words.choose_run);
+                return;
+            }
+            Asked::Pending(_) => {
+                ui.spinner();
+                return;
+            }
+            Asked::Failed(why) => {
+                ui.label(RichText::new(words.no_answer).color(palette.bad).strong());
+                ui.label(why);
+                return;
+            }
+        };
+        self.head(ui, desk, answer);
+        for warning in &answer.warnings {
+            ui.label(RichText::new(format!("⚠ {warning}")).color(palette.warn));
+        }
+        ui.separator();
+        candidates::ranked(ui, desk, answer);
+        let from = fill(words.dictionary, &[("from", &answer.dictionary_from)]);
+        ui.label(RichText::new(from).small().color(palette.quiet));
+    }
+
+    fn head(&self, ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
+        let words = desk.words;
+        let run = &answer.run.run;
+        let time = clock::local(run.started_at_us);
+        let of_run = fill(
+            words.diagnosis.of_run,
+            &[
+                ("run", &run.id.short()),
+                ("unit", &run.unit_serial),
+                ("time", &time),
+            ],
+        );
+        ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
+        let parts = candidates::parts(answer);
+        let finding = words.report.finding(answer.diagnosis.finding);
+        let headline = fill(finding, &[("parts", &parts)]);
+        ui.label(RichText::new(headline).strong().size(24.0));
+        ui.label(&answer.diagnosis.conclusion);
+        next_check(ui, desk, answer);
+        if ui.button(words.diagnosis.report).clicked() {
+            desk.go.push(Go::Report(run.id));
+        }
+    }
+}
+
+fn next_check(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
+    let words = &desk.words.diagnosis;
+    let Some(next) = &answer.diagnosis.next_check else {
+        ui.label(RichText::new(words.settled).color(Palette::of(ui).quiet));
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(words.next_check);
+        ui.label(RichText::new(next.check.to_string()).strong());
+        let gains = fill(
+            words.gains,
+            &[
+                ("bits", &format!("{:.2}", next.gain_bits)),
+                ("time", &format!("{:.0} s", next.cost_s)),
+            ],
+        );
+        ui.label(RichText::new(gains).color(Palette::of(ui).quiet));
+        if ui.button(RichText::new(words.run_it).strong()).clicked() {
+            desk.go.push(Go::RunStep {
+                procedure: next.check.procedure.clone(),
+                step: Some(next.check.step.clone()),
+            });
+        }
+    });
 }

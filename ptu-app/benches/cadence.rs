@@ -1,0 +1,119 @@
+//! Does the window hold the bench up? Lateness of a live bench's 50 ms cycles, with no window and with
+//! one that is laid out, painted into triangles and read without a pause. Prints percentiles.
+//!
+//! ```text
+//! cargo bench -p ptu-app --bench cadence
+//! ```
+
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use btu_rig::stimulus::Stimulus;
+use eframe::egui::{Context, RawInput, Rect, pos2, vec2};
+use protocol::{CYCLE, Speed};
+use ptu_app::data::ScriptsDirectory;
+use ptu_app::gui::library::Shelf;
+use ptu_app::gui::{App, Options, Settings};
+use ptu_app::station::Phase;
+
+/// How long each measurement takes.
+const LASTS: Duration = Duration::from_secs(20);
+
+fn main() {
+    println!("lateness of 50 ms cycles         p50       p99       max    cycles");
+    row("no window", &lateness(false).0);
+    let (late_us, frames) = lateness(true);
+    row("a window without a pause", &late_us);
+    println!("frames laid out meanwhile: {frames}");
+}
+
+fn row(name: &str, late_us: &[u64]) {
+    let last = late_us.len().saturating_sub(1);
+    let at = |share: f64| {
+        late_us
+            .get((last as f64 * share) as usize)
+            .copied()
+            .unwrap_or(0)
+    };
+    println!(
+        "{name:<26} {:>6} µs {:>6} µs {:>6} µs  {:>8}",
+        at(0.5),
+        at(0.99),
+        at(1.0),
+        late_us.len()
+    );
+}
+
+/// Sorted lateness of cycles, µs after the earliest, and the frames laid out meanwhile.
+fn lateness(look_on: bool) -> (Vec<u64>, usize) {
+    let shown: Arc<Mutex<Vec<Instant>>> = Arc::default();
+    let noted = shown.clone();
+    let folder = tempfile::tempdir().expect("a folder");
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+    let options = Options {
+        shelf: Shelf {
+            database: folder.path().join("history.db"),
+            scripts: ScriptsDirectory::find(Some(&scripts)).expect("scripts"),
+        },
+        settings: Settings::default(),
+        settings_file: None,
+        connect: true,
+    };
+    let context = Context::default();
+    let wake = Arc::new(move || noted.lock().expect("times").push(Instant::now()));
+    let mut app = App::new(&context, options, wake).expect("a window");
+    while app.units().chosen().phase() != Phase::Idle {
+        frame(&context, &mut app);
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // Something changes in every cycle from now on, so that every cycle is shown.
+    let speed = Stimulus::Speed {
+        to: Speed::from_kmh(20.0),
+        accel_mps2: 0.5,
+    };
+    app.units()
+        .chosen()
+        .station
+        .apply(speed)
+        .expect("permitted");
+    std::thread::sleep(Duration::from_secs(1));
+    shown.lock().expect("times").clear();
+    let began = Instant::now();
+    let mut frames = 0;
+    while began.elapsed() < LASTS {
+        if look_on {
+            frame(&context, &mut app);
+            frames += 1;
+        } else {
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+    let shown = shown.lock().expect("times").clone();
+    (late(&shown), frames)
+}
+
+fn frame(context: &Context, app: &mut App) {
+    let input = RawInput {
+        screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(1280.0, 800.0))),
+        ..RawInput::default()
+    };
+    let output = context.run_ui(input, |ui| app.show(ui));
+    divan::black_box(context.tessellate(output.shapes, output.pixels_per_point));
+}
+
+/// How much later than the earliest of them cycles came, sorted, µs.
+fn late(shown: &[Instant]) -> Vec<u64> {
+    let Some(first) = shown.first() else {
+        return Vec::new();
+    };
+    let cycle = CYCLE.as_us();
+    let offsets = shown
+        .iter()
+        .map(|at| (at.duration_since(*first).as_micros() as u64 + cycle / 2) % cycle);
+    let offsets: Vec<u64> = offsets.collect();
+    let earliest = offsets.iter().min().copied().unwrap_or(0);
+    let mut late: Vec<u64> = offsets.iter().map(|offset| offset - earliest).collect();
+    late.sort_unstable();
+    late
+}

@@ -1,0 +1,99 @@
+//! Parts and modes, ranked, with the reasons.
+
+use eframe::egui::{CollapsingHeader, ProgressBar, RichText, Ui};
+use fault_db::diagnosis::Candidate;
+
+use crate::diagnosis::Answer;
+use crate::gui::{Desk, Go, Palette};
+use crate::words::fill;
+
+/// Parts of less than this share of the likeliest are not named in the headline.
+const WORTH_NAMING: f64 = 0.1;
+
+/// The parts the headline names.
+pub fn parts(answer: &Answer) -> String {
+    let parts = &answer.diagnosis.lrus;
+    let most = parts.first().map_or(0.0, |part| part.probability);
+    let named = parts
+        .iter()
+        .filter(|part| part.probability > 0.0 && part.probability >= WORTH_NAMING * most)
+        .map(|part| format!("{} ({:.1} %)", part.lru, 100.0 * part.probability));
+    named.collect::<Vec<_>>().join(", ")
+}
+
+/// Candidates, two faults at once, and the rest.
+pub fn ranked(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
+    let words = &desk.words.diagnosis;
+    let diagnosis = &answer.diagnosis;
+    for (place, candidate) in diagnosis.candidates.iter().enumerate() {
+        show(ui, desk, answer, candidate, place == 0);
+    }
+    for two in &diagnosis.two_faults {
+        let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
+        likely(ui, two.probability, &said);
+    }
+    likely(ui, diagnosis.no_fault, words.no_fault);
+    likely(ui, diagnosis.unknown_fault, words.unknown_fault);
+}
+
+fn likely(ui: &mut Ui, probability: f64, text: &str) {
+    ui.horizontal(|ui| {
+        let bar = ProgressBar::new(probability as f32).desired_width(120.0);
+        ui.add(bar.text(format!("{:.1} %", 100.0 * probability)));
+        ui.label(text);
+    });
+}
+
+fn show(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer, candidate: &Candidate, open: bool) {
+    let words = &desk.words.diagnosis;
+    ui.horizontal(|ui| {
+        let bar = ProgressBar::new(candidate.probability as f32).desired_width(120.0);
+        ui.add(bar.text(format!("{:.1} %", 100.0 * candidate.probability)));
+        ui.label(RichText::new(&candidate.lru).strong().size(17.0));
+        ui.label(format!("{}: {}", candidate.fault, candidate.text));
+    });
+    CollapsingHeader::new(words.reasons)
+        .id_salt(&candidate.fault)
+        .default_open(open)
+        .show(ui, |ui| {
+            reasons(
+                ui,
+                "+",
+                words.speaks_for,
+                &candidate.for_it,
+                Palette::of(ui).good,
+            );
+            reasons(
+                ui,
+                "−",
+                words.speaks_against,
+                &candidate.against,
+                Palette::of(ui).warn,
+            );
+            let traces = answer.traces.get(&candidate.lru).into_iter().flatten();
+            let traces: Vec<_> = traces.collect();
+            if !traces.is_empty() {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(words.traces);
+                    for trace in traces {
+                        if ui.button(trace.short()).clicked() {
+                            desk.go.push(Go::Trace(*trace));
+                        }
+                    }
+                });
+            }
+        });
+}
+
+fn reasons(ui: &mut Ui, sign: &str, what: &str, texts: &[String], colour: eframe::egui::Color32) {
+    if texts.is_empty() {
+        return;
+    }
+    ui.label(RichText::new(what).small().color(colour));
+    for text in texts {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(sign).strong().color(colour));
+            ui.label(text);
+        });
+    }
+}

@@ -1,0 +1,135 @@
+//! A list of runs to choose from, the latest first.
+
+use eframe::egui::{RichText, ScrollArea, TextEdit, TextStyle, Ui};
+use fault_db::{Id, RunFilter, RunSummary};
+
+use super::chip;
+use crate::clock;
+use crate::gui::library::Asked;
+use crate::gui::{Desk, Palette};
+use crate::owner;
+use crate::words::Words;
+
+/// As many runs as are listed.
+const MOST: u32 = 2_000;
+
+/// The list's own state.
+#[derive(Default)]
+pub struct RunList {
+    runs: Asked<Vec<RunSummary>>,
+    /// Runs that had ended when it was asked for.
+    ended: usize,
+    find: String,
+}
+
+impl RunList {
+    /// Shows it; the run that was clicked.
+    pub fn show(&mut self, ui: &mut Ui, desk: &Desk<'_>, chosen: Option<Id>) -> Option<Id> {
+        self.keep_up(desk);
+        let words = desk.words;
+        ui.horizontal(|ui| {
+            let label = ui.label(words.procedures.find);
+            ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
+                .labelled_by(label.id);
+            if ui.button(words.common.refresh).clicked() {
+                self.runs = Asked::Not;
+            }
+        });
+        let runs = match &self.runs {
+            Asked::There(runs) => runs,
+            Asked::Failed(why) => {
+                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                return None;
+            }
+            Asked::Not | Asked::Pending(_) => {
+                ui.label(words.common.loading);
+                return None;
+            }
+        };
+        let find = self.find.to_lowercase();
+        let shown: Vec<_> = runs.iter().filter(|run| matches(run, &find)).collect();
+        if shown.is_empty() {
+            ui.label(words.common.nothing);
+        }
+        let height = 2.0 * ui.text_style_height(&TextStyle::Body) + 8.0;
+        let mut clicked = None;
+        ScrollArea::vertical().auto_shrink(false).show_rows(
+            ui,
+            height,
+            shown.len(),
+            |ui, range| {
+                for run in shown.get(range).into_iter().flatten() {
+                    if row(ui, words, run, chosen == Some(run.id)) {
+                        clicked = Some(run.id);
+                    }
+                }
+            },
+        );
+        clicked
+    }
+
+    /// The run to show when none was chosen: the latest that did not pass, or else the latest.
+    pub fn foremost(&self) -> Option<Id> {
+        let runs = self.runs.value()?;
+        let failed = |run: &&RunSummary| run.verdict == Some(fault_db::Verdict::Failed);
+        let run = runs.iter().find(failed).or_else(|| runs.first())?;
+        Some(run.id)
+    }
+
+    /// Asks when it was not asked yet, and when a run has ended since.
+    fn keep_up(&mut self, desk: &Desk<'_>) {
+        let ended = desk.units.runs_ended();
+        if self.runs.is_not() || self.ended != ended {
+            self.ended = ended;
+            self.runs = Asked::Pending(desk.library.ask(|shelf| {
+                let filter = RunFilter {
+                    limit: Some(MOST),
+                    ..RunFilter::default()
+                };
+                Ok(shelf.read()?.runs(&filter, &owner::is_alive)?)
+            }));
+        }
+        self.runs.poll();
+    }
+}
+
+fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
+    let mut clicked = false;
+    ui.horizontal(|ui| {
+        let name = format!("{}  {}", run.id.short(), clock::local(run.started_at_us));
+        clicked = ui.selectable_label(chosen, name).clicked();
+    });
+    ui.horizontal(|ui| {
+        ui.add_space(14.0);
+        let palette = Palette::of(ui);
+        match run.verdict {
+            Some(verdict) => {
+                chip(
+                    ui,
+                    words.common.stored_verdict(verdict),
+                    palette.stored_verdict(verdict),
+                );
+            }
+            None => {
+                chip(ui, words.common.interrupted, palette.warn);
+            }
+        }
+        ui.label(RichText::new(&run.unit_serial).color(palette.quiet));
+    });
+    clicked
+}
+
+fn matches(run: &RunSummary, find: &str) -> bool {
+    [
+        run.id.to_string(),
+        run.unit_serial.clone(),
+        run.operator.clone(),
+        run.line.clone(),
+        clock::local(run.started_at_us),
+        run.verdict
+            .map(|verdict| verdict.to_string())
+            .unwrap_or_default(),
+    ]
+    .iter()
+    .any(|text| text.to_lowercase().contains(find))
+}
