@@ -2,7 +2,7 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use chrono::{DateTime, Local, SecondsFormat, Utc};
+use chrono::{DateTime, Datelike, Local, SecondsFormat, Timelike, Utc};
 use fault_db::{IdSource, OpenOptions};
 
 /// Microseconds since 1970, UTC.
@@ -38,9 +38,24 @@ pub fn rfc3339(at_us: i64) -> String {
         .to_rfc3339_opts(SecondsFormat::Millis, true)
 }
 
+/// Year, and month, day, hour, minute and second, in UTC.
+pub fn utc_fields(at_us: i64) -> (u16, [u8; 5]) {
+    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
+    let fields = [at.month(), at.day(), at.hour(), at.minute(), at.second()];
+    (
+        u16::try_from(at.year()).unwrap_or_default(),
+        fields.map(|field| field as u8),
+    )
+}
+
 /// Local date and time, for tables.
 pub fn local(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d %H:%M:%S")
+}
+
+/// Local date and time with its distance from UTC, for documents.
+pub fn local_zoned(at_us: i64) -> String {
+    local_as(at_us, "%Y-%m-%d %H:%M:%S UTC%:z")
 }
 
 /// Local date, for sentences.

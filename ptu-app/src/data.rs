@@ -257,8 +257,8 @@ pub fn check_writable(file: &Path) -> Result<(), Failure> {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(file, text)
+pub fn write(file: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+    std::fs::write(file, content)
         .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
 }
 

@@ -5,6 +5,7 @@
 //! * [`replay`]: what was done to a bench done again: good twins, differences of traces, replays;
 //! * [`drive`]: station-to-station automatic runs, one or thousands;
 //! * [`link`]: the embedded unit and units on ports;
+//! * [`limits`]: measured values between their limits, as people read them;
 //! * [`campaign`]: the suite against every fault mode, for the fault dictionary and its worth;
 //! * [`diagnosis`]: from a run to the part to replace;
 //! * [`field`]: a unit's own event log becomes faults in the history;
@@ -25,6 +26,7 @@ pub mod failure;
 pub mod field;
 pub mod fonts;
 pub mod gui;
+pub mod limits;
 pub mod link;
 mod owner;
 mod pool;

@@ -9,6 +9,7 @@ mod drive;
 mod faults;
 mod gui;
 mod ports;
+mod reports;
 mod run;
 mod runs;
 mod trace;

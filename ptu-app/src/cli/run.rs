@@ -9,6 +9,7 @@ use clap::Args;
 use fault_db::Store;
 use serde_json::json;
 
+use super::reports::ReportOption;
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
 use crate::data::ScriptsDirectory;
@@ -16,7 +17,6 @@ use crate::diagnosis::{Bench, adaptive, diagnose_run};
 use crate::drive::Setting;
 use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
-use crate::report::Target;
 use crate::report::diagnosis::diagnosis_text;
 use crate::run::{self, BenchSetup, Choice, Outcome, RunPlan, Suite, Task, select};
 use crate::stop::Stop;
@@ -31,6 +31,7 @@ use crate::stop::Stop;
 ///   ptu run --list atp/overspeed                what would be done
 ///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
+///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
 ///   ptu run --report out.json --report out.junit.xml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -96,9 +97,8 @@ pub struct RunArguments {
     /// Isolate a fault: after each step do what tells the most, until one part is found
     #[arg(long, conflicts_with_all = ["check", "list", "step", "stop_on_fail"])]
     adaptive: bool,
-    /// Write a report, .json or .junit.xml; repeatable
-    #[arg(long, value_name = "FILE")]
-    report: Vec<Target>,
+    #[command(flatten)]
+    reports: ReportOption,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -248,9 +248,7 @@ impl RunArguments {
         setup: BenchSetup,
         directory: &ScriptsDirectory,
     ) -> Result<Exit, Failure> {
-        for target in &self.report {
-            target.check()?;
-        }
+        self.reports.check()?;
         let store = self.database.open()?;
         if self.adaptive {
             if self.repeat > 1 || self.jobs > 1 {
@@ -275,9 +273,7 @@ impl RunArguments {
         let detail = store.run(outcome.id, &crate::owner::is_alive)?;
         print_out(&verdict_table(&detail))?;
         self.say_diagnosis(&store, directory, &outcome)?;
-        for target in &self.report {
-            target.write(&detail)?;
-        }
+        self.reports.write(&store, Some(directory), &detail)?;
         store.close()?;
         Ok(outcome.exit)
     }

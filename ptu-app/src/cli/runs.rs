@@ -3,7 +3,8 @@
 use clap::{Args, Subcommand};
 use fault_db::RunFilter;
 
-use super::{Database, print_json, print_out, since_argument};
+use super::reports::ReportOption;
+use super::{Database, ScriptsOption, print_json, print_out, since_argument};
 use crate::clock;
 use crate::console::verdict_table;
 use crate::failure::{Exit, Failure};
@@ -47,6 +48,10 @@ enum Verb {
         /// Print JSON, the same as `ptu run --report FILE.json`
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        reports: ReportOption,
+        #[command(flatten)]
+        scripts: ScriptsOption,
     },
 }
 
@@ -75,8 +80,22 @@ impl RunsArguments {
                 }
                 print_out(&table(&runs))
             }
-            Verb::Show { id, json } => {
+            Verb::Show {
+                id,
+                json,
+                reports,
+                scripts,
+            } => {
+                reports.check()?;
                 let run = store.run(store.resolve_run(&id)?, &owner::is_alive)?;
+                if !reports.is_empty() {
+                    // A report without diagnosis is better than none; a wrong --scripts is told.
+                    let directory = match scripts.find() {
+                        Err(failure) if scripts.scripts.is_some() => return Err(failure),
+                        found => found.ok(),
+                    };
+                    reports.write(&store, directory.as_ref(), &run)?;
+                }
                 if json {
                     print_json(&run_json(&run))
                 } else {

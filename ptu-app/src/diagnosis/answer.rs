@@ -37,6 +37,8 @@ pub struct Answer {
     pub warnings: Vec<String>,
     /// Where the dictionary is from.
     pub dictionary_from: String,
+    /// The dictionary was made of what the scripts directory holds now.
+    pub dictionary_current: bool,
 }
 
 /// Diagnoses a stored run.
@@ -55,7 +57,7 @@ pub fn diagnose_run(
         dictionary,
         from,
         mut warnings,
-        ..
+        current,
     } = choose(Some(store), directory)?;
     let seen = of_run(&run, &occurrences);
     let seen = comparable(&run, seen, &dictionary, &mut warnings);
@@ -78,6 +80,7 @@ pub fn diagnose_run(
         traces,
         warnings,
         dictionary_from: from,
+        dictionary_current: current,
     })
 }
 

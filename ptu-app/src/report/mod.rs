@@ -1,21 +1,26 @@
-//! What a run came to, written to a file by its ending: `.json` or `.junit.xml`.
+//! What a run came to, written to a file by its ending: a test sheet as `.html` or `.pdf`, or `.csv`,
+//! `.json`, `.junit.xml`.
 
 pub mod campaign;
+mod csv;
 pub mod diagnosis;
 pub mod drive;
 mod json;
 mod junit;
 mod plot;
+pub mod run;
 
 use std::path::PathBuf;
 
-use fault_db::RunDetail;
+use fault_db::{RunDetail, Store};
 
 pub use json::{fault_json, run_json, run_summary_json};
 pub(crate) use plot::round_step;
 
-use crate::data;
+use crate::data::{self, ScriptsDirectory};
 use crate::failure::Failure;
+use crate::words::Language;
+use run::Sheet;
 
 /// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +31,9 @@ pub struct Target {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
+    Html,
+    Pdf,
+    Csv,
     Json,
     Junit,
 }
@@ -34,13 +42,17 @@ impl std::str::FromStr for Target {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let format = if text.ends_with(".junit.xml") {
-            Format::Junit
-        } else if text.ends_with(".json") {
-            Format::Json
-        } else {
-            return Err("a report ends in .json or .junit.xml".into());
-        };
+        let endings = [
+            (".html", Format::Html),
+            (".pdf", Format::Pdf),
+            (".csv", Format::Csv),
+            (".json", Format::Json),
+            (".junit.xml", Format::Junit),
+        ];
+        let format = endings
+            .into_iter()
+            .find_map(|(ending, format)| text.ends_with(ending).then_some(format))
+            .ok_or("a report ends in .html, .pdf, .csv, .json or .junit.xml")?;
         Ok(Self {
             path: text.into(),
             format,
@@ -57,16 +69,52 @@ impl Target {
         data::check_writable(&self.path)
     }
 
-    /// Writes the report.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn write(&self, run: &RunDetail) -> Result<(), Failure> {
-        let text = match self.format {
-            Format::Json => serde_json::to_string_pretty(&run_json(run))
-                .map_err(|error| Failure::bench(format!("cannot make the report: {error}")))?,
-            Format::Junit => junit::junit(run)?,
-        };
-        data::write(&self.path, &text)
+    /// It is a test sheet, for people.
+    fn is_sheet(&self) -> bool {
+        matches!(self.format, Format::Html | Format::Pdf)
     }
+}
+
+/// Writes reports of a run. What only test sheets say is gathered when one is asked for; without a
+/// scripts directory they have no diagnosis.
+///
+/// # Errors
+/// A file cannot be written, or the database not be read.
+pub fn write(
+    targets: &[Target],
+    store: &Store,
+    directory: Option<&ScriptsDirectory>,
+    run: &RunDetail,
+    language: Language,
+) -> Result<(), Failure> {
+    let gather = || Sheet::gather(store, directory, run.run.id);
+    let sheet = targets.iter().any(Target::is_sheet).then(gather);
+    let sheet = sheet.transpose()?;
+    for target in targets {
+        data::write(
+            &target.path,
+            &content(target, run, sheet.as_ref(), language)?,
+        )?;
+    }
+    Ok(())
+}
+
+fn content(
+    target: &Target,
+    run: &RunDetail,
+    sheet: Option<&Sheet>,
+    language: Language,
+) -> Result<Vec<u8>, Failure> {
+    let words = language.words();
+    let text = match (target.format, sheet) {
+        (Format::Html, Some(sheet)) => run::html(sheet, words),
+        (Format::Pdf, Some(sheet)) => return run::pdf(sheet, words),
+        // Whoever asks for a sheet has gathered it.
+        (Format::Html | Format::Pdf, None) => String::new(),
+        (Format::Csv, _) => csv::csv(run),
+        (Format::Json, _) => serde_json::to_string_pretty(&run_json(run))
+            .map_err(|error| Failure::bench(format!("cannot make the report: {error}")))?,
+        (Format::Junit, _) => junit::junit(run)?,
+    };
+    Ok(text.into_bytes())
 }

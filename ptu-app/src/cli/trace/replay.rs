@@ -7,11 +7,11 @@ use clap::Args;
 use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
+use crate::cli::reports::ReportOption;
 use crate::cli::{Database, ScriptsOption, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
 use crate::replay::{Likeness, Original, Rerun, Rerunning, rerun};
-use crate::report::Target;
 use crate::stop::Stop;
 
 /// Do again what was done in a trace, on the embedded unit or one on a port, and compare what comes
@@ -41,9 +41,8 @@ pub struct ReplayArguments {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Write a report, .json or .junit.xml; repeatable
-    #[arg(long, value_name = "FILE")]
-    report: Vec<Target>,
+    #[command(flatten)]
+    reports: ReportOption,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -58,9 +57,7 @@ impl ReplayArguments {
                  `ato-under-test --inject`",
             ));
         }
-        for target in &self.report {
-            target.check()?;
-        }
+        self.reports.check()?;
         // A trace that is not there must not make a database.
         let store = database.open_read_only()?;
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
@@ -82,9 +79,7 @@ impl ReplayArguments {
         } else {
             print_out(&text(&original, &rerun))?;
         }
-        for target in &self.report {
-            target.write(&detail)?;
-        }
+        self.reports.write(&store, Some(&directory), &detail)?;
         store.close()?;
         Ok(rerun.exit)
     }

@@ -1,0 +1,42 @@
+//! `--report` and `--lang`: what a run came to, in files.
+
+use clap::Args;
+use fault_db::{RunDetail, Store};
+
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+use crate::report::{self, Target};
+use crate::words::Language;
+
+/// Which reports to write.
+#[derive(Debug, Args)]
+pub struct ReportOption {
+    /// Write a report: a test sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
+    #[arg(long, value_name = "FILE")]
+    report: Vec<Target>,
+    /// Language of test sheets: en or ko
+    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+    lang: Language,
+}
+
+impl ReportOption {
+    /// There is nothing to write.
+    pub fn is_empty(&self) -> bool {
+        self.report.is_empty()
+    }
+
+    /// Finds out before the run whether all can be written after it.
+    pub fn check(&self) -> Result<(), Failure> {
+        self.report.iter().try_for_each(Target::check)
+    }
+
+    /// Writes all.
+    pub fn write(
+        &self,
+        store: &Store,
+        directory: Option<&ScriptsDirectory>,
+        run: &RunDetail,
+    ) -> Result<(), Failure> {
+        report::write(&self.report, store, directory, run, self.lang)
+    }
+}

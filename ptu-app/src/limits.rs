@@ -1,0 +1,72 @@
+//! A measured value and its limits as people read them, in figures and as a bar.
+
+/// Share of a bar beyond each limit.
+const BEYOND: f64 = 0.25;
+
+/// A number in at most four significant digits.
+pub fn short(value: f64) -> String {
+    let text = match value.abs() {
+        big if big >= 1000.0 => format!("{value:.0}"),
+        middle if middle >= 100.0 => format!("{value:.1}"),
+        middle if middle >= 1.0 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    };
+    if !text.contains('.') {
+        return text;
+    }
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".into(),
+        text => text.to_owned(),
+    }
+}
+
+/// Where value and limits lie on the bar, 0 to 1; none without a value or without any limit.
+pub fn places(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> Option<(f64, f64, f64)> {
+    let value = value.filter(|value| value.is_finite())?;
+    let (from, to) = match (low, high) {
+        (Some(low), Some(high)) => (low, high),
+        // One-sided: the bar begins or ends as far from the limit as zero or the value is.
+        (Some(low), None) => (
+            low,
+            low + (value - low).abs().max(low.abs()).max(f64::MIN_POSITIVE),
+        ),
+        (None, Some(high)) => (
+            high - (high - value).abs().max(high.abs()).max(f64::MIN_POSITIVE),
+            high,
+        ),
+        (None, None) => return None,
+    };
+    let span = (to - from).max(f64::MIN_POSITIVE);
+    let start = from - span * BEYOND;
+    let place = |x: f64| ((x - start) / (span * (1.0 + 2.0 * BEYOND))).clamp(0.0, 1.0);
+    Some((place(value), place(from), place(to)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_inside_lies_in_the_band_and_one_outside_beyond_it() {
+        let inside = places(Some(0.3), Some(0.2), Some(0.4)).expect("a bar");
+        assert!(inside.1 < inside.0 && inside.0 < inside.2);
+        let outside = places(Some(9.0), Some(0.2), Some(0.4)).expect("a bar");
+        assert_eq!(outside.0, 1.0);
+    }
+
+    #[test]
+    fn one_limit_is_enough_and_none_gives_no_bar() {
+        let high = places(Some(0.1), None, Some(0.4)).expect("a bar");
+        assert!(high.0 < high.2);
+        assert_eq!(places(Some(1.0), None, None), None);
+        assert_eq!(places(Some(f64::NAN), Some(0.0), None), None);
+        assert_eq!(places(None, Some(0.0), None), None);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let all = [0.0, -0.0001, 0.3, 0.12345, 12.3456, 123.456, 12345.6];
+        let texts: Vec<_> = all.map(short).into();
+        assert_eq!(texts, ["0", "0", "0.3", "0.123", "12.35", "123.5", "12346"]);
+    }
+}

@@ -1,0 +1,101 @@
+//! Steps with what they measured, as tables.
+
+use fault_db::{MeasurementRecord, StepDetail, Verdict};
+
+use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
+use crate::limits::short;
+use crate::words::Words;
+
+/// Columns besides name and time: value, unit, low, high, bar, verdict.
+const MEASURED: usize = 5;
+
+/// Steps, each with its message and measurements below it.
+pub fn table(steps: &[StepDetail], words: &Words) -> Table {
+    let (common, report) = (&words.common, &words.report);
+    Table {
+        columns: vec![
+            Column::new(report.step_or_measurement, 0.34, Align::Left),
+            Column::new(common.value, 0.1, Align::Right),
+            Column::new(report.unit_of_value, 0.08, Align::Left),
+            Column::new(common.low, 0.08, Align::Right),
+            Column::new(common.high, 0.08, Align::Right),
+            Column::new(report.within, 0.15, Align::Left),
+            Column::new(common.verdict, 0.1, Align::Left),
+            Column::new(report.seconds, 0.07, Align::Right),
+        ],
+        rows: steps.iter().flat_map(|step| rows(step, words)).collect(),
+    }
+}
+
+fn rows(step: &StepDetail, words: &Words) -> Vec<Row> {
+    let plain = |text: String| Cell::Text(Tone::Plain, text);
+    let mut rows = vec![Row {
+        kind: RowKind::Head,
+        cells: vec![
+            (plain(step.name.clone()), 1 + MEASURED),
+            (verdict(step.verdict, words), 1),
+            (plain(format!("{:.1}", step.bench_time_us as f64 / 1e6)), 1),
+        ],
+    }];
+    if !step.message.is_empty() {
+        let tone = if passed(step.verdict) {
+            Tone::Soft
+        } else {
+            Tone::Bad
+        };
+        rows.push(Row {
+            kind: RowKind::Detail,
+            cells: vec![(Cell::Text(tone, step.message.clone()), 3 + MEASURED)],
+        });
+    }
+    rows.extend(step.measurements.iter().map(|m| measured(m, words)));
+    rows
+}
+
+fn measured(measurement: &MeasurementRecord, words: &Words) -> Row {
+    let MeasurementRecord {
+        name,
+        value,
+        unit,
+        low,
+        high,
+        ..
+    } = measurement;
+    let soft = |text: String| (Cell::Text(Tone::Soft, text), 1);
+    let limit = |limit: &Option<f64>| soft(limit.map_or_else(String::new, short));
+    let good = passed(measurement.verdict);
+    let tone = if good { Tone::Plain } else { Tone::Bad };
+    let value_text = value.map_or_else(|| words.report.no_value.to_owned(), short);
+    Row {
+        kind: RowKind::Detail,
+        cells: vec![
+            soft(name.clone()),
+            (Cell::Text(tone, value_text), 1),
+            soft(unit.clone()),
+            limit(low),
+            limit(high),
+            (Cell::Gauge(Gauge::of(*value, *low, *high, good)), 1),
+            (verdict(measurement.verdict, words), 1),
+            soft(String::new()),
+        ],
+    }
+}
+
+/// A verdict in its colour.
+pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
+    Cell::Text(tone(verdict), words.common.stored_verdict(verdict).into())
+}
+
+/// How good news a verdict is.
+pub fn tone(verdict: Verdict) -> Tone {
+    match verdict {
+        Verdict::Passed => Tone::Good,
+        Verdict::Skipped => Tone::Soft,
+        Verdict::Failed | Verdict::Error | Verdict::Aborted => Tone::Bad,
+    }
+}
+
+/// Nothing is to be said against it.
+pub fn passed(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Passed | Verdict::Skipped)
+}
