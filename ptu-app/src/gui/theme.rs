@@ -2,7 +2,7 @@
 //! beside it.
 
 use btu_rig::procedure::Verdict;
-use eframe::egui::{Color32, Context, TextStyle, Ui};
+use eframe::egui::{Color32, Context, TextStyle, Theme, Ui};
 
 /// Colours of meaning.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +67,12 @@ const LIGHT: Palette = Palette {
 
 /// Gives the window its look: text large enough to be read at arm's length.
 pub fn set(context: &Context) {
+    for theme in [Theme::Dark, Theme::Light] {
+        let mut visuals = theme.default_visuals();
+        let ink = if theme == Theme::Dark { 208 } else { 40 };
+        visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(ink);
+        context.set_visuals_of(theme, visuals);
+    }
     context.all_styles_mut(|style| {
         for (text, size) in [
             (TextStyle::Body, 14.5),

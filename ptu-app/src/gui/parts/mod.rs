@@ -5,8 +5,10 @@ pub mod lane;
 mod limit_bar;
 mod named;
 mod run_list;
+mod share_bar;
 
 pub use chip::{chip, verdict_chip};
 pub use limit_bar::{limit_bar, value_text};
 pub use named::named_combo;
 pub use run_list::RunList;
+pub use share_bar::share_bar;

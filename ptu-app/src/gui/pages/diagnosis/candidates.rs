@@ -1,9 +1,10 @@
 //! Parts and modes, ranked, with the reasons.
 
-use eframe::egui::{CollapsingHeader, ProgressBar, RichText, Ui};
+use eframe::egui::{CollapsingHeader, RichText, Ui};
 use fault_db::diagnosis::Candidate;
 
 use crate::diagnosis::Answer;
+use crate::gui::parts::share_bar;
 use crate::gui::{Desk, Go, Palette};
 use crate::words::fill;
 
@@ -38,8 +39,7 @@ pub fn ranked(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
 
 fn likely(ui: &mut Ui, probability: f64, text: &str) {
     ui.horizontal(|ui| {
-        let bar = ProgressBar::new(probability as f32).desired_width(120.0);
-        ui.add(bar.text(format!("{:.1} %", 100.0 * probability)));
+        share_bar(ui, probability, Palette::of(ui).quiet);
         ui.label(text);
     });
 }
@@ -47,8 +47,7 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
 fn show(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer, candidate: &Candidate, open: bool) {
     let words = &desk.words.diagnosis;
     ui.horizontal(|ui| {
-        let bar = ProgressBar::new(candidate.probability as f32).desired_width(120.0);
-        ui.add(bar.text(format!("{:.1} %", 100.0 * candidate.probability)));
+        share_bar(ui, candidate.probability, Palette::of(ui).accent);
         ui.label(RichText::new(&candidate.lru).strong().size(17.0));
         ui.label(format!("{}: {}", candidate.fault, candidate.text));
     });

@@ -4,6 +4,7 @@ mod candidates;
 
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::Id;
+use fault_db::diagnosis::Finding;
 
 use crate::clock;
 use crate::diagnosis::{Answer, diagnose_run};
@@ -96,7 +97,10 @@ impl DiagnosisPage {
         let finding = words.report.finding(answer.diagnosis.finding);
         let headline = fill(finding, &[("parts", &parts)]);
         ui.label(RichText::new(headline).strong().size(24.0));
-        ui.label(&answer.diagnosis.conclusion);
+        // With one part found the headline has said it all.
+        if answer.diagnosis.finding != Finding::Found {
+            ui.label(&answer.diagnosis.conclusion);
+        }
         next_check(ui, desk, answer);
         if ui.button(words.diagnosis.report).clicked() {
             desk.go.push(Go::Report(run.id));

@@ -8,6 +8,7 @@ use eframe::egui::{Button, Grid, RichText, ScrollArea, Ui};
 
 use crate::gui::parts::{limit_bar, value_text, verdict_chip};
 use crate::gui::{Go, Palette};
+use crate::run::CHECK_FAILED;
 use crate::station::Progress;
 use crate::words::{Words, fill};
 
@@ -67,9 +68,7 @@ pub fn results(
         details(ui, words, run, result, texts);
         ui.separator();
     }
-    if !run.faults.is_empty() {
-        faults(ui, words, run);
-    }
+    faults(ui, words, run);
     let height = ui.text_style_height(&eframe::egui::TextStyle::Body) + 4.0;
     ScrollArea::vertical()
         .id_salt("results")
@@ -198,13 +197,18 @@ pub fn source(
     }
 }
 
+/// What unit and train reported by themselves; failed checks stand among the steps.
 fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
+    let reported = || run.faults.iter().filter(|fault| fault.code != CHECK_FAILED);
+    if reported().next().is_none() {
+        return;
+    }
     ui.label(RichText::new(words.procedures.faults_found).strong());
     ScrollArea::vertical()
         .id_salt("faults")
         .max_height(110.0)
         .show(ui, |ui| {
-            for fault in &run.faults {
+            for fault in reported() {
                 let bad = Palette::of(ui).bad;
                 ui.horizontal(|ui| {
                     ui.colored_label(bad, format!("{} {}", fault.code, fault.name));

@@ -1,0 +1,286 @@
+//! The window on a real display: a private X server, keys as a keyboard sends them, and a picture of
+//! every page in both languages, kept in the target directory to be looked at.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::Place;
+
+/// Patience with a busy machine that paints in software.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// Pages, in the order of their keys F1 to F6.
+const PAGES: [&str; 6] = [
+    "bench",
+    "procedures",
+    "traces",
+    "faults",
+    "diagnosis",
+    "report",
+];
+
+/// A private X server; ends with the value.
+struct Display {
+    server: Child,
+    name: String,
+    frame_buffer: PathBuf,
+}
+
+/// `ptu gui` on it; ends with the value.
+struct Shown<'a> {
+    child: Child,
+    display: &'a Display,
+}
+
+/// What is on the screen.
+#[derive(PartialEq)]
+struct Picture {
+    width: u32,
+    height: u32,
+    rgb: Vec<u8>,
+}
+
+impl Display {
+    fn new(place: &Place) -> Self {
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1280x800x24"])
+            .args(["-nolisten", "tcp", "-fbdir"])
+            .arg(place.path(""))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb starts; scripts/test installs it");
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().expect("its stdout"))
+            .read_line(&mut number)
+            .expect("its number");
+        Self {
+            server,
+            name: format!(":{}", number.trim()),
+            frame_buffer: place.path("Xvfb_screen0"),
+        }
+    }
+
+    /// The server's frame buffer file is an X window dump, 32 bits a pixel.
+    fn picture(&self) -> Picture {
+        let dump = std::fs::read(&self.frame_buffer).expect("the frame buffer");
+        let word = |place: usize| {
+            let bytes = dump[4 * place..4 * place + 4].try_into().expect("a word");
+            u32::from_be_bytes(bytes)
+        };
+        let (header, width, height, line, colours) =
+            (word(0), word(4), word(5), word(12), word(19));
+        let pixels = &dump[(header + 12 * colours) as usize..];
+        let rows = pixels.chunks_exact(line as usize).take(height as usize);
+        let rgb = rows
+            .flat_map(|row| row[..4 * width as usize].chunks_exact(4))
+            .flat_map(|pixel| [pixel[2], pixel[1], pixel[0]])
+            .collect();
+        Picture { width, height, rgb }
+    }
+
+    fn tool(&self, arguments: &[&str]) -> bool {
+        let mut tool = Command::new("xdotool");
+        tool.args(arguments).env("DISPLAY", &self.name);
+        let output = tool
+            .output()
+            .expect("xdotool starts; scripts/test installs it");
+        output.status.success()
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+impl<'a> Shown<'a> {
+    fn open(place: &Place, display: &'a Display, arguments: &[&str]) -> Self {
+        let ptu = place.command(&[&["gui"], arguments].concat());
+        let mut command = Command::new(ptu.get_program());
+        command
+            .args(ptu.get_args())
+            .current_dir(place.path(""))
+            .envs(
+                ptu.get_envs()
+                    .filter_map(|(key, value)| Some((key, value?))),
+            )
+            .env("DISPLAY", &display.name)
+            .env("XDG_CONFIG_HOME", place.path("config"))
+            .env("XDG_RUNTIME_DIR", place.path(""))
+            .env_remove("WAYLAND_DISPLAY")
+            .stderr(Stdio::piped());
+        let child = command.spawn().expect("ptu starts");
+        let shown = Self { child, display };
+        shown.until("the window", |display| {
+            display.tool(&["search", "--name", "PTU", "windowfocus"])
+        });
+        shown.until("a picture", |display| display.picture().colours() > 20);
+        shown
+    }
+
+    fn until(&self, what: &str, holds: impl Fn(&Display) -> bool) {
+        let began = Instant::now();
+        while !holds(self.display) {
+            assert!(began.elapsed() < PATIENCE, "waited in vain for {what}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn key(&self, key: &str) {
+        assert!(self.display.tool(&["key", key]), "key {key}");
+    }
+
+    /// A picture that no longer changes but for what lives: the page has its answers.
+    fn settled(&self) -> Picture {
+        let mut before = self.display.picture();
+        let began = Instant::now();
+        loop {
+            std::thread::sleep(Duration::from_millis(700));
+            let now = self.display.picture();
+            if now.differs(&before) < 0.01 || began.elapsed() > PATIENCE {
+                return now;
+            }
+            before = now;
+        }
+    }
+
+    /// Processor time it takes while nothing happens, share of one core.
+    fn idle_share(&self) -> f64 {
+        let ticks = || {
+            let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id()));
+            let stat = stat.expect("its statistics");
+            let after = stat.rsplit(')').next().expect("fields").split_whitespace();
+            let fields: Vec<&str> = after.collect();
+            let ticks = |place: usize| fields[place].parse::<f64>().expect("ticks");
+            ticks(11) + ticks(12)
+        };
+        let (before, began) = (ticks(), Instant::now());
+        std::thread::sleep(Duration::from_secs(4));
+        (ticks() - before) / 100.0 / began.elapsed().as_secs_f64()
+    }
+
+    /// Asks it to close, as the person does, and waits for its end.
+    fn close(mut self) -> Option<i32> {
+        assert!(
+            self.display
+                .tool(&["search", "--name", "PTU", "windowclose"])
+        );
+        let began = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().expect("its state") {
+                return status.code();
+            }
+            assert!(began.elapsed() < PATIENCE, "it does not close");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+}
+
+impl Drop for Shown<'_> {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Picture {
+    fn colours(&self) -> usize {
+        let colours: BTreeSet<&[u8]> = self.rgb.chunks_exact(3).collect();
+        colours.len()
+    }
+
+    /// Share of the pixels that are not the same.
+    fn differs(&self, other: &Self) -> f64 {
+        let pairs = self.rgb.chunks_exact(3).zip(other.rgb.chunks_exact(3));
+        let different = pairs.filter(|(a, b)| a != b).count();
+        different as f64 / f64::from(self.width * self.height)
+    }
+
+    fn keep(&self, name: &str) {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("window");
+        std::fs::create_dir_all(&folder).expect("folder");
+        let file = std::fs::File::create(folder.join(format!("{name}.png"))).expect("file");
+        let mut encoder = png::Encoder::new(file, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().expect("header");
+        writer.write_image_data(&self.rgb).expect("pixels");
+    }
+}
+
+#[test]
+fn every_page_is_shown_on_a_real_display_in_both_languages() {
+    let place = Place::new();
+    let failed = place.ptu(&["run", "atp", "--inject", "eb_relay.slow"]);
+    assert_eq!(failed.code, Some(1), "{}", failed.err);
+    let display = Display::new(&place);
+    for language in ["en", "ko"] {
+        let shown = Shown::open(&place, &display, &["--unit", "sim", "--lang", language]);
+        let mut pictures = Vec::new();
+        for (number, page) in (1..).zip(PAGES) {
+            shown.key(&format!("F{number}"));
+            let picture = shown.settled();
+            picture.keep(&format!("{page}-{language}"));
+            assert!(picture.colours() > 20, "{page} shows something");
+            pictures.push(picture);
+        }
+        for (place, one) in pictures.iter().enumerate() {
+            for (after, other) in pictures.iter().enumerate().skip(place + 1) {
+                assert!(
+                    one.differs(other) > 0.01,
+                    "{} and {} look alike in {language}",
+                    PAGES[place],
+                    PAGES[after]
+                );
+            }
+        }
+        shown.close();
+    }
+}
+
+#[test]
+fn a_window_nobody_touches_is_idle() {
+    let place = Place::new();
+    let display = Display::new(&place);
+    let shown = Shown::open(&place, &display, &["--page", "procedures"]);
+    shown.settled();
+    let share = shown.idle_share();
+    // The figure is measured in release mode; here only that it does not repaint without a pause.
+    assert!(share < 0.2, "{:.1} % of a core", 100.0 * share);
+}
+
+#[test]
+fn without_a_display_it_says_so_and_ends() {
+    let place = Place::new();
+    let ptu = place
+        .command(&["gui"])
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .output();
+    let ptu = ptu.expect("ptu starts");
+    let said = String::from_utf8_lossy(&ptu.stderr);
+    assert_eq!(ptu.status.code(), Some(3), "{said}");
+    assert!(
+        said.contains("no display") && said.contains("ptu run"),
+        "{said}"
+    );
+
+    let gone = place
+        .command(&["gui"])
+        .env("DISPLAY", ":4711")
+        .env_remove("WAYLAND_DISPLAY")
+        .output();
+    let gone = gone.expect("ptu starts");
+    let said = String::from_utf8_lossy(&gone.stderr);
+    assert_eq!(gone.status.code(), Some(3), "{said}");
+    assert!(
+        said.contains("cannot open a window") && !said.contains("panicked"),
+        "{said}"
+    );
+}
