@@ -35,9 +35,10 @@ pub use error::StoreError;
 pub use fault_state::{FaultAction, FaultState, TransitionError};
 pub use id::{Id, IdSource};
 pub use query::{
-    FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE, Occurrence,
-    PartHistory, PartRepair, QueryResult, RunDetail, RunFault, RunFilter, RunOccurrence, RunState,
-    RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StepDetail, TraceSummary, TrendPoint,
+    DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
+    Occurrence, PartHistory, PartRepair, QueryResult, RunDetail, RunFault, RunFilter,
+    RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StepDetail,
+    TraceSummary, TrendPoint,
 };
 pub use record::{
     FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,

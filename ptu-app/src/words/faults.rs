@@ -6,5 +6,38 @@ wordings! {
     /// Fault history.
     Faults {
         title: "Faults", "고장 이력";
+        any: "any", "전체";
+        since: "since", "기간";
+        days: "{n} days", "{n}일";
+        always: "all", "전체 기간";
+        find: "text", "검색어";
+        shown: "{n} of {of} faults", "고장 {of}건 중 {n}건";
+        seen: "seen", "횟수";
+        last_seen: "last seen", "최근 발생";
+        first_seen: "first seen", "최초 발생";
+        over_time: "occurrences, {days} day(s) a bar", "발생 횟수, 막대당 {days}일";
+        by_unit: "by unit", "유닛별";
+        by_code: "by code", "코드별";
+        others: "others", "기타";
+        choose: "Choose a fault on the left", "왼쪽에서 고장을 고르십시오";
+        not_read: "The fault history cannot be read", "고장 이력을 읽을 수 없습니다";
+        times_seen: "seen {n} times, {first} … {last}", "{n}회, {first} … {last}";
+        acknowledge: "Acknowledge", "확인";
+        repair: "Repaired", "수리 완료";
+        verify: "Verified", "검증";
+        close: "Close", "종결";
+        reopen: "Open again", "다시 열기";
+        add_note: "Add note", "메모 추가";
+        serial_old: "serial number taken out", "제거한 부품 일련번호";
+        serial_new: "serial number put in", "장착한 부품 일련번호";
+        who_first: "Write your name (operator) first", "먼저 시험자 이름을 적으십시오";
+        not_changed: "The fault was not changed", "고장 상태를 바꾸지 못했습니다";
+        what_was_done: "what was done", "조치 이력";
+        occurrences: "occurrences", "발생 기록";
+        freeze_frame: "freeze frame: every signal at the moment", "프리즈 프레임: 발생 순간의 모든 신호";
+        not_known: "not known", "알 수 없음";
+        to_trace: "Trace", "트레이스";
+        to_run: "Run", "시험";
+        to_diagnosis: "Diagnosis", "진단";
     }
 }

@@ -1,0 +1,53 @@
+//! How often faults were seen, day by day.
+
+use rusqlite::params;
+use serde::Serialize;
+
+use crate::error::StoreError;
+use crate::store::Store;
+
+/// Microseconds of a day.
+const DAY_US: i64 = 86_400_000_000;
+
+/// How often one fault of one unit was seen on one day.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct DailyCount {
+    /// Beginning of the day (UTC).
+    pub day_us: i64,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// The fault's number.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// The part it points at.
+    pub lru: String,
+    /// Times seen.
+    pub count: u64,
+}
+
+impl Store {
+    /// Counts what was seen since `since_us`, oldest day first.
+    pub fn daily_occurrences(&self, since_us: i64) -> Result<Vec<DailyCount>, StoreError> {
+        let list = || -> rusqlite::Result<Vec<_>> {
+            let mut select = self.conn.prepare_cached(
+                "SELECT o.at_us / ?2 * ?2, u.serial, f.code, f.code_name, f.lru, count(*)
+                 FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
+                    JOIN unit u ON u.seq = f.unit
+                 WHERE o.at_us >= ?1 GROUP BY 1, f.seq ORDER BY 1, u.serial, f.code",
+            )?;
+            let rows = select.query_map(params![since_us, DAY_US], |row| {
+                Ok(DailyCount {
+                    day_us: row.get(0)?,
+                    unit_serial: row.get(1)?,
+                    code: row.get(2)?,
+                    code_name: row.get(3)?,
+                    lru: row.get(4)?,
+                    count: row.get::<_, i64>(5)?.unsigned_abs(),
+                })
+            })?;
+            rows.collect()
+        };
+        list().map_err(|error| self.failed("counting occurrences", error))
+    }
+}

@@ -1,0 +1,123 @@
+//! What a person does to a fault: states, repairs, notes.
+
+use eframe::egui::{RichText, TextEdit, Ui};
+use fault_db::{FaultAction, FaultState, FaultSummary, RepairRecord};
+
+use crate::clock::now_us;
+use crate::gui::library::Asked;
+use crate::gui::{Desk, Palette};
+use crate::words::Words;
+
+/// States a person can bring a fault to.
+const TOWARDS: [FaultState; 5] = [
+    FaultState::Acknowledged,
+    FaultState::Repaired,
+    FaultState::Verified,
+    FaultState::Closed,
+    FaultState::Open,
+];
+
+/// The form.
+#[derive(Default)]
+pub struct Change {
+    note: String,
+    serial_old: String,
+    serial_new: String,
+    under_way: Asked<()>,
+}
+
+impl Change {
+    /// True when a change has just been stored.
+    pub fn poll(&mut self, desk: &mut Desk<'_>) -> bool {
+        if !self.under_way.poll() {
+            return false;
+        }
+        match std::mem::take(&mut self.under_way) {
+            Asked::Failed(why) => {
+                desk.messages.trouble(desk.words.faults.not_changed, why);
+                false
+            }
+            _ => {
+                *self = Self::default();
+                true
+            }
+        }
+    }
+
+    /// Shows it: only what the fault's state allows.
+    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, fault: &FaultSummary) {
+        let words = desk.words;
+        ui.horizontal(|ui| {
+            let label = ui.label(words.common.operator);
+            ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(110.0))
+                .labelled_by(label.id);
+            let label = ui.label(words.common.note);
+            ui.add(TextEdit::singleline(&mut self.note).desired_width(f32::INFINITY))
+                .labelled_by(label.id);
+        });
+        let who = desk.settings.operator.trim().to_owned();
+        if fault.state.next(FaultAction::Repair).is_ok() {
+            ui.horizontal(|ui| {
+                for (name, text) in [
+                    (words.faults.serial_old, &mut self.serial_old),
+                    (words.faults.serial_new, &mut self.serial_new),
+                ] {
+                    let label = ui.label(name);
+                    ui.add(TextEdit::singleline(text).desired_width(90.0))
+                        .labelled_by(label.id);
+                }
+            });
+        }
+        ui.add_enabled_ui(!who.is_empty(), |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for state in TOWARDS {
+                    if fault.state.next(FaultAction::towards(state)).is_ok()
+                        && ui.button(name(state, words)).clicked()
+                    {
+                        self.bring(desk, fault, state, &who);
+                    }
+                }
+                if ui.button(words.faults.add_note).clicked() && !self.note.trim().is_empty() {
+                    let (id, who, note) = (fault.id, who.clone(), self.note.clone());
+                    self.under_way = Asked::Pending(desk.library.ask(move |shelf| {
+                        shelf.open()?.add_note(id, &who, &note, now_us())?;
+                        Ok(())
+                    }));
+                }
+            });
+        });
+        if who.is_empty() {
+            ui.label(RichText::new(words.faults.who_first).color(Palette::of(ui).quiet));
+        }
+    }
+
+    fn bring(&mut self, desk: &Desk<'_>, fault: &FaultSummary, state: FaultState, who: &str) {
+        let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
+        let repair = RepairRecord {
+            part: fault.lru.clone(),
+            serial_old: some(&self.serial_old),
+            serial_new: some(&self.serial_new),
+            note: self.note.clone(),
+        };
+        let (id, who, note) = (fault.id, who.to_owned(), self.note.clone());
+        self.under_way = Asked::Pending(desk.library.ask(move |shelf| {
+            let store = shelf.open()?;
+            if state == FaultState::Repaired {
+                store.record_repair(id, &repair, &who, now_us())?;
+            } else {
+                store.set_state(id, state, &who, &note, now_us())?;
+            }
+            Ok(())
+        }));
+    }
+}
+
+fn name(state: FaultState, words: &Words) -> &'static str {
+    match state {
+        FaultState::Acknowledged => words.faults.acknowledge,
+        FaultState::Repaired => words.faults.repair,
+        FaultState::Verified => words.faults.verify,
+        FaultState::Closed => words.faults.close,
+        FaultState::Open => words.faults.reopen,
+    }
+}

@@ -1,0 +1,118 @@
+//! One fault: what was done about it, each time it was seen, and every signal at that moment.
+
+use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
+use fault_db::{FaultDetail, FaultEvent, FreezeSample};
+
+use super::list::state_chip;
+use crate::clock;
+use crate::gui::{Go, Palette};
+use crate::words::{Words, fill};
+
+/// Occurrences shown at most; the command line shows all.
+const MOST: usize = 50;
+
+/// What the fault is and where it stands.
+pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
+    let fault = &detail.fault;
+    ui.horizontal_wrapped(|ui| {
+        let name = format!("{} {}", fault.code, fault.code_name);
+        ui.label(RichText::new(name).strong().size(19.0));
+        state_chip(ui, words, fault.state);
+    });
+    let (first, last) = (
+        clock::local(fault.first_at_us),
+        clock::local(fault.last_at_us),
+    );
+    Grid::new("fault").num_columns(2).show(ui, |ui| {
+        let seen = fill(
+            words.faults.times_seen,
+            &[
+                ("n", &fault.occurrences),
+                ("first", &first),
+                ("last", &last),
+            ],
+        );
+        for (what, value) in [
+            (words.common.unit, fault.unit_serial.as_str()),
+            (words.common.part, &fault.lru),
+            (words.common.severity, &fault.severity),
+            (words.faults.seen, &seen),
+        ] {
+            ui.label(RichText::new(what).color(Palette::of(ui).quiet));
+            ui.label(value);
+            ui.end_row();
+        }
+    });
+}
+
+/// Events, occurrences and the freeze frame of the latest.
+pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go: &mut Vec<Go>) {
+    ui.separator();
+    ui.label(RichText::new(words.faults.what_was_done).strong());
+    for event in &detail.events {
+        show_event(ui, words, event);
+    }
+    ui.separator();
+    ui.label(RichText::new(words.faults.occurrences).strong());
+    for seen in detail.occurrences.iter().take(MOST) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(clock::local(seen.at_us));
+            if let Some(trace) = seen.trace_id
+                && ui.small_button(words.faults.to_trace).clicked()
+            {
+                go.push(Go::Trace(trace));
+            }
+            if ui.small_button(words.faults.to_run).clicked() {
+                go.push(Go::Report(seen.run_id));
+            }
+            if ui.small_button(words.faults.to_diagnosis).clicked() {
+                go.push(Go::Diagnosis(seen.run_id));
+            }
+            ui.label(RichText::new(&seen.message).color(Palette::of(ui).quiet));
+        });
+    }
+    if let Some(latest) = detail.occurrences.first() {
+        CollapsingHeader::new(words.faults.freeze_frame)
+            .default_open(true)
+            .show(ui, |ui| freeze_frame(ui, words, &latest.freeze));
+    }
+}
+
+fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(clock::local(event.at_us)).color(Palette::of(ui).quiet));
+        match event.state {
+            Some(state) => state_chip(ui, words, state),
+            None => {
+                ui.label(words.common.note);
+            }
+        }
+        ui.label(RichText::new(&event.who).strong());
+        ui.label(&event.note);
+        if let Some(repair) = &event.repair {
+            let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
+            let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
+            ui.label(format!("{} {old} → {new} {}", repair.part, repair.note));
+        }
+    });
+}
+
+fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
+    Grid::new("freeze")
+        .num_columns(4)
+        .striped(true)
+        .show(ui, |ui| {
+            for pair in samples.chunks(2) {
+                for sample in pair {
+                    ui.label(&sample.name);
+                    let value = match (&sample.label, sample.value) {
+                        (Some(label), _) => label.clone(),
+                        (None, Some(value)) => format!("{value:.2} {}", sample.unit),
+                        (None, None) => words.faults.not_known.to_owned(),
+                    };
+                    ui.label(RichText::new(value).strong());
+                }
+                ui.end_row();
+            }
+        });
+}

@@ -1,0 +1,66 @@
+//! Which faults are shown.
+
+use fault_db::{DailyCount, FaultState, FaultSummary};
+
+use super::charts::DAY_US;
+
+/// Spans to look back, days; none = all there is.
+pub const SPANS: [Option<i64>; 5] = [Some(7), Some(30), Some(90), Some(365), None];
+
+/// Which faults are shown.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// Unit by its serial number.
+    pub unit: Option<String>,
+    /// Part.
+    pub lru: Option<String>,
+    /// State.
+    pub state: Option<FaultState>,
+    /// Days to look back.
+    pub days: Option<i64>,
+    /// Something its code, name, part, unit or severity contains.
+    pub text: String,
+}
+
+impl Filter {
+    /// The first time of interest.
+    pub fn since_us(&self, now_us: i64) -> i64 {
+        self.days.map_or(0, |days| now_us - days * DAY_US)
+    }
+
+    /// Whether a fault is shown.
+    pub fn takes(&self, fault: &FaultSummary) -> bool {
+        let text = self.text.to_lowercase();
+        let has = |what: &str| what.to_lowercase().contains(&text);
+        self.unit
+            .as_ref()
+            .is_none_or(|unit| *unit == fault.unit_serial)
+            && self.lru.as_ref().is_none_or(|lru| *lru == fault.lru)
+            && self.state.is_none_or(|state| state == fault.state)
+            && (has(&fault.code_name)
+                || has(&fault.code.to_string())
+                || has(&fault.lru)
+                || has(&fault.unit_serial)
+                || has(&fault.severity))
+    }
+
+    /// Whether an occurrence counts in the charts; states are of faults, not of occurrences.
+    pub fn counts(&self, count: &DailyCount) -> bool {
+        let text = self.text.to_lowercase();
+        let has = |what: &str| what.to_lowercase().contains(&text);
+        self.unit
+            .as_ref()
+            .is_none_or(|unit| *unit == count.unit_serial)
+            && self.lru.as_ref().is_none_or(|lru| *lru == count.lru)
+            && (has(&count.code_name)
+                || has(&count.code.to_string())
+                || has(&count.lru)
+                || has(&count.unit_serial))
+    }
+}
+
+/// Names in order, each once.
+pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let names: std::collections::BTreeSet<_> = all.collect();
+    names.into_iter().collect()
+}
