@@ -36,9 +36,15 @@ pub fn places(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> Option
         ),
         (None, None) => return None,
     };
-    let span = (to - from).max(f64::MIN_POSITIVE);
-    let start = from - span * BEYOND;
-    let place = |x: f64| ((x - start) / (span * (1.0 + 2.0 * BEYOND))).clamp(0.0, 1.0);
+    let long = 1.0 + 2.0 * BEYOND;
+    let (start, span) = if to > from {
+        (from - (to - from) * BEYOND, to - from)
+    } else {
+        // One value only is allowed: it stands in the middle.
+        let span = from.abs().max(1.0);
+        (from - span * long / 2.0, span)
+    };
+    let place = |x: f64| ((x - start) / (span * long)).clamp(0.0, 1.0);
     Some((place(value), place(from), place(to)))
 }
 
@@ -61,6 +67,17 @@ mod tests {
         assert_eq!(places(Some(1.0), None, None), None);
         assert_eq!(places(Some(f64::NAN), Some(0.0), None), None);
         assert_eq!(places(None, Some(0.0), None), None);
+        assert!(
+            places(Some(0.0), None, Some(0.0)).is_some(),
+            "a limit of zero"
+        );
+    }
+
+    #[test]
+    fn the_only_value_allowed_stands_in_the_middle() {
+        let places = |value| places(Some(value), Some(4.0), Some(4.0)).expect("a bar");
+        assert_eq!(places(4.0), (0.5, 0.5, 0.5));
+        assert!(places(3.0).0 < 0.5 && places(5.0).0 > 0.5);
     }
 
     #[test]

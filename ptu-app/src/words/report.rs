@@ -45,6 +45,9 @@ wordings! {
         no_value: "no value", "값 없음";
         faults: "Faults", "고장";
         no_faults: "No faults were seen.", "발생한 고장이 없습니다.";
+        minor: "minor", "경미";
+        major: "major", "중대";
+        critical: "critical", "치명";
         seen: "Seen", "횟수";
         first_seen: "First seen", "최초 발생";
         trace: "Trace", "트레이스";
@@ -88,6 +91,16 @@ wordings! {
 }
 
 impl Report {
+    /// How bad a fault is; a word that is not known stays as it is.
+    pub fn severity<'a>(&self, severity: &'a str) -> &'a str {
+        match severity {
+            "minor" => self.minor,
+            "major" => self.major,
+            "critical" => self.critical,
+            other => other,
+        }
+    }
+
     /// What a diagnosis comes to, with the places for parts still open.
     pub fn finding(&self, finding: Finding) -> &'static str {
         match finding {

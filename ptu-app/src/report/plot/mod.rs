@@ -103,6 +103,8 @@ pub struct Plot {
     pub names: Vec<(f64, String)>,
     /// What curves say.
     pub notes: Vec<Note>,
+    /// Room left of the plot at least, so that plots below each other begin at the same place.
+    pub beside: Option<f64>,
     /// Height, in units of the drawing; none = 300.
     pub height: Option<f64>,
 }
@@ -148,7 +150,7 @@ impl Plot {
         let (width, height) = self.size(width);
         let names = self.names.iter().map(|name| room(&name.1) + BESIDE_TICKS);
         let edges = Edges {
-            left: names.fold(LEFT, f64::max),
+            left: names.fold(self.beside.unwrap_or(LEFT), f64::max),
             right: width - RIGHT,
             top: TOP,
             bottom: height - BOTTOM,

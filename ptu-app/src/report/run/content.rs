@@ -12,7 +12,7 @@ use crate::clock::{local, local_zoned};
 use crate::diagnosis::Answer;
 use crate::words::{Language, Words, fill};
 
-/// Parts less likely than this are not named.
+/// Parts and fault modes less likely than this are not named.
 const LEAST_NAMED: f64 = 0.01;
 
 /// The sheet in a language.
@@ -210,7 +210,7 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
         let cells = [
             format!("{} {}{apart}{text}", fault.code, fault.code_name),
             sheet.part(&fault.lru, words),
-            fault.severity.clone(),
+            report.severity(&fault.severity).to_owned(),
             fault.occurrences.to_string(),
             local(fault.first_at_us),
             common.fault_state(state).to_owned(),
@@ -237,8 +237,9 @@ fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
         }
         Ok(answer) => {
             blocks.push(Block::Facts(concluded(sheet, answer, words)));
-            if !answer.diagnosis.candidates.is_empty() {
-                blocks.push(Block::Table(candidates(sheet, answer, words)));
+            let table = candidates(sheet, answer, words);
+            if !table.rows.is_empty() {
+                blocks.push(Block::Table(table));
             }
         }
     }
@@ -282,12 +283,14 @@ fn concluded(sheet: &Sheet, answer: &Answer, words: &Words) -> Vec<(String, Stri
 
 fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
     let report = &words.report;
-    let rows = answer.diagnosis.candidates.iter().map(|candidate| {
+    let all = answer.diagnosis.candidates.iter();
+    let likely = all.filter(|candidate| candidate.probability >= LEAST_NAMED);
+    let rows = likely.map(|candidate| {
         let cells = [
             format!("{:.1} %", 100.0 * candidate.probability),
             sheet.part(&candidate.lru, words),
             format!("{}: {}", candidate.fault, candidate.text),
-            candidate.for_it.join("; "),
+            candidate.for_it.join("\n"),
         ];
         Row::words(RowKind::Head, cells)
     });

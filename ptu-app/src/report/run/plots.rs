@@ -1,5 +1,7 @@
 //! What is drawn of a trace: speeds, and the switched signals that changed nearest to the trigger.
 
+use std::collections::BTreeMap;
+
 use fault_db::{Channel, ChannelKind, TraceData};
 
 use crate::report::plot::{Note, Place, Plot, Series, Style};
@@ -19,6 +21,10 @@ const LANE: f64 = 26.0;
 const AROUND: f64 = 96.0;
 /// How far a switched signal goes up in its lane.
 const SWING: f64 = 0.62;
+/// Height of words in a lane, as a share of that.
+const WORDS: f64 = 0.24;
+/// Room for names of signals.
+const BESIDE: f64 = 120.0;
 
 /// The trace with the channels that are drawn, and those only.
 pub fn drawn_channels(trace: TraceData) -> TraceData {
@@ -76,6 +82,7 @@ pub fn plots(trace: &TraceData, words: &Report) -> Vec<Plot> {
             x: 0.0,
             name: words.trigger.into(),
         }],
+        beside: Some(BESIDE),
         ..Plot::default()
     };
     let mut all = Vec::new();
@@ -127,7 +134,8 @@ fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64) -> Vec<Series> {
         .collect()
 }
 
-/// A switched signal between 0 and 1 above `place`, with its words where there is room.
+/// A switched signal in its lane: two states as a line with steps, more of them as a box each, with
+/// words where there is room.
 fn lane(
     drawing: &mut Plot,
     place: usize,
@@ -135,35 +143,37 @@ fn lane(
     column: &[f64],
     time: &impl Fn(usize) -> f64,
 ) {
-    let known = || column.iter().copied().filter(|value| !value.is_nan());
-    let (low, high) = (
-        known().fold(f64::INFINITY, f64::min),
-        known().fold(f64::NEG_INFINITY, f64::max),
-    );
     let base = place as f64 + 0.12;
-    let height = |value: f64| base + (value - low) / (high - low).max(1.0) * SWING;
+    let no_labels = BTreeMap::new();
+    let labels = match &channel.kind {
+        ChannelKind::Enum { labels } => labels,
+        ChannelKind::Bit | ChannelKind::Number { .. } => &no_labels,
+    };
+    let boxes = labels.len() > 2;
     let mut points = Vec::new();
-    let mut stretch = 0;
-    for row in 0..column.len() {
-        let last = row + 1 == column.len();
-        // Two values that are not known are not equal, and yet no change.
-        let changes = last || column[row].to_bits() != column[row + 1].to_bits();
-        if !changes {
+    for (first, last, value) in stretches(column) {
+        let (from, to) = (time(first), time((last + 1).min(column.len() - 1)));
+        if value.is_nan() {
+            points.push((from, value));
             continue;
         }
-        let value = column[row];
-        let (from, to) = (time(stretch), time(if last { row } else { row + 1 }));
-        points.extend([(from, height(value)), (to, height(value))]);
-        if let ChannelKind::Enum { labels } = &channel.kind
-            && let Some(label) = labels.get(&(value as i64)).filter(|_| !value.is_nan())
-        {
+        let high = base
+            + if boxes {
+                SWING
+            } else {
+                value.clamp(0.0, 1.0) * SWING
+            };
+        points.extend([(from, high), (to, high)]);
+        if boxes {
+            points.extend([(to, base), (from, base), (from, high), (from, f64::NAN)]);
+        }
+        if let Some(label) = labels.get(&(value as i64)) {
             drawing.notes.push(Note {
-                at: (from, base + SWING * 0.28),
+                at: (from, base + SWING * WORDS),
                 until: to,
                 text: label.clone(),
             });
         }
-        stretch = row + 1;
     }
     drawing
         .names
@@ -174,6 +184,18 @@ fn lane(
         style: Style::Line,
         points,
     });
+}
+
+/// First and last row and value of each stretch over which a column stays the same.
+fn stretches(column: &[f64]) -> Vec<(usize, usize, f64)> {
+    let mut all = Vec::new();
+    let mut row = 0;
+    // By their bits: two values that are not known are no change.
+    for same in column.chunk_by(|a, b| a.to_bits() == b.to_bits()) {
+        all.push((row, row + same.len() - 1, same[0]));
+        row += same.len();
+    }
+    all
 }
 
 /// Rows at which something changes, with the one before each: the same line of fewer points.

@@ -1,1 +1,259 @@
+//! The sheet of runs that were never driven: whatever is in the store gives a sheet.
 
+use fault_db::{
+    Channel, ChannelKind, FaultRecord, Id, IdSource, MeasurementRecord, OpenOptions, RunEnd,
+    RunRecord, RunWriter, ScriptRecord, StepRecord, Store, TraceData, UnitRecord, Verdict,
+};
+
+use super::pdf::{HEIGHT, PageItem, WIDTH, laid_out};
+use super::{Sheet, html, pdf};
+use crate::words::Language;
+
+const HOSTILE: &str = "<script>alert(\"1\")</script>&'";
+
+/// A store and the folder it is in.
+struct Stored {
+    store: Store,
+    _folder: tempfile::TempDir,
+}
+
+/// A store with one run of `steps` steps, every third failed with a fault and a trace.
+fn stored(steps: u32, ended: bool) -> (Stored, Id) {
+    let mut next = 0u16;
+    let ids = IdSource::new(move || {
+        next = next.wrapping_add(1);
+        let [high, low] = next.to_be_bytes();
+        (
+            u64::from(next),
+            [high, low, high, low, high, low, high, low, high, low],
+        )
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("history.db");
+    let store = Store::open(&file, OpenOptions::new(ids)).expect("a store");
+    let mut writer = RunWriter::begin(&store, &run()).expect("a run");
+    for index in 0..steps {
+        let failed = index % 3 == 0;
+        writer.step(step(index, failed)).expect("a step");
+        if failed {
+            let fault = writer.fault(&fault(index)).expect("a fault");
+            writer
+                .trace(&[fault.occurrence], &trace())
+                .expect("a trace");
+        }
+    }
+    let id = writer.id();
+    let verdict = if steps > 0 {
+        Verdict::Failed
+    } else {
+        Verdict::Error
+    };
+    if ended {
+        let end = RunEnd {
+            verdict,
+            finished_at_us: 61_000_000,
+            bench_time_us: 60_000_000,
+            wall_time_us: 1_000_000,
+        };
+        writer.finish(&end).expect("an end");
+    } else {
+        writer.flush().expect("kept");
+    }
+    drop(writer);
+    let stored = Stored {
+        store,
+        _folder: folder,
+    };
+    (stored, id)
+}
+
+fn run() -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial: HOSTILE.into(),
+            kind: "atc".into(),
+            config_name: "sg100".into(),
+            sw_versions: Default::default(),
+        },
+        line: "line8".into(),
+        seed: 7,
+        operator: "홍길동".into(),
+        source: "sim".into(),
+        started_at_us: 1_000_000,
+        app_version: "1.2.3".into(),
+        scripts_sha256: "ab".repeat(32),
+        unit_config_sha256: "cd".repeat(32),
+        injected: None,
+        owner: "nobody".into(),
+        scripts: vec![ScriptRecord {
+            path: "atp/overspeed.star".into(),
+            sha256: "ef".repeat(32),
+        }],
+    }
+}
+
+fn step(index: u32, failed: bool) -> StepRecord {
+    let verdict = if failed {
+        Verdict::Failed
+    } else {
+        Verdict::Passed
+    };
+    StepRecord {
+        procedure: format!("atp/part_{}", index / 40),
+        name: format!(
+            "step no {index} {}",
+            "of a very long name ".repeat(index as usize % 9)
+        ),
+        verdict,
+        started_bench_us: i64::from(index) * 1_000_000,
+        bench_time_us: 1_000_000,
+        message: if failed {
+            HOSTILE.repeat(4)
+        } else {
+            String::new()
+        },
+        script_line: Some(3),
+        measurements: vec![MeasurementRecord {
+            name: "eb_reaction".into(),
+            value: Some(if failed { 640.0 } else { 340.0 }),
+            unit: "ms".into(),
+            low: None,
+            high: Some(472.0),
+            verdict,
+        }],
+        index,
+    }
+}
+
+fn fault(index: u32) -> FaultRecord {
+    FaultRecord {
+        code: 9000,
+        code_name: "check_failed".into(),
+        lru: "eb_relay".into(),
+        severity: "major".into(),
+        at_us: 2_000_000,
+        bench_us: i64::from(index) * 1_000_000,
+        step_index: Some(index),
+        message: String::new(),
+        freeze: Vec::new(),
+    }
+}
+
+fn trace() -> TraceData {
+    let channel = |name: &str, kind| Channel {
+        name: name.into(),
+        unit: String::new(),
+        kind,
+    };
+    TraceData {
+        t0_bench_us: 0,
+        t0_us: 0,
+        period_us: 50_000,
+        trigger_row: Some(2),
+        partial: true,
+        gaps: false,
+        channels: vec![
+            channel("speed", ChannelKind::Number { lsb: 1.0 }),
+            channel("eb", ChannelKind::Bit),
+        ],
+        columns: vec![vec![1.0, 2.0, 3.0, 4.0], vec![0.0, 0.0, 1.0, 1.0]],
+    }
+}
+
+fn sheet(stored: &Stored, id: Id) -> Sheet {
+    Sheet::gather(&stored.store, None, id).expect("a sheet")
+}
+
+fn words_of(page: &[PageItem]) -> String {
+    let text = |item: &PageItem| match item {
+        PageItem::Text { text, .. } => Some(text.clone()),
+        _ => None,
+    };
+    page.iter().filter_map(text).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn what_is_hostile_in_the_store_is_words_in_the_page() {
+    let (store, id) = stored(4, true);
+    let page = html(&sheet(&store, id), Language::English.words());
+    assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
+    assert!(page.contains("472") && page.contains("640") && page.contains("Failed"));
+    assert_eq!(
+        page.matches("<figure").count(),
+        4,
+        "two plots of each trace"
+    );
+    let outside = ["http:", "https:", "src=", "<link", "@import", "url("];
+    assert!(outside.iter().all(|word| !page.contains(word)));
+}
+
+#[test]
+fn korean_sheets_are_korean_and_no_name_of_a_wording_is_left_open() {
+    let (store, id) = stored(4, true);
+    let page = html(&sheet(&store, id), Language::Korean.words());
+    for word in ["시험 성적서", "불합격", "홍길동", "하한", "lang=\"ko\""] {
+        assert!(page.contains(word), "{word}");
+    }
+    assert!(!page.contains("{n}") && !page.contains("{parts}"));
+}
+
+/// Nothing is off a page, nothing is lost, and a table that goes on has its heading again.
+#[test]
+fn two_hundred_steps_stand_on_pages_with_headings() {
+    let (store, id) = stored(200, true);
+    let pages = laid_out(&sheet(&store, id), Language::English.words());
+    let mut said = String::new();
+    for (number, page) in (1..).zip(&pages) {
+        let words = words_of(page);
+        assert!(words.contains(&format!("page {number} of {}", pages.len())));
+        if words.contains("eb_reaction") {
+            assert!(words.contains("Step, measurement"), "page {number}");
+        }
+        for item in page {
+            let PageItem::Text { x, y, .. } = item else {
+                continue;
+            };
+            assert!(
+                (0.0..WIDTH).contains(x) && (0.0..HEIGHT).contains(y),
+                "{item:?}"
+            );
+        }
+        said += &words;
+    }
+    for index in 0..200 {
+        assert!(said.contains(&format!("step no {index}")), "{index}");
+    }
+    assert!(said.contains("more traces are in the database"));
+}
+
+#[test]
+fn a_document_is_the_same_each_time_and_in_both_languages_a_pdf() {
+    let (store, id) = stored(30, true);
+    for language in Language::ALL {
+        let make = || pdf(&sheet(&store, id), language.words()).expect("a document");
+        let document = make();
+        assert!(document.starts_with(b"%PDF-"));
+        assert_eq!(document, make());
+    }
+}
+
+#[test]
+fn runs_without_steps_or_end_have_a_sheet() {
+    for (steps, ended, said) in [(0, true, "No steps were run."), (3, false, "Interrupted")] {
+        let (store, id) = stored(steps, ended);
+        let sheet = sheet(&store, id);
+        let words = Language::English.words();
+        assert!(html(&sheet, words).contains(said), "{said}");
+        assert!(pdf(&sheet, words).is_ok());
+    }
+}
+
+#[test]
+fn a_trace_that_cannot_be_read_is_named_and_the_sheet_goes_on() {
+    let (store, id) = stored(4, true);
+    let mut sheet = sheet(&store, id);
+    sheet.traces[0].samples = Err("it is gone".into());
+    let page = html(&sheet, Language::English.words());
+    assert!(page.contains("cannot be shown: it is gone"));
+    assert_eq!(page.matches("<figure").count(), 2);
+}

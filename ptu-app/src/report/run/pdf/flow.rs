@@ -65,11 +65,12 @@ mod tests {
     }
 
     fn names(page: &[Item]) -> Vec<&str> {
-        let name = |item| match item {
-            &Item::Text { ref text, .. } => Some(text.as_str()),
-            _ => None,
-        };
-        page.iter().filter_map(name).collect()
+        page.iter()
+            .filter_map(|item| match item {
+                Item::Text { text, .. } => Some(text.as_str()),
+                _ => None,
+            })
+            .collect()
     }
 
     #[test]

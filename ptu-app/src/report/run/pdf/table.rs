@@ -9,7 +9,7 @@ const SIZE: f32 = 7.6;
 const LINE: f32 = 10.0;
 /// Free above and below a row's words, and between columns.
 const ABOVE: f32 = 2.2;
-const BETWEEN: f32 = 6.0;
+const BETWEEN: f32 = 8.0;
 /// Details begin so much further right.
 const INDENT: f32 = 10.0;
 /// Width and height of a bar.
