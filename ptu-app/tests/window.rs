@@ -41,7 +41,7 @@ fn connects_arms_and_stops_everything_with_one_key() {
     window.wait_for("SIM-0001");
     window.wait_for("disarmed");
     window.click("Arm");
-    window.wait_for("ARMED: TEST SIGNALS ACT");
+    window.wait_for("ARMED: test signals act");
     window.key(Key::F12);
     window.wait_for("disarmed");
     window.click("Disconnect");

@@ -12,7 +12,7 @@ wordings! {
         not_connected: "not connected", "연결 안 됨";
         connected: "connected", "연결됨";
         simulated: "simulated unit", "모의 유닛";
-        armed: "ARMED: TEST SIGNALS ACT", "ARMED: 시험 신호 작동";
+        armed: "ARMED: test signals act", "ARMED: 시험 신호 작동";
         disarmed: "disarmed", "해제됨";
         stop_all: "Stop all", "전체 정지";
         language: "language", "언어";

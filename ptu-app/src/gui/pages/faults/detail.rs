@@ -6,6 +6,7 @@ use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 use super::list::state_chip;
 use crate::clock;
 use crate::gui::{Go, Palette};
+use crate::limits::short;
 use crate::words::{Words, fill};
 
 /// Occurrences shown at most; the command line shows all.
@@ -79,7 +80,7 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go: &mut Vec<Go>) 
 }
 
 fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         ui.label(RichText::new(clock::local(event.at_us)).color(Palette::of(ui).quiet));
         match event.state {
             Some(state) => state_chip(ui, words, state),
@@ -87,14 +88,19 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
                 ui.label(words.common.note);
             }
         }
-        ui.label(RichText::new(&event.who).strong());
-        ui.label(&event.note);
-        if let Some(repair) = &event.repair {
-            let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
-            let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
-            ui.label(format!("{} {old} → {new} {}", repair.part, repair.note));
+        if !event.who.is_empty() {
+            ui.label(RichText::new(&event.who).strong());
         }
     });
+    let mut said = event.note.clone();
+    if let Some(repair) = &event.repair {
+        let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
+        let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
+        said = format!("{} {old} → {new} {}", repair.part, repair.note);
+    }
+    if !said.is_empty() {
+        ui.indent(event.id.to_string(), |ui| ui.label(said));
+    }
 }
 
 fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
@@ -107,7 +113,7 @@ fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
                     ui.label(&sample.name);
                     let value = match (&sample.label, sample.value) {
                         (Some(label), _) => label.clone(),
-                        (None, Some(value)) => format!("{value:.2} {}", sample.unit),
+                        (None, Some(value)) => format!("{} {}", short(value), sample.unit),
                         (None, None) => words.faults.not_known.to_owned(),
                     };
                     ui.label(RichText::new(value).strong());

@@ -10,7 +10,7 @@ use crate::gui::parts::{chip, named_combo};
 use crate::words::{Words, fill};
 
 /// Widths of the columns, points.
-const COLUMNS: [f32; 6] = [126.0, 78.0, 164.0, 112.0, 70.0, 36.0];
+const COLUMNS: [f32; 6] = [156.0, 78.0, 160.0, 110.0, 70.0, 36.0];
 
 /// The filters.
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
