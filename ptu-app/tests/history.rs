@@ -328,9 +328,5 @@ fn without_any_history_the_next_move_is_said() {
             .exits(3)
             .explains(&["history.db", "a first run creates it"]);
     }
-    place
-        .ptu(&[])
-        .exits(2)
-        .explains(&["Usage: ptu", "run ", "faults "]);
     place.ptu(&["runn"]).exits(2).explains(&["runn", "'run'"]);
 }

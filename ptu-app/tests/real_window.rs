@@ -258,29 +258,24 @@ fn a_window_nobody_touches_is_idle() {
 #[test]
 fn without_a_display_it_says_so_and_ends() {
     let place = Place::new();
-    let ptu = place
-        .command(&["gui"])
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .output();
-    let ptu = ptu.expect("ptu starts");
-    let said = String::from_utf8_lossy(&ptu.stderr);
-    assert_eq!(ptu.status.code(), Some(3), "{said}");
-    assert!(
-        said.contains("no display") && said.contains("ptu run"),
-        "{said}"
-    );
-
-    let gone = place
-        .command(&["gui"])
-        .env("DISPLAY", ":4711")
-        .env_remove("WAYLAND_DISPLAY")
-        .output();
-    let gone = gone.expect("ptu starts");
-    let said = String::from_utf8_lossy(&gone.stderr);
-    assert_eq!(gone.status.code(), Some(3), "{said}");
-    assert!(
-        said.contains("cannot open a window") && !said.contains("panicked"),
-        "{said}"
-    );
+    let say = |arguments: &[&str], display: Option<&str>| {
+        let mut ptu = place.command(arguments);
+        ptu.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        ptu.envs(display.map(|name| ("DISPLAY", name)));
+        let output = ptu.output().expect("ptu starts");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(3), "{said}");
+        assert!(!said.contains("panicked"), "{said}");
+        said
+    };
+    // Without a verb it is the window, too.
+    for arguments in [&["gui"][..], &[]] {
+        let said = say(arguments, None);
+        assert!(
+            said.contains("no display") && said.contains("ptu run"),
+            "{said}"
+        );
+        let said = say(arguments, Some(":4711"));
+        assert!(said.contains("cannot open a window"), "{said}");
+    }
 }

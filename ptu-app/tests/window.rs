@@ -199,6 +199,16 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
 }
 
 #[test]
+fn a_unit_that_starts_again_by_itself_is_said() {
+    let mut settings = settings(Page::Bench);
+    settings.unit.faults = vec!["power_supply.dips".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("The unit was started again");
+    assert!(window.app().units().chosen().is_connected());
+}
+
+#[test]
 fn a_port_that_is_not_there_is_said() {
     let mut settings = settings(Page::Bench);
     settings.unit.endpoint = "serial:/dev/no-such-port".into();

@@ -1,6 +1,6 @@
 //! `ptu gui`: the technician's window.
 
-use clap::Args;
+use clap::{Args, Parser};
 
 use super::{Database, ScriptsOption};
 use crate::failure::{Exit, Failure};
@@ -42,7 +42,20 @@ pub struct GuiArguments {
     scripts: ScriptsOption,
 }
 
+#[derive(Debug, Parser)]
+struct NoVerb {
+    #[command(flatten)]
+    gui: GuiArguments,
+}
+
 impl GuiArguments {
+    /// Those of `ptu gui` with nothing after it; the environment counts.
+    pub fn usual() -> Result<Self, Failure> {
+        let no_verb = NoVerb::try_parse_from(["ptu"]);
+        let usual = no_verb.map_err(|error| Failure::usage(error.to_string()))?;
+        Ok(usual.gui)
+    }
+
     /// Opens it and stays until it is closed.
     pub fn run(self) -> Result<Exit, Failure> {
         let settings_file = Settings::usual_file();

@@ -27,21 +27,17 @@ use crate::failure::{Exit, Failure};
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///
 /// Examples:
-///   ptu gui                                  the technician's window
+///   ptu                                      the technician's window
 ///   ptu run                                  whole acceptance suite on the embedded unit
 ///   ptu run atp/overspeed --unit serial:/dev/ttyUSB0
 ///   ptu run --inject eb_relay.slow --report result.json
 ///   ptu faults list --state open
 #[derive(Debug, Parser)]
-#[command(
-    name = "ptu",
-    version,
-    verbatim_doc_comment,
-    arg_required_else_help = true
-)]
+#[command(name = "ptu", version, verbatim_doc_comment)]
 pub struct Cli {
+    /// None = the window, as it was left.
     #[command(subcommand)]
-    verb: Verb,
+    verb: Option<Verb>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -72,7 +68,10 @@ impl Cli {
     /// # Errors
     /// With a message for a person and an exit code.
     pub fn run(self) -> Result<Exit, Failure> {
-        match self.verb {
+        let Some(verb) = self.verb else {
+            return gui::GuiArguments::usual()?.run();
+        };
+        match verb {
             Verb::Gui(arguments) => arguments.run(),
             Verb::Run(arguments) => arguments.run(),
             Verb::Drive(arguments) => arguments.run(),

@@ -201,6 +201,16 @@ mod tests {
     }
 
     #[test]
+    fn the_shipped_font_has_every_letter() {
+        let font = ttf_parser::Face::parse(crate::fonts::PRETENDARD, 0).expect("a font");
+        for (key, english, korean) in all() {
+            for letter in english.chars().chain(korean.chars()) {
+                assert!(font.glyph_index(letter).is_some(), "{key}: no \"{letter}\"");
+            }
+        }
+    }
+
+    #[test]
     fn korean_is_not_english_left_over() {
         let left: Vec<_> = all()
             .into_iter()
