@@ -2,7 +2,6 @@
 
 mod diff;
 mod explained;
-mod export;
 mod plot;
 mod replay;
 mod show;
@@ -16,6 +15,7 @@ use fault_db::{Id, Store, TraceData};
 use super::{Database, print_out};
 use crate::data;
 use crate::failure::{Exit, Failure};
+use crate::trace_view::csv::csv;
 
 /// Show, explain, compare, replay and export recorded traces
 #[derive(Debug, Args)]
@@ -58,8 +58,9 @@ impl TraceArguments {
                     return Err(Failure::usage("the file to export to must end in .csv"));
                 }
                 let (id, trace) = read(&self.database.open_read_only()?, &id, &signals)?;
-                data::write(&to, &export::csv(&trace))?;
                 let rows = trace.rows();
+                let channels: Vec<_> = (0..trace.channels.len()).collect();
+                data::write(&to, &csv(&trace, &channels, 0..rows, None))?;
                 print_out(&format!(
                     "trace {}: {rows} rows to {}",
                     id.short(),

@@ -1,6 +1,7 @@
 //! Where two traces part, signal by signal.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use fault_db::{Channel, ChannelKind, TraceData};
 
@@ -49,6 +50,8 @@ pub struct Rule {
     wall_clock: bool,
     /// First row compared, from the trigger.
     from_row: i64,
+    /// Rows by which the second trace is laid later than its trigger says.
+    shift_rows: i64,
 }
 
 /// One signal that differs.
@@ -66,6 +69,8 @@ pub struct Deviation {
     pub largest: Difference,
     /// Rows that differ.
     pub rows: usize,
+    /// The same rows of the first trace, as stretches.
+    pub stretches: Vec<Range<usize>>,
 }
 
 /// Two values at one time.
@@ -99,6 +104,7 @@ impl Rule {
             slack_rows: 0,
             wall_clock: false,
             from_row: i64::MIN,
+            shift_rows: 0,
         }
     }
 
@@ -108,6 +114,7 @@ impl Rule {
             slack_rows: CLOCK_ROWS,
             wall_clock: true,
             from_row: i64::MIN,
+            shift_rows: 0,
         }
     }
 
@@ -118,6 +125,11 @@ impl Rule {
             from_row: began_row.saturating_add(LEFT_ROWS),
             ..Self::wall_clock()
         }
+    }
+
+    /// The same, with the second trace laid so many rows later; negative: sooner.
+    pub const fn shifted(self, shift_rows: i64) -> Self {
+        Self { shift_rows, ..self }
     }
 
     fn tolerance(&self, channel: &Channel) -> Option<f64> {
@@ -236,7 +248,7 @@ struct Rows {
 impl Rows {
     fn of(came: &TraceData, expected: &TraceData, rule: &Rule) -> Result<Self, Failure> {
         let trigger = |trace: &TraceData| i64::from(trace.trigger_row.unwrap_or(0));
-        let shift = trigger(expected) - trigger(came);
+        let shift = (trigger(expected) - trigger(came)).saturating_sub(rule.shift_rows);
         let begin = 0.max(-shift);
         let from = begin.max(rule.from_row.saturating_add(trigger(came)));
         let end = (came.rows() as i64 - 1).min(expected.rows() as i64 - 1 - shift);
@@ -296,8 +308,14 @@ impl Rows {
             expected: known(expected[row]),
         };
         let (mut rows, mut largest) = (0, first);
+        let mut stretches: Vec<Range<usize>> = Vec::new();
         for row in apart {
             rows += 1;
+            let at = self.first + row;
+            match stretches.last_mut() {
+                Some(last) if last.end == at => last.end += 1,
+                _ => stretches.push(at..at + 1),
+            }
             if tolerance.is_some() && pair.size(row) > pair.size(largest) {
                 largest = row;
             }
@@ -309,6 +327,7 @@ impl Rows {
             first: difference(first),
             largest: difference(largest),
             rows,
+            stretches,
         })
     }
 }
@@ -426,6 +445,21 @@ mod tests {
             (0, 0),
             "before it began"
         );
+    }
+
+    #[test]
+    fn rows_that_differ_are_stretches_and_a_shifted_trace_is_laid_later() {
+        let bit = |column| trace("eb", ChannelKind::Bit, "", column);
+        let found = |came, expected, rule: Rule| {
+            let found = compare(&bit(came), &bit(expected), &rule, &[]).expect("compared");
+            found.deviations.into_iter().next().map(|d| d.stretches)
+        };
+        let two = [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0];
+        let exact = Rule::exact();
+        assert_eq!(found(&two, &[0.0; 8], exact), Some(vec![1..2, 5..7]));
+        assert_eq!(found(&LATE, &STEP, exact.shifted(2)), None);
+        assert_eq!(found(&STEP, &LATE, exact.shifted(-2)), None);
+        assert!(compare(&bit(&STEP), &bit(&LATE), &exact.shifted(99), &[]).is_err());
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod rerun;
 
 pub use compare::{Comparison, Deviation, Difference, Rule, compare};
 pub use explain::{Explanation, Link, explain, explained};
-pub use original::Original;
+pub use original::{Original, rule_between};
 pub use rerun::{Likeness, Rerun, Rerunning, rerun};
 
 pub use again::good_twin;

@@ -3,8 +3,26 @@
 use fault_db::{Id, Store, TraceData};
 use protocol::Instant;
 
+use super::Rule;
 use crate::failure::Failure;
 use crate::run::{BenchMade, Stimuli, Window};
+
+/// How two stored traces compare: to the last bit where both come from benches in virtual time.
+///
+/// # Errors
+/// The database fails.
+pub fn rule_between(store: &Store, a: Id, b: Id) -> Result<Rule, Failure> {
+    // Not known where there is no recording.
+    let on_port = |trace| match store.recording(trace)? {
+        Some(recording) => Ok::<_, Failure>(BenchMade::read(&recording)?.0.on_port()),
+        None => Ok(false),
+    };
+    Ok(if on_port(a)? || on_port(b)? {
+        Rule::wall_clock()
+    } else {
+        Rule::exact()
+    })
+}
 
 /// A trace that can be had again.
 #[derive(Debug)]

@@ -3,14 +3,40 @@
 //!
 //! * [`columns`]: quantities, least and greatest value per column of pixels;
 //! * [`spans`]: choices and bits, as stretches of one value;
-//! * [`ticks`]: round values along an axis.
+//! * [`ticks`]: round values along an axis;
+//! * [`TraceView`]: a trace with every signal summarised once ([`Pyramid`], [`Runs`]);
+//! * [`Axis`]: time or distance; [`Camera`]: the part of it in view;
+//! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;
+//! * [`choose`]: the signals to show first;
+//! * [`shelf`]: which traces there are, and one read from the database with what happened in it;
+//! * [`Overlay`]: another trace or the good twin behind it;
+//! * [`Scene`]: all of this as one picture: lanes, view, cursors, what is laid behind.
 
+mod axis;
+mod camera;
+pub mod choose;
 pub mod columns;
+pub mod csv;
+mod overlay;
+mod pyramid;
+mod runs;
+mod scene;
+pub mod shelf;
 pub mod spans;
+pub mod statistics;
 pub mod ticks;
+pub mod value;
+mod view;
 
+pub use axis::{Axis, Edges, Kind};
+pub use camera::Camera;
 pub use columns::Column;
+pub use overlay::{Against, Overlay, Parting};
+pub use pyramid::Pyramid;
+pub use runs::Runs;
+pub use scene::{Behind, Cursor, Lane, Scene};
 pub use spans::{Shown, Span};
+pub use view::{Summary, TraceView};
 
 /// What part of an axis is in view, in the axis' unit: s or m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,5 +61,29 @@ impl Window {
     /// The value at a share of its length.
     pub fn at(self, share: f64) -> f64 {
         self.from + share * self.length()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fault_db::{Channel, ChannelKind, TraceData};
+
+    /// A trace of quantities with rows of 50 ms.
+    pub fn trace(columns: &[(&str, &[f64])]) -> TraceData {
+        let channel = |(name, _): &(&str, &[f64])| Channel {
+            name: (*name).into(),
+            unit: String::new(),
+            kind: ChannelKind::Number { lsb: 0.001 },
+        };
+        TraceData {
+            t0_bench_us: 0,
+            t0_us: 0,
+            period_us: 50_000,
+            trigger_row: None,
+            partial: false,
+            gaps: false,
+            channels: columns.iter().map(channel).collect(),
+            columns: columns.iter().map(|(_, column)| column.to_vec()).collect(),
+        }
     }
 }

@@ -47,7 +47,16 @@ pub fn add(spans: &mut Vec<Span>, (from, to): (f64, f64), value: f64) {
         return;
     }
     match last {
-        Some(last) if last.shown == Shown::Busy || last.shown == Shown::Value(value) => {
+        Some(last) if last.shown == Shown::Value(value) => last.to = last.to.max(right),
+        _ => add_busy(spans, (from, to)),
+    }
+}
+
+/// Adds a stretch of values that change faster than can be seen; edges in pixels.
+pub fn add_busy(spans: &mut Vec<Span>, (from, to): (f64, f64)) {
+    let (left, right) = (from as f32, to as f32);
+    match spans.last_mut() {
+        Some(last) if last.shown == Shown::Busy && left - last.to < 1.0 => {
             last.to = last.to.max(right);
         }
         _ => spans.push(Span {

@@ -3,15 +3,14 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use fault_db::{Id, Store, TraceData};
+use fault_db::{Store, TraceData};
 use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{ScriptsOption, print_json, print_out};
 use crate::failure::{Exit, Failure};
-use crate::replay::{Comparison, Original, Rule, compare, good_twin};
-use crate::run::BenchMade;
+use crate::replay::{Comparison, Original, compare, good_twin, rule_between};
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
@@ -52,12 +51,7 @@ impl DiffArguments {
             ("twin".to_owned(), twin, rule)
         } else {
             let b = store.resolve_trace(&self.expected)?;
-            let exact = !on_port(store, a)? && !on_port(store, b)?;
-            let rule = if exact {
-                Rule::exact()
-            } else {
-                Rule::wall_clock()
-            };
+            let rule = rule_between(store, a, b)?;
             (b.to_string(), store.trace(b)?, rule)
         };
         let comparison = compare(&came, &expected, &rule, &self.signals)?;
@@ -90,12 +84,4 @@ fn text(a: &str, b: &str, came: &TraceData, expected: &TraceData, found: &Compar
     let names: Vec<_> = found.deviations.iter().map(|d| d.signal.as_str()).collect();
     let _ = write!(text, "\n{}", lanes(came, expected, &names));
     text
-}
-
-/// Its unit was on a port; not known where there is no recording.
-fn on_port(store: &Store, trace: Id) -> Result<bool, Failure> {
-    match store.recording(trace)? {
-        Some(recording) => Ok(BenchMade::read(&recording)?.0.on_port()),
-        None => Ok(false),
-    }
 }

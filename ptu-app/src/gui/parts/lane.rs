@@ -75,17 +75,19 @@ pub fn y_axis(painter: &Painter, gutter: Rect, rect: Rect, range: (f64, f64), pa
     for value in ticks.values() {
         let y = y_at(rect, range, value);
         painter.hline(rect.x_range(), y, Stroke::new(1.0, palette.grid));
-        // Half a line of text away from the edges, or it would be cut or meet its neighbour's.
-        let half = TEXT / 2.0 + 1.0;
-        if y - half >= rect.top() && y + half <= rect.bottom() {
-            painter.text(
-                pos2(gutter.right() - 4.0, y),
-                Align2::RIGHT_CENTER,
-                ticks.written(value),
-                font.clone(),
-                palette.quiet,
-            );
-        }
+        // At the edges half a line of text would be cut off.
+        let half = TEXT / 2.0;
+        let beside = y.clamp(
+            rect.top() + half,
+            (rect.bottom() - half).max(rect.top() + half),
+        );
+        painter.text(
+            pos2(gutter.right() - 4.0, beside),
+            Align2::RIGHT_CENTER,
+            ticks.written(value),
+            font.clone(),
+            palette.quiet,
+        );
     }
 }
 

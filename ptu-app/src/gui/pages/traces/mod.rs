@@ -1,24 +1,182 @@
-//! The page `traces`.
+//! Traces: stacked lanes that share an axis, cursors, and what was expected behind what came.
 
-use eframe::egui::Ui;
+mod bar;
+mod behind;
+mod events;
+mod export;
+mod input;
+mod lanes;
+mod list;
+mod row;
+mod signals;
+mod table;
+
+use std::sync::Arc;
+
+use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
-use crate::gui::Desk;
+use crate::gui::library::Pending;
+use crate::gui::{Desk, Go, Palette};
+use crate::trace_view::Scene;
+use crate::trace_view::shelf::{self, Opened};
+use crate::words::fill;
+use behind::BehindAsked;
+use export::Export;
+use lanes::Painted;
+use list::TraceList;
+
+/// Height of a row of controls.
+const ROW: f32 = 24.0;
 
 /// The page.
 #[derive(Default)]
 pub struct TracesPage {
-    chosen: Option<Id>,
+    list: TraceList,
+    opening: Option<Pending<Opened>>,
+    scene: Option<Scene>,
+    /// Why nothing is shown.
+    trouble: Option<String>,
+    behind: BehindAsked,
+    export: Export,
+    painted: Painted,
+    find_signal: String,
+    choosing: bool,
+    told: bool,
 }
 
 impl TracesPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        ui.heading(desk.words.traces.title);
+        self.poll(desk);
+        let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
+        let clicked = Panel::left("recorded traces")
+            .default_size(250.0)
+            .size_range(180.0..=420.0)
+            .show(ui, |ui| self.list.show(ui, desk, chosen))
+            .inner;
+        // The latest trace is what most people come for.
+        let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
+        if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
+            self.read(id, Some(run), desk);
+        }
+        CentralPanel::default()
+            .frame(Frame::central_panel(ui.style()).inner_margin(4))
+            .show(ui, |ui| self.central(ui, desk));
     }
 
     /// Shows this one.
-    pub fn open(&mut self, id: Id, _desk: &mut Desk<'_>) {
-        self.chosen = Some(id);
+    pub fn open(&mut self, id: Id, desk: &mut Desk<'_>) {
+        self.read(id, None, desk);
     }
+
+    fn read(&mut self, id: Id, run: Option<Id>, desk: &Desk<'_>) {
+        self.trouble = None;
+        let question = desk
+            .library
+            .ask(move |shelf| shelf::open(&shelf.read()?, id, run));
+        self.opening = Some(question);
+    }
+
+    fn poll(&mut self, desk: &mut Desk<'_>) {
+        if let Some(answer) = self.opening.as_ref().and_then(Pending::take) {
+            self.opening = None;
+            match answer {
+                Ok(opened) => {
+                    self.export.name_after(&opened);
+                    self.behind = BehindAsked::default();
+                    self.scene = Some(Scene::new(Arc::new(opened), &desk.settings.lanes));
+                }
+                Err(failure) => {
+                    self.scene = None;
+                    desk.messages
+                        .trouble(desk.words.traces.cannot_open, &failure.message);
+                    self.trouble = Some(failure.message);
+                }
+            }
+        }
+        if let Some(scene) = &mut self.scene {
+            self.behind.poll(scene, desk);
+        }
+        self.export.poll(desk);
+    }
+
+    fn central(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let words = desk.words;
+        let Some(scene) = &mut self.scene else {
+            match &self.trouble {
+                _ if self.opening.is_some() => ui.label(words.common.loading),
+                Some(why) => {
+                    let text = format!("{}: {why}", words.traces.cannot_open);
+                    ui.label(RichText::new(text).color(Palette::of(ui).bad))
+                }
+                None => ui.label(words.traces.choose_one),
+            };
+            return;
+        };
+        // Words stand on one line with what they name.
+        ui.spacing_mut().interact_size.y = ROW;
+        heading(ui, scene, &self.list, desk);
+        bar::view(ui, scene, &mut self.choosing, &mut self.told, desk);
+        ui.horizontal_wrapped(|ui| {
+            self.behind.bar(ui, scene, &self.list, desk);
+            ui.separator();
+            ui.horizontal(|ui| self.export.bar(ui, scene, self.painted.rect, desk));
+        });
+        events::links(ui, scene, words);
+        if self.choosing {
+            Panel::right("signals of the trace")
+                .default_size(260.0)
+                .size_range(200.0..=400.0)
+                .show(ui, |ui| {
+                    signals::choose(ui, scene, &mut self.find_signal, desk);
+                });
+        }
+        if self.told {
+            Panel::bottom("statistics of the trace")
+                .resizable(true)
+                .default_size(170.0)
+                .size_range(80.0..=420.0)
+                .show(ui, |ui| table::statistics(ui, scene, words));
+        }
+        CentralPanel::default()
+            .frame(Frame::NONE)
+            .show(ui, |ui| self.painted.lanes(ui, scene, words));
+    }
+}
+
+/// Whose trace it is, what is amiss with it, and ways on from here.
+fn heading(ui: &mut Ui, scene: &Scene, list: &TraceList, desk: &mut Desk<'_>) {
+    let words = desk.words;
+    let opened = scene.opened();
+    ui.horizontal_wrapped(|ui| {
+        let (unit, when) = list.whose(opened.run);
+        let title = fill(
+            words.traces.of_unit,
+            &[
+                ("trace", &opened.id.short()),
+                ("unit", &unit),
+                ("when", &when),
+            ],
+        );
+        ui.label(RichText::new(title).strong());
+        let data = opened.view.data();
+        let warn = Palette::of(ui).warn;
+        for (amiss, text) in [
+            (data.partial, words.traces.cut_short),
+            (data.gaps, words.traces.has_gaps),
+        ] {
+            if amiss {
+                ui.label(RichText::new(text).color(warn));
+            }
+        }
+        if let Some(run) = opened.run {
+            if ui.link(words.traces.to_report).clicked() {
+                desk.go.push(Go::Report(run));
+            }
+            if ui.link(words.traces.to_diagnosis).clicked() {
+                desk.go.push(Go::Diagnosis(run));
+            }
+        }
+    });
 }

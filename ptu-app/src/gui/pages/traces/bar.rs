@@ -1,0 +1,84 @@
+//! Axis, zoom, cursors, and what else is to be shown.
+
+use eframe::egui::{RichText, Ui};
+
+use crate::gui::{Desk, Palette};
+use crate::trace_view::{Axis, Cursor, Kind, Scene};
+use crate::words::fill;
+
+/// How much one press zooms.
+pub const ZOOM: f64 = 0.7;
+
+/// The bar.
+pub fn view(
+    ui: &mut Ui,
+    scene: &mut Scene,
+    choosing: &mut bool,
+    told: &mut bool,
+    desk: &mut Desk<'_>,
+) {
+    let words = &desk.words.traces;
+    ui.horizontal_wrapped(|ui| {
+        for (kind, name) in [
+            (Kind::Time, words.over_time),
+            (Kind::Distance, words.over_distance),
+        ] {
+            let chosen = scene.axis().kind() == kind;
+            if ui.selectable_label(chosen, name).clicked() && !scene.set_axis(kind) {
+                desk.messages.tell(words.no_distance);
+            }
+        }
+        ui.separator();
+        if ui.button("−").on_hover_text(words.zoom_out).clicked() {
+            scene.camera().zoom(0.5, 1.0 / ZOOM);
+        }
+        if ui.button("+").on_hover_text(words.zoom_in).clicked() {
+            scene.camera().zoom(0.5, ZOOM);
+        }
+        if ui.button(words.fit).clicked() {
+            scene.camera().fit();
+        }
+        ui.separator();
+        for (cursor, name) in [(Cursor::A, words.cursor_a), (Cursor::B, words.cursor_b)] {
+            if ui.button(name).on_hover_text(words.keys).clicked() {
+                let middle = scene.window().at(0.5);
+                scene.put(cursor, middle);
+            }
+        }
+        if ui.button(words.clear_cursors).clicked() {
+            scene.clear_cursors();
+        }
+        ui.separator();
+        ui.toggle_value(choosing, words.signals);
+        ui.toggle_value(told, words.statistics);
+        if let Axis::Distance {
+            rows_back, back_m, ..
+        } = scene.axis()
+            && *rows_back > 0
+        {
+            let seconds = *rows_back as f64 * scene.view().data().period_us as f64 / 1e6;
+            let text = fill(
+                words.moved_back,
+                &[
+                    ("metres", &format!("{back_m:.2}")),
+                    ("seconds", &format!("{seconds:.1}")),
+                ],
+            );
+            ui.label(RichText::new(text).color(Palette::of(ui).warn));
+        }
+    });
+}
+
+/// A place on the axis, as `−9.55 s`.
+pub fn place(scene: &Scene, row: usize) -> String {
+    length(scene, scene.axis().at(row))
+}
+
+/// A length on the axis.
+pub fn length(scene: &Scene, length: f64) -> String {
+    let text = match scene.axis().kind() {
+        Kind::Time => format!("{length:.2} s"),
+        Kind::Distance => format!("{length:.2} m"),
+    };
+    text.replace('-', "−")
+}

@@ -1,0 +1,174 @@
+//! What the trace is laid against: the good twin, or another trace with an offset.
+
+use std::sync::Arc;
+
+use eframe::egui::{ComboBox, DragValue, RichText, Ui};
+
+use super::bar;
+use super::list::TraceList;
+use crate::gui::library::{Asked, Pending};
+use crate::gui::parts::named_combo;
+use crate::gui::{Desk, Palette};
+use crate::trace_view::{Against, Overlay, Parting, Scene};
+use crate::words::fill;
+
+/// Traces offered to compare with.
+const OFFERED: usize = 100;
+/// Lanes shown of those that deviate.
+const DEVIATING: usize = 12;
+
+/// What was asked for.
+#[derive(Default)]
+pub struct BehindAsked {
+    against: Option<Against>,
+    overlay: Asked<Overlay>,
+    parting: Option<Pending<Parting>>,
+}
+
+impl BehindAsked {
+    /// Takes what has come, and asks where the traces part when that is not known.
+    pub fn poll(&mut self, scene: &mut Scene, desk: &mut Desk<'_>) {
+        if self.overlay.poll() {
+            match std::mem::take(&mut self.overlay) {
+                Asked::There(overlay) => scene.lay_behind(Arc::new(overlay)),
+                Asked::Failed(why) => {
+                    desk.messages.trouble(desk.words.traces.cannot_overlay, why);
+                    self.against = None;
+                }
+                other => self.overlay = other,
+            }
+        }
+        if let Some(answer) = self.parting.as_ref().and_then(Pending::take) {
+            self.parting = None;
+            if let (Ok(parting), Some(against)) = (answer, self.against) {
+                if let Some(why) = &parting.trouble {
+                    desk.messages.trouble(desk.words.traces.cannot_compare, why);
+                }
+                scene.told(against, parting);
+            }
+        }
+        let Some(behind) = scene.behind() else {
+            return;
+        };
+        let told = behind.parting.as_ref().map(|parting| parting.shift_rows);
+        if self.parting.is_none() && told != Some(behind.shift_rows) {
+            let (overlay, opened) = (behind.overlay.clone(), scene.opened().clone());
+            let shift_rows = behind.shift_rows;
+            let question = move |_: &_| Ok(overlay.parting(&opened.view, shift_rows));
+            self.parting = Some(desk.library.ask(question));
+        }
+    }
+
+    /// What to compare with, and what the comparison says.
+    pub fn bar(&mut self, ui: &mut Ui, scene: &mut Scene, list: &TraceList, desk: &mut Desk<'_>) {
+        let words = &desk.words.traces;
+        ui.label(words.overlay);
+        let mut against = self.against;
+        let chosen = self.name(list, desk);
+        let combo = ComboBox::from_id_salt("compare with")
+            .width(190.0)
+            .selected_text(&chosen)
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut against, None, words.no_overlay);
+                ui.selectable_value(&mut against, Some(Against::Twin), words.good_twin);
+                let own = scene.opened().id;
+                for (run, trace) in list.all().filter(|(_, t)| t.id != own).take(OFFERED) {
+                    let name = format!("{} {} {}", run.unit, run.began, trace.id.short());
+                    let faults = trace.faults.join(", ");
+                    ui.selectable_value(&mut against, Some(Against::Trace(trace.id)), name)
+                        .on_hover_text(faults);
+                }
+            });
+        named_combo(&combo.response, words.overlay, &chosen);
+        if against != self.against {
+            self.ask(against, scene, desk);
+        }
+        if matches!(self.overlay, Asked::Pending(_)) {
+            ui.spinner();
+            ui.label(match self.against {
+                Some(Against::Twin) => words.making_twin,
+                _ => desk.words.common.loading,
+            });
+        }
+        if scene.behind().is_some() {
+            offset(ui, scene, desk);
+            said(ui, scene, desk);
+        }
+    }
+
+    fn ask(&mut self, against: Option<Against>, scene: &mut Scene, desk: &Desk<'_>) {
+        self.against = against;
+        self.parting = None;
+        scene.lay_nothing_behind();
+        let id = scene.opened().id;
+        self.overlay = match against {
+            None => Asked::Not,
+            Some(against) => Asked::Pending(
+                desk.library
+                    .ask(move |shelf| Overlay::get(&shelf.read()?, &shelf.scripts, id, against)),
+            ),
+        };
+    }
+
+    fn name(&self, list: &TraceList, desk: &Desk<'_>) -> String {
+        match self.against {
+            None => desk.words.traces.no_overlay.to_owned(),
+            Some(Against::Twin) => desk.words.traces.good_twin.to_owned(),
+            Some(Against::Trace(id)) => {
+                let run = list.all().find(|(_, trace)| trace.id == id);
+                let unit = run.map_or("", |(run, _)| &run.unit);
+                format!("{unit} {}", id.short())
+            }
+        }
+    }
+}
+
+fn offset(ui: &mut Ui, scene: &mut Scene, desk: &Desk<'_>) {
+    let words = &desk.words.traces;
+    let period_s = scene.view().data().period_us as f64 / 1e6;
+    let Some(shift_rows) = scene.behind().map(|behind| behind.shift_rows) else {
+        return;
+    };
+    let label = ui.label(words.offset);
+    let mut offset_s = shift_rows as f64 * period_s;
+    let value = DragValue::new(&mut offset_s)
+        .speed(period_s)
+        .range(-3600.0..=3600.0)
+        .fixed_decimals(2)
+        .suffix(" s");
+    let value = ui.add(value).labelled_by(label.id);
+    if value.on_hover_text(words.offset_hint).changed() {
+        scene.shift((offset_s / period_s).round() as i64);
+    }
+}
+
+fn said(ui: &mut Ui, scene: &mut Scene, desk: &mut Desk<'_>) {
+    let words = &desk.words.traces;
+    let parting = scene.behind().and_then(|behind| behind.parting.as_ref());
+    let Some(parting) = parting else {
+        ui.label(desk.words.common.loading);
+        return;
+    };
+    let palette = Palette::of(ui);
+    if parting.trouble.is_some() {
+        ui.label(RichText::new(words.cannot_compare).color(palette.warn));
+        return;
+    }
+    let Some(first) = &parting.first else {
+        ui.label(RichText::new(words.no_deviation).color(palette.good));
+        return;
+    };
+    let text = fill(
+        words.deviations,
+        &[
+            ("count", &parting.stretches.len()),
+            ("signal", &first.signal),
+            ("place", &bar::place(scene, first.row)),
+        ],
+    );
+    ui.label(RichText::new(text).color(palette.bad));
+    if ui.button(words.show_deviating).clicked() {
+        scene.show_deviating(DEVIATING);
+        desk.settings.lanes = scene.signals();
+    }
+}

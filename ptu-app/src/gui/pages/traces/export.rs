@@ -1,0 +1,184 @@
+//! The view as a picture or a table.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+use eframe::egui::{ColorImage, Rect, TextEdit, Ui};
+
+use super::signals::name_input;
+use crate::data;
+use crate::failure::Failure;
+use crate::gui::Desk;
+use crate::gui::library::Pending;
+use crate::trace_view::csv::csv;
+use crate::trace_view::shelf::Opened;
+use crate::trace_view::{Kind, Scene};
+use crate::words::fill;
+
+/// Names tried beside one that is taken.
+const BESIDE: u32 = 1000;
+
+/// What is to be written, and what is under way.
+#[derive(Default)]
+pub struct Export {
+    /// Path without its ending.
+    name: String,
+    /// The window's picture, the part of it wanted, and its pixels per point.
+    picture: Option<(Receiver<Arc<ColorImage>>, Rect, f32)>,
+    writing: Vec<Pending<PathBuf>>,
+}
+
+impl Export {
+    /// A name for what is exported of this trace.
+    pub fn name_after(&mut self, opened: &Opened) {
+        let documents = directories::UserDirs::new()
+            .and_then(|user| user.document_dir().map(Path::to_owned))
+            .filter(|folder| folder.is_dir());
+        let folder = documents.unwrap_or_default();
+        let file = folder.join(format!("trace-{}", opened.id.short()));
+        self.name = file.display().to_string();
+    }
+
+    /// Name and buttons; `rect` is what the picture is of.
+    pub fn bar(&mut self, ui: &mut Ui, scene: &Scene, rect: Rect, desk: &Desk<'_>) {
+        let words = &desk.words.traces;
+        ui.label(desk.words.common.file);
+        let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(260.0));
+        name_input(&edit, words.file_name);
+        let edit = edit.on_hover_text(words.file_name);
+        let named = !self.name.trim().is_empty();
+        if ui
+            .add_enabled(named, eframe::egui::Button::new(words.save_png))
+            .clicked()
+        {
+            // What has the keyboard is not part of the picture.
+            edit.surrender_focus();
+            let (sender, receiver) = mpsc::channel();
+            let wake = desk.library.wake().clone();
+            ui.ctx().request_screenshot(move |image| {
+                // Another trace may have been opened since.
+                let _ = sender.send(image);
+                wake();
+            });
+            self.picture = Some((receiver, rect, ui.pixels_per_point()));
+        }
+        if ui
+            .add_enabled(named, eframe::egui::Button::new(words.save_csv))
+            .clicked()
+        {
+            self.write_csv(scene, desk);
+        }
+    }
+
+    /// Takes what has come.
+    pub fn poll(&mut self, desk: &mut Desk<'_>) {
+        let taken = self
+            .picture
+            .as_ref()
+            .and_then(|(receiver, rect, scale)| Some((receiver.try_recv().ok()?, *rect, *scale)));
+        if let Some((image, rect, scale)) = taken {
+            self.picture = None;
+            let name = self.name.clone();
+            let question = move |_: &_| {
+                let part = image.region(&rect, Some(scale));
+                let (file, path) = create(&name, "png")?;
+                encode(&part, file).map_err(|error| cannot(&path, &error))?;
+                Ok(path)
+            };
+            self.writing.push(desk.library.ask(question));
+        }
+        let words = desk.words;
+        self.writing.retain(|pending| match pending.take() {
+            None => true,
+            Some(Ok(path)) => {
+                let file = path.display().to_string();
+                desk.messages
+                    .tell(fill(words.common.saved, &[("file", &file)]));
+                false
+            }
+            Some(Err(failure)) => {
+                desk.messages
+                    .trouble(words.traces.cannot_save, failure.message);
+                false
+            }
+        });
+    }
+
+    fn write_csv(&mut self, scene: &Scene, desk: &Desk<'_>) {
+        let opened = scene.opened().clone();
+        let channels: Vec<usize> = scene.lanes().iter().filter_map(|lane| lane.place).collect();
+        let rows = scene.rows_in_view();
+        let axis = (scene.axis().kind() == Kind::Distance).then(|| scene.axis().clone());
+        let name = self.name.clone();
+        let question = move |_: &_| {
+            let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
+            let (_, path) = create(&name, "csv")?;
+            data::write(&path, &text)?;
+            Ok(path)
+        };
+        self.writing.push(desk.library.ask(question));
+    }
+}
+
+/// A new file of this name, or of one beside it: nothing is written over.
+fn create(name: &str, ending: &str) -> Result<(std::fs::File, PathBuf), Failure> {
+    let name = name.trim();
+    let name = name.strip_suffix(&format!(".{ending}")).unwrap_or(name);
+    let first = PathBuf::from(format!("{name}.{ending}"));
+    let beside = (2..BESIDE).map(|n| PathBuf::from(format!("{name}-{n}.{ending}")));
+    for path in std::iter::once(first.clone()).chain(beside) {
+        match std::fs::File::create_new(&path) {
+            Ok(file) => return Ok((file, path)),
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(cannot(&path, &error)),
+        }
+    }
+    Err(cannot(&first, &"it is there already"))
+}
+
+fn cannot(path: &Path, why: &dyn std::fmt::Display) -> Failure {
+    Failure::bench(format!("cannot write {}: {why}", path.display()))
+}
+
+fn encode(image: &ColorImage, file: std::fs::File) -> Result<(), png::EncodingError> {
+    let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    let pixels: Vec<u8> = image.pixels.iter().flat_map(|p| p.to_array()).collect();
+    encoder.write_header()?.write_image_data(&pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_written_over_and_a_folder_that_is_not_there_is_told() {
+        let folder = tempfile::tempdir().expect("folder");
+        let name = folder.path().join("trace.v2").display().to_string();
+        let names: Vec<_> = (0..3)
+            .map(|_| create(&name, "csv").expect("made").1)
+            .map(|path| path.file_name().expect("named").to_owned())
+            .collect();
+        assert_eq!(names, ["trace.v2.csv", "trace.v2-2.csv", "trace.v2-3.csv"]);
+        let nowhere = folder.path().join("no/where").display().to_string();
+        let failure = create(&nowhere, "csv").expect_err("no folder");
+        assert!(failure.message.contains("where.csv"), "{}", failure.message);
+    }
+
+    #[test]
+    fn a_picture_comes_back_as_it_was() {
+        let image = ColorImage::filled([3, 2], eframe::egui::Color32::from_rgb(1, 2, 3));
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("picture.png");
+        encode(&image, std::fs::File::create(&path).expect("file")).expect("encoded");
+        let file = std::io::BufReader::new(std::fs::File::open(&path).expect("file"));
+        let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut pixels).expect("a frame");
+        assert_eq!((info.width, info.height), (3, 2));
+        assert_eq!(pixels[..4], [1, 2, 3, 255]);
+    }
+}

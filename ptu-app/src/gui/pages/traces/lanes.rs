@@ -1,0 +1,163 @@
+//! The lanes: names and values at their sides, curves in the middle, the shared axis below.
+
+use eframe::egui::{
+    Align2, CursorIcon, FontId, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
+    UiBuilder, WidgetInfo, pos2, vec2,
+};
+
+use super::bar;
+use super::events::{self, STRIP};
+use super::input::{self, Drag};
+use super::row::{GAP, Scratch, Sheet};
+use crate::gui::Palette;
+use crate::gui::parts::lane::{self, AXIS_HEIGHT};
+use crate::trace_view::{Cursor, Kind, Scene};
+use crate::words::Words;
+
+/// Room for names left of the lanes, and for the values beside their axes.
+const NAMES: f32 = 150.0;
+pub const TICKS: f32 = 52.0;
+/// Room for a value under a cursor.
+pub const VALUE: f32 = 92.0;
+/// Narrowest lanes.
+const NARROWEST: f32 = 50.0;
+
+/// What painting keeps from one frame to the next.
+pub struct Painted {
+    /// Where the lanes with all around them were painted.
+    pub rect: Rect,
+    drag: Drag,
+    scratch: Scratch,
+}
+
+impl Default for Painted {
+    fn default() -> Self {
+        Self {
+            rect: Rect::NOTHING,
+            drag: Drag::default(),
+            scratch: Scratch::default(),
+        }
+    }
+}
+
+/// Where the parts of the picture are, from left to right.
+#[derive(Clone, Copy)]
+pub struct Places {
+    /// Left edge of the names.
+    pub names: f32,
+    /// Left edge of the lanes.
+    pub left: f32,
+    /// Right edge of the lanes.
+    pub right: f32,
+    /// Right edge of the values.
+    pub end: f32,
+}
+
+impl Places {
+    fn of(ui: &Ui, all: Rect, values: usize) -> Self {
+        let scroll = &ui.spacing().scroll;
+        let end = all.right() - scroll.bar_width - scroll.bar_outer_margin - 2.0;
+        let left = all.left() + NAMES + TICKS;
+        Self {
+            names: all.left(),
+            left,
+            right: (end - values as f32 * VALUE).max(left + NARROWEST),
+            end,
+        }
+    }
+}
+
+impl Painted {
+    /// Shows them in all the room there is.
+    pub fn lanes(&mut self, ui: &mut Ui, scene: &mut Scene, words: &Words) {
+        let palette = Palette::of(ui);
+        let all = ui.available_rect_before_wrap();
+        self.rect = all;
+        let both = scene.cursor(Cursor::A).is_some() && scene.cursor(Cursor::B).is_some();
+        let places = Places::of(ui, all, if both { 3 } else { 1 });
+        let middle = Rect::from_x_y_ranges(
+            places.left..=places.right,
+            all.top() + STRIP..=all.bottom() - AXIS_HEIGHT,
+        );
+        if middle.height() < AXIS_HEIGHT {
+            return;
+        }
+        let response = ui.interact(middle, ui.scope_id().with("lanes"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Pane, true, words.traces.lanes));
+        if response.has_focus() {
+            let line = Stroke::new(1.0, palette.accent);
+            ui.painter()
+                .rect_stroke(middle, 0.0, line, StrokeKind::Outside);
+        }
+        if response.hovered() {
+            ui.set_cursor_icon(CursorIcon::Crosshair);
+        }
+        input::pointer(ui, &response, middle, scene, &mut self.drag);
+        input::keys(ui, &response, middle, scene);
+
+        let pointer = response.hover_pos().filter(|at| middle.contains(*at));
+        let share = |at: Pos2| f64::from((at.x - middle.left()) / middle.width());
+        let pointer_row = pointer.and_then(|at| scene.axis().row_at(scene.window().at(share(at))));
+        let (heads, rows) = told(scene, pointer_row);
+        self.scratch.edges(scene, middle.width());
+        let strip = Rect::from_x_y_ranges(middle.x_range(), all.top()..=middle.top());
+        let below = Rect::from_x_y_ranges(middle.x_range(), middle.bottom()..=all.bottom());
+        let painter = ui.painter_at(all);
+        lane::grid(&painter, middle, scene.window(), &palette);
+        for (i, head) in heads.iter().enumerate() {
+            let right = places.right + (i + 1) as f32 * VALUE - 4.0;
+            let at = pos2(right, strip.bottom() - 2.0);
+            let font = FontId::proportional(lane::TEXT);
+            painter.text(at, Align2::RIGHT_BOTTOM, head, font, palette.warn);
+        }
+        let sheet = Sheet {
+            scene,
+            places,
+            rows,
+            words,
+            palette: &palette,
+        };
+        self.stack(ui, &sheet, middle);
+        events::flags(&painter, strip, middle, &sheet);
+        let unit = match scene.axis().kind() {
+            Kind::Time => words.traces.seconds,
+            Kind::Distance => words.traces.metres,
+        };
+        lane::x_axis(&painter, below, scene.window(), unit, &palette);
+    }
+
+    /// One above the other; only those in view are painted.
+    fn stack(&mut self, ui: &mut Ui, sheet: &Sheet<'_>, middle: Rect) {
+        let right = ui.max_rect().right();
+        let whole = Rect::from_x_y_ranges(sheet.places.names..=right, middle.y_range());
+        ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                let heights = sheet.heights(middle.height());
+                let lanes = sheet.scene.lanes().iter().zip(heights);
+                for (number, (lane, height)) in lanes.enumerate() {
+                    let size = vec2(ui.available_width(), height + GAP);
+                    let (row, _) = ui.allocate_exact_size(size, Sense::hover());
+                    if ui.is_rect_visible(row) {
+                        sheet.lane(ui, number, lane, row, &mut self.scratch);
+                    }
+                }
+            });
+        });
+    }
+}
+
+/// What is told at the right: under the cursors, or else under the pointer.
+fn told(scene: &Scene, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
+    let [a, b] = [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor));
+    let head = |text: &str| text.to_owned();
+    match (a, b) {
+        (Some(_), Some(_)) => (vec![head("A"), head("B"), head("B − A")], [a, b]),
+        (Some(_), None) => (vec![head("A")], [a, None]),
+        (None, Some(_)) => (vec![head("B")], [b, None]),
+        (None, None) => {
+            let place = pointer_row.map(|row| bar::place(scene, row));
+            (vec![place.unwrap_or_default()], [pointer_row, None])
+        }
+    }
+}

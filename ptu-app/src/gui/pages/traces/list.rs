@@ -1,0 +1,171 @@
+//! The traces there are, by run, the latest first.
+
+use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use fault_db::Id;
+
+use crate::gui::library::Asked;
+use crate::gui::{Desk, Palette};
+use crate::trace_view::shelf::{self, ListedRun, ListedTrace, RUNS};
+use crate::words::{Words, fill};
+
+/// The list's own state.
+#[derive(Default)]
+pub struct TraceList {
+    runs: Asked<Vec<ListedRun>>,
+    filter: String,
+    /// What fits the filter, by run and trace; told anew when either changes.
+    shown: Vec<(usize, Option<usize>)>,
+    /// Runs that had ended when it was asked for.
+    ended: usize,
+}
+
+impl TraceList {
+    /// Shows it; the trace that was clicked, and its run.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        desk: &mut Desk<'_>,
+        chosen: Option<Id>,
+    ) -> Option<(Id, Id)> {
+        let words = desk.words;
+        self.keep_up(desk);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(words.traces.recorded).strong());
+            if ui.button(words.common.refresh).clicked() {
+                self.runs = Asked::Not;
+            }
+        });
+        let edit = TextEdit::singleline(&mut self.filter)
+            .hint_text(words.traces.filter)
+            .desired_width(f32::INFINITY);
+        let edit = ui.add(edit);
+        super::signals::name_input(&edit, words.traces.filter);
+        if edit.changed() {
+            self.apply();
+        }
+        let runs = match &self.runs {
+            Asked::There(runs) => runs,
+            Asked::Failed(why) => {
+                let text = format!("{}: {why}", words.traces.cannot_list);
+                ui.label(RichText::new(text).color(Palette::of(ui).bad));
+                return None;
+            }
+            Asked::Not | Asked::Pending(_) => {
+                ui.label(words.common.loading);
+                return None;
+            }
+        };
+        if runs.is_empty() {
+            ui.label(words.traces.none_recorded);
+        } else if self.shown.is_empty() {
+            ui.label(words.traces.none_fits);
+        }
+        let mut clicked = None;
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        let height = ui.spacing().interact_size.y;
+        ScrollArea::vertical().auto_shrink(false).show_rows(
+            ui,
+            height,
+            self.shown.len(),
+            |ui, rows| {
+                for (run, trace) in self.shown.get(rows).into_iter().flatten() {
+                    let run = &runs[*run];
+                    match trace.map(|trace| &run.traces[trace]) {
+                        None => run_row(ui, run, words),
+                        Some(trace) => {
+                            if trace_row(ui, trace, chosen == Some(trace.id), words) {
+                                clicked = Some((trace.id, run.id));
+                            }
+                        }
+                    }
+                }
+                if runs.len() >= RUNS as usize {
+                    ui.label(fill(words.traces.only_newest, &[("runs", &RUNS)]));
+                }
+            },
+        );
+        clicked
+    }
+
+    /// The latest trace and its run.
+    pub fn latest(&self) -> Option<(Id, Id)> {
+        let run = self.runs.value()?.first()?;
+        Some((run.traces.first()?.id, run.id))
+    }
+
+    /// Unit and date of a run; unknown ones are empty.
+    pub fn whose(&self, run: Option<Id>) -> (&str, &str) {
+        let runs = self.runs.value().map(Vec::as_slice).unwrap_or_default();
+        let found = runs.iter().find(|listed| Some(listed.id) == run);
+        found.map_or(("", ""), |run| (&run.unit, &run.began))
+    }
+
+    /// All traces with their runs, the latest run first.
+    pub fn all(&self) -> impl Iterator<Item = (&ListedRun, &ListedTrace)> {
+        let runs = self.runs.value().map(Vec::as_slice).unwrap_or_default();
+        runs.iter()
+            .flat_map(|run| run.traces.iter().map(move |trace| (run, trace)))
+    }
+
+    /// Asks when it was not asked yet, and when a run has ended since.
+    fn keep_up(&mut self, desk: &Desk<'_>) {
+        let ended = desk.units.runs_ended();
+        if ended != self.ended {
+            self.ended = ended;
+            self.runs = Asked::Not;
+        }
+        if self.runs.is_not() {
+            let question = desk.library.ask(|shelf| shelf::list(&shelf.read()?));
+            self.runs = Asked::Pending(question);
+        }
+        if self.runs.poll() {
+            self.apply();
+        }
+    }
+
+    fn apply(&mut self) {
+        self.shown.clear();
+        let runs = self.runs.value().map(Vec::as_slice).unwrap_or_default();
+        for (place, run) in runs.iter().enumerate() {
+            let traces = run.traces.iter().enumerate();
+            let mut fitting = traces
+                .filter(|(_, trace)| trace.fits(&self.filter))
+                .peekable();
+            if fitting.peek().is_some() {
+                self.shown.push((place, None));
+            }
+            self.shown
+                .extend(fitting.map(|(trace, _)| (place, Some(trace))));
+        }
+    }
+}
+
+fn run_row(ui: &mut Ui, run: &ListedRun, words: &Words) {
+    let palette = Palette::of(ui);
+    let (verdict, colour) = match run.verdict {
+        Some(verdict) => (
+            words.common.stored_verdict(verdict),
+            palette.stored_verdict(verdict),
+        ),
+        None => (words.common.interrupted, palette.warn),
+    };
+    let injected = run.injected.as_deref().unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(&run.unit).strong())
+            .on_hover_text(format!("{} {injected}", run.id.short()));
+        ui.label(RichText::new(verdict).color(colour).small());
+        ui.label(RichText::new(&run.began).small().color(palette.quiet));
+    });
+}
+
+fn trace_row(ui: &mut Ui, trace: &ListedTrace, chosen: bool, words: &Words) -> bool {
+    let what = match trace.faults.as_slice() {
+        [] => words.traces.no_fault.to_owned(),
+        faults => faults.join(", "),
+    };
+    let text = format!("{}  {what}", trace.id.short());
+    let hint = format!("{what}\n{:.1} s", trace.length_s);
+    ui.selectable_label(chosen, text)
+        .on_hover_text(hint)
+        .clicked()
+}

@@ -1,0 +1,113 @@
+//! Which signals are shown, in which order, how tall.
+
+use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+
+use crate::gui::{Desk, Palette};
+use crate::trace_view::{Scene, Summary};
+use crate::words::fill;
+
+/// How much one press makes a lane taller.
+const TALLER: f32 = 1.25;
+
+/// What was pressed at a lane.
+enum Pressed {
+    Up(usize),
+    Down(usize),
+    Stretch(usize, f32),
+    Hide(usize),
+}
+
+/// The chooser.
+pub fn choose(ui: &mut Ui, scene: &mut Scene, find: &mut String, desk: &mut Desk<'_>) {
+    let words = &desk.words.traces;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(words.signals).strong());
+        if ui.button(words.usual_signals).clicked() {
+            desk.settings.lanes.clear();
+            scene.set_signals(&[]);
+        }
+    });
+    let edit = TextEdit::singleline(find)
+        .hint_text(words.find_signal)
+        .desired_width(f32::INFINITY);
+    name_input(&ui.add(edit), words.find_signal);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let before = scene.signals();
+        let mut signals = before.clone();
+        if find.trim().is_empty() {
+            ui.label(RichText::new(words.shown_signals).color(Palette::of(ui).quiet));
+            if let Some(pressed) = shown(ui, scene, desk) {
+                act(pressed, &mut signals, scene);
+            }
+            ui.separator();
+        }
+        ui.label(RichText::new(words.all_signals).color(Palette::of(ui).quiet));
+        let wanted = find.trim().to_lowercase();
+        let view = scene.view();
+        for (place, channel) in view.data().channels.iter().enumerate() {
+            if !channel.name.contains(&wanted) {
+                continue;
+            }
+            let mut on = signals.contains(&channel.name);
+            let mut text = RichText::new(&channel.name);
+            if matches!(view.summary(place), Summary::Unknown) {
+                text = text.weak();
+            }
+            if ui.checkbox(&mut on, text).changed() {
+                signals.retain(|signal| *signal != channel.name);
+                if on {
+                    signals.push(channel.name.clone());
+                }
+            }
+        }
+        if signals != before {
+            scene.set_signals(&signals);
+            desk.settings.lanes = signals;
+        }
+    });
+}
+
+/// The name of a text field that has no label beside it.
+pub fn name_input(response: &Response, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(Role::TextInput, response.enabled(), name));
+}
+
+fn shown(ui: &mut Ui, scene: &Scene, desk: &Desk<'_>) -> Option<Pressed> {
+    let words = &desk.words.traces;
+    let mut pressed = None;
+    for (i, lane) in scene.lanes().iter().enumerate() {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            for (sign, name, what) in [
+                ("▲", words.up, Pressed::Up(i)),
+                ("▼", words.down, Pressed::Down(i)),
+                ("+", words.higher, Pressed::Stretch(i, TALLER)),
+                ("−", words.lower, Pressed::Stretch(i, 1.0 / TALLER)),
+                ("×", words.hide, Pressed::Hide(i)),
+            ] {
+                let name = fill(name, &[("signal", &lane.signal)]);
+                let button = ui.small_button(sign);
+                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                if button.on_hover_text(&name).clicked() {
+                    pressed = Some(what);
+                }
+            }
+            ui.add(Label::new(&lane.signal).truncate());
+        });
+    }
+    pressed
+}
+
+fn act(pressed: Pressed, signals: &mut Vec<String>, scene: &mut Scene) {
+    match pressed {
+        Pressed::Up(i) if i > 0 => signals.swap(i, i - 1),
+        Pressed::Down(i) if i + 1 < signals.len() => signals.swap(i, i + 1),
+        Pressed::Up(_) | Pressed::Down(_) => {}
+        Pressed::Stretch(i, times) => scene.stretch(i, times),
+        // The last one stays: without any the usual ones would come back.
+        Pressed::Hide(i) if signals.len() > 1 => {
+            signals.remove(i);
+        }
+        Pressed::Hide(_) => {}
+    }
+}

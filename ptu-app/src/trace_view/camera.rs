@@ -1,0 +1,113 @@
+//! Which part of the axis is in view.
+
+use super::Window;
+
+/// Part of the whole by which it may be left at either end.
+const BEYOND: f64 = 0.02;
+
+/// Which part of the axis is in view, and how far it may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    window: Window,
+    whole: Window,
+    least: f64,
+}
+
+impl Camera {
+    /// All of it in view; no less than `least` can be.
+    pub fn new(whole: Window, least: f64) -> Self {
+        let room = whole.length() * BEYOND;
+        let whole = Window {
+            from: whole.from - room,
+            to: whole.to + room,
+        };
+        Self {
+            window: whole,
+            whole,
+            least: least.min(whole.length()),
+        }
+    }
+
+    /// What is in view.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// All of it.
+    pub fn fit(&mut self) {
+        self.window = self.whole;
+    }
+
+    /// Shows so many times as much, and what lies at this share of the view stays there.
+    pub fn zoom(&mut self, share: f64, times: f64) {
+        let fixed = self.window.at(share);
+        let length = (self.window.length() * times).clamp(self.least, self.whole.length());
+        self.set(fixed - share * length, length);
+    }
+
+    /// Moves on by a share of what is in view.
+    pub fn pan(&mut self, share: f64) {
+        let length = self.window.length();
+        self.set(self.window.from + share * length, length);
+    }
+
+    /// Has a place in the middle.
+    pub fn centre(&mut self, place: f64) {
+        let length = self.window.length();
+        self.set(place - length / 2.0, length);
+    }
+
+    /// Has a stretch in view, with some room around it.
+    pub fn show(&mut self, from: f64, to: f64) {
+        let length = ((to - from) * 1.2).clamp(self.least, self.whole.length());
+        self.set(f64::midpoint(from, to) - length / 2.0, length);
+    }
+
+    fn set(&mut self, from: f64, length: f64) {
+        let from = from.clamp(self.whole.from, self.whole.to - length);
+        self.window = Window {
+            from,
+            to: from + length,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera::new(
+            Window {
+                from: 0.0,
+                to: 100.0,
+            },
+            1.0,
+        )
+    }
+
+    #[test]
+    fn what_lies_under_the_pointer_stays_there() {
+        let mut camera = camera();
+        let under = camera.window().at(0.25);
+        camera.zoom(0.25, 0.5);
+        assert!((camera.window().at(0.25) - under).abs() < 1e-9);
+        assert!((camera.window().length() - 52.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_view_ends_at_the_ends_and_at_the_least() {
+        let mut camera = camera();
+        camera.zoom(0.0, 1e-9);
+        assert!((camera.window().length() - 1.0).abs() < 1e-9);
+        camera.pan(1e9);
+        assert!((camera.window().to - 102.0).abs() < 1e-9);
+        camera.zoom(0.5, 1e9);
+        assert_eq!(camera.window().length(), 104.0);
+        camera.show(10.0, 20.0);
+        let window = camera.window();
+        assert!((window.from - 9.0).abs() < 1e-9 && (window.to - 21.0).abs() < 1e-9);
+        camera.fit();
+        assert_eq!(camera.window().from, -2.0);
+    }
+}

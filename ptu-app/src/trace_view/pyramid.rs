@@ -1,0 +1,133 @@
+//! Least and greatest value of any stretch of a quantity's rows, in steps that depend on its logarithm.
+
+use super::axis::Edges;
+use super::columns::Column;
+
+/// Rows, or stretches of the level below, that one stretch holds.
+const FAN: usize = 4;
+
+/// Extremes of stretches of 4, 16, 64 … rows, made once.
+#[derive(Clone, Debug, Default)]
+pub struct Pyramid {
+    levels: Vec<Vec<Column>>,
+}
+
+impl Pyramid {
+    /// Of a column of samples; those that are not known (NaN) count for nothing.
+    pub fn of(samples: &[f64]) -> Self {
+        let mut levels: Vec<Vec<Column>> = Vec::new();
+        let first = samples.chunks(FAN).map(|rows| {
+            let mut all = Column::EMPTY;
+            rows.iter().for_each(|value| all.add(*value));
+            all
+        });
+        levels.push(first.collect());
+        while let Some(below) = levels.last().filter(|below| below.len() > FAN) {
+            let above = below.chunks(FAN).map(|stretches| {
+                let mut all = Column::EMPTY;
+                stretches.iter().for_each(|stretch| all.merge(*stretch));
+                all
+            });
+            let above = above.collect();
+            levels.push(above);
+        }
+        Self { levels }
+    }
+
+    /// Extremes of rows `from..to`.
+    pub fn range(&self, samples: &[f64], from: usize, to: usize) -> Column {
+        let mut all = Column::EMPTY;
+        let (mut from, mut to) = (from, to.min(samples.len()));
+        // Rows up to whole stretches at both ends, then the same one level up.
+        while from < to && !from.is_multiple_of(FAN) {
+            all.add(samples[from]);
+            from += 1;
+        }
+        while from < to && !to.is_multiple_of(FAN) {
+            to -= 1;
+            all.add(samples[to]);
+        }
+        for level in &self.levels {
+            (from, to) = (from / FAN, to / FAN);
+            let last = level.len() <= FAN;
+            while from < to && (last || !from.is_multiple_of(FAN)) {
+                all.merge(level[from]);
+                from += 1;
+            }
+            while from < to && !to.is_multiple_of(FAN) {
+                to -= 1;
+                all.merge(level[to]);
+            }
+        }
+        all
+    }
+
+    /// What each column of pixels shows: its rows, and the value that still holds when it begins.
+    pub fn columns(&self, samples: &[f64], edges: &Edges, columns: &mut Vec<Column>) {
+        columns.clear();
+        columns.extend(edges.rows.windows(2).enumerate().map(|(place, rows)| {
+            if place >= edges.end {
+                return Column::EMPTY;
+            }
+            let mut all = self.range(samples, rows[0], rows[1]);
+            if let Some(held) = rows[0].checked_sub(1).and_then(|row| samples.get(row)) {
+                all.add(*held);
+            }
+            all
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(rows: usize) -> Vec<f64> {
+        let value = |i: usize| match (i * 7919) % 101 {
+            n if n % 17 == 3 => f64::NAN,
+            n => n as f64,
+        };
+        (0..rows).map(value).collect()
+    }
+
+    #[test]
+    fn any_stretch_has_the_extremes_of_its_rows() {
+        for rows in [1, 3, 4, 5, 16, 17, 64, 65, 200, 257] {
+            let samples = noise(rows);
+            let pyramid = Pyramid::of(&samples);
+            for from in 0..rows {
+                for to in from..=rows {
+                    let found = pyramid.range(&samples, from, to);
+                    let mut all = Column::EMPTY;
+                    samples[from..to].iter().for_each(|value| all.add(*value));
+                    let same = |a: f32, b: f32| a == b || (a.is_nan() && b.is_nan());
+                    assert!(
+                        same(found.low, all.low) && same(found.high, all.high),
+                        "{rows} rows, {from}..{to}: {found:?}, not {all:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_value_holds_into_the_next_column_and_not_beyond_the_trace() {
+        let samples = [1.0, 5.0, f64::NAN, 2.0];
+        let edges = Edges {
+            rows: vec![0, 2, 2, 3, 4, 4, 4],
+            end: 5,
+        };
+        let mut columns = Vec::new();
+        Pyramid::of(&samples).columns(&samples, &edges, &mut columns);
+        let known: Vec<_> = columns.iter().map(|c| (c.low, c.high)).collect();
+        assert_eq!(known[..3], [(1.0, 5.0), (5.0, 5.0), (5.0, 5.0)]);
+        assert_eq!(known[3..5], [(2.0, 2.0), (2.0, 2.0)]);
+        assert!(!columns[5].is_known());
+    }
+
+    #[test]
+    fn no_rows_are_no_trouble() {
+        let pyramid = Pyramid::of(&[]);
+        assert!(!pyramid.range(&[], 0, 0).is_known());
+    }
+}

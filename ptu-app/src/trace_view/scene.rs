@@ -1,0 +1,404 @@
+//! A trace as it is looked at: lanes, the part in view, cursors, and what is laid behind.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::overlay::{Against, Overlay, Parting};
+use super::shelf::Opened;
+use super::statistics::{self, Statistics};
+use super::view::{Summary, TraceView};
+use super::{Axis, Camera, Kind, choose, ticks};
+
+/// Fewest rows in view.
+const FEWEST_ROWS: f64 = 8.0;
+/// Least way in view, m.
+const LEAST_WAY_M: f64 = 0.5;
+
+/// A cursor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cursor {
+    /// The first.
+    A,
+    /// The second.
+    B,
+}
+
+/// A lane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lane {
+    /// Its signal.
+    pub signal: String,
+    /// Where the signal is in the trace; `None` = the trace lacks it.
+    pub place: Option<usize>,
+    /// Size it was given, 1 = as usual.
+    pub stretch: f32,
+}
+
+/// What is laid behind the trace.
+#[derive(Debug)]
+pub struct Behind {
+    /// Its samples.
+    pub overlay: Arc<Overlay>,
+    /// Where its rows lie.
+    pub axis: Axis,
+    /// Rows by which it is laid later.
+    pub shift_rows: i64,
+    /// Where the trace parts from it; `None` until that is known.
+    pub parting: Option<Parting>,
+}
+
+/// A trace as it is looked at.
+#[derive(Debug)]
+pub struct Scene {
+    opened: Arc<Opened>,
+    axis: Axis,
+    camera: Camera,
+    lanes: Vec<Lane>,
+    cursors: [Option<usize>; 2],
+    behind: Option<Behind>,
+    /// What is said of these rows, by lane; empty until asked for.
+    said: (Range<usize>, Vec<Option<Statistics>>),
+}
+
+impl Scene {
+    /// All of a trace over time, with these signals; with the usual ones if there are none.
+    pub fn new(opened: Arc<Opened>, signals: &[String]) -> Self {
+        let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
+        let mut scene = Self {
+            camera: camera(&axis, &opened.view),
+            axis,
+            opened,
+            lanes: Vec::new(),
+            cursors: [None; 2],
+            behind: None,
+            said: Default::default(),
+        };
+        scene.set_signals(signals);
+        scene
+    }
+
+    /// The trace.
+    pub fn opened(&self) -> &Arc<Opened> {
+        &self.opened
+    }
+
+    /// Its samples.
+    pub fn view(&self) -> &TraceView {
+        &self.opened.view
+    }
+
+    /// Where its rows lie.
+    pub fn axis(&self) -> &Axis {
+        &self.axis
+    }
+
+    /// The part in view.
+    pub fn camera(&mut self) -> &mut Camera {
+        &mut self.camera
+    }
+
+    /// The part in view.
+    pub fn window(&self) -> super::Window {
+        self.camera.window()
+    }
+
+    /// Its lanes from top to bottom.
+    pub fn lanes(&self) -> &[Lane] {
+        &self.lanes
+    }
+
+    /// What is laid behind it.
+    pub fn behind(&self) -> Option<&Behind> {
+        self.behind.as_ref()
+    }
+
+    /// Counts time or distance; false when the trace tells no distance. The same rows stay in view.
+    pub fn set_axis(&mut self, kind: Kind) -> bool {
+        if self.axis.kind() == kind {
+            return true;
+        }
+        let Some(axis) = axis(&self.opened.view, kind, 0) else {
+            return false;
+        };
+        let rows = self.rows_in_view();
+        self.camera = camera(&axis, &self.opened.view);
+        if rows.len() < self.axis.rows() && !rows.is_empty() {
+            self.camera.show(axis.at(rows.start), axis.at(rows.end));
+        }
+        self.axis = axis;
+        if let Some(behind) = &mut self.behind {
+            behind.axis = behind_axis(&behind.overlay.view, kind, behind.shift_rows);
+        }
+        true
+    }
+
+    /// Shows these signals from top to bottom; the usual ones if there are none.
+    pub fn set_signals(&mut self, signals: &[String]) {
+        let usual;
+        let signals = if signals.is_empty() {
+            usual = choose::usual(&self.opened.view);
+            &usual
+        } else {
+            signals
+        };
+        let known = std::mem::take(&mut self.lanes);
+        let lane = |signal: &String| Lane {
+            stretch: known
+                .iter()
+                .find(|lane| lane.signal == *signal)
+                .map_or(1.0, |lane| lane.stretch),
+            place: self.opened.view.place(signal),
+            signal: signal.clone(),
+        };
+        self.lanes = signals.iter().map(lane).collect();
+        self.said = Default::default();
+    }
+
+    /// The signals shown, from top to bottom.
+    pub fn signals(&self) -> Vec<String> {
+        self.lanes.iter().map(|lane| lane.signal.clone()).collect()
+    }
+
+    /// Makes a lane taller or flatter.
+    pub fn stretch(&mut self, lane: usize, times: f32) {
+        if let Some(lane) = self.lanes.get_mut(lane) {
+            lane.stretch = (lane.stretch * times).clamp(0.5, 6.0);
+        }
+    }
+
+    /// From the least to the greatest value of a lane's quantity, of what is laid behind too, with room.
+    pub fn range(&self, place: usize) -> (f64, f64) {
+        let own = self.view().extent(place);
+        let other = self.behind.as_ref().and_then(|behind| {
+            let view = &behind.overlay.view;
+            view.extent(view.place(&self.view().channel(place).name)?)
+        });
+        let all = match (own, other) {
+            (Some(a), Some(b)) => (a.0.min(b.0), a.1.max(b.1)),
+            (a, b) => a.or(b).unwrap_or((0.0, 0.0)),
+        };
+        ticks::range(all)
+    }
+
+    /// Rows in view.
+    pub fn rows_in_view(&self) -> Range<usize> {
+        let window = self.window();
+        let first = self.axis.row_at(window.from).unwrap_or(0);
+        let last = self.axis.row_at(window.to).map_or(0, |row| row + 1);
+        first.min(last)..last
+    }
+
+    /// Row of a cursor.
+    pub fn cursor(&self, cursor: Cursor) -> Option<usize> {
+        self.cursors[cursor as usize]
+    }
+
+    /// Puts a cursor on the last row at or before a place; before the first row there is none.
+    pub fn put(&mut self, cursor: Cursor, place: f64) {
+        if let Some(row) = self.axis.row_at(place) {
+            self.cursors[cursor as usize] = Some(row);
+        }
+    }
+
+    /// Moves a cursor by rows.
+    pub fn step(&mut self, cursor: Cursor, rows: isize) {
+        let last = self.axis.rows().saturating_sub(1);
+        if let Some(row) = &mut self.cursors[cursor as usize] {
+            *row = row.saturating_add_signed(rows).min(last);
+        }
+    }
+
+    /// Takes both cursors away.
+    pub fn clear_cursors(&mut self) {
+        self.cursors = [None; 2];
+    }
+
+    /// Value of a signal under a cursor: the last sample at or before it.
+    pub fn value(&self, place: usize, cursor: Cursor) -> Option<f64> {
+        let row = self.cursor(cursor)?;
+        self.view().samples(place).get(row).copied()
+    }
+
+    /// How much a quantity is greater under B than under A.
+    pub fn difference(&self, place: usize) -> Option<f64> {
+        let Summary::Quantity(_) = self.view().summary(place) else {
+            return None;
+        };
+        Some(self.value(place, Cursor::B)? - self.value(place, Cursor::A)?)
+    }
+
+    /// Rows that statistics are of: between the cursors, both included, or in view.
+    pub fn stretch_rows(&self) -> (Range<usize>, bool) {
+        match self.cursors {
+            [Some(a), Some(b)] => (a.min(b)..a.max(b) + 1, true),
+            _ => (self.rows_in_view(), false),
+        }
+    }
+
+    /// Statistics by lane over those rows; `None` for a signal the trace lacks.
+    pub fn statistics(&mut self) -> &[Option<Statistics>] {
+        let (rows, _) = self.stretch_rows();
+        if self.said.0 != rows || self.said.1.len() != self.lanes.len() {
+            let of = |lane: &Lane| {
+                let place = lane.place?;
+                Some(statistics::over(&self.opened.view, place, rows.clone()))
+            };
+            self.said = (rows.clone(), self.lanes.iter().map(of).collect());
+        }
+        &self.said.1
+    }
+
+    /// Lays something behind the trace.
+    pub fn lay_behind(&mut self, overlay: Arc<Overlay>) {
+        self.behind = Some(Behind {
+            axis: behind_axis(&overlay.view, self.axis.kind(), 0),
+            overlay,
+            shift_rows: 0,
+            parting: None,
+        });
+    }
+
+    /// Takes away what is laid behind.
+    pub fn lay_nothing_behind(&mut self) {
+        self.behind = None;
+    }
+
+    /// Lays what is behind so many rows later; where they part has to be told anew.
+    pub fn shift(&mut self, rows: i64) {
+        let kind = self.axis.kind();
+        if let Some(behind) = &mut self.behind
+            && behind.shift_rows != rows
+        {
+            behind.shift_rows = rows;
+            behind.axis = behind_axis(&behind.overlay.view, kind, rows);
+        }
+    }
+
+    /// Where the trace parts from what is laid behind.
+    pub fn told(&mut self, against: Against, parting: Parting) {
+        if let Some(behind) = &mut self.behind
+            && behind.overlay.against == against
+        {
+            behind.parting = Some(parting);
+        }
+    }
+
+    /// Shows the signals that deviate, the first one first, and where they begin to.
+    pub fn show_deviating(&mut self, most: usize) {
+        let parting = self.behind.as_ref().and_then(|b| b.parting.as_ref());
+        let Some(parting) = parting else {
+            return;
+        };
+        let mut signals: Vec<_> = parting.stretches.iter().collect();
+        signals.sort_by_key(|(_, stretches)| stretches.first().map(|rows| rows.start));
+        let first = parting.first.as_ref();
+        let row = first.map(|first| first.row);
+        let mut names: Vec<String> = first.map(|f| f.signal.clone()).into_iter().collect();
+        names.extend(signals.into_iter().map(|(name, _)| name.clone()));
+        let mut known = std::collections::BTreeSet::new();
+        names.retain(|name| known.insert(name.clone()));
+        names.truncate(most);
+        if !names.is_empty() {
+            self.set_signals(&names);
+        }
+        if let Some(row) = row {
+            self.camera.centre(self.axis.at(row));
+        }
+    }
+}
+
+fn camera(axis: &Axis, view: &TraceView) -> Camera {
+    let least = match axis.kind() {
+        Kind::Time => FEWEST_ROWS * view.data().period_us as f64 / 1e6,
+        Kind::Distance => LEAST_WAY_M,
+    };
+    Camera::new(axis.whole(), least)
+}
+
+/// Its axis, with 0 so many rows before the trigger.
+fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
+    let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
+    match kind {
+        Kind::Time => Some(Axis::time(view.data(), zero_row)),
+        Kind::Distance => Axis::distance(view.data(), zero_row),
+    }
+}
+
+/// The same for what is laid behind; one that tells no distance has none of its rows in view.
+fn behind_axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Axis {
+    axis(view, kind, shift_rows).unwrap_or_else(|| Axis::Distance {
+        at_m: Vec::new(),
+        rows_back: 0,
+        back_m: 0.0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use fault_db::Id;
+
+    use super::super::tests::trace;
+    use super::*;
+
+    fn scene() -> Scene {
+        let ramp: Vec<f64> = (0..100).map(f64::from).collect();
+        let way: Vec<f64> = (0..100).map(|row| f64::from(row) * 0.5).collect();
+        let mut data = trace(&[("speed", &ramp), ("train_position", &way)]);
+        data.trigger_row = Some(40);
+        let opened = Opened {
+            id: Id::from_bytes([1; 16]),
+            run: None,
+            view: TraceView::new(data),
+            events: Vec::new(),
+        };
+        let signals = ["speed", "nothing"].map(str::to_owned);
+        Scene::new(Arc::new(opened), &signals)
+    }
+
+    #[test]
+    fn cursors_take_the_row_before_and_keep_it_over_distance() {
+        let mut scene = scene();
+        scene.put(Cursor::A, -0.51);
+        scene.put(Cursor::B, 0.5);
+        assert_eq!(scene.cursor(Cursor::A), Some(29));
+        assert_eq!(scene.value(0, Cursor::A), Some(29.0));
+        assert_eq!(scene.difference(0), Some(21.0));
+        assert!(scene.set_axis(Kind::Distance));
+        assert_eq!(scene.cursor(Cursor::B), Some(50));
+        scene.step(Cursor::B, 1000);
+        assert_eq!(scene.cursor(Cursor::B), Some(99));
+        scene.clear_cursors();
+        assert_eq!(scene.difference(0), None);
+    }
+
+    #[test]
+    fn the_same_rows_stay_in_view_over_distance() {
+        let mut scene = scene();
+        scene.camera().show(-0.5, 0.5);
+        let rows = scene.rows_in_view();
+        assert!(scene.set_axis(Kind::Distance));
+        let again = scene.rows_in_view();
+        assert!(again.start <= rows.start && again.end >= rows.end);
+        assert!(again.len() < 40, "{again:?}");
+    }
+
+    #[test]
+    fn statistics_follow_cursors_or_view_and_a_missing_signal_has_none() {
+        let mut scene = scene();
+        assert_eq!(scene.stretch_rows(), (0..100, false));
+        scene.put(Cursor::B, 0.0);
+        scene.put(Cursor::A, 0.1);
+        assert_eq!(scene.stretch_rows(), (40..43, true));
+        let said = scene.statistics();
+        assert!(matches!(
+            said[0],
+            Some(Statistics::Quantity {
+                low: 40.0,
+                high: 42.0,
+                mean: 41.0,
+                ..
+            })
+        ));
+        assert_eq!(said[1], None);
+    }
+}

@@ -1,0 +1,126 @@
+//! A trace made ready to be drawn: what every signal is, and a summary of its samples that is made once.
+
+use btu_rig::procedure::describe::bit_names;
+use fault_db::{Channel, ChannelKind, TraceData};
+use protocol::signal::Signal;
+
+use super::pyramid::Pyramid;
+use super::runs::Runs;
+
+/// A trace made ready to be drawn.
+#[derive(Debug)]
+pub struct TraceView {
+    data: TraceData,
+    summaries: Vec<Summary>,
+}
+
+/// What a signal is, and its samples in short.
+#[derive(Debug)]
+pub enum Summary {
+    /// A number that is measured or counted.
+    Quantity(Pyramid),
+    /// A word, or a set of bits with names.
+    Choice(Runs),
+    /// On or off.
+    Bit(Runs),
+    /// Not one sample is known.
+    Unknown,
+}
+
+impl TraceView {
+    /// Summarises all signals of a trace.
+    pub fn new(data: TraceData) -> Self {
+        let summaries = data
+            .channels
+            .iter()
+            .zip(&data.columns)
+            .map(|(channel, samples)| Summary::of(channel, samples))
+            .collect();
+        Self { data, summaries }
+    }
+
+    /// The trace itself.
+    pub fn data(&self) -> &TraceData {
+        &self.data
+    }
+
+    /// Place of the signal of this name; `None` when the trace has no such signal.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        self.data.channels.iter().position(|c| c.name == name)
+    }
+
+    /// The signal at a place.
+    pub fn channel(&self, place: usize) -> &Channel {
+        &self.data.channels[place]
+    }
+
+    /// Its samples.
+    pub fn samples(&self, place: usize) -> &[f64] {
+        &self.data.columns[place]
+    }
+
+    /// Its samples in short.
+    pub fn summary(&self, place: usize) -> &Summary {
+        &self.summaries[place]
+    }
+
+    /// Row of the trigger; the first where there is none.
+    pub fn trigger_row(&self) -> usize {
+        self.data.trigger_row.unwrap_or(0) as usize
+    }
+
+    /// From the least to the greatest value of a quantity; `None` for anything else.
+    pub fn extent(&self, place: usize) -> Option<(f64, f64)> {
+        let Summary::Quantity(pyramid) = self.summary(place) else {
+            return None;
+        };
+        let samples = self.samples(place);
+        let all = pyramid.range(samples, 0, samples.len());
+        all.is_known()
+            .then(|| (f64::from(all.low), f64::from(all.high)))
+    }
+}
+
+impl Summary {
+    fn of(channel: &Channel, samples: &[f64]) -> Self {
+        if samples.iter().all(|value| value.is_nan()) {
+            return Self::Unknown;
+        }
+        match channel.kind {
+            ChannelKind::Bit => Self::Bit(Runs::of(samples)),
+            ChannelKind::Enum { .. } => Self::Choice(Runs::of(samples)),
+            ChannelKind::Number { .. } if is_set(&channel.name) => Self::Choice(Runs::of(samples)),
+            ChannelKind::Number { .. } => Self::Quantity(Pyramid::of(samples)),
+        }
+    }
+}
+
+/// The signal is a set of bits that have names.
+fn is_set(name: &str) -> bool {
+    Signal::from_name(name).is_some_and(|signal| bit_names(signal, 0).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::trace;
+    use super::*;
+
+    #[test]
+    fn signals_are_what_their_channels_say_and_sets_of_bits_are_words() {
+        let mut data = trace(&[
+            ("speed", &[1.0, 3.0]),
+            ("lamps", &[0.0, 2.0]),
+            ("eb", &[0.0, 1.0]),
+            ("target", &[f64::NAN; 2]),
+        ]);
+        data.channels[2].kind = ChannelKind::Bit;
+        let view = TraceView::new(data);
+        assert!(matches!(view.summary(0), Summary::Quantity(_)));
+        assert!(matches!(view.summary(1), Summary::Choice(_)));
+        assert!(matches!(view.summary(2), Summary::Bit(_)));
+        assert!(matches!(view.summary(3), Summary::Unknown));
+        assert_eq!(view.extent(0), Some((1.0, 3.0)));
+        assert_eq!(view.extent(2), None);
+        assert_eq!((view.place("eb"), view.place("nothing")), (Some(2), None));
+    }
+}
