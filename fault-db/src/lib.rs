@@ -24,6 +24,7 @@ mod packed;
 mod query;
 mod record;
 mod recording;
+mod run_notes;
 mod run_writer;
 mod schema;
 mod store;
@@ -45,6 +46,7 @@ pub use record::{
     StepRecord, UnitRecord, Verdict,
 };
 pub use recording::{Recording, RecordingRecord};
+pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use store::{OpenOptions, Store, Synchronous};

@@ -12,6 +12,7 @@ pub const SCHEMA_VERSION: i32 = STEPS.len() as i32;
 const STEPS: &[M<'static>] = &[
     M::up(include_str!("schema/0001.sql")),
     M::up(include_str!("schema/0002.sql")),
+    M::up(include_str!("schema/0003.sql")),
 ];
 
 /// Brings a file to [`SCHEMA_VERSION`], all steps in one transaction.

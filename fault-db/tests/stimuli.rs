@@ -1,14 +1,10 @@
-//! Recordings of stimuli: kept beside their traces, merged, pruned and checked with them; and files of
-//! the schema that had none.
+//! Recordings of stimuli: kept beside their traces, merged, pruned and checked with them.
 
 mod common;
 
-use std::path::Path;
-
 use common::{T0_US, end, fault, ids, open, realistic_trace, run_record};
 use fault_db::{
-    FaultState, Id, OpenOptions, PruneRule, RecordingRecord, RunFilter, RunWriter, Store,
-    StoreError, Verdict,
+    FaultState, Id, OpenOptions, PruneRule, RecordingRecord, RunWriter, Store, StoreError, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -119,55 +115,4 @@ fn a_damaged_recording_is_found_and_never_handed_out() {
     let problems = store.check().expect("checked").problems;
     let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
     assert_eq!(kinds, ["recording"; 2], "{problems:?}");
-}
-
-/// A file of schema 1 with a run in it.
-fn old_file(path: &Path) {
-    let conn = Connection::open(path).expect("made");
-    conn.execute_batch(include_str!("../src/schema/0001.sql"))
-        .and_then(|()| {
-            conn.execute_batch(
-                "PRAGMA user_version = 1;
-                 INSERT INTO unit VALUES (1, 'ATC-1', 'atc', 'sg100', '{}');
-                 INSERT INTO run VALUES (1, x'0198c0de00007000800000000000cafe', 1, 'line8', 1, '',
-                    'sim', 1, 2, 'passed', 1, 1, '0.1.0', '', '', NULL, '')",
-            )
-        })
-        .expect("an old file");
-}
-
-#[test]
-fn a_file_of_an_older_schema_is_copied_before_it_is_brought_up_to_date() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    old_file(&path);
-    let runs = |store: &Store| {
-        store
-            .runs(&RunFilter::default(), &|_| false)
-            .expect("read")
-            .len()
-    };
-    let store = open(&path);
-    assert_eq!(runs(&store), 1);
-    two_procedures(&store);
-    let version = |name: &str| -> (i64, i64) {
-        let conn = Connection::open(dir.path().join(name)).expect("opens");
-        let one = |sql: &str| conn.query_row(sql, [], |row| row.get(0)).expect("readable");
-        (one("PRAGMA user_version"), one("SELECT count(*) FROM run"))
-    };
-    assert_eq!(version("a.db.schema1"), (1, 1));
-    assert_eq!(version("a.db"), (2, 2));
-    store.close().expect("closed");
-    open(&path);
-    assert!(
-        !dir.path().join("a.db.schema1.2").exists(),
-        "nothing old, no copy"
-    );
-    // The old file laid back, after more work with it: the first copy stays as it is.
-    std::fs::remove_file(&path).expect("gone");
-    old_file(&path);
-    open(&path);
-    assert_eq!(version("a.db.schema1.2"), (1, 1));
-    let left: Vec<_> = std::fs::read_dir(dir.path()).expect("listed").collect();
-    assert!(left.len() >= 3, "{left:?}");
 }

@@ -32,6 +32,8 @@ pub struct MergeCounts {
     pub traces: usize,
     /// Recordings not known before.
     pub recordings: usize,
+    /// Notes on runs not known before.
+    pub notes: usize,
 }
 
 /// From a row's number in the other file to its number in this one.
@@ -94,6 +96,7 @@ impl Merge<'_> {
         self.counts.measurements = self.children(&runs, &MEASUREMENTS)?;
         self.children(&runs, &SCRIPTS)?;
         self.counts.recordings = self.children(&runs, &RECORDINGS)?;
+        self.notes(&runs)?;
         let channel_sets = self.channel_sets()?;
         let traces = self.traces(&runs, &channel_sets)?;
         let faults = self.faults(&units)?;
@@ -173,6 +176,23 @@ impl Merge<'_> {
             added += insert.execute(params_from_iter(child))?;
         }
         Ok(added)
+    }
+
+    fn notes(&mut self, runs: &Numbers) -> rusqlite::Result<()> {
+        let mut select = self
+            .theirs
+            .prepare("SELECT id, run, at_us, who, text FROM run_note")?;
+        let mut rows = select.query([])?;
+        while let Some(row) = rows.next()? {
+            let mut note = values(row, 0..5)?;
+            note[1] = renumber(runs, row.get(1)?);
+            let known = "SELECT seq FROM run_note WHERE id = ?1";
+            let insert =
+                "INSERT INTO run_note(id, run, at_us, who, text) VALUES (?1, ?2, ?3, ?4, ?5)";
+            let (_, is_new) = self.find_or_insert(known, insert, &note)?;
+            self.counts.notes += usize::from(is_new);
+        }
+        Ok(())
     }
 
     fn channel_sets(&self) -> rusqlite::Result<Numbers> {

@@ -10,6 +10,7 @@ use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::id::Id;
 use crate::record::{MeasurementRecord, ScriptRecord, Verdict};
+use crate::run_notes::RunNote;
 use crate::store::Store;
 use crate::text_enum::text_enum;
 
@@ -102,6 +103,8 @@ pub struct RunDetail {
     pub steps: Vec<StepDetail>,
     /// The faults seen in it, in order of their first occurrence.
     pub faults: Vec<RunFault>,
+    /// What was said about it, oldest first.
+    pub notes: Vec<RunNote>,
 }
 
 /// A step as recorded.
@@ -194,7 +197,7 @@ impl Store {
         list().map_err(|error| self.failed("listing runs", error))
     }
 
-    /// One run with its steps, measurements and faults.
+    /// One run with its steps, measurements, faults and notes.
     pub fn run(&self, id: Id, is_alive: &dyn Fn(&str) -> bool) -> Result<RunDetail, StoreError> {
         let select = format!("{SELECT_RUN} WHERE r.id = ?1");
         let found = self.conn.prepare_cached(&select).and_then(|mut select| {
@@ -202,15 +205,16 @@ impl Store {
             select.query_row(params![id], row)
         });
         let (run, seq) = found.map_err(|error| self.not_found("run", id, error))?;
-        let rest = || Ok((self.scripts(seq)?, self.steps(seq)?, self.run_faults(seq)?));
-        let rest: rusqlite::Result<_> = rest();
-        let (scripts, steps, faults) = rest.map_err(|error| self.failed("reading a run", error))?;
-        Ok(RunDetail {
-            run,
-            scripts,
-            steps,
-            faults,
-        })
+        let rest = || -> rusqlite::Result<_> {
+            Ok(RunDetail {
+                run,
+                scripts: self.scripts(seq)?,
+                steps: self.steps(seq)?,
+                faults: self.run_faults(seq)?,
+                notes: self.run_notes(seq)?,
+            })
+        };
+        rest().map_err(|error| self.failed("reading a run", error))
     }
 
     fn scripts(&self, run: i64) -> rusqlite::Result<Vec<ScriptRecord>> {
