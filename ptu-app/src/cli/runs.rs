@@ -1,7 +1,7 @@
 //! `ptu runs`: recorded runs.
 
 use clap::{Args, Subcommand};
-use fault_db::RunFilter;
+use fault_db::{RunFilter, RunNote};
 
 use super::reports::ReportOption;
 use super::{Database, ScriptsOption, print_json, print_out, since_argument};
@@ -12,7 +12,7 @@ use crate::owner;
 use crate::report::{run_json, run_summary_json};
 use crate::table::Table;
 
-/// Show recorded runs
+/// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]
 pub struct RunsArguments {
     #[command(subcommand)]
@@ -53,13 +53,36 @@ enum Verb {
         #[command(flatten)]
         scripts: ScriptsOption,
     },
+    /// Add a note to a run; it stands on the run's test sheet
+    Note {
+        /// The run: an id, its beginning or end (at least 4 digits), or `latest`
+        id: String,
+        /// What is to be said
+        text: String,
+        /// Who says it
+        #[arg(long, value_name = "NAME", default_value = "")]
+        who: String,
+    },
 }
 
 impl RunsArguments {
-    /// Lists or shows.
+    /// Lists, shows or notes.
     pub fn run(self) -> Result<Exit, Failure> {
-        let store = self.database.open_read_only()?;
+        let store = if matches!(self.verb, Verb::Note { .. }) {
+            self.database.open()?
+        } else {
+            self.database.open_read_only()?
+        };
         match self.verb {
+            Verb::Note { id, text, who } => {
+                let (text, who) = (text.trim(), who.trim());
+                if text.is_empty() {
+                    return Err(Failure::usage("a note says something"));
+                }
+                let run = store.resolve_run(&id)?;
+                store.add_run_note(run, who, text, clock::now_us())?;
+                print_out(&format!("noted on run {}", run.short()))
+            }
             Verb::List {
                 unit,
                 verdict,
@@ -99,7 +122,7 @@ impl RunsArguments {
                 if json {
                     print_json(&run_json(&run))
                 } else {
-                    print_out(&verdict_table(&run))
+                    print_out(&(verdict_table(&run) + &notes(&run.notes)))
                 }
             }
         }
@@ -129,4 +152,20 @@ fn table(runs: &[fault_db::RunSummary]) -> String {
         ]);
     }
     table.render()
+}
+
+/// What was said about a run, below its verdict.
+fn notes(notes: &[RunNote]) -> String {
+    if notes.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&["NOTED", "BY", "NOTE"]);
+    for note in notes {
+        table.row([
+            clock::local(note.at_us),
+            note.who.clone(),
+            note.text.replace('\n', " "),
+        ]);
+    }
+    format!("\n\n{}", table.render())
 }

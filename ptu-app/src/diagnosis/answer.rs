@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fault_db::diagnosis::{Diagnosis, Dictionary, Finding, Model, Observation};
 use fault_db::{Id, RunDetail, Store, Verdict};
 
-use super::dictionary::{Chosen, choose};
+use super::dictionary::{Chosen, Origin, choose};
 use super::gather::of_run;
 use super::history::OwnHistory;
 use super::{UNIT_CONFIG, settings};
@@ -36,7 +36,7 @@ pub struct Answer {
     /// What to bear in mind.
     pub warnings: Vec<String>,
     /// Where the dictionary is from.
-    pub dictionary_from: String,
+    pub dictionary_from: Origin,
     /// The dictionary was made of what the scripts directory holds now.
     pub dictionary_current: bool,
 }

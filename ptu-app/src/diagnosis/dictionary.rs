@@ -11,12 +11,21 @@ use crate::failure::Failure;
 /// The dictionary that comes with the scripts, in their directory.
 const SHIPPED: &str = "dictionary.zst";
 
+/// Where a dictionary is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// It came with the scripts.
+    Scripts,
+    /// A campaign on this machine.
+    Campaign,
+}
+
 /// A dictionary, and what is to be said of it.
 pub struct Chosen {
     /// The dictionary.
     pub dictionary: Dictionary,
     /// Where it is from.
-    pub from: String,
+    pub from: Origin,
     /// It was made of what the scripts directory holds now.
     pub current: bool,
     /// What it was made of is not what there is now, or it does not know all.
@@ -42,8 +51,8 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
     };
     let of_file = shipped(directory)?;
     let candidates = [
-        of_file.map(|dictionary| (dictionary, "the scripts directory")),
-        own.map(|dictionary| (dictionary, "a campaign on this machine")),
+        of_file.map(|dictionary| (dictionary, Origin::Scripts)),
+        own.map(|dictionary| (dictionary, Origin::Campaign)),
     ];
     let best = candidates
         .into_iter()
@@ -71,7 +80,7 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
     }
     Ok(Chosen {
         dictionary,
-        from: from.to_owned(),
+        from,
         current,
         warnings,
     })

@@ -8,6 +8,6 @@ mod history;
 
 pub use answer::{Answer, Bench, adaptive, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
-pub use dictionary::{Chosen, choose};
+pub use dictionary::{Chosen, Origin, choose};
 pub use gather::{Gatherer, of_run};
 pub use history::OwnHistory;

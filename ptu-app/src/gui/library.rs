@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
-use fault_db::Store;
+use fault_db::{Store, StoreError};
 
 use crate::clock;
 use crate::data::ScriptsDirectory;
@@ -35,7 +35,8 @@ impl Shelf {
         Ok(Store::open(&self.database, clock::open_options())?)
     }
 
-    /// The database, to be read; one that is not there yet is made.
+    /// The database, to be read; one that is not there yet is made, one of an older schema is copied
+    /// and brought up to date.
     ///
     /// # Errors
     /// It cannot be opened.
@@ -43,7 +44,13 @@ impl Shelf {
         if !self.database.exists() {
             self.open()?.close()?;
         }
-        Ok(Store::open_read_only(&self.database)?)
+        match Store::open_read_only(&self.database) {
+            Err(StoreError::OlderSchema { .. }) => {
+                self.open()?.close()?;
+                Ok(Store::open_read_only(&self.database)?)
+            }
+            opened => Ok(opened?),
+        }
     }
 }
 

@@ -25,6 +25,12 @@ const COLUMNS: [&str; 15] = [
     "measurement_verdict",
 ];
 
+/// A cell: what people and scripts wrote must not act, what we counted must stay a number.
+enum Cell {
+    Text(String),
+    Number(String),
+}
+
 /// The table.
 pub fn csv(run: &RunDetail) -> String {
     let mut text = COLUMNS.join(",") + "\n";
@@ -33,32 +39,49 @@ pub fn csv(run: &RunDetail) -> String {
         for measured in step.measurements.iter().map(Some).chain(none) {
             let cells = cells(run, step, measured);
             // Writing to a text cannot fail.
-            let _ = writeln!(text, "{}", cells.map(|cell| quoted(&cell)).join(","));
+            let _ = writeln!(text, "{}", cells.map(Cell::written).join(","));
         }
     }
     text
 }
 
-fn cells(run: &RunDetail, step: &StepDetail, measured: Option<&MeasurementRecord>) -> [String; 15] {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    let word = |word: fn(&MeasurementRecord) -> String| measured.map(word).unwrap_or_default();
+fn cells(run: &RunDetail, step: &StepDetail, measured: Option<&MeasurementRecord>) -> [Cell; 15] {
+    let text = |text: &str| Cell::Text(text.to_owned());
+    let number = |value: Option<f64>| {
+        Cell::Number(value.map_or_else(String::new, |value| value.to_string()))
+    };
+    let word = |word: fn(&MeasurementRecord) -> &str| text(measured.map(word).unwrap_or_default());
     [
-        run.run.id.to_string(),
-        run.run.unit_serial.clone(),
-        rfc3339(run.run.started_at_us),
-        step.procedure.clone(),
-        step.index.to_string(),
-        step.name.clone(),
-        step.verdict.as_str().to_owned(),
-        format!("{}", step.bench_time_us as f64 / 1e6),
-        step.message.clone(),
-        word(|m| m.name.clone()),
+        Cell::Text(run.run.id.to_string()),
+        text(&run.run.unit_serial),
+        Cell::Text(rfc3339(run.run.started_at_us)),
+        text(&step.procedure),
+        Cell::Number(step.index.to_string()),
+        text(&step.name),
+        text(step.verdict.as_str()),
+        number(Some(step.bench_time_us as f64 / 1e6)),
+        text(&step.message),
+        word(|m| &m.name),
         number(measured.and_then(|m| m.value)),
-        word(|m| m.unit.clone()),
+        word(|m| &m.unit),
         number(measured.and_then(|m| m.low)),
         number(measured.and_then(|m| m.high)),
-        word(|m| m.verdict.as_str().to_owned()),
+        word(|m| m.verdict.as_str()),
     ]
+}
+
+impl Cell {
+    /// As it stands in the file. A spreadsheet takes a text that begins like a formula for one; an
+    /// apostrophe before it says that it is none.
+    fn written(self) -> String {
+        match self {
+            Self::Number(number) => number,
+            Self::Text(text) if text.starts_with(['=', '+', '-', '@', '\t', '\r']) => {
+                quoted(&format!("'{text}"))
+            }
+            Self::Text(text) => quoted(&text),
+        }
+    }
 }
 
 /// A cell in quotes where its content asks for them.
@@ -78,5 +101,15 @@ mod tests {
     fn what_would_break_a_line_is_quoted() {
         assert_eq!(quoted("plain"), "plain");
         assert_eq!(quoted("a, \"b\"\nc"), "\"a, \"\"b\"\"\nc\"");
+    }
+
+    #[test]
+    fn a_text_that_begins_like_a_formula_is_marked_and_a_number_is_not() {
+        let text = |text: &str| Cell::Text(text.into()).written();
+        assert_eq!(text("=1+1"), "'=1+1");
+        assert_eq!(text("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");
+        assert_eq!(text("-"), "'-");
+        assert_eq!(text("eb=1"), "eb=1");
+        assert_eq!(Cell::Number("-0.5".into()).written(), "-0.5");
     }
 }

@@ -6,6 +6,7 @@ use fault_db::Id;
 use serde_json::{Value, json};
 
 use crate::diagnosis::Answer;
+use crate::words::Language;
 
 /// The contract's keys first.
 pub fn diagnosis_json(answer: &Answer) -> Value {
@@ -34,7 +35,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "no_fault": d.no_fault,
         "unknown_fault": d.unknown_fault,
         "warnings": answer.warnings,
-        "dictionary": answer.dictionary_from,
+        "dictionary": Language::English.words().report.origin(answer.dictionary_from),
         "run": answer.run.run.id.to_string(),
     })
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::clock::rfc3339;
 
-/// A run with its steps and faults.
+/// A run with its steps, faults and notes.
 pub fn run_json(run: &RunDetail) -> Value {
     json!({
         "run": run_summary_json(&run.run),
@@ -14,6 +14,9 @@ pub fn run_json(run: &RunDetail) -> Value {
         })).collect::<Vec<_>>(),
         "steps": run.steps.iter().map(step_json).collect::<Vec<_>>(),
         "faults": run.faults.iter().map(run_fault_json).collect::<Vec<_>>(),
+        "notes": run.notes.iter().map(|note| json!({
+            "at": rfc3339(note.at_us), "who": note.who, "text": note.text,
+        })).collect::<Vec<_>>(),
     })
 }
 

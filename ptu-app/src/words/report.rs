@@ -3,6 +3,7 @@
 use fault_db::diagnosis::Finding;
 
 use super::wordings;
+use crate::diagnosis::Origin;
 
 wordings! {
     /// Test sheet.
@@ -86,6 +87,31 @@ wordings! {
         tester_signs: "Tester", "시험자";
         approver_signs: "Approver", "승인자";
         date: "Date", "일자";
+        notes: "Notes", "비고";
+        noted_by: "Noted by", "작성자";
+        noted: "Note", "내용";
+        note_field: "note on this run", "이 시험의 비고";
+        note_save: "Save note", "비고 저장";
+        note_hint: "State the operator's name, then write what is to be said; it stands on the test sheet",
+            "시험자 이름을 먼저 적으십시오. 저장한 내용은 시험 성적서에 실립니다";
+        note_saved: "Note saved", "비고를 저장했습니다";
+        note_not_saved: "The note was not saved", "비고를 저장하지 못했습니다";
+        from_scripts: "the scripts directory", "스크립트 폴더";
+        from_campaign: "a campaign on this machine", "이 컴퓨터에서 수행한 캠페인";
+        choose_run: "Choose a run on the left.", "왼쪽에서 시험을 고르십시오.";
+        not_read: "The run cannot be read", "시험 기록을 읽을 수 없습니다";
+        language: "language of the sheet", "성적서 언어";
+        file: "file", "파일";
+        write_html: "HTML", "HTML";
+        write_pdf: "PDF", "PDF";
+        write_csv: "CSV", "CSV";
+        write_hint: "Written to the file named beside it, with its own ending", "옆에 적은 파일에 해당 확장자로 저장합니다";
+        written: "Written: {file}", "저장 완료: {file}";
+        not_written: "The report was not written", "성적서를 저장하지 못했습니다";
+        name_file: "name a file", "파일 이름을 적으십시오";
+        to_diagnosis: "Diagnosis", "진단";
+        to_trace: "Trace {id}", "트레이스 {id}";
+        to_traces: "Traces ({n})", "트레이스 ({n})";
         page: "page {n} of {of}", "{of}쪽 중 {n}쪽";
     }
 }
@@ -98,6 +124,14 @@ impl Report {
             "major" => self.major,
             "critical" => self.critical,
             other => other,
+        }
+    }
+
+    /// Where a fault dictionary is from.
+    pub fn origin(&self, origin: Origin) -> &'static str {
+        match origin {
+            Origin::Scripts => self.from_scripts,
+            Origin::Campaign => self.from_campaign,
         }
     }
 

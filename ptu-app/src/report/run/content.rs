@@ -22,6 +22,7 @@ pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks.extend(failures(sheet, words));
     blocks.extend(faults(sheet, words));
     blocks.extend(diagnosis(sheet, words));
+    blocks.extend(notes(sheet, words));
     blocks.extend(the_run(sheet, words));
     blocks.extend(all_steps(sheet, words));
     blocks.extend(scripts(sheet, words));
@@ -274,7 +275,7 @@ fn concluded(sheet: &Sheet, answer: &Answer, words: &Words) -> Vec<(String, Stri
         let next = format!("{} ({:.0} s)", next.check, next.cost_s);
         facts.push((report.next_check.to_owned(), next));
     }
-    let dictionary = format!("{}, {age}", answer.dictionary_from);
+    let dictionary = format!("{}, {age}", report.origin(answer.dictionary_from));
     facts.push((report.dictionary.to_owned(), dictionary));
     let warnings = answer.warnings.iter();
     facts.extend(warnings.map(|warning| (sentence(words.common.note), warning.clone())));
@@ -303,6 +304,29 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
         ],
         rows: rows.collect(),
     }
+}
+
+/// What was said about the run.
+fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    if sheet.run.notes.is_empty() {
+        return Vec::new();
+    }
+    let rows = sheet.run.notes.iter().map(|note| {
+        let cells = [local(note.at_us), note.who.clone(), note.text.clone()];
+        Row::words(RowKind::Head, cells)
+    });
+    vec![
+        Block::Heading(report.notes.into()),
+        Block::Table(Table {
+            columns: vec![
+                Column::new(words.common.time, 0.18, Align::Left),
+                Column::new(report.noted_by, 0.16, Align::Left),
+                Column::new(report.noted, 0.66, Align::Left),
+            ],
+            rows: rows.collect(),
+        }),
+    ]
 }
 
 /// Who tested what with what.

@@ -76,7 +76,8 @@ impl DiagnosisPage {
         }
         ui.separator();
         candidates::ranked(ui, desk, answer);
-        let from = fill(words.dictionary, &[("from", &answer.dictionary_from)]);
+        let from = desk.words.report.origin(answer.dictionary_from);
+        let from = fill(words.dictionary, &[("from", &from)]);
         ui.label(RichText::new(from).small().color(palette.quiet));
     }
 
