@@ -1,11 +1,14 @@
 //! Where the unit is and what is around it.
 
-use eframe::egui::{ComboBox, DragValue, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
+use eframe::egui::{
+    ComboBox, DragValue, Grid, Id, Key, Label, PopupCloseBehavior, Pos2, RichText, ScrollArea,
+    TextEdit, Ui, Window,
+};
 
-use crate::gui::Desk;
 use crate::gui::library::Asked;
 use crate::gui::parts::named_combo;
 use crate::gui::units::UnitChoice;
+use crate::gui::{Desk, Palette};
 use crate::link::ports;
 use crate::station::Phase;
 use crate::words::Words;
@@ -24,6 +27,7 @@ struct Names {
 pub struct Setup {
     names: Asked<Names>,
     find: String,
+    open: bool,
 }
 
 impl Setup {
@@ -42,6 +46,7 @@ impl Setup {
             choice.endpoint.clone()
         };
         let mut opened = false;
+        let mut below = ui.cursor().min;
         ui.add_enabled_ui(free, |ui| {
             let combo = ComboBox::from_id_salt("endpoint")
                 .selected_text(&shown)
@@ -50,11 +55,34 @@ impl Setup {
             let response = combo.show_ui(ui, |ui| self.endpoints(ui, words, choice));
             named_combo(&response.response, words.common.unit, &shown);
             opened = response.response.clicked();
-            ui.menu_button(words.frame.setup, |ui| self.surroundings(ui, words, choice));
+            let setup = ui.selectable_label(self.open, words.frame.setup);
+            if setup.clicked() {
+                self.open = !self.open;
+            }
+            below = setup.rect.left_bottom();
         });
         if opened {
             self.ask(desk);
         }
+        self.open &= free;
+        if self.open {
+            self.window(ui, below, desk);
+        }
+    }
+
+    /// A window rather than a menu: lists open over it, and several things are chosen before it is closed.
+    fn window(&mut self, ui: &Ui, below: Pos2, desk: &mut Desk<'_>) {
+        let words = desk.words;
+        let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
+        let choice = &mut desk.units.chosen_mut().choice;
+        Window::new(words.frame.setup)
+            .id(Id::unique("setup"))
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false)
+            .default_pos(below)
+            .show(ui.ctx(), |ui| self.surroundings(ui, words, choice));
+        self.open = open;
     }
 
     fn ask(&mut self, desk: &Desk<'_>) {
@@ -102,40 +130,41 @@ impl Setup {
 
     fn surroundings(&mut self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
         let frame = &words.frame;
-        ui.set_min_width(340.0);
-        ui.horizontal(|ui| {
-            ui.label(frame.connection_kind);
-            ui.selectable_value(&mut choice.as_ptu, false, frame.as_btu);
-            ui.selectable_value(&mut choice.as_ptu, true, frame.as_ptu);
-        });
+        ui.set_min_width(430.0);
         let none = Vec::new();
         let names = self.names.value();
         let of = |pick: fn(&Names) -> &Vec<String>| names.map_or(&none, pick);
-        pick(ui, frame.line, &mut choice.line, of(|names| &names.lines));
-        pick(
-            ui,
-            frame.unit_config,
-            &mut choice.unit_config,
-            of(|names| &names.configs),
-        );
-        pick(
-            ui,
-            frame.train,
-            &mut choice.train,
-            of(|names| &names.trains),
-        );
-        ui.horizontal(|ui| {
+        Grid::new("surroundings").num_columns(2).show(ui, |ui| {
+            ui.label(frame.connection_kind);
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut choice.as_ptu, false, frame.as_btu);
+                ui.selectable_value(&mut choice.as_ptu, true, frame.as_ptu);
+            });
+            ui.end_row();
+            pick(ui, frame.line, &mut choice.line, of(|names| &names.lines));
+            let configs = of(|names| &names.configs);
+            pick(ui, frame.unit_config, &mut choice.unit_config, configs);
+            pick(
+                ui,
+                frame.train,
+                &mut choice.train,
+                of(|names| &names.trains),
+            );
             let label = ui.label(frame.serial);
             ui.add(TextEdit::singleline(&mut choice.serial).desired_width(140.0))
                 .labelled_by(label.id);
+            ui.end_row();
+            if choice.is_simulated() {
+                let label = ui.label(frame.seed);
+                ui.horizontal(|ui| {
+                    ui.add(DragValue::new(&mut choice.seed))
+                        .labelled_by(label.id);
+                    ui.checkbox(&mut choice.scatter, frame.scatter);
+                });
+                ui.end_row();
+            }
         });
         if choice.is_simulated() {
-            ui.horizontal(|ui| {
-                let label = ui.label(frame.seed);
-                ui.add(DragValue::new(&mut choice.seed))
-                    .labelled_by(label.id);
-                ui.checkbox(&mut choice.scatter, frame.scatter);
-            });
             ui.checkbox(&mut choice.realtime, frame.realtime);
             ui.separator();
             self.injected(ui, words, choice);
@@ -163,7 +192,13 @@ impl Setup {
                     continue;
                 }
                 let mut on = choice.faults.contains(id);
-                if ui.checkbox(&mut on, id).on_hover_text(mode).clicked() {
+                let box_of_it = ui.horizontal(|ui| {
+                    let clicked = ui.checkbox(&mut on, id).clicked();
+                    let mode = RichText::new(mode).small().color(Palette::of(ui).quiet);
+                    ui.add(Label::new(mode).truncate());
+                    clicked
+                });
+                if box_of_it.inner {
                     choice.faults.retain(|fault| fault != id);
                     if on {
                         choice.faults.push(id.clone());
@@ -174,16 +209,16 @@ impl Setup {
     }
 }
 
+/// A row of the grid.
 fn pick(ui: &mut Ui, label: &str, chosen: &mut String, names: &[String]) {
-    ui.horizontal(|ui| {
-        ui.label(label);
-        let before = chosen.clone();
-        let combo = ComboBox::from_id_salt(label).selected_text(&before);
-        let shown = combo.show_ui(ui, |ui| {
-            for name in names {
-                ui.selectable_value(chosen, name.clone(), name);
-            }
-        });
-        named_combo(&shown.response, label, &before);
+    ui.label(label);
+    let before = chosen.clone();
+    let combo = ComboBox::from_id_salt(label).selected_text(&before);
+    let shown = combo.show_ui(ui, |ui| {
+        for name in names {
+            ui.selectable_value(chosen, name.clone(), name);
+        }
     });
+    named_combo(&shown.response, label, &before);
+    ui.end_row();
 }
