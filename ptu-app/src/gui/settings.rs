@@ -42,7 +42,7 @@ impl Default for Settings {
             page: Page::default(),
             operator: String::new(),
             unit: UnitChoice::default(),
-            plotted: ["measured_speed", "speed_limit", "eb"]
+            plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)
                 .to_vec(),
             lanes: Vec::new(),

@@ -1,16 +1,149 @@
-//! The page `bench`.
+//! The bench: the unit live as in its cab, every stimulus by hand, and a rolling plot.
+//!
+//! What is shown is copied once per frame ([`seen`]), what is filled in becomes stimuli in [`forms`];
+//! both know nothing of widgets.
 
-use eframe::egui::Ui;
+mod forms;
+mod live;
+mod plot;
+mod rolling;
+mod scale;
+mod seen;
+mod stimuli;
+mod text;
+mod track;
+
+use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
 use crate::gui::Desk;
+use crate::run::BenchSetup;
+use crate::station::Phase;
+use forms::Forms;
+use live::{View, view};
+use plot::Plot;
+use rolling::chosen;
+use seen::Seen;
+use stimuli::{Given, Hand, stimuli};
+
+/// Width of the stimuli, and the least that is left of it in a small window.
+const STIMULI: f32 = 440.0;
+const STIMULI_LEAST: f32 = 330.0;
+/// Most of a small window that stimuli take.
+const STIMULI_SHARE: f32 = 0.4;
+/// Least height of log and plot, and what stands around them.
+const LOWEST: f32 = 100.0;
+const AROUND: f32 = 30.0;
+/// What the plot's heading has more than the log's.
+const HEADING: f32 = 8.0;
+/// Share of the log in the width.
+const LOG_SHARE: f32 = 0.4;
+
+/// What is filled in and remembered for one bench.
+struct Sheet {
+    /// The unit's place, and checksums of its configuration and line.
+    of: (usize, u32, u32),
+    forms: Forms,
+    given: Given,
+}
 
 /// The page.
 #[derive(Default)]
-pub struct BenchPage {}
+pub struct BenchPage {
+    sheet: Option<Sheet>,
+    plot: Plot,
+}
 
 impl BenchPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        ui.heading(desk.words.bench.title);
+        let place = desk.units.chosen_place();
+        let unit = desk.units.chosen();
+        let Some(setup) = unit.setup.value() else {
+            ui.label(desk.words.bench.connect_first);
+            return;
+        };
+        let seen = Seen::of(&unit.station);
+        let sheet = sheet(&mut self.sheet, place, setup);
+        // A run lays its own track, and a bench that begins anew has none.
+        if seen.phase != Phase::Idle {
+            sheet.given = Given::default();
+        }
+        stimuli_panel(ui).show(ui, |ui| {
+            let mut hand = Hand {
+                station: &unit.station,
+                seen: &seen,
+                words: desk.words,
+                messages: desk.messages,
+                given: &mut sheet.given,
+            };
+            stimuli(ui, &mut sheet.forms, setup, &mut hand);
+        });
+        let shown = View {
+            words: desk.words,
+            seen: &seen,
+            setup,
+            laid: sheet.given.laid,
+            given: sheet.given.station.as_ref(),
+            events: &unit.log,
+        };
+        let signals = chosen(&desk.settings.plotted);
+        self.plot.take(&unit.station, &signals);
+        live_view(ui, &shown, |ui, height| {
+            let plotted = &mut desk.settings.plotted;
+            self.plot.show(ui, height, &signals, plotted, &shown);
+        });
     }
+}
+
+/// The sheet of this bench; a new one when it is another bench.
+fn sheet<'a>(sheet: &'a mut Option<Sheet>, place: usize, setup: &BenchSetup) -> &'a mut Sheet {
+    let of = (place, setup.config.crc, setup.line.crc);
+    if sheet.as_ref().is_some_and(|sheet| sheet.of != of) {
+        *sheet = None;
+    }
+    sheet.get_or_insert_with(|| Sheet {
+        of,
+        forms: Forms::new(setup),
+        given: Given::default(),
+    })
+}
+
+/// Room for stimuli at the right.
+fn stimuli_panel(ui: &Ui) -> Panel {
+    let width = STIMULI.min(ui.available_width() * STIMULI_SHARE);
+    let frame = Frame::new().inner_margin(Margin {
+        left: 8,
+        ..Margin::ZERO
+    });
+    Panel::right("stimuli")
+        .default_size(width)
+        .min_size(STIMULI_LEAST)
+        .frame(frame)
+}
+
+/// The live view, and log and plot in the height it leaves.
+fn live_view(ui: &mut Ui, shown: &View<'_>, plot: impl FnOnce(&mut Ui, f32)) {
+    let height = ui.available_height();
+    let scroll = ScrollArea::vertical()
+        .id_salt("live")
+        .auto_shrink([false, false]);
+    scroll.show(ui, |ui| {
+        let top = ui.cursor().top();
+        ui.spacing_mut().item_spacing.y = 4.0;
+        view(ui, shown);
+        let used = ui.cursor().top() - top;
+        let left = (height - used - AROUND).max(LOWEST);
+        let width = ui.available_width();
+        if width < live::WIDE {
+            live::log(ui, left, shown);
+            plot(ui, left);
+            return;
+        }
+        ui.horizontal_top(|ui| {
+            let log = vec2((width * LOG_SHARE).round(), left);
+            let down = Layout::top_down(Align::Min);
+            ui.allocate_ui_with_layout(log, down, |ui| live::log(ui, left + HEADING, shown));
+            ui.vertical(|ui| plot(ui, left));
+        });
+    });
 }

@@ -1,0 +1,139 @@
+//! The ATP signal.
+
+use btu_rig::stimulus::Stimulus;
+use protocol::config::{SpeedCode, UnitConfig};
+
+use super::Way;
+
+/// The ATP signal.
+#[derive(Clone, Debug)]
+pub struct CodeForm {
+    /// Carrier, Hz.
+    pub carrier_hz: f64,
+    /// Code rate, Hz; 0 = unmodulated.
+    pub rate_hz: f64,
+    /// Level, mV; of the codes of the table, too.
+    pub level_mv: f64,
+    /// Hz per second.
+    pub rate_drift_hz_per_s: f64,
+    /// mV per second.
+    pub level_drift_mv_per_s: f64,
+}
+
+impl CodeForm {
+    /// The last code of the table at its nominal level, drifting slowly.
+    pub fn new(config: &UnitConfig) -> Self {
+        let (carrier_hz, rate_hz) = config
+            .codes
+            .last()
+            .map_or((0.0, 0.0), |code| (code.carrier_hz, code.rate_hz));
+        Self {
+            carrier_hz,
+            rate_hz,
+            level_mv: config.receiver.level_nominal_mv,
+            rate_drift_hz_per_s: 0.1,
+            level_drift_mv_per_s: -20.0,
+        }
+    }
+
+    /// The signal as it is filled in.
+    pub fn free(&self, way: Way) -> Stimulus {
+        self.signal(self.carrier_hz, self.rate_hz, way)
+    }
+
+    /// A code of the table at the level filled in.
+    pub fn of_table(&self, code: &SpeedCode, way: Way) -> Stimulus {
+        self.signal(code.carrier_hz, code.rate_hz, way)
+    }
+
+    /// The signal drifts from where it is.
+    pub fn drift(&self) -> Stimulus {
+        Stimulus::CodeDrift {
+            rate_hz_per_s: self.rate_drift_hz_per_s,
+            level_mv_per_s: self.level_drift_mv_per_s,
+        }
+    }
+
+    fn signal(&self, carrier_hz: f64, rate_hz: f64, way: Way) -> Stimulus {
+        let level_mv = self.level_mv;
+        match way {
+            Way::Harness => Stimulus::Code {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            },
+            Way::TestBoard => Stimulus::PtuCode {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            },
+        }
+    }
+}
+
+/// The signal stays as it is from now on.
+pub const NO_DRIFT: Stimulus = Stimulus::CodeDrift {
+    rate_hz_per_s: 0.0,
+    level_mv_per_s: 0.0,
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SG100: &str = include_str!("../../../../../../scripts/units/sg100.toml");
+
+    #[test]
+    fn a_code_of_the_table_has_its_carrier_and_rate_at_the_level_filled_in() {
+        let config = UnitConfig::from_toml(SG100).expect("configuration");
+        let mut form = CodeForm::new(&config);
+        assert_eq!(form.level_mv, config.receiver.level_nominal_mv);
+        form.level_mv = 80.0;
+        let code = &config.codes[4];
+        let expected = (code.carrier_hz, code.rate_hz, 80.0);
+        let Stimulus::Code {
+            carrier_hz,
+            rate_hz,
+            level_mv,
+        } = form.of_table(code, Way::Harness)
+        else {
+            panic!("a signal in the antenna");
+        };
+        assert_eq!((carrier_hz, rate_hz, level_mv), expected);
+        let Stimulus::PtuCode {
+            carrier_hz,
+            rate_hz,
+            level_mv,
+        } = form.of_table(code, Way::TestBoard)
+        else {
+            panic!("a signal in the test coil");
+        };
+        assert_eq!((carrier_hz, rate_hz, level_mv), expected);
+    }
+
+    #[test]
+    fn free_values_and_drifts_go_as_they_are_filled_in() {
+        let config = UnitConfig::from_toml(SG100).expect("configuration");
+        let form = CodeForm {
+            carrier_hz: 3_040.0,
+            rate_hz: 0.0,
+            rate_drift_hz_per_s: -0.5,
+            ..CodeForm::new(&config)
+        };
+        assert_eq!(
+            form.free(Way::Harness),
+            Stimulus::Code {
+                carrier_hz: 3_040.0,
+                rate_hz: 0.0,
+                level_mv: 500.0
+            }
+        );
+        assert_eq!(
+            form.drift(),
+            Stimulus::CodeDrift {
+                rate_hz_per_s: -0.5,
+                level_mv_per_s: -20.0
+            }
+        );
+    }
+}

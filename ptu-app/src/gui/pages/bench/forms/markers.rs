@@ -1,0 +1,67 @@
+//! Markers along the way.
+
+use btu_rig::stimulus::Stimulus;
+use protocol::line::Line;
+
+/// Markers along the way.
+#[derive(Clone, Debug)]
+pub struct MarkerForm {
+    /// Section whose markers are laid.
+    pub section: u16,
+    /// Marker that is moved, 1 to 4.
+    pub psm: u8,
+    /// How far beyond its place, m.
+    pub by_m: f64,
+}
+
+impl MarkerForm {
+    /// The line's first section.
+    pub fn new(line: &Line) -> Self {
+        Self {
+            section: line.sections.first().map_or(0, |first| first.section),
+            psm: 1,
+            by_m: 5.0,
+        }
+    }
+
+    /// The section's markers lie along the way from here on.
+    pub fn lay(&self) -> Stimulus {
+        Stimulus::MarkersAlong {
+            section: Some(self.section),
+        }
+    }
+
+    /// The marker lies elsewhere.
+    pub fn moved(&self) -> Stimulus {
+        Stimulus::MarkerMoved {
+            psm: self.psm,
+            by_m: Some(self.by_m),
+        }
+    }
+
+    /// The marker is missing.
+    pub fn missing(&self) -> Stimulus {
+        Stimulus::MarkerMoved {
+            psm: self.psm,
+            by_m: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_marker_chosen_is_moved_or_missing() {
+        let form = MarkerForm {
+            section: 61,
+            psm: 3,
+            by_m: -2.5,
+        };
+        assert_eq!(form.lay(), Stimulus::MarkersAlong { section: Some(61) });
+        let moved = |by_m| Stimulus::MarkerMoved { psm: 3, by_m };
+        assert_eq!(form.moved(), moved(Some(-2.5)));
+        assert_eq!(form.missing(), moved(None));
+    }
+}

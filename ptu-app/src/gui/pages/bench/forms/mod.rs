@@ -1,0 +1,64 @@
+//! What is filled in by hand, and the stimulus it makes. Speeds are km/h and accelerations km/h/s, as
+//! people say them; a stimulus has metres and seconds.
+
+mod code;
+mod markers;
+mod motion;
+mod station;
+mod train;
+
+pub use code::{CodeForm, NO_DRIFT};
+pub use markers::MarkerForm;
+pub use motion::{MotionForm, TachoKind};
+pub use station::StationForm;
+pub use train::TrainForm;
+
+use crate::run::BenchSetup;
+
+/// The way a stimulus takes to the unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// The bench harness, in place of train and wayside.
+    Harness,
+    /// The unit's own TEST board.
+    TestBoard,
+}
+
+/// All fields of the page.
+#[derive(Debug)]
+pub struct Forms {
+    /// Signal in the antenna.
+    pub code: CodeForm,
+    /// Tachometers.
+    pub motion: MotionForm,
+    /// Markers along the way.
+    pub markers: MarkerForm,
+    /// What the wayside sends.
+    pub station: StationForm,
+    /// Cab and train.
+    pub train: TrainForm,
+    /// The TEST board's signal.
+    pub test_code: CodeForm,
+    /// The TEST board's speed.
+    pub test_motion: MotionForm,
+    /// The TEST board's TWC frame.
+    pub test_station: StationForm,
+}
+
+impl Forms {
+    /// Filled in for the first section of a bench's line and its unit's code table.
+    pub fn new(setup: &BenchSetup) -> Self {
+        let code = CodeForm::new(&setup.config.content);
+        let station = StationForm::new(&setup.line.content);
+        Self {
+            code: code.clone(),
+            motion: MotionForm::default(),
+            markers: MarkerForm::new(&setup.line.content),
+            station: station.clone(),
+            train: TrainForm::default(),
+            test_code: code,
+            test_motion: MotionForm::default(),
+            test_station: station,
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Speed signals: what the tachometer generators or the TEST board make.
+
+use btu_rig::stimulus::{Stimulus, TachoCondition};
+use protocol::Speed;
+
+/// Both inputs of the TEST board's speed signal.
+const BOTH_CHANNELS: u8 = 0b11;
+
+/// Speed signals.
+#[derive(Clone, Debug)]
+pub struct MotionForm {
+    /// Speed to go to, km/h.
+    pub to_kmh: f64,
+    /// Size of the acceleration, km/h/s; 0 = at once, on the TEST board only.
+    pub accel_kmhps: f64,
+    /// Way to travel, m.
+    pub distance_m: f64,
+    /// Spurious pulses of a noisy channel, mean per second.
+    pub noise_per_s: f64,
+    /// Pulses of a scaled channel, times those of a good one.
+    pub factor: f64,
+    /// Inputs the TEST board drives: bit 0 = input 1, bit 1 = input 2.
+    pub channels: u8,
+    /// The TEST board's signal turns backward.
+    pub backward: bool,
+}
+
+/// What a channel can be made to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TachoKind {
+    /// As it should be.
+    Good,
+    /// No pulses.
+    Dead,
+    /// Spurious pulses.
+    Noisy,
+    /// Pulses of another speed.
+    Scaled,
+}
+
+impl TachoKind {
+    /// All, in the order of the labels of the signals `tacho1` and `tacho2`.
+    pub const ALL: [Self; 4] = [Self::Good, Self::Dead, Self::Noisy, Self::Scaled];
+}
+
+impl Default for MotionForm {
+    fn default() -> Self {
+        Self {
+            to_kmh: 40.0,
+            accel_kmhps: 3.0,
+            distance_m: 100.0,
+            noise_per_s: 500.0,
+            factor: 1.2,
+            channels: BOTH_CHANNELS,
+            backward: false,
+        }
+    }
+}
+
+impl MotionForm {
+    /// To the speed filled in.
+    pub fn go(&self) -> Stimulus {
+        self.to(Speed::from_kmh(self.to_kmh))
+    }
+
+    /// To standstill.
+    pub fn stand(&self) -> Stimulus {
+        self.to(Speed::ZERO)
+    }
+
+    /// The way filled in, at the speed filled in.
+    pub fn travel(&self) -> Stimulus {
+        Stimulus::Travel {
+            distance_m: self.distance_m,
+            speed: Speed::from_kmh(self.to_kmh),
+            accel_mps2: self.accel_mps2(),
+        }
+    }
+
+    /// Condition of a channel, 1 or 2.
+    pub fn tacho(&self, channel: u8, kind: TachoKind) -> Stimulus {
+        let condition = match kind {
+            TachoKind::Good => TachoCondition::Good,
+            TachoKind::Dead => TachoCondition::Dead,
+            TachoKind::Noisy => TachoCondition::Noisy {
+                per_s: self.noise_per_s,
+            },
+            TachoKind::Scaled => TachoCondition::Scaled {
+                factor: self.factor,
+            },
+        };
+        Stimulus::Tacho { channel, condition }
+    }
+
+    /// The TEST board's signal to the speed filled in.
+    pub fn test_go(&self) -> Stimulus {
+        self.test_to(Speed::from_kmh(self.to_kmh))
+    }
+
+    /// The TEST board's signal to standstill.
+    pub fn test_stand(&self) -> Stimulus {
+        self.test_to(Speed::ZERO)
+    }
+
+    fn to(&self, to: Speed) -> Stimulus {
+        Stimulus::Speed {
+            to,
+            accel_mps2: self.accel_mps2(),
+        }
+    }
+
+    fn test_to(&self, to: Speed) -> Stimulus {
+        Stimulus::PtuSpeed {
+            channels: self.channels,
+            backward: self.backward,
+            to,
+            accel_mps2: self.accel_mps2(),
+        }
+    }
+
+    fn accel_mps2(&self) -> f64 {
+        Speed::from_kmh(self.accel_kmhps).mps()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_and_accelerations_become_metres_and_seconds() {
+        let form = MotionForm {
+            to_kmh: 72.0,
+            accel_kmhps: 3.6,
+            distance_m: 55.0,
+            ..MotionForm::default()
+        };
+        let twenty = Speed::from_kmh(72.0);
+        assert_eq!(
+            form.go(),
+            Stimulus::Speed {
+                to: twenty,
+                accel_mps2: 1.0
+            }
+        );
+        assert_eq!(
+            form.stand(),
+            Stimulus::Speed {
+                to: Speed::ZERO,
+                accel_mps2: 1.0
+            }
+        );
+        assert_eq!(
+            form.travel(),
+            Stimulus::Travel {
+                distance_m: 55.0,
+                speed: twenty,
+                accel_mps2: 1.0
+            }
+        );
+    }
+
+    #[test]
+    fn a_channel_is_made_what_is_chosen_with_the_size_filled_in() {
+        let form = MotionForm {
+            noise_per_s: 40.0,
+            factor: 0.5,
+            ..MotionForm::default()
+        };
+        let conditions = TachoKind::ALL.map(|kind| form.tacho(2, kind));
+        let expected = [
+            TachoCondition::Good,
+            TachoCondition::Dead,
+            TachoCondition::Noisy { per_s: 40.0 },
+            TachoCondition::Scaled { factor: 0.5 },
+        ];
+        assert_eq!(
+            conditions,
+            expected.map(|condition| Stimulus::Tacho {
+                channel: 2,
+                condition
+            })
+        );
+    }
+
+    #[test]
+    fn the_test_board_drives_the_inputs_chosen() {
+        let form = MotionForm {
+            channels: 0b10,
+            backward: true,
+            accel_kmhps: 0.0,
+            ..MotionForm::default()
+        };
+        assert_eq!(
+            form.test_go(),
+            Stimulus::PtuSpeed {
+                channels: 0b10,
+                backward: true,
+                to: Speed::from_kmh(40.0),
+                accel_mps2: 0.0
+            }
+        );
+        assert!(matches!(
+            form.test_stand(),
+            Stimulus::PtuSpeed {
+                to: Speed::ZERO,
+                ..
+            }
+        ));
+    }
+}

@@ -1,0 +1,197 @@
+//! Lamps: dark when off, unmistakable when on, and dashed while nobody tells.
+
+use eframe::egui::{Align2, Color32, Painter, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{pos2, vec2};
+use protocol::signal::Signal;
+
+use super::card::{named, put};
+use crate::gui::Palette;
+use crate::gui::pages::bench::seen::Seen;
+use crate::words::Bench;
+
+/// Lamps beside each other.
+const COLUMNS: usize = 2;
+/// Room between lamps.
+const BETWEEN: f32 = 4.0;
+
+/// How a lamp is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lit {
+    On,
+    Off,
+    Unknown,
+}
+
+/// A lamp.
+struct Lamp {
+    name: &'static str,
+    /// What it says when it is on, and when it is off.
+    says: [&'static str; 2],
+    lit: Lit,
+    colour: Color32,
+}
+
+/// All lamps in an area of this size.
+pub fn lamps(ui: &mut Ui, size: Vec2, seen: &Seen, words: &Bench, palette: &Palette) {
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let lamps = of(seen, words, palette);
+    let rows = lamps.len().div_ceil(COLUMNS);
+    let each = vec2(
+        (area.width() - BETWEEN) / COLUMNS as f32,
+        (area.height() - BETWEEN * (rows - 1) as f32) / rows as f32,
+    );
+    for (place, lamp) in lamps.iter().enumerate() {
+        let offset = vec2(
+            (place % COLUMNS) as f32 * (each.x + BETWEEN),
+            (place / COLUMNS) as f32 * (each.y + BETWEEN),
+        );
+        let rect = Rect::from_min_size(area.min + offset, each);
+        let says = match lamp.lit {
+            Lit::On => lamp.says[0],
+            Lit::Off => lamp.says[1],
+            Lit::Unknown => words.not_known,
+        };
+        paint(&ui.painter_at(rect), rect, lamp, says, palette);
+        named(ui, rect, ("lamp", place), || {
+            format!("{}: {says}", lamp.name)
+        });
+    }
+}
+
+fn of(seen: &Seen, words: &Bench, palette: &Palette) -> [Lamp; 8] {
+    let lamp = |name, says, signal, lit_at: bool, colour| Lamp {
+        name,
+        says,
+        lit: lit(seen.on(signal), lit_at),
+        colour,
+    };
+    let brake = [words.applied, words.released];
+    let on_off = [words.on, words.off];
+    let enabled = [words.enabled, words.not_enabled];
+    let (bad, warn) = (palette.armed, palette.warn);
+    [
+        lamp(words.eb, brake, Signal::Eb, true, bad),
+        lamp(words.fsb, brake, Signal::Fsb, true, warn),
+        lamp(words.overspeed_alarm, on_off, Signal::Alarm, true, bad),
+        lamp(words.power_cut, on_off, Signal::PowerCut, true, warn),
+        lamp(words.holding_brake, brake, Signal::HoldingBrake, true, warn),
+        lamp(
+            words.doors,
+            [words.doors_open, words.doors_closed],
+            Signal::Doors,
+            false,
+            warn,
+        ),
+        lamp(
+            words.enable_left,
+            enabled,
+            Signal::DoorEnableLeft,
+            true,
+            palette.good,
+        ),
+        lamp(
+            words.enable_right,
+            enabled,
+            Signal::DoorEnableRight,
+            true,
+            palette.good,
+        ),
+    ]
+}
+
+fn lit(value: Option<bool>, lit_at: bool) -> Lit {
+    match value {
+        None => Lit::Unknown,
+        Some(value) if value == lit_at => Lit::On,
+        Some(_) => Lit::Off,
+    }
+}
+
+fn paint(painter: &Painter, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
+    let bulb = pos2(rect.left() + 20.0, rect.center().y);
+    let (name, state) = match lamp.lit {
+        Lit::On => {
+            painter.rect_filled(rect, 4.0, lamp.colour);
+            let ink = ink_on(lamp.colour);
+            painter.circle_filled(bulb, 9.0, ink);
+            (ink, ink)
+        }
+        Lit::Off => {
+            let inside = StrokeKind::Inside;
+            painter.rect(
+                rect,
+                4.0,
+                off_ground(palette),
+                Stroke::new(1.0, palette.grid),
+                inside,
+            );
+            painter.circle_stroke(bulb, 8.0, Stroke::new(1.5, palette.quiet));
+            (palette.quiet, palette.quiet)
+        }
+        Lit::Unknown => {
+            let line = Stroke::new(1.0, palette.quiet);
+            let edge = rect.shrink(1.0);
+            let corners = [
+                edge.left_top(),
+                edge.right_top(),
+                edge.right_bottom(),
+                edge.left_bottom(),
+                edge.left_top(),
+            ];
+            painter.extend(Shape::dashed_line(&corners, line, 5.0, 4.0));
+            put(
+                painter,
+                bulb,
+                Align2::CENTER_CENTER,
+                18.0,
+                palette.warn,
+                "?",
+            );
+            (palette.quiet, palette.warn)
+        }
+    };
+    let left = rect.left() + 40.0;
+    let above = pos2(left, rect.center().y - 9.0);
+    put(painter, above, Align2::LEFT_CENTER, 15.0, name, lamp.name);
+    let below = pos2(left, rect.center().y + 9.0);
+    put(painter, below, Align2::LEFT_CENTER, 14.0, state, says);
+}
+
+fn off_ground(palette: &Palette) -> Color32 {
+    if palette.dark {
+        Color32::from_gray(12)
+    } else {
+        Color32::from_gray(250)
+    }
+}
+
+/// What can be read on a lamp that is on.
+fn ink_on(colour: Color32) -> Color32 {
+    let [red, green, blue, _] = colour.to_array().map(u32::from);
+    let light = 299 * red + 587 * green + 114 * blue;
+    if light > 130_000 {
+        Color32::BLACK
+    } else {
+        Color32::WHITE
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lamp_nobody_tells_of_is_neither_on_nor_off() {
+        assert_eq!(lit(None, true), Lit::Unknown);
+        assert_eq!(lit(None, false), Lit::Unknown);
+        assert_eq!(lit(Some(true), true), Lit::On);
+        assert_eq!(lit(Some(true), false), Lit::Off);
+        assert_eq!(lit(Some(false), false), Lit::On);
+    }
+
+    #[test]
+    fn what_is_on_a_lit_lamp_can_be_read() {
+        assert_eq!(ink_on(Color32::from_rgb(214, 40, 40)), Color32::WHITE);
+        assert_eq!(ink_on(Color32::from_rgb(245, 184, 65)), Color32::BLACK);
+    }
+}

@@ -1,0 +1,45 @@
+//! What the page shows of a bench in one frame: a copy, so that the bench is held for a moment only.
+
+use protocol::signal::{Sample, Signal};
+
+use crate::station::{Phase, Station};
+
+/// The bench as it was at the beginning of the frame.
+#[derive(Debug, Default)]
+pub struct Seen {
+    /// What its thread is at.
+    pub phase: Phase,
+    /// Every signal.
+    pub sample: Sample,
+}
+
+impl Seen {
+    /// A copy of the latest cycle.
+    pub fn of(station: &Station) -> Self {
+        let live = station.live();
+        Self {
+            phase: live.phase,
+            sample: live.sample.clone(),
+        }
+    }
+
+    /// A signal's value; none while nobody tells it.
+    pub fn value(&self, signal: Signal) -> Option<f64> {
+        self.sample.get(signal)
+    }
+
+    /// A bit, or a contact of two positions.
+    pub fn on(&self, signal: Signal) -> Option<bool> {
+        self.value(signal).map(|value| value != 0.0)
+    }
+
+    /// Whether a signal is known to have this value.
+    pub fn is(&self, signal: Signal, value: f64) -> bool {
+        self.value(signal) == Some(value)
+    }
+
+    /// A set of bits.
+    pub fn bits(&self, signal: Signal) -> Option<u16> {
+        self.value(signal).map(|value| value as u16)
+    }
+}

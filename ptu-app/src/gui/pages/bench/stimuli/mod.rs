@@ -1,0 +1,103 @@
+//! Every stimulus by hand, in groups.
+
+mod atp;
+mod controller;
+mod hand;
+mod lines;
+mod markers;
+mod speed;
+mod tcms;
+mod test_board;
+mod twc;
+
+use btu_rig::procedure::plan::Connection;
+use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
+
+pub use hand::{Given, Hand};
+
+use super::forms::Forms;
+use crate::run::BenchSetup;
+use crate::words::Bench;
+
+/// A group of stimuli.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Group {
+    TestBoard,
+    Atp,
+    Speed,
+    Markers,
+    Twc,
+    Lines,
+    Controller,
+    Tcms,
+}
+
+impl Group {
+    /// All; the TEST board, which needs no harness, is the last.
+    const ALL: [Self; 8] = [
+        Self::Atp,
+        Self::Speed,
+        Self::Markers,
+        Self::Twc,
+        Self::Lines,
+        Self::Controller,
+        Self::Tcms,
+        Self::TestBoard,
+    ];
+
+    fn name(self, words: &Bench) -> &'static str {
+        match self {
+            Self::TestBoard => words.group_test_board,
+            Self::Atp => words.group_atp,
+            Self::Speed => words.group_speed,
+            Self::Markers => words.group_markers,
+            Self::Twc => words.group_twc,
+            Self::Lines => words.group_lines,
+            Self::Controller => words.group_controller,
+            Self::Tcms => words.group_tcms,
+        }
+    }
+
+    /// Whether it is open until the person says otherwise: what is used first with this connection.
+    fn first_open(self, connection: Connection) -> bool {
+        match connection {
+            Connection::Ptu => self == Self::TestBoard,
+            Connection::Btu => matches!(self, Self::Atp | Self::Speed | Self::Lines),
+        }
+    }
+}
+
+/// All groups; the TEST board's first for a laptop, which has nothing else.
+pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut Hand<'_>) {
+    let connection = hand.connection();
+    let mut groups = Group::ALL;
+    if connection == Connection::Ptu {
+        groups.rotate_right(1);
+    }
+    ScrollArea::vertical()
+        .id_salt("stimuli")
+        .auto_shrink([false, false])
+        .show(ui, |ui| {
+            for group in groups {
+                let name = RichText::new(group.name(&hand.words().bench)).strong();
+                CollapsingHeader::new(name)
+                    .id_salt((group as u8, connection == Connection::Ptu))
+                    .default_open(group.first_open(connection))
+                    .show_unindented(ui, |ui| show(ui, group, forms, setup, hand));
+            }
+        });
+}
+
+fn show(ui: &mut Ui, group: Group, forms: &mut Forms, setup: &BenchSetup, hand: &mut Hand<'_>) {
+    let (config, line) = (&setup.config.content, &setup.line.content);
+    match group {
+        Group::TestBoard => test_board::show(ui, forms, config, line, hand),
+        Group::Atp => atp::show(ui, &mut forms.code, config, hand),
+        Group::Speed => speed::show(ui, &mut forms.motion, hand),
+        Group::Markers => markers::show(ui, &mut forms.markers, line, hand),
+        Group::Twc => twc::show(ui, &mut forms.station, line, hand),
+        Group::Lines => lines::show(ui, hand),
+        Group::Controller => controller::show(ui, &mut forms.train, hand),
+        Group::Tcms => tcms::show(ui, &mut forms.train, &setup.train, hand),
+    }
+}

@@ -1,0 +1,99 @@
+//! What the wayside sends.
+
+use btu_rig::stimulus::{Stimulus, WaysideCondition};
+use eframe::egui::Ui;
+use protocol::line::Line;
+use protocol::message::{DoorSide, RunningMode};
+use protocol::signal::Signal;
+
+use super::hand::{Hand, check, named_number, number, one_of, row};
+use super::markers::sections;
+use crate::gui::pages::bench::forms::{StationForm, Way};
+use crate::words::Bench;
+
+/// In the order of the labels of the signal `wayside`.
+const CONDITIONS: [WaysideCondition; 3] = [
+    WaysideCondition::Silent,
+    WaysideCondition::Good,
+    WaysideCondition::Corrupt,
+];
+/// Greatest speed that can be ordered, km/h: the next number stands for none.
+const MAX_ORDER_KMH: u8 = 254;
+
+/// The group.
+pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Hand<'_>) {
+    let words = &hand.words().bench;
+    row(ui, words.wayside, |ui, _| {
+        let states = words.states(Signal::Wayside);
+        for (place, (condition, text)) in CONDITIONS.into_iter().zip(states).enumerate() {
+            let in_force = hand.seen.is(Signal::Wayside, place as f64);
+            let stimulus = Stimulus::Wayside(condition);
+            hand.choice(ui, words.wayside, text, in_force, stimulus);
+        }
+    });
+    fields(ui, form, line, words);
+    row(ui, "", |ui, _| {
+        hand.button(ui, words.send_frame, form.send(Way::Harness));
+    });
+}
+
+/// All fields of a frame.
+pub fn fields(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
+    const ALL: std::ops::RangeInclusive<u16> = 0..=u16::MAX;
+    row(ui, words.section, |ui, label| {
+        let mut section = form.data.section;
+        one_of(ui, label, &mut section, sections(line));
+        if section != form.data.section
+            && let Some(chosen) = line.section(section)
+        {
+            form.departing(chosen);
+        }
+        fill_in(ui, form, line, words);
+    });
+    let data = &mut form.data;
+    row(ui, words.route, |ui, label| {
+        number(ui, label, &mut data.route, ALL, "");
+        named_number(ui, words.train_number, &mut data.train_number, ALL, "");
+    });
+    row(ui, words.station, |ui, label| {
+        number(ui, label, &mut data.station, ALL, "");
+        named_number(ui, words.next_station, &mut data.next_station, ALL, "");
+    });
+    row(ui, words.loop_id, |ui, label| {
+        number(ui, label, &mut data.loop_id, ALL, "");
+        check(ui, words.departure, &mut data.departure);
+    });
+    row(ui, words.running_mode, |ui, label| {
+        let states = words.states(Signal::WaysideMode);
+        let all = RunningMode::ALL.iter().copied();
+        one_of(ui, label, &mut data.running_mode, all.zip(owned(states)));
+        let label = ui.label(words.door_side).id;
+        let states = words.states(Signal::WaysideDoorSide);
+        let all = DoorSide::ALL.iter().copied();
+        one_of(ui, label, &mut data.door_side, all.zip(owned(states)));
+    });
+    row(ui, words.fixed_speed, |ui, label| {
+        let range = 0..=MAX_ORDER_KMH;
+        number(ui, label, &mut form.fixed_speed_kmh, range, "km/h");
+        check(ui, words.order, &mut form.ordered);
+    });
+}
+
+/// Buttons that fill in what the line says of a section's ends.
+fn fill_in(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
+    let number = form.data.section;
+    let place = line.sections.iter().position(|s| s.section == number);
+    let Some((place, section)) = place.and_then(|at| Some((at, line.sections.get(at)?))) else {
+        return;
+    };
+    if ui.button(words.at_departure).clicked() {
+        form.departing(section);
+    }
+    if ui.button(words.at_arrival).clicked() {
+        form.arriving(section, line.sections.get(place + 1));
+    }
+}
+
+fn owned(states: Vec<&'static str>) -> impl Iterator<Item = String> {
+    states.into_iter().map(str::to_owned)
+}
