@@ -8,6 +8,7 @@ mod results;
 mod selection;
 mod tree;
 
+use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use crate::diagnosis::diagnose_run;
@@ -137,13 +138,13 @@ impl ProceduresPage {
     }
 
     /// What is chosen, or would be run without a choice.
-    fn chosen(&self) -> Selection {
-        self.selection.clone().unwrap_or_else(|| {
-            self.suite
-                .value()
-                .map(|suite| Selection::usual(&suite.procedures))
-                .unwrap_or_default()
-        })
+    fn chosen(&self, connection: Connection) -> Selection {
+        let usual = || {
+            let suite = self.suite.value();
+            suite.map(|suite| Selection::usual(&suite.procedures, connection))
+        };
+        let chosen = self.selection.clone().or_else(usual);
+        chosen.unwrap_or_default()
     }
 
     /// Has an order made for the unit at this place.
@@ -160,7 +161,8 @@ impl ProceduresPage {
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
         };
-        let (choice, serial, selection) = (unit.choice.clone(), unit.name(), self.chosen());
+        let selection = self.chosen(unit.choice.connection());
+        let (choice, serial) = (unit.choice.clone(), unit.name());
         let order = desk
             .library
             .ask(move |shelf| prepare::order(shelf, &choice, &serial, &selection, how, &shown));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
 
-use super::selection::Selection;
+use super::selection::{Selection, possible};
 use crate::diagnosis;
 use crate::failure::Failure;
 use crate::gui::UnitChoice;
@@ -58,7 +58,8 @@ pub fn order(
     if suite.sha256 != shown_sha256 || !suite.errors.is_empty() {
         return Ok(Prepared::Changed(Box::new(suite)));
     }
-    let tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
+    let mut tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
+    tasks.retain(|task| possible(&task.procedure, choice.connection()));
     if tasks.is_empty() {
         return Err(Failure::usage("no step is chosen"));
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use protocol::Duration;
 
@@ -19,16 +20,23 @@ pub enum Share {
     All,
 }
 
+/// Whether a connection can do a procedure: one of a bench needs its harness.
+pub fn possible(procedure: &Procedure, connection: Connection) -> bool {
+    connection == Connection::Btu || procedure.needs == Connection::Ptu
+}
+
 /// Chosen steps by name, by procedure, so that they stay chosen when scripts are loaded again.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection(BTreeMap<String, BTreeSet<String>>);
 
 impl Selection {
-    /// What a run without names runs: everything but what is run on request only.
-    pub fn usual(procedures: &[Arc<Procedure>]) -> Self {
+    /// What a run without names runs: everything this connection can do but what is on request only.
+    pub fn usual(procedures: &[Arc<Procedure>], connection: Connection) -> Self {
         let mut usual = Self::default();
-        for procedure in procedures.iter().filter(|procedure| !procedure.on_request) {
-            usual.set(procedure, true);
+        for procedure in procedures {
+            if possible(procedure, connection) && !procedure.on_request {
+                usual.set(procedure, true);
+            }
         }
         usual
     }
@@ -164,7 +172,7 @@ mod tests {
     #[test]
     fn everything_but_what_is_on_request_is_chosen_at_first() {
         let procedures = procedures();
-        let usual = Selection::usual(&procedures);
+        let usual = Selection::usual(&procedures, Connection::Btu);
         for procedure in &procedures {
             let expected = if procedure.on_request {
                 Share::None
@@ -182,6 +190,16 @@ mod tests {
                 .map(|task| task.procedure.steps.len())
                 .sum::<usize>()
         );
+    }
+
+    #[test]
+    fn a_laptop_runs_what_needs_no_bench() {
+        let procedures = procedures();
+        let usual = Selection::usual(&procedures, Connection::Ptu);
+        let tasks = usual.tasks(&procedures, 1, false);
+        assert!(!tasks.is_empty());
+        let ptu = |task: &Task| task.procedure.needs == Connection::Ptu;
+        assert!(tasks.iter().all(ptu));
     }
 
     #[test]

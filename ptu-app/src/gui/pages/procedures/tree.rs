@@ -7,7 +7,7 @@ use eframe::egui::{Checkbox, Response, RichText, ScrollArea, TextEdit, Ui, colla
 
 use super::ProceduresPage;
 use super::prepare::folders;
-use super::selection::{Selection, Share};
+use super::selection::{Selection, Share, possible};
 use crate::gui::library::Asked;
 use crate::gui::{Desk, Palette};
 use crate::words::{Language, Words, fill};
@@ -34,11 +34,12 @@ impl ProceduresPage {
                 return;
             }
         };
-        let before = self.chosen();
+        let connection = desk.units.chosen().choice.connection();
+        let before = self.chosen(connection);
         let mut chosen = before.clone();
         ui.horizontal(|ui| {
             if ui.button(words.procedures.all).clicked() {
-                chosen = Selection::usual(&suite.procedures);
+                chosen = Selection::usual(&suite.procedures, connection);
             }
             if ui.button(words.procedures.none).clicked() {
                 chosen = Selection::default();
@@ -53,7 +54,10 @@ impl ProceduresPage {
         ui.label(RichText::new(said).color(Palette::of(ui).quiet));
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for (folder, procedures) in folders(&suite.procedures) {
-                show_folder(ui, words, folder, procedures, &self.find, &mut chosen);
+                let found = procedures
+                    .iter()
+                    .filter(|known| possible(known, connection) && matches(known, &self.find));
+                show_folder(ui, words, folder, &found.collect::<Vec<_>>(), &mut chosen);
             }
         });
         if chosen != before {
@@ -66,11 +70,9 @@ fn show_folder(
     ui: &mut Ui,
     words: &Words,
     folder: &str,
-    procedures: &[Arc<Procedure>],
-    find: &str,
+    found: &[&Arc<Procedure>],
     chosen: &mut Selection,
 ) {
-    let found: Vec<_> = procedures.iter().filter(|p| matches(p, find)).collect();
     if found.is_empty() {
         return;
     }
@@ -79,7 +81,7 @@ fn show_folder(
     collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true)
         .show_header(ui, |ui| {
             if tick(ui, share, RichText::new(folder).strong()).clicked() {
-                for procedure in &found {
+                for procedure in found {
                     chosen.set(procedure, share != Share::All && !procedure.on_request);
                 }
             }
