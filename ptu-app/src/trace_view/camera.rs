@@ -64,7 +64,8 @@ impl Camera {
     }
 
     fn set(&mut self, from: f64, length: f64) {
-        let from = from.clamp(self.whole.from, self.whole.to - length);
+        // Not `clamp`: rounding may put the ends past each other.
+        let from = from.min(self.whole.to - length).max(self.whole.from);
         self.window = Window {
             from,
             to: from + length,
@@ -109,5 +110,12 @@ mod tests {
         assert!((window.from - 9.0).abs() < 1e-9 && (window.to - 21.0).abs() < 1e-9);
         camera.fit();
         assert_eq!(camera.window().from, -2.0);
+        // Ends that rounding puts past each other when all of it is in view.
+        for length in 1..2000 {
+            let to = f64::from(length) * 0.05;
+            let mut camera = Camera::new(Window { from: -10.0, to }, 0.4);
+            camera.pan(0.1);
+            camera.zoom(0.3, 7.0);
+        }
     }
 }

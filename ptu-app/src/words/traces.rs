@@ -74,6 +74,7 @@ wordings! {
 
         // Overlay.
         overlay: "Compare with", "비교 대상";
+        overlay_choice: "what to compare with", "비교할 대상";
         no_overlay: "nothing", "없음";
         good_twin: "good twin", "정상 트윈";
         making_twin: "running the same stimuli on a sound unit …", "같은 자극을 정상 유닛에 다시 주는 중 …";

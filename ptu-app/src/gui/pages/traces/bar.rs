@@ -1,6 +1,6 @@
 //! Axis, zoom, cursors, and what else is to be shown.
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{RichText, Role, Ui, WidgetInfo};
 
 use crate::gui::{Desk, Palette};
 use crate::trace_view::{Axis, Cursor, Kind, Scene};
@@ -29,11 +29,15 @@ pub fn view(
             }
         }
         ui.separator();
-        if ui.button("−").on_hover_text(words.zoom_out).clicked() {
-            scene.camera().zoom(0.5, 1.0 / ZOOM);
-        }
-        if ui.button("+").on_hover_text(words.zoom_in).clicked() {
-            scene.camera().zoom(0.5, ZOOM);
+        for (sign, name, times) in [
+            ("−", words.zoom_out, 1.0 / ZOOM),
+            ("+", words.zoom_in, ZOOM),
+        ] {
+            let button = ui.button(sign);
+            button.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+            if button.on_hover_text(name).clicked() {
+                scene.camera().zoom(0.5, times);
+            }
         }
         if ui.button(words.fit).clicked() {
             scene.camera().fit();

@@ -79,7 +79,7 @@ impl BehindAsked {
                         .on_hover_text(faults);
                 }
             });
-        named_combo(&combo.response, words.overlay, &chosen);
+        named_combo(&combo.response, words.overlay_choice, &chosen);
         if against != self.against {
             self.ask(against, scene, desk);
         }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
-use eframe::egui::{ColorImage, Rect, TextEdit, Ui};
+use eframe::egui::{Button, ColorImage, Rect, TextEdit, Ui};
+use fault_db::Id;
 
 use super::signals::name_input;
 use crate::data;
@@ -12,7 +13,6 @@ use crate::failure::Failure;
 use crate::gui::Desk;
 use crate::gui::library::Pending;
 use crate::trace_view::csv::csv;
-use crate::trace_view::shelf::Opened;
 use crate::trace_view::{Kind, Scene};
 use crate::words::fill;
 
@@ -30,14 +30,9 @@ pub struct Export {
 }
 
 impl Export {
-    /// A name for what is exported of this trace.
-    pub fn name_after(&mut self, opened: &Opened) {
-        let documents = directories::UserDirs::new()
-            .and_then(|user| user.document_dir().map(Path::to_owned))
-            .filter(|folder| folder.is_dir());
-        let folder = documents.unwrap_or_default();
-        let file = folder.join(format!("trace-{}", opened.id.short()));
-        self.name = file.display().to_string();
+    /// Another trace is open; this is the name for what is exported of it.
+    pub fn name_after(&mut self, name: String) {
+        self.name = name;
     }
 
     /// Name and buttons; `rect` is what the picture is of.
@@ -48,10 +43,7 @@ impl Export {
         name_input(&edit, words.file_name);
         let edit = edit.on_hover_text(words.file_name);
         let named = !self.name.trim().is_empty();
-        if ui
-            .add_enabled(named, eframe::egui::Button::new(words.save_png))
-            .clicked()
-        {
+        if ui.add_enabled(named, Button::new(words.save_png)).clicked() {
             // What has the keyboard is not part of the picture.
             edit.surrender_focus();
             let (sender, receiver) = mpsc::channel();
@@ -63,10 +55,7 @@ impl Export {
             });
             self.picture = Some((receiver, rect, ui.pixels_per_point()));
         }
-        if ui
-            .add_enabled(named, eframe::egui::Button::new(words.save_csv))
-            .clicked()
-        {
+        if ui.add_enabled(named, Button::new(words.save_csv)).clicked() {
             self.write_csv(scene, desk);
         }
     }
@@ -119,6 +108,19 @@ impl Export {
         };
         self.writing.push(desk.library.ask(question));
     }
+}
+
+/// The usual name for what is exported of a trace: in the user's documents, or else where the program was
+/// started.
+pub fn usual_name(id: Id) -> String {
+    let documents = directories::UserDirs::new()
+        .and_then(|user| user.document_dir().map(Path::to_owned))
+        .filter(|folder| folder.is_dir());
+    let folder = documents.or_else(|| std::env::current_dir().ok());
+    let file = folder
+        .unwrap_or_default()
+        .join(format!("trace-{}", id.short()));
+    file.display().to_string()
 }
 
 /// A new file of this name, or of one beside it: nothing is written over.

@@ -1,14 +1,14 @@
 //! The lanes: names and values at their sides, curves in the middle, the shared axis below.
 
 use eframe::egui::{
-    Align2, CursorIcon, FontId, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, WidgetInfo, pos2, vec2,
+    CursorIcon, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo,
+    vec2,
 };
 
 use super::bar;
 use super::events::{self, STRIP};
 use super::input::{self, Drag};
-use super::row::{GAP, Scratch, Sheet};
+use super::row::{self, GAP, Scratch, Sheet};
 use crate::gui::Palette;
 use crate::gui::parts::lane::{self, AXIS_HEIGHT};
 use crate::trace_view::{Cursor, Kind, Scene};
@@ -18,7 +18,7 @@ use crate::words::Words;
 const NAMES: f32 = 150.0;
 pub const TICKS: f32 = 52.0;
 /// Room for a value under a cursor.
-pub const VALUE: f32 = 92.0;
+const VALUE: f32 = 92.0;
 /// Narrowest lanes.
 const NARROWEST: f32 = 50.0;
 
@@ -54,6 +54,12 @@ pub struct Places {
 }
 
 impl Places {
+    /// Where the values of a column are, at the height of `beside`.
+    pub fn value(&self, column: usize, beside: Rect) -> Rect {
+        let right = self.right + (column + 1) as f32 * VALUE;
+        Rect::from_x_y_ranges(right - VALUE + 6.0..=right - 2.0, beside.y_range())
+    }
+
     fn of(ui: &Ui, all: Rect, values: usize) -> Self {
         let scroll = &ui.spacing().scroll;
         let end = all.right() - scroll.bar_width - scroll.bar_outer_margin - 2.0;
@@ -105,10 +111,7 @@ impl Painted {
         let painter = ui.painter_at(all);
         lane::grid(&painter, middle, scene.window(), &palette);
         for (i, head) in heads.iter().enumerate() {
-            let right = places.right + (i + 1) as f32 * VALUE - 4.0;
-            let at = pos2(right, strip.bottom() - 2.0);
-            let font = FontId::proportional(lane::TEXT);
-            painter.text(at, Align2::RIGHT_BOTTOM, head, font, palette.warn);
+            row::put_right(ui, places.value(i, strip), head, palette.warn);
         }
         let sheet = Sheet {
             scene,
@@ -147,17 +150,21 @@ impl Painted {
     }
 }
 
-/// What is told at the right: under the cursors, or else under the pointer.
+/// What is told at the right, under the cursors or else under the pointer: heads, and rows of the values.
 fn told(scene: &Scene, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
-    let [a, b] = [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor));
-    let head = |text: &str| text.to_owned();
-    match (a, b) {
-        (Some(_), Some(_)) => (vec![head("A"), head("B"), head("B − A")], [a, b]),
-        (Some(_), None) => (vec![head("A")], [a, None]),
-        (None, Some(_)) => (vec![head("B")], [b, None]),
-        (None, None) => {
-            let place = pointer_row.map(|row| bar::place(scene, row));
-            (vec![place.unwrap_or_default()], [pointer_row, None])
+    let at = |row: usize| bar::place(scene, row);
+    match [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor)) {
+        [Some(a), Some(b)] => {
+            let between = scene.axis().at(b) - scene.axis().at(a);
+            let between = format!("B−A {}", bar::length(scene, between));
+            let heads = vec![format!("A {}", at(a)), format!("B {}", at(b)), between];
+            (heads, [Some(a), Some(b)])
         }
+        [Some(a), None] => (vec![format!("A {}", at(a))], [Some(a), None]),
+        [None, Some(b)] => (vec![format!("B {}", at(b))], [Some(b), None]),
+        [None, None] => (
+            pointer_row.map(at).into_iter().collect(),
+            [pointer_row, None],
+        ),
     }
 }

@@ -33,7 +33,7 @@ const ROW: f32 = 24.0;
 #[derive(Default)]
 pub struct TracesPage {
     list: TraceList,
-    opening: Option<Pending<Opened>>,
+    opening: Option<Pending<(Opened, String)>>,
     scene: Option<Scene>,
     /// Why nothing is shown.
     trouble: Option<String>,
@@ -72,9 +72,12 @@ impl TracesPage {
 
     fn read(&mut self, id: Id, run: Option<Id>, desk: &Desk<'_>) {
         self.trouble = None;
-        let question = desk
-            .library
-            .ask(move |shelf| shelf::open(&shelf.read()?, id, run));
+        let question = desk.library.ask(move |shelf| {
+            Ok((
+                shelf::open(&shelf.read()?, id, run)?,
+                export::usual_name(id),
+            ))
+        });
         self.opening = Some(question);
     }
 
@@ -82,8 +85,8 @@ impl TracesPage {
         if let Some(answer) = self.opening.as_ref().and_then(Pending::take) {
             self.opening = None;
             match answer {
-                Ok(opened) => {
-                    self.export.name_after(&opened);
+                Ok((opened, name)) => {
+                    self.export.name_after(name);
                     self.behind = BehindAsked::default();
                     self.scene = Some(Scene::new(Arc::new(opened), &desk.settings.lanes));
                 }

@@ -4,7 +4,7 @@ use eframe::egui::{
     Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
-use super::lanes::{Places, TICKS, VALUE};
+use super::lanes::{Places, TICKS};
 use super::table;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
@@ -265,13 +265,8 @@ impl Sheet<'_> {
             shown.push(table::difference(self.scene, place));
         }
         for (i, text) in shown.iter().enumerate().filter(|(_, t)| !t.is_empty()) {
-            let right = self.places.right + (i + 1) as f32 * VALUE - 4.0;
-            let from = pos2(right - VALUE + 8.0, rect.top());
-            let area = Rect::from_min_max(from, pos2(right, rect.bottom()));
-            let layout = Layout::right_to_left(Align::Center);
-            let ui = &mut ui.new_child(UiBuilder::new().max_rect(area).layout(layout));
-            let text = RichText::new(text).size(lane::TEXT + 1.0);
-            ui.add(Label::new(text).truncate().selectable(false));
+            let colour = ui.visuals().text_color();
+            put_right(ui, self.places.value(i, rect), text, colour);
         }
     }
 
@@ -297,6 +292,14 @@ impl Sheet<'_> {
             painted = to;
         }
     }
+}
+
+/// A text at the right edge of an area.
+pub fn put_right(ui: &mut Ui, area: Rect, text: &str, colour: Color32) {
+    let layout = Layout::right_to_left(Align::Center);
+    let ui = &mut ui.new_child(UiBuilder::new().max_rect(area).layout(layout));
+    let text = RichText::new(text).size(lane::TEXT + 1.0).color(colour);
+    ui.add(Label::new(text).truncate().selectable(false));
 }
 
 /// A word instead of a curve.
