@@ -14,7 +14,6 @@ wordings! {
         shown: "{n} of {of} faults", "고장 {of}건 중 {n}건";
         seen: "seen", "횟수";
         last_seen: "last seen", "최근 발생";
-        first_seen: "first seen", "최초 발생";
         over_time: "occurrences, {days} day(s) a bar", "발생 횟수, 막대당 {days}일";
         by_unit: "by unit", "유닛별";
         by_code: "by code", "코드별";

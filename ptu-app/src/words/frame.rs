@@ -31,7 +31,6 @@ wordings! {
         messages: "Messages", "알림";
         clear: "Clear", "지우기";
         closing: "Stopping the run and making outputs safe …", "시험을 멈추고 출력을 안전하게 하는 중 …";
-        ports: "serial port", "시리얼 포트";
         other_port: "other: serial:PATH or tcp:HOST:PORT", "직접 입력: serial:PATH 또는 tcp:HOST:PORT";
         setup: "Setup", "설정";
         as_btu: "BTU (bench)", "BTU (벤치)";
@@ -53,6 +52,11 @@ wordings! {
         remove_unit: "Remove", "제거";
         arm: "Arm", "무장";
         disarm: "Disarm", "무장 해제";
-        pages: "pages", "페이지";
+        about: "About", "정보";
+        versions: "software {software}, unit configuration {config}, track database {line}",
+            "소프트웨어 {software}, 유닛 구성 {config}, 선로 데이터 {line}";
+        database: "database", "데이터베이스";
+        scripts: "scripts", "스크립트";
+        font_licence: "Licence of the font Pretendard (SIL Open Font License 1.1)", "Pretendard 글꼴 라이선스 (SIL Open Font License 1.1)";
     }
 }

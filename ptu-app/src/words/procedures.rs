@@ -39,8 +39,6 @@ wordings! {
         asked: "The script asks", "스크립트 질문";
         yes: "Yes", "예";
         no: "No", "아니요";
-        script: "script", "스크립트";
-        measurements: "measurements", "측정값";
         no_measurements: "This step measures nothing", "이 단계에는 측정이 없습니다";
         results: "results", "결과";
         only_bad: "only those not passed", "합격이 아닌 것만";
@@ -48,7 +46,6 @@ wordings! {
         suspect: "suspect: {part}", "의심 부품: {part}";
         to_diagnosis: "Diagnosis", "진단";
         to_report: "Report", "성적서";
-        all_units: "units", "유닛";
         choose_and_run: "Choose on the left what to run. Without a choice of your own everything runs but what is on request.", "왼쪽에서 실행할 절차를 고르십시오. 따로 고르지 않으면 요청 시만 하는 것을 빼고 모두 실행합니다.";
     }
 }

@@ -115,6 +115,16 @@ impl Window {
         self.harness.step();
     }
 
+    /// Clicks the last of several of this name.
+    pub fn click_last(&mut self, label: &str) {
+        self.until(label, |window| window.enabled(label));
+        let nodes = self.harness.query_all_by_label(label);
+        let node = nodes.filter(|node| !node.accesskit_node().is_disabled());
+        node.last().expect("just seen").click();
+        self.harness.step();
+        self.harness.step();
+    }
+
     /// What has this name can be clicked.
     pub fn enabled(&self, label: &str) -> bool {
         let mut nodes = self.harness.query_all_by_label(label);

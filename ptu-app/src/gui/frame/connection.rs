@@ -3,7 +3,7 @@
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Align, Button, Color32, Frame, Layout, Margin, RichText, Ui};
 use protocol::link::Counters;
-use protocol::message::Channel;
+use protocol::message::{Channel, Identity};
 use protocol::signal::Signal;
 
 use super::keys::{STOP_ALL, stop_all};
@@ -11,7 +11,7 @@ use super::setup::Setup;
 use crate::gui::parts::chip;
 use crate::gui::{Desk, Palette};
 use crate::station::Phase;
-use crate::words::fill;
+use crate::words::{Words, fill};
 
 /// The bar.
 pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>, setup: &mut Setup) {
@@ -86,7 +86,8 @@ fn connect(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 fn identity(ui: &mut Ui, desk: &Desk<'_>) {
-    let frame = &desk.words.frame;
+    let words = desk.words;
+    let frame = &words.frame;
     let palette = Palette::of(ui);
     let unit = desk.units.chosen();
     let (phase, identity, counters) = {
@@ -107,7 +108,8 @@ fn identity(ui: &mut Ui, desk: &Desk<'_>) {
     }
     if let Some(identity) = identity {
         let serial = crate::run::text(&identity.serial);
-        ui.label(RichText::new(serial).strong());
+        let label = ui.label(RichText::new(serial).strong());
+        label.on_hover_text(versions(&identity, words));
         let share = link_quality(&counters);
         let colour = if share >= 99.9 {
             palette.good
@@ -120,6 +122,26 @@ fn identity(ui: &mut Ui, desk: &Desk<'_>) {
             colour,
         );
     }
+}
+
+/// Software and data of the unit.
+fn versions(identity: &Identity, words: &Words) -> String {
+    let software = identity.software.map(|number| number.to_string()).join(".");
+    fill(
+        words.frame.versions,
+        &[
+            ("software", &software),
+            (
+                "config",
+                &format!(
+                    "{} {:08x}",
+                    crate::run::text(&identity.config),
+                    identity.config_crc
+                ),
+            ),
+            ("line", &format!("{:08x}", identity.tdb_crc)),
+        ],
+    )
 }
 
 /// Frames taken of all that came, %.

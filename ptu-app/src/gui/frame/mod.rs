@@ -1,5 +1,6 @@
 //! The frame around the pages: connection bar, navigation, messages, keys.
 
+mod about;
 mod connection;
 mod keys;
 mod messages;
@@ -10,12 +11,14 @@ use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
 use super::Desk;
 use crate::words::Words;
+use about::About;
 use setup::Setup;
 
 /// What the frame keeps while the window is open.
 #[derive(Default)]
 pub struct Frame {
     setup: Setup,
+    about: About,
 }
 
 impl Frame {
@@ -31,7 +34,7 @@ impl Frame {
 
     /// Pages, language, light, size.
     pub fn navigation(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        navigation::bar(ui, desk);
+        navigation::bar(ui, desk, &mut self.about);
     }
 
     /// The latest message, and all of them.

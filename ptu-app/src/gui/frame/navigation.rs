@@ -2,6 +2,7 @@
 
 use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 
+use super::about::About;
 use crate::gui::parts::named_combo;
 use crate::gui::{Desk, Page};
 use crate::words::Language;
@@ -11,7 +12,7 @@ const LARGEST: f32 = 2.5;
 const STEP: f32 = 0.1;
 
 /// The bar.
-pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
+pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>, about: &mut About) {
     ui.horizontal(|ui| {
         for page in Page::ALL {
             let chosen = desk.settings.page == page;
@@ -21,7 +22,10 @@ pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
                 desk.settings.page = page;
             }
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| look(ui, desk));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            about.button(ui, desk);
+            look(ui, desk);
+        });
     });
 }
 
