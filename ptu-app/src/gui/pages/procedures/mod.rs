@@ -116,25 +116,31 @@ impl ProceduresPage {
             let said = desk.words.procedures.not_loaded;
             desk.messages.trouble(said, why.clone());
         }
-        if let (Some(suite), Some((procedure, step))) = (self.suite.value(), self.wanted.take()) {
-            let found = suite.procedures.iter().find(|known| known.id == procedure);
-            let only = found.map(|found| Selection::only(found, step.as_deref()));
-            match only.filter(|only| only.extent(&suite.procedures).0 > 0) {
-                Some(only) => {
-                    self.selection = Some(only);
-                    if desk.units.chosen().phase() == Phase::Idle {
-                        self.order(desk.units.chosen_place(), false, desk);
-                    }
-                }
-                None => {
-                    let what = format!("{procedure} {}", step.unwrap_or_default());
-                    desk.messages
-                        .trouble(desk.words.procedures.no_such_step, what);
-                }
-            }
-        }
+        self.run_wanted(desk);
         self.poll_orders(desk);
         self.conclude(desk);
+    }
+
+    /// Runs the step another page asked for, once the suite is there.
+    fn run_wanted(&mut self, desk: &mut Desk<'_>) {
+        let Some(suite) = self.suite.value() else {
+            return;
+        };
+        let Some((procedure, step)) = self.wanted.take() else {
+            return;
+        };
+        let found = suite.procedures.iter().find(|known| known.id == procedure);
+        let only = found.map(|found| Selection::only(found, step.as_deref()));
+        let Some(only) = only.filter(|only| only.extent(&suite.procedures).0 > 0) else {
+            let what = format!("{procedure} {}", step.unwrap_or_default());
+            desk.messages
+                .trouble(desk.words.procedures.no_such_step, what);
+            return;
+        };
+        self.selection = Some(only);
+        if desk.units.chosen().phase() == Phase::Idle {
+            self.order(desk.units.chosen_place(), false, desk);
+        }
     }
 
     /// What is chosen, or would be run without a choice.
