@@ -23,11 +23,14 @@ impl Column {
         !self.low.is_nan()
     }
 
-    /// Takes a value in; one that is not known changes nothing.
+    /// Takes a value in; one that is not known, or beyond all measure, changes nothing.
     pub fn add(&mut self, value: f64) {
-        // `min` and `max` prefer what is a number.
-        self.low = self.low.min(value as f32);
-        self.high = self.high.max(value as f32);
+        let value = value as f32;
+        if value.is_finite() {
+            // `min` and `max` prefer what is a number.
+            self.low = self.low.min(value);
+            self.high = self.high.max(value);
+        }
     }
 
     /// Takes all values of another in.
@@ -97,7 +100,13 @@ mod tests {
 
     #[test]
     fn what_is_not_known_stays_empty() {
-        let samples = [(0.0, 1.0), (1.0, f64::NAN), (3.0, 2.0), (9.0, 2.0)];
+        let samples = [
+            (0.0, 1.0),
+            (1.0, f64::NAN),
+            (2.0, f64::MAX),
+            (3.0, 2.0),
+            (9.0, 2.0),
+        ];
         let found = lows_and_highs(&samples, WINDOW);
         assert!(found[2].0.is_nan() && found[2].1.is_nan());
         assert_eq!((found[0], found[3]), ((1.0, 1.0), (2.0, 2.0)));

@@ -10,6 +10,9 @@ use crate::owner;
 /// Runs looked through, the newest.
 pub const RUNS: u32 = 500;
 
+/// Times from row to row that make sense: up to a minute.
+const PERIODS_US: std::ops::RangeInclusive<i64> = 1..=60_000_000;
+
 /// A run with its traces.
 #[derive(Clone, Debug)]
 pub struct ListedRun {
@@ -133,6 +136,13 @@ impl ListedTrace {
 /// It is gone or damaged, or the database fails.
 pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<Opened, Failure> {
     let data = store.trace(id)?;
+    if !PERIODS_US.contains(&data.period_us) {
+        return Err(Failure::bench(format!(
+            "trace {} has rows of {} µs: it is damaged",
+            id.short(),
+            data.period_us
+        )));
+    }
     let run = match run {
         Some(run) => Some(run),
         None => store.recording(id)?.map(|recording| recording.run_id),
@@ -144,7 +154,7 @@ pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<Opened, Failure> {
     let mut events: Vec<Event> = occurrences
         .iter()
         .filter_map(|occurrence| {
-            let since_us = occurrence.bench_us - data.t0_bench_us;
+            let since_us = occurrence.bench_us.saturating_sub(data.t0_bench_us);
             let row = usize::try_from(since_us.div_euclid(data.period_us)).ok()?;
             (row < data.rows()).then(|| Event {
                 row,

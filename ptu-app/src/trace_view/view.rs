@@ -83,7 +83,7 @@ impl TraceView {
 
 impl Summary {
     fn of(channel: &Channel, samples: &[f64]) -> Self {
-        if samples.iter().all(|value| value.is_nan()) {
+        if !samples.iter().any(|value| value.is_finite()) {
             return Self::Unknown;
         }
         match channel.kind {

@@ -1,17 +1,18 @@
 //! The lanes: names and values at their sides, curves in the middle, the shared axis below.
 
 use eframe::egui::{
-    CursorIcon, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo,
-    vec2,
+    Align2, CursorIcon, FontId, Painter, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind,
+    Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use super::bar;
 use super::events::{self, STRIP};
 use super::input::{self, Drag};
 use super::row::{self, GAP, Scratch, Sheet};
+use crate::clock;
 use crate::gui::Palette;
 use crate::gui::parts::lane::{self, AXIS_HEIGHT};
-use crate::trace_view::{Cursor, Kind, Scene};
+use crate::trace_view::{Against, Cursor, Kind, Scene};
 use crate::words::Words;
 
 /// Room for names left of the lanes, and for the values beside their axes.
@@ -120,6 +121,7 @@ impl Painted {
             words,
             palette: &palette,
         };
+        title(&painter, &sheet, strip);
         self.stack(ui, &sheet, middle);
         events::flags(&painter, strip, middle, &sheet);
         let unit = match scene.axis().kind() {
@@ -147,6 +149,29 @@ impl Painted {
                 }
             });
         });
+    }
+}
+
+/// What is shown, and in grey what is laid behind it: for a picture that is kept without the window.
+fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
+    let opened = sheet.scene.opened();
+    let line = |row: f32, text: String, colour| {
+        let at = pos2(sheet.places.names + 2.0, strip.top() + row * STRIP / 2.0);
+        let font = FontId::proportional(lane::TEXT);
+        painter.text(at, Align2::LEFT_TOP, text, font, colour);
+    };
+    let when = clock::local(opened.view.data().t0_us);
+    let own = format!("{}  {when}", opened.id.short());
+    line(0.0, own, sheet.palette.accent);
+    if let Some(behind) = sheet.scene.behind() {
+        let name = match behind.overlay.against {
+            Against::Twin => sheet.words.traces.good_twin.to_owned(),
+            Against::Trace(id) => {
+                let when = clock::local(behind.overlay.view.data().t0_us);
+                format!("{}  {when}", id.short())
+            }
+        };
+        line(1.0, name, sheet.palette.quiet);
     }
 }
 

@@ -154,6 +154,11 @@ fn heading(ui: &mut Ui, scene: &Scene, list: &TraceList, desk: &mut Desk<'_>) {
     let opened = scene.opened();
     ui.horizontal_wrapped(|ui| {
         let (unit, when) = list.whose(opened.run);
+        let known = |text| match text {
+            "" => words.traces.not_known,
+            text => text,
+        };
+        let (unit, when) = (known(unit), known(when));
         let title = fill(
             words.traces.of_unit,
             &[
