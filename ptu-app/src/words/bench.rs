@@ -22,8 +22,6 @@ wordings! {
         not_known: "not known", "알 수 없음";
         on: "on", "켜짐";
         off: "off", "꺼짐";
-        yes: "yes", "예";
-        no: "no", "아니오";
         applied: "applied", "체결";
         released: "released", "완해";
         none: "none", "없음";
@@ -44,7 +42,6 @@ wordings! {
         not_enabled: "not enabled", "불허";
 
         // Speeds.
-        speed: "Speed", "속도";
         measured: "measured", "측정";
         true_speed: "true", "실제";
         limit: "limit", "제한";
@@ -75,8 +72,6 @@ wordings! {
         to_stop_is: "{way} m to the stop point", "정위치까지 {way} m";
         beyond_stop_is: "{way} m beyond the stop point", "정위치 {way} m 초과";
         detected_is: "last detected: {marker} ({count})", "최근 검지: {marker} ({count}회)";
-        train: "train", "열차";
-        unit_position: "unit's position", "유닛 인식 위치";
         stop_point: "stop", "정위치";
 
         // Effort and TCMS.
@@ -131,7 +126,6 @@ wordings! {
         plot_nothing: "choose signals to plot", "그래프에 표시할 신호를 선택하십시오";
 
         // Groups of stimuli.
-        stimuli: "Stimuli", "입력 신호";
         group_test_board: "TEST board", "TEST 보드";
         group_atp: "ATP signal", "ATP 신호";
         group_speed: "Speed", "속도";
@@ -142,14 +136,12 @@ wordings! {
         group_tcms: "TCMS and train", "TCMS와 열차";
 
         // What is given.
-        give_code: "Code {code}", "코드 {code}";
         give_signal: "Give signal", "신호 인가";
         code_off: "Code off", "코드 끄기";
         codes_along: "Codes along the way", "선로 코드 연동";
         carrier: "Carrier", "반송파";
         rate: "Code rate", "코드 주파수";
         level: "Level", "레벨";
-        drift: "Drift", "드리프트";
         rate_drift: "Rate drift", "주파수 변화";
         level_drift: "Level drift", "레벨 변화";
         start_drift: "Start drift", "드리프트 시작";
@@ -169,7 +161,6 @@ wordings! {
         factor: "Scale", "배율";
         train_model: "Train model", "열차 모델";
         marker_pulse: "Marker pulse", "지상자 펄스";
-        along: "Along the way", "선로 설치";
         lay: "Lay section", "구간 설치";
         take_up: "Take up", "철거";
         marker: "Marker", "지상자";
@@ -177,7 +168,6 @@ wordings! {
         move_marker: "Move", "이동 적용";
         missing: "Missing", "누락";
         send_frame: "Send frame", "전문 송신";
-        from_section: "Fill in from", "구간에서 채우기";
         at_departure: "departure", "출발역";
         at_arrival: "arrival", "도착역";
         order: "ordered", "지시";

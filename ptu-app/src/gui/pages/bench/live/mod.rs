@@ -47,7 +47,7 @@ pub const WIDE: f32 = 640.0;
 /// Height of dial and lamps.
 const TOP_HEIGHT: f32 = 172.0;
 /// Height of effort and TWC beside each other.
-const MIDDLE_HEIGHT: f32 = 166.0;
+const MIDDLE_HEIGHT: f32 = 174.0;
 /// Share of the dial in the width.
 const DIAL_SHARE: f32 = 0.46;
 

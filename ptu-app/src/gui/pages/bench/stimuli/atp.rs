@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut Ha
         let range = -MAX_DRIFT_MV_PER_S..=MAX_DRIFT_MV_PER_S;
         named_number(
             ui,
-            words.level,
+            words.level_drift,
             &mut form.level_drift_mv_per_s,
             range,
             "mV/s",

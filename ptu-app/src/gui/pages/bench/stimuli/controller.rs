@@ -10,6 +10,7 @@ use crate::gui::pages::bench::forms::TrainForm;
 use crate::words::Bench;
 
 const MAX_VOLTS: f64 = 10.0;
+const SLIDER: f32 = 190.0;
 
 /// The group.
 pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut Hand<'_>) {
@@ -56,6 +57,7 @@ fn lever(ui: &mut Ui, form: &mut TrainForm, hand: &mut Hand<'_>, words: &Bench) 
                 let place = Lever::ALL.iter().position(|one| *one == lever)?;
                 Some(place as f64)
             });
+        ui.spacing_mut().slider_width = SLIDER;
         let mut response = ui.add_enabled(may.is_ok(), slider).labelled_by(label);
         if let Err(why) = may {
             response = response.on_disabled_hover_text(why);

@@ -162,7 +162,7 @@ pub fn number<N: Numeric>(
     let drag = DragValue::new(value)
         .range(range)
         .speed((span / 2_000.0).max(0.01))
-        .max_decimals(2)
+        .max_decimals(if N::INTEGRAL { 0 } else { 2 })
         .suffix(suffix);
     ui.add(drag).labelled_by(label);
 }

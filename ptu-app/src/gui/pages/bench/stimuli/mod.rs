@@ -85,7 +85,20 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut Ha
                     .default_open(group.first_open(connection))
                     .show_unindented(ui, |ui| show(ui, group, forms, setup, hand));
             }
+            follow_focus(ui);
         });
+}
+
+/// Who goes on with the keyboard is shown where.
+fn follow_focus(ui: &Ui) {
+    let focused = ui.memory(|memory| memory.focused());
+    let response = focused.and_then(|id| ui.ctx().read_response(id));
+    if let Some(response) = response.filter(|response| response.gained_focus())
+        && response.layer_id == ui.layer_id()
+        && ui.min_rect().contains_rect(response.rect)
+    {
+        ui.scroll_to_rect(response.rect, None);
+    }
 }
 
 fn show(ui: &mut Ui, group: Group, forms: &mut Forms, setup: &BenchSetup, hand: &mut Hand<'_>) {

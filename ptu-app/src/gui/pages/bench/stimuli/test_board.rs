@@ -33,10 +33,13 @@ pub fn show(ui: &mut Ui, forms: &mut Forms, config: &UnitConfig, line: &Line, ha
     row(ui, "", |ui, _| {
         let stimulus = forms.test_code.free(Way::TestBoard);
         hand.choice(ui, words.test_code, words.give_signal, false, stimulus);
-        let read = text::value(words, Signal::TestCodeRate, hand.seen);
-        ui.label(format!("{}: {read}", words.read_back));
     });
     motion(ui, &mut forms.test_motion, hand, words);
+    row(ui, words.read_back, |ui, _| {
+        let [code, speed] = [Signal::TestCodeRate, Signal::TestSpeed]
+            .map(|signal| text::value(words, signal, hand.seen));
+        ui.label(format!("{code}, {speed}"));
+    });
     row(ui, words.test_marker, |ui, _| {
         for psm in 1..=4 {
             let name = format!("PSM{psm}");
@@ -72,7 +75,5 @@ fn motion(ui: &mut Ui, form: &mut MotionForm, hand: &mut Hand<'_>, words: &Bench
     row(ui, "", |ui, _| {
         hand.choice(ui, words.test_speed, words.go_to, false, form.test_go());
         hand.choice(ui, words.test_speed, words.stand, false, form.test_stand());
-        let read = text::value(words, Signal::TestSpeed, hand.seen);
-        ui.label(format!("{}: {read}", words.read_back));
     });
 }
