@@ -7,7 +7,7 @@ pub mod diagnosis;
 pub mod drive;
 mod json;
 mod junit;
-mod plot;
+pub(crate) mod plot;
 pub mod run;
 
 use std::path::PathBuf;

@@ -5,10 +5,12 @@ pub mod lane;
 mod limit_bar;
 mod named;
 mod run_list;
+mod run_note;
 mod share_bar;
 
 pub use chip::{chip, verdict_chip};
 pub use limit_bar::{limit_bar, value_text};
 pub use named::named_combo;
 pub use run_list::RunList;
+pub use run_note::RunNoteForm;
 pub use share_bar::share_bar;

@@ -91,6 +91,8 @@ pub struct Row {
 pub enum Cell {
     /// Words or a number.
     Text(Tone, String),
+    /// A verdict.
+    Verdict(Tone, String),
     /// A value between its limits.
     Gauge(Option<Gauge>),
 }

@@ -1,4 +1,4 @@
-//! What a test sheet says, block after block: verdict and failures first, then all that was run,
+//! What a test sheet says, block after block: verdict, notes and failures first, then all that was run,
 //! with what and by whom.
 
 use fault_db::{FaultState, RunState, RunSummary, StepDetail, Verdict};
@@ -19,10 +19,10 @@ const LEAST_NAMED: f64 = 0.01;
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);
     blocks.extend(summary(sheet, words));
+    blocks.extend(notes(sheet, words));
     blocks.extend(failures(sheet, words));
     blocks.extend(faults(sheet, words));
     blocks.extend(diagnosis(sheet, words));
-    blocks.extend(notes(sheet, words));
     blocks.extend(the_run(sheet, words));
     blocks.extend(all_steps(sheet, words));
     blocks.extend(scripts(sheet, words));

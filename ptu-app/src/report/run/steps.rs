@@ -83,7 +83,7 @@ fn measured(measurement: &MeasurementRecord, words: &Words) -> Row {
 
 /// A verdict in its colour.
 pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
-    Cell::Text(tone(verdict), words.common.stored_verdict(verdict).into())
+    Cell::Verdict(tone(verdict), words.common.stored_verdict(verdict).into())
 }
 
 /// How good news a verdict is.

@@ -13,6 +13,7 @@ use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use crate::diagnosis::diagnose_run;
 use crate::gui::library::Asked;
+use crate::gui::parts::RunNoteForm;
 use crate::gui::{Desk, Palette, UnitChoice};
 use crate::run::Suite;
 use crate::station::Phase;
@@ -38,6 +39,7 @@ pub struct ProceduresPage {
     /// What the last run comes to, by run.
     conclusion: Asked<String>,
     concluded: Option<fault_db::Id>,
+    note: RunNoteForm,
 }
 
 impl Default for ProceduresPage {
@@ -54,6 +56,7 @@ impl Default for ProceduresPage {
             shown: Shown::default(),
             conclusion: Asked::Not,
             concluded: None,
+            note: RunNoteForm::default(),
         }
     }
 }
@@ -117,6 +120,7 @@ impl ProceduresPage {
             desk.messages.trouble(said, why.clone());
         }
         self.run_wanted(desk);
+        self.note.poll(desk.words, desk.messages);
         self.poll_orders(desk);
         self.conclude(desk);
     }
@@ -235,7 +239,8 @@ impl ProceduresPage {
         if let Some(conclusion) = self.conclusion.value().filter(|_| !run.is_running()) {
             ui.label(RichText::new(conclusion).strong().size(17.0));
         }
-        results::after_run(ui, words, run, desk.go);
+        let note = (&mut self.note, desk.settings.operator.as_str());
+        results::after_run(ui, (words, desk.library), run, note, desk.go);
         results::results(ui, words, run, &mut self.shown, texts);
     }
 }

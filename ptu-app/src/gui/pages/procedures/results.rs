@@ -6,7 +6,8 @@ use std::ops::Range;
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, RichText, ScrollArea, Ui};
 
-use crate::gui::parts::{limit_bar, value_text, verdict_chip};
+use crate::gui::library::Library;
+use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
 use crate::gui::{Go, Palette};
 use crate::run::CHECK_FAILED;
 use crate::station::Progress;
@@ -23,8 +24,14 @@ pub struct Shown {
     chosen: Option<(usize, usize)>,
 }
 
-/// Ways on from a run that is over.
-pub fn after_run(ui: &mut Ui, words: &Words, run: &Progress, go: &mut Vec<Go>) {
+/// Ways on from a run that is over, and what `who` has to say about it.
+pub fn after_run(
+    ui: &mut Ui,
+    (words, library): (&Words, &Library),
+    run: &Progress,
+    (note, who): (&mut RunNoteForm, &str),
+    go: &mut Vec<Go>,
+) {
     let Some(id) = run.id() else { return };
     ui.horizontal(|ui| {
         let found = !run.faults.is_empty() || run.not_passed > 0;
@@ -35,6 +42,7 @@ pub fn after_run(ui: &mut Ui, words: &Words, run: &Progress, go: &mut Vec<Go>) {
         if ui.button(words.procedures.to_report).clicked() {
             go.push(Go::Report(id));
         }
+        note.show(ui, words, library, who, id);
     });
 }
 

@@ -63,7 +63,7 @@ fn row(row: &Row, columns: &[Column], letters: &Letters) -> Piece {
             .get(place)
             .map_or(Align::Left, |column| column.align);
         match cell {
-            Cell::Text(tone, text) => {
+            Cell::Text(tone, text) | Cell::Verdict(tone, text) => {
                 let mut split = letters.lines(text, SIZE, inside);
                 if split.len() > MOST_LINES {
                     split.truncate(MOST_LINES);

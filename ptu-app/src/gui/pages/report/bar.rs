@@ -1,0 +1,126 @@
+//! Above the sheet: ways on from the run, the sheet's language, files, and a note.
+
+use eframe::egui::{Button, ComboBox, TextEdit, Ui};
+use fault_db::Id;
+
+use super::paper::Paper;
+use super::{ReportPage, Shown, file};
+use crate::gui::library::Asked;
+use crate::gui::parts::named_combo;
+use crate::gui::{Desk, Go};
+use crate::owner;
+use crate::report::{self, Target};
+use crate::words::{Language, Words, fill};
+
+/// Room for the buttons beside the file's name, points.
+const BUTTONS: f32 = 190.0;
+/// Width of the operator's name, points.
+const NAME: f32 = 120.0;
+
+impl ReportPage {
+    pub(super) fn bar(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, language: Language) {
+        let words = desk.words;
+        let Some(shown) = &self.shown else { return };
+        let run = shown.run;
+        ui.horizontal(|ui| {
+            ways_on(ui, words, shown, desk.go);
+            if let Some(other) = languages(ui, words, language) {
+                self.language = Some(other);
+                self.paper = Paper::default();
+            }
+        });
+        ui.horizontal(|ui| self.files(ui, desk, run, language));
+        ui.horizontal(|ui| {
+            let label = ui.label(words.common.operator);
+            ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(NAME))
+                .labelled_by(label.id);
+            let who = &desk.settings.operator;
+            self.note.show(ui, words, desk.library, who, run);
+        });
+    }
+
+    fn files(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, run: Id, language: Language) {
+        let words = &desk.words.report;
+        let label = ui.label(words.file);
+        let wide = (ui.available_width() - BUTTONS).max(BUTTONS);
+        ui.add(TextEdit::singleline(&mut self.file).desired_width(wide))
+            .labelled_by(label.id);
+        for (name, ending) in [
+            (words.write_html, ".html"),
+            (words.write_pdf, ".pdf"),
+            (words.write_csv, ".csv"),
+        ] {
+            let button = ui.add_enabled(self.writing.is_not(), Button::new(name));
+            if button.on_hover_text(words.write_hint).clicked() {
+                self.write(desk, run, language, ending);
+            }
+        }
+    }
+
+    fn write(&mut self, desk: &mut Desk<'_>, run: Id, language: Language, ending: &str) {
+        let words = &desk.words.report;
+        let Some(path) = file::with_ending(&self.file, ending) else {
+            desk.messages.trouble(words.not_written, words.name_file);
+            return;
+        };
+        match path.to_string_lossy().parse::<Target>() {
+            Err(why) => desk.messages.trouble(words.not_written, why),
+            Ok(target) => {
+                self.writing = Asked::Pending(desk.library.ask(move |shelf| {
+                    target.check()?;
+                    let store = shelf.read()?;
+                    let detail = store.run(run, &owner::is_alive)?;
+                    report::write(&[target], &store, Some(&shelf.scripts), &detail, language)?;
+                    Ok(path)
+                }));
+            }
+        }
+    }
+}
+
+/// To the diagnosis and to the traces.
+fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go: &mut Vec<Go>) {
+    let words = &words.report;
+    let diagnosis = ui.add_enabled(shown.faulty, Button::new(words.to_diagnosis));
+    if diagnosis.clicked() {
+        go.push(Go::Diagnosis(shown.run));
+    }
+    let name = |id: &Id| fill(words.to_trace, &[("id", &id.short())]);
+    match &shown.traces[..] {
+        [] => {}
+        [(only, faults)] => {
+            if ui.button(name(only)).on_hover_text(faults).clicked() {
+                go.push(Go::Trace(*only));
+            }
+        }
+        all => {
+            let title = fill(words.to_traces, &[("n", &all.len())]);
+            ui.menu_button(title, |ui| {
+                for (id, faults) in all {
+                    if ui.button(format!("{}: {faults}", name(id))).clicked() {
+                        go.push(Go::Trace(*id));
+                    }
+                }
+            });
+        }
+    }
+}
+
+/// The language that was chosen.
+fn languages(ui: &mut Ui, words: &Words, language: Language) -> Option<Language> {
+    let mut chosen = None;
+    ui.label(words.report.language);
+    let combo = ComboBox::from_id_salt("language of the sheet").selected_text(language.name());
+    let combo = combo.show_ui(ui, |ui| {
+        for other in Language::ALL {
+            if ui
+                .selectable_label(other == language, other.name())
+                .clicked()
+            {
+                chosen = Some(other);
+            }
+        }
+    });
+    named_combo(&combo.response, words.report.language, language.name());
+    chosen
+}

@@ -1,0 +1,64 @@
+//! Which file a report is written to.
+
+use std::path::{Path, PathBuf};
+
+use fault_db::Id;
+
+/// Endings a typed name may have; the one of the format asked for takes its place.
+const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
+
+/// The folder for documents, or the one the program was started in.
+pub fn usual_folder() -> PathBuf {
+    directories::UserDirs::new()
+        .and_then(|folders| folders.document_dir().map(Path::to_path_buf))
+        .filter(|folder| folder.is_dir())
+        .or_else(|| std::env::current_dir().ok())
+        .unwrap_or_default()
+}
+
+/// A name for the sheet of this run, in the folder of the file named before.
+pub fn named_after(run: Id, before: &str) -> String {
+    let folder = Path::new(before.trim()).parent();
+    let folder = folder.map_or_else(usual_folder, Path::to_path_buf);
+    let name = format!("sheet-{}.pdf", run.short());
+    folder.join(name).to_string_lossy().into_owned()
+}
+
+/// What was typed, with this ending and from the root; none of nothing.
+pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
+    let typed = typed.trim();
+    let lower = typed.to_ascii_lowercase();
+    let known = ENDINGS.iter().find(|known| lower.ends_with(*known));
+    let stem = typed.get(..typed.len() - known.map_or(0, |known| known.len()))?;
+    let named = !stem.is_empty() && !stem.ends_with(['/', std::path::MAIN_SEPARATOR]);
+    let path = PathBuf::from(format!("{stem}{ending}"));
+    named.then(|| std::path::absolute(&path).unwrap_or(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_the_ending_of_its_format_whatever_was_typed() {
+        let file = |typed: &str| with_ending(typed, ".html").map(|path| path.display().to_string());
+        let some = |path: &str| Some(path.to_owned());
+        assert_eq!(file("/a/sheet.pdf"), some("/a/sheet.html"));
+        assert_eq!(file(" /a/sheet.PDF "), some("/a/sheet.html"));
+        assert_eq!(file("/a/시험 v1.2"), some("/a/시험 v1.2.html"));
+        assert!(file("sheet").is_some_and(|path| path.starts_with('/')));
+        for nothing in ["", "  ", "/a/", ".pdf", "/a/.csv"] {
+            assert_eq!(file(nothing), None, "{nothing}");
+        }
+    }
+
+    #[test]
+    fn the_next_run_s_sheet_lies_beside_the_last() {
+        let run: Id = "0198c0de-0000-7000-8000-00000000cafe"
+            .parse()
+            .expect("an id");
+        let beside = format!("/reports/sheet-{}.pdf", run.short());
+        assert_eq!(named_after(run, "/reports/mine.html"), beside);
+        assert!(named_after(run, "").ends_with(&format!("sheet-{}.pdf", run.short())));
+    }
+}

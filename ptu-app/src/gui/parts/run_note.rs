@@ -1,0 +1,65 @@
+//! A note on a run, written by the one who tests.
+
+use eframe::egui::{Button, TextEdit, Ui};
+use fault_db::Id;
+
+use crate::clock::now_us;
+use crate::gui::desk::Messages;
+use crate::gui::library::{Asked, Library};
+use crate::words::Words;
+
+/// Room for the button, points.
+const BUTTON: f32 = 130.0;
+
+/// The field and what becomes of it.
+#[derive(Default)]
+pub struct RunNoteForm {
+    text: String,
+    run: Option<Id>,
+    under_way: Asked<()>,
+}
+
+impl RunNoteForm {
+    /// True when a note has just been stored.
+    pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> bool {
+        if !self.under_way.poll() {
+            return false;
+        }
+        match std::mem::take(&mut self.under_way) {
+            Asked::Failed(why) => {
+                messages.trouble(words.report.note_not_saved, why);
+                false
+            }
+            _ => {
+                messages.tell(words.report.note_saved);
+                self.text.clear();
+                true
+            }
+        }
+    }
+
+    /// The field with its button, for this run.
+    pub fn show(&mut self, ui: &mut Ui, words: &Words, library: &Library, who: &str, run: Id) {
+        if self.run != Some(run) {
+            // What was begun on another run is not meant for this one.
+            self.run = Some(run);
+            self.text.clear();
+        }
+        let label = ui.label(words.report.note_field);
+        let wide = (ui.available_width() - BUTTON).max(BUTTON);
+        ui.add(TextEdit::singleline(&mut self.text).desired_width(wide))
+            .labelled_by(label.id);
+        let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
+        let may = !who.is_empty() && !text.is_empty() && self.under_way.is_not();
+        let save = ui.add_enabled(may, Button::new(words.report.note_save));
+        if save
+            .on_disabled_hover_text(words.report.note_hint)
+            .clicked()
+        {
+            self.under_way = Asked::Pending(library.ask(move |shelf| {
+                shelf.open()?.add_run_note(run, &who, &text, now_us())?;
+                Ok(())
+            }));
+        }
+    }
+}
