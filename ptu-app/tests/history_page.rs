@@ -36,7 +36,8 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     let mut window = on(place, Page::Faults, Language::English);
     window.write("text", "eb_relay");
     window.wait_for_part("1 of ");
-    let fault: Value = window.place.json(&["faults", "list", "--json"])[0].clone();
+    let of_relay = ["faults", "list", "--lru", "eb_relay", "--json"];
+    let fault: Value = window.place.json(&of_relay)[0].clone();
     window.click("eb_relay");
     window.wait_for("what was done");
     window.wait_for("eb_loop");
@@ -46,6 +47,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     window.wait_for("relay ordered");
     window.write("serial number put in", "SN-77");
     window.click("Repaired");
+    window.wait_for("repaired");
     window.wait_for_part("SN-77");
     let id = fault["id"].as_str().expect("an id").to_owned();
     let stored = window.place.json(&["faults", "show", &id, "--json"]);
