@@ -26,7 +26,7 @@ use seen::Seen;
 use stimuli::{Given, Hand, stimuli};
 
 /// Width of the stimuli, and the least that is left of it in a small window.
-const STIMULI: f32 = 440.0;
+const STIMULI: f32 = 454.0;
 const STIMULI_LEAST: f32 = 330.0;
 /// Most of a small window that stimuli take.
 const STIMULI_SHARE: f32 = 0.4;

@@ -16,7 +16,7 @@ use crate::station::Station;
 use crate::words::{Words, fill};
 
 /// Width of a row's name.
-const NAME: f32 = 126.0;
+const NAME: f32 = 138.0;
 
 /// What the page remembers of what was given, because no signal tells it.
 #[derive(Debug, Default)]
