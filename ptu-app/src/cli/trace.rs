@@ -60,7 +60,7 @@ impl TraceArguments {
                 let (id, trace) = read(&self.database.open_read_only()?, &id, &signals)?;
                 let rows = trace.rows();
                 let channels: Vec<_> = (0..trace.channels.len()).collect();
-                data::write(&to, &csv(&trace, &channels, 0..rows, None))?;
+                data::write(&to, csv(&trace, &channels, 0..rows, None))?;
                 print_out(&format!(
                     "trace {}: {rows} rows to {}",
                     id.short(),

@@ -99,7 +99,7 @@ mod tests {
         let came = TraceView::new(trace(&[("speed", &[0.0, 0.0, 9.0, 9.0])]));
         let expected = other(&[("speed", &[0.0, 9.0, 9.0, 9.0])]);
         let parting = expected.parting(&came, 0);
-        assert_eq!(parting.stretches["speed"], [1..2]);
+        assert_eq!(parting.stretches["speed"].first(), Some(&(1..2)));
         assert_eq!(parting.first.expect("deviates").signal, "speed");
         assert!(expected.parting(&came, 1).stretches.is_empty());
         assert!(expected.parting(&came, 50).trouble.is_some());

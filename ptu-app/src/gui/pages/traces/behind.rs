@@ -59,6 +59,11 @@ impl BehindAsked {
         }
     }
 
+    /// There is something to compare with, or will be.
+    pub fn is_asked(&self) -> bool {
+        self.against.is_some()
+    }
+
     /// What to compare with, and what the comparison says.
     pub fn bar(&mut self, ui: &mut Ui, scene: &mut Scene, list: &TraceList, desk: &mut Desk<'_>) {
         let words = &desk.words.traces;

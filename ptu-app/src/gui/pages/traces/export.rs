@@ -103,7 +103,7 @@ impl Export {
         let question = move |_: &_| {
             let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
             let (_, path) = create(&name, "csv")?;
-            data::write(&path, &text)?;
+            data::write(&path, text)?;
             Ok(path)
         };
         self.writing.push(desk.library.ask(question));

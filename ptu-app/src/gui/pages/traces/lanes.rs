@@ -138,6 +138,9 @@ impl Painted {
         ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                if sheet.scene.lanes().is_empty() {
+                    ui.label(sheet.words.traces.no_signals);
+                }
                 let heights = sheet.heights(middle.height());
                 let lanes = sheet.scene.lanes().iter().zip(heights);
                 for (number, (lane, height)) in lanes.enumerate() {

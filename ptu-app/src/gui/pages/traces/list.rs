@@ -62,7 +62,9 @@ impl TraceList {
         }
         let mut clicked = None;
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
-        let height = ui.spacing().interact_size.y;
+        // Both kinds of row are as tall, or scrolling would jump.
+        let height = super::ROW;
+        ui.spacing_mut().interact_size.y = height;
         ScrollArea::vertical().auto_shrink(false).show_rows(
             ui,
             height,

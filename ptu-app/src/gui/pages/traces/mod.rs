@@ -121,11 +121,18 @@ impl TracesPage {
         ui.spacing_mut().interact_size.y = ROW;
         heading(ui, scene, &self.list, desk);
         bar::view(ui, scene, &mut self.choosing, &mut self.told, desk);
+        let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
             self.behind.bar(ui, scene, &self.list, desk);
-            ui.separator();
-            ui.horizontal(|ui| self.export.bar(ui, scene, self.painted.rect, desk));
+            // What the comparison says needs the row for itself.
+            if !self.behind.is_asked() {
+                ui.separator();
+                self.export.bar(ui, scene, rect, desk);
+            }
         });
+        if self.behind.is_asked() {
+            ui.horizontal_wrapped(|ui| self.export.bar(ui, scene, rect, desk));
+        }
         events::links(ui, scene, words);
         if self.choosing {
             Panel::right("signals of the trace")
