@@ -93,6 +93,7 @@ impl App {
         Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut desk));
         Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut desk));
         let page = desk.settings.page;
+        desk.units.watch(page == Page::Bench);
         CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut desk));
         if self.closing {
             self.frame.closing(ui, words);

@@ -14,6 +14,9 @@ const USUAL: [f32; 2] = [1280.0, 800.0];
 /// Repaints asked for from other threads are this far apart at least.
 const REPAINT: Duration = Duration::from_millis(16);
 
+/// So soon a frame comes after it is asked for.
+const SOON: Duration = Duration::from_millis(1);
+
 /// Opens the window and stays until it is closed.
 ///
 /// # Errors
@@ -60,7 +63,8 @@ fn waker(context: &eframe::egui::Context) -> std::io::Result<Wake> {
         .name("waker".into())
         .spawn(move || {
             while receiver.recv().is_ok() {
-                context.request_repaint();
+                // At once would be two frames each time.
+                context.request_repaint_after(SOON);
                 std::thread::sleep(REPAINT);
             }
         })?;

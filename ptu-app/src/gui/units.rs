@@ -339,6 +339,15 @@ impl Units {
         self.iter().map(|unit| unit.runs_ended).sum()
     }
 
+    /// Whether the signals of the chosen one are looked at.
+    pub(super) fn watch(&self, looked_at: bool) {
+        for (place, unit) in self.iter().enumerate() {
+            unit.station
+                .board()
+                .watch(looked_at && place == self.chosen);
+        }
+    }
+
     /// Takes what happened at all of them.
     pub(super) fn poll(&mut self, words: &Words, messages: &mut Messages) {
         for unit in self.iter_mut() {

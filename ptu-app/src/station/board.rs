@@ -1,6 +1,7 @@
 //! What a bench shows: its latest cycle, the rows before it, and what its operator wishes of a run.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time;
 
@@ -19,8 +20,12 @@ pub const HISTORY: Duration = Duration::from_ms(120_000);
 const ROWS: usize = (HISTORY.as_us() / CYCLE.as_us()) as usize;
 /// Whoever looks on is woken at most this often …
 const OFTEN: time::Duration = time::Duration::from_millis(33);
-/// … and at least this often while nothing changes but the time.
-const SELDOM: time::Duration = time::Duration::from_millis(500);
+/// … and at least this often while nothing changes but the time and counts.
+const SELDOM: time::Duration = time::Duration::from_secs(1);
+/// Counts that run on while a unit does nothing: not worth waking anybody.
+const COUNTS: [Signal; 2] = [Signal::TwcReceived, Signal::TwcAnswers];
+/// What the connection bar shows, whatever page is in front.
+const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 
 /// What the bench's thread is at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,6 +90,8 @@ pub struct Board {
     live: Mutex<Live>,
     direction: Mutex<Direction>,
     pending: Mutex<Pending>,
+    /// Its signals are looked at.
+    watched: AtomicBool,
     wake: Wake,
 }
 
@@ -106,8 +113,14 @@ impl Board {
                 woken: time::Instant::now(),
                 shown: [0; Signal::COUNT],
             }),
+            watched: AtomicBool::new(true),
             wake,
         }
+    }
+
+    /// Whether its signals are looked at: if not, only what the connection bar shows wakes anybody.
+    pub fn watch(&self, watched: bool) {
+        self.watched.store(watched, Ordering::Relaxed);
     }
 
     /// The bench as it is now; hold it shortly.
@@ -159,6 +172,18 @@ impl Board {
     }
 }
 
+impl Board {
+    fn is_worth_a_look(&self, before: &[u64; Signal::COUNT], now: &[u64; Signal::COUNT]) -> bool {
+        let differs = |signal: &Signal| before[signal.index()] != now[signal.index()];
+        if self.watched.load(Ordering::Relaxed) {
+            let mut signals = Signal::ALL.iter();
+            signals.any(|signal| differs(signal) && !COUNTS.contains(signal))
+        } else {
+            ALWAYS_SHOWN.iter().any(differs)
+        }
+    }
+}
+
 impl Attendant for Board {
     fn see(&self, now: Instant, rig: &Rig) {
         let mut pending = held(&self.pending);
@@ -187,7 +212,7 @@ impl Attendant for Board {
         drop(live);
         let shown = rig.sample().values().map(f64::to_bits);
         let since = pending.woken.elapsed();
-        if since >= SELDOM || (since >= OFTEN && shown != pending.shown) {
+        if since >= SELDOM || (since >= OFTEN && self.is_worth_a_look(&pending.shown, &shown)) {
             pending.woken = time::Instant::now();
             pending.shown = shown;
             (self.wake)();

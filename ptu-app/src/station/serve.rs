@@ -240,7 +240,7 @@ impl Listener for Ear<'_> {
             SessionEvent::Ended { .. } => RunNews::Ended,
             SessionEvent::Trace(_) | SessionEvent::Recording(_) => return,
         };
-        let _ = self.0.news.send(News::Run {
+        self.0.tell(News::Run {
             procedure: procedure.id.clone(),
             what,
         });
