@@ -98,6 +98,27 @@ fn a_note_is_kept_and_stands_on_the_sheet() {
     );
 }
 
+#[test]
+fn a_note_is_written_as_soon_as_a_run_is_over() {
+    let mut settings = Settings {
+        page: Page::Procedures,
+        operator: "Lee".into(),
+        ..Settings::default()
+    };
+    settings.unit.faults = vec!["tra.dead".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Find the part");
+    window.wait_for_part("Run over: failed");
+    window.write("note on this run", "TRA warm to the touch");
+    window.click("Save note");
+    window.wait_for("Note saved");
+    let latest = ["runs", "show", "latest", "--json"];
+    let run = window.place.json(&latest);
+    assert_eq!(run["notes"][0]["text"], "TRA warm to the touch", "{run}");
+}
+
 /// The sheet has a language of its own, and the window's until one is chosen.
 #[test]
 fn the_sheet_is_korean_in_a_korean_window_and_english_if_wanted() {

@@ -3,7 +3,6 @@
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 use fault_db::Id;
 
-use super::paper::Paper;
 use super::{ReportPage, Shown, file};
 use crate::gui::library::Asked;
 use crate::gui::parts::named_combo;
@@ -18,15 +17,15 @@ const BUTTONS: f32 = 190.0;
 const NAME: f32 = 120.0;
 
 impl ReportPage {
-    pub(super) fn bar(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, language: Language) {
+    pub(super) fn bar(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let words = desk.words;
+        let language = self.language(desk);
         let Some(shown) = &self.shown else { return };
         let run = shown.run;
         ui.horizontal(|ui| {
             ways_on(ui, words, shown, desk.go);
             if let Some(other) = languages(ui, words, language) {
                 self.language = Some(other);
-                self.paper = Paper::default();
             }
         });
         ui.horizontal(|ui| self.files(ui, desk, run, language));

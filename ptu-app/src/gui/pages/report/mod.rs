@@ -28,7 +28,7 @@ pub struct ReportPage {
     /// The sheet asked for, and the one shown until that is there.
     asked: Asked<Shown>,
     shown: Option<Shown>,
-    asked_for: Option<Id>,
+    asked_for: Option<(Id, Language)>,
     /// Runs that had ended when it was asked for.
     ended: usize,
     /// When the page was last shown, in passes of the window.
@@ -41,10 +41,10 @@ pub struct ReportPage {
     note: RunNoteForm,
 }
 
-/// A sheet, in both languages.
+/// A sheet.
 struct Shown {
     run: Id,
-    blocks: [Vec<Block>; Language::ALL.len()],
+    blocks: Vec<Block>,
     /// Its traces with the faults each shows.
     traces: Vec<(Id, String)>,
     /// Something in it did not pass.
@@ -56,9 +56,8 @@ impl ReportPage {
     pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         self.poll(desk);
         let list = Panel::left("reported runs").default_size(270.0);
-        let clicked = list
-            .show(ui, |ui| self.runs.show(ui, desk, self.asked_for))
-            .inner;
+        let shown = self.run();
+        let clicked = list.show(ui, |ui| self.runs.show(ui, desk, shown)).inner;
         self.chosen = clicked.or(self.chosen);
         self.keep_up(ui, desk);
         CentralPanel::default().show(ui, |ui| self.sheet(ui, desk));
@@ -80,22 +79,33 @@ impl ReportPage {
         let Some(run) = self.chosen.or_else(|| self.runs.foremost()) else {
             return;
         };
-        if anew || self.asked_for != Some(run) {
+        if anew || self.asked_for != Some((run, self.language(desk))) {
             self.ask(run, desk);
         }
     }
 
     fn ask(&mut self, run: Id, desk: &Desk<'_>) {
-        if self.asked_for != Some(run) {
-            self.asked_for = Some(run);
+        if self.run() != Some(run) {
             self.shown = None;
             self.file = file::named_after(run, &self.file);
         }
+        let language = self.language(desk);
+        self.asked_for = Some((run, language));
         self.ended = desk.units.runs_ended();
         self.asked = Asked::Pending(desk.library.ask(move |shelf| {
             let sheet = Sheet::gather(&shelf.read()?, Some(&shelf.scripts), run)?;
-            Ok(Shown::of(&sheet))
+            Ok(Shown::of(&sheet, language))
         }));
+    }
+
+    /// The run that is shown or will be.
+    fn run(&self) -> Option<Id> {
+        self.asked_for.map(|(run, _)| run)
+    }
+
+    /// The sheet's language.
+    fn language(&self, desk: &Desk<'_>) -> Language {
+        self.language.unwrap_or(desk.words.language)
     }
 
     fn poll(&mut self, desk: &mut Desk<'_>) {
@@ -120,7 +130,7 @@ impl ReportPage {
             }
         }
         if self.note.poll(desk.words, desk.messages)
-            && let Some(run) = self.asked_for
+            && let Some(run) = self.run()
         {
             self.ask(run, desk);
         }
@@ -128,7 +138,6 @@ impl ReportPage {
 
     fn sheet(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let words = desk.words;
-        let language = self.language.unwrap_or(words.language);
         if let Asked::Failed(why) = &self.asked {
             let said = RichText::new(words.report.not_read).color(Palette::of(ui).bad);
             ui.label(said.strong());
@@ -142,31 +151,25 @@ impl ReportPage {
             });
             return;
         }
-        self.bar(ui, desk, language);
+        self.bar(ui, desk);
         ui.separator();
         if let Some(shown) = &self.shown {
-            self.paper.show(ui, shown.run, shown.blocks(language));
+            self.paper.show(ui, shown.run, &shown.blocks);
         }
     }
 }
 
 impl Shown {
-    fn of(sheet: &Sheet) -> Self {
+    fn of(sheet: &Sheet, language: Language) -> Self {
         let run = &sheet.run.run;
         let traces = sheet.traces.iter();
         Self {
             run: run.id,
-            blocks: Language::ALL.map(|language| blocks(sheet, language.words())),
+            blocks: blocks(sheet, language.words()),
             traces: traces
                 .map(|trace| (trace.id, trace.faults.join(", ")))
                 .collect(),
             faulty: run.steps_not_passed > 0 || run.faults > 0,
         }
-    }
-
-    fn blocks(&self, language: Language) -> &[Block] {
-        let all = Language::ALL.iter().zip(&self.blocks);
-        let mut this = all.filter(|(known, _)| **known == language);
-        this.next().map_or(&[], |(_, blocks)| blocks)
     }
 }
