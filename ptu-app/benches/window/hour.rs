@@ -109,7 +109,7 @@ pub fn write(file: &Path) {
 
 fn column(signal: Signal, seed: u64) -> Vec<f64> {
     let definition = signal.definition();
-    let mut state = seed * 0x9E37_79B9_7F4A_7C15;
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mut random = move || {
         // A linear congruential generator is enough to look like noise.
         state = state

@@ -133,6 +133,13 @@ impl Axis {
         self.first_from(place + self.crumb()).checked_sub(1)
     }
 
+    /// Rows of which something is in view: the one that still holds when it begins is one of them.
+    pub fn rows_in(&self, window: Window) -> std::ops::Range<usize> {
+        let first = self.row_at(window.from).unwrap_or(0);
+        let last = self.row_at(window.to).map_or(0, |row| row + 1);
+        first.min(last)..last
+    }
+
     /// The first row at or beyond a place.
     fn first_from(&self, place: f64) -> usize {
         match self {

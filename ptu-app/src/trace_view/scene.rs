@@ -55,6 +55,7 @@ pub struct Scene {
     camera: Camera,
     lanes: Vec<Lane>,
     cursors: [Option<usize>; 2],
+    close: bool,
     behind: Option<Behind>,
     /// What is said of these rows, by lane; empty until asked for.
     said: (Range<usize>, Vec<Option<Statistics>>),
@@ -70,6 +71,7 @@ impl Scene {
             opened,
             lanes: Vec::new(),
             cursors: [None; 2],
+            close: false,
             behind: None,
             said: Default::default(),
         };
@@ -166,12 +168,21 @@ impl Scene {
         }
     }
 
-    /// From the least to the greatest value of a lane's quantity, of what is laid behind too, with room.
+    /// From the least to the greatest value of a lane's quantity, of what is laid behind too, with room:
+    /// over the whole trace, or over what is in view.
     pub fn range(&self, place: usize) -> (f64, f64) {
-        let own = self.view().extent(place);
+        let extent = |view: &TraceView, place, axis: &Axis| {
+            if self.close {
+                view.extent_of(place, axis.rows_in(self.window()))
+            } else {
+                view.extent(place)
+            }
+        };
+        let own = extent(self.view(), place, &self.axis);
         let other = self.behind.as_ref().and_then(|behind| {
             let view = &behind.overlay.view;
-            view.extent(view.place(&self.view().channel(place).name)?)
+            let place = view.place(&self.view().channel(place).name)?;
+            extent(view, place, &behind.axis)
         });
         let all = match (own, other) {
             (Some(a), Some(b)) => (a.0.min(b.0), a.1.max(b.1)),
@@ -180,12 +191,14 @@ impl Scene {
         ticks::range(all)
     }
 
+    /// Axes of quantities are as long as what is in view needs; otherwise as the whole trace does.
+    pub fn close(&mut self) -> &mut bool {
+        &mut self.close
+    }
+
     /// Rows in view.
     pub fn rows_in_view(&self) -> Range<usize> {
-        let window = self.window();
-        let first = self.axis.row_at(window.from).unwrap_or(0);
-        let last = self.axis.row_at(window.to).map_or(0, |row| row + 1);
-        first.min(last)..last
+        self.axis.rows_in(self.window())
     }
 
     /// Row of a cursor.
@@ -380,6 +393,17 @@ mod tests {
         let again = scene.rows_in_view();
         assert!(again.start <= rows.start && again.end >= rows.end);
         assert!(again.len() < 40, "{again:?}");
+    }
+
+    #[test]
+    fn axes_are_as_long_as_the_trace_needs_or_what_is_in_view() {
+        let mut scene = scene();
+        scene.camera().show(-0.5, 0.5);
+        let whole = scene.range(0);
+        assert!(whole.0 < 0.0 && whole.1 > 99.0, "{whole:?}");
+        *scene.close() = true;
+        let close = scene.range(0);
+        assert!(close.0 > 20.0 && close.1 < 60.0, "{close:?}");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! A trace made ready to be drawn: what every signal is, and a summary of its samples that is made once.
 
+use std::ops::Range;
+
 use btu_rig::procedure::describe::bit_names;
 use fault_db::{Channel, ChannelKind, TraceData};
 use protocol::signal::Signal;
@@ -71,11 +73,15 @@ impl TraceView {
 
     /// From the least to the greatest value of a quantity; `None` for anything else.
     pub fn extent(&self, place: usize) -> Option<(f64, f64)> {
+        self.extent_of(place, 0..self.data.rows())
+    }
+
+    /// The same over some rows.
+    pub fn extent_of(&self, place: usize, rows: Range<usize>) -> Option<(f64, f64)> {
         let Summary::Quantity(pyramid) = self.summary(place) else {
             return None;
         };
-        let samples = self.samples(place);
-        let all = pyramid.range(samples, 0, samples.len());
+        let all = pyramid.range(self.samples(place), rows.start, rows.end);
         all.is_known()
             .then(|| (f64::from(all.low), f64::from(all.high)))
     }
@@ -120,6 +126,7 @@ mod tests {
         assert!(matches!(view.summary(2), Summary::Bit(_)));
         assert!(matches!(view.summary(3), Summary::Unknown));
         assert_eq!(view.extent(0), Some((1.0, 3.0)));
+        assert_eq!(view.extent_of(0, 1..2), Some((3.0, 3.0)));
         assert_eq!(view.extent(2), None);
         assert_eq!((view.place("eb"), view.place("nothing")), (Some(2), None));
     }

@@ -38,6 +38,8 @@ wordings! {
         zoom_in: "Zoom in", "확대";
         zoom_out: "Zoom out", "축소";
         fit: "Fit", "전체 보기";
+        close_axes: "Scale to view", "세로축 맞춤";
+        close_axes_hint: "axes of quantities as long as what is in view needs, or as the whole trace needs", "세로축을 보이는 구간에 맞추거나 전체 트레이스에 맞춤";
         trigger: "trigger", "트리거";
         events: "events", "이벤트";
         lanes: "lanes", "레인";

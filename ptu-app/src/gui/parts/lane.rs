@@ -21,6 +21,9 @@ const FREE: f32 = 3.0;
 /// Half the width of a curve, and of the blur at its edge.
 const HALF_WIDTH: f32 = 0.7;
 const BLUR: f32 = 0.6;
+/// Width of a bit's line, and of the hatch where it changes too fast.
+const BIT_LINE: f32 = 1.5;
+const HATCH: f32 = 3.0;
 /// Narrowest box with text in it.
 const NARROWEST: f32 = 18.0;
 
@@ -149,61 +152,118 @@ pub fn choice(
     } else {
         Color32::BLACK
     };
+    let ground = colour.gamma_multiply(0.18);
+    let mut narrow = Slabs::new(&painter);
     for span in spans {
         let area = span_rect(rect, span);
         let Shown::Value(value) = span.shown else {
-            busy(&painter, area, colour);
+            narrow.busy(area, colour);
             continue;
         };
-        painter.rect(
-            area,
-            2.0,
-            colour.gamma_multiply(0.18),
-            Stroke::new(1.0, colour),
-            StrokeKind::Inside,
-        );
-        if area.width() >= NARROWEST {
-            let clip = area.shrink2(vec2(3.0, 0.0));
-            painter
-                .with_clip_rect(painter.clip_rect().intersect(clip))
-                .text(
-                    pos2(clip.left(), area.center().y),
-                    Align2::LEFT_CENTER,
-                    label(value),
-                    FontId::proportional(TEXT),
-                    text,
-                );
+        if area.width() < NARROWEST {
+            narrow.boxed(area, ground, colour);
+            continue;
         }
+        let line = Stroke::new(1.0, colour);
+        painter.rect(area, 2.0, ground, line, StrokeKind::Inside);
+        let clip = area.shrink2(vec2(3.0, 0.0));
+        painter
+            .with_clip_rect(painter.clip_rect().intersect(clip))
+            .text(
+                pos2(clip.left(), area.center().y),
+                Align2::LEFT_CENTER,
+                label(value),
+                FontId::proportional(TEXT),
+                text,
+            );
     }
+    narrow.paint(&painter);
 }
 
 /// A bit: a line that is up where it is set, with the ground below it filled.
 pub fn bit(painter: &Painter, rect: Rect, spans: &[Span], colour: Color32) {
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
     let inner = rect.shrink2(vec2(0.0, FREE));
-    let line = Stroke::new(1.5, colour);
+    let mut slabs = Slabs::new(&painter);
     let mut before: Option<(f32, f32)> = None;
     for span in spans {
         let area = span_rect(inner, span);
         let Shown::Value(value) = span.shown else {
-            busy(&painter, area, colour);
+            slabs.busy(area, colour);
             before = None;
             continue;
         };
         let y = if value == 0.0 {
             area.bottom()
         } else {
-            painter.rect_filled(area, 0.0, colour.gamma_multiply(0.25));
+            slabs.add(area, colour.gamma_multiply(0.25));
             area.top()
         };
-        painter.hline(area.x_range(), y, line);
+        let line = Rect::from_x_y_ranges(area.x_range(), y - BIT_LINE / 2.0..=y + BIT_LINE / 2.0);
+        slabs.add(line, colour);
         if let Some((x, at)) = before
             && (x - area.left()).abs() < 1.0
             && at != y
         {
-            painter.vline(area.left(), inner.y_range(), line);
+            let x = area.left();
+            let edge = Rect::from_x_y_ranges(x..=x + BIT_LINE, inner.y_range());
+            slabs.add(edge, colour);
         }
         before = Some((area.right(), y));
+    }
+    slabs.paint(&painter);
+}
+
+/// Many rectangles as one mesh, at whole pixels: an hour of a lane may have hundreds.
+struct Slabs {
+    mesh: Mesh,
+    pixels_per_point: f32,
+}
+
+impl Slabs {
+    fn new(painter: &Painter) -> Self {
+        Self {
+            mesh: Mesh::default(),
+            pixels_per_point: painter.pixels_per_point(),
+        }
+    }
+
+    fn add(&mut self, area: Rect, colour: Color32) {
+        let whole = |n: f32| (n * self.pixels_per_point).round() / self.pixels_per_point;
+        let area = Rect::from_min_max(
+            pos2(whole(area.left()), whole(area.top())),
+            pos2(whole(area.right()), whole(area.bottom())),
+        );
+        self.mesh.add_colored_rect(area, colour);
+    }
+
+    fn boxed(&mut self, area: Rect, ground: Color32, line: Color32) {
+        let (x, y) = (area.x_range(), area.y_range());
+        self.add(area, ground);
+        for edge in [
+            Rect::from_x_y_ranges(x.min..=x.min + 1.0, y),
+            Rect::from_x_y_ranges(x.max - 1.0..=x.max, y),
+            Rect::from_x_y_ranges(x, y.min..=y.min + 1.0),
+            Rect::from_x_y_ranges(x, y.max - 1.0..=y.max),
+        ] {
+            self.add(edge, line);
+        }
+    }
+
+    /// Changes too fast to be told apart: a solid bar, hatched where there is room.
+    fn busy(&mut self, area: Rect, colour: Color32) {
+        self.add(area, colour.gamma_multiply(0.6));
+        let mut x = area.left() + HATCH;
+        while x < area.right() {
+            self.add(Rect::from_x_y_ranges(x..=x + 1.0, area.y_range()), colour);
+            x += HATCH;
+        }
+    }
+
+    fn paint(self, painter: &Painter) {
+        if !self.mesh.is_empty() {
+            painter.add(Shape::mesh(self.mesh));
+        }
     }
 }
 
@@ -228,16 +288,6 @@ fn span_rect(rect: Rect, span: &Span) -> Rect {
         pos2(rect.left() + span.from, rect.top() + 1.0),
         pos2(rect.left() + span.to, rect.bottom() - 1.0),
     )
-}
-
-/// Changes too fast to be told apart: a solid bar, hatched where there is room.
-fn busy(painter: &Painter, area: Rect, colour: Color32) {
-    painter.rect_filled(area, 0.0, colour.gamma_multiply(0.6));
-    let mut x = area.left() + 3.0;
-    while x < area.right() {
-        painter.vline(x, area.y_range(), Stroke::new(1.0, colour));
-        x += 3.0;
-    }
 }
 
 /// Four points across a curve: blurred edge, edge, edge, blurred edge.

@@ -53,6 +53,8 @@ pub fn view(
             scene.clear_cursors();
         }
         ui.separator();
+        ui.toggle_value(scene.close(), words.close_axes)
+            .on_hover_text(words.close_axes_hint);
         ui.toggle_value(choosing, words.signals);
         ui.toggle_value(told, words.statistics);
         if let Axis::Distance {
