@@ -185,7 +185,7 @@ impl Setup {
             .value()
             .map(|names| names.faults.as_slice())
             .unwrap_or_default();
-        let wanted = self.find.to_lowercase();
+        let wanted = self.find.trim().to_lowercase();
         ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
             for (id, mode) in known {
                 if !id.contains(&wanted) && !mode.to_lowercase().contains(&wanted) {

@@ -46,7 +46,7 @@ impl RunList {
                 return None;
             }
         };
-        let find = self.find.to_lowercase();
+        let find = self.find.trim().to_lowercase();
         let shown: Vec<_> = runs.iter().filter(|run| matches(run, &find)).collect();
         if shown.is_empty() {
             ui.label(words.common.nothing);

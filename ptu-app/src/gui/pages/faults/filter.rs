@@ -30,7 +30,7 @@ impl Filter {
 
     /// Whether a fault is shown.
     pub fn takes(&self, fault: &FaultSummary) -> bool {
-        let text = self.text.to_lowercase();
+        let text = self.text.trim().to_lowercase();
         let has = |what: &str| what.to_lowercase().contains(&text);
         self.unit
             .as_ref()
@@ -46,7 +46,7 @@ impl Filter {
 
     /// Whether an occurrence counts in the charts; states are of faults, not of occurrences.
     pub fn counts(&self, count: &DailyCount) -> bool {
-        let text = self.text.to_lowercase();
+        let text = self.text.trim().to_lowercase();
         let has = |what: &str| what.to_lowercase().contains(&text);
         self.unit
             .as_ref()

@@ -142,7 +142,7 @@ pub fn title<'a>(procedure: &'a Procedure, words: &Words) -> &'a str {
 }
 
 fn matches(procedure: &Procedure, find: &str) -> bool {
-    let find = find.to_lowercase();
+    let find = find.trim().to_lowercase();
     let has = |text: &str| text.to_lowercase().contains(&find);
     has(&procedure.id)
         || has(&procedure.title)
