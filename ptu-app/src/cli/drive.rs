@@ -187,7 +187,7 @@ impl DriveArguments {
         }
         match &self.save {
             Some(_) if run.outcome.done.is_empty() => eprintln!("nothing was done: nothing saved"),
-            Some(file) => write(file, &run.sequence().to_toml())?,
+            Some(file) => write(file, run.sequence().to_toml())?,
             None => {}
         }
         if stop.presses() > 0 {

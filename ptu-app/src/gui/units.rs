@@ -357,8 +357,11 @@ impl Units {
 
     /// Stops all and lets all go; true once every bench's thread has ended.
     pub(super) fn close(&mut self) -> bool {
-        self.iter_mut()
-            .map(|unit| unit.station.close())
-            .fold(true, |all, closed| all && closed)
+        let mut closed = true;
+        for unit in self.iter_mut() {
+            // Each is told, however many are still at it.
+            closed &= unit.station.close();
+        }
+        closed
     }
 }

@@ -156,7 +156,7 @@ impl Server {
             }
             session.idle(
                 SCAN,
-                |entry, _, _| self.tell(News::Logged(entry.clone())),
+                |entry, _, _| self.tell(News::Logged(*entry)),
                 |_| false,
             );
             if arm_at.is_some_and(|at| session.now() >= at) {

@@ -119,8 +119,8 @@ impl Window {
     pub fn click_last(&mut self, label: &str) {
         self.until(label, |window| window.enabled(label));
         let nodes = self.harness.query_all_by_label(label);
-        let node = nodes.filter(|node| !node.accesskit_node().is_disabled());
-        node.last().expect("just seen").click();
+        let mut nodes = nodes.filter(|node| !node.accesskit_node().is_disabled());
+        nodes.next_back().expect("just seen").click();
         self.harness.step();
         self.harness.step();
     }

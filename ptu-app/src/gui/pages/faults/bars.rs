@@ -41,7 +41,7 @@ fn in_time(ui: &mut Ui, words: &Words, chart: &OverTime, width: f32) {
     for (place, bar) in (0..).zip(&chart.bars) {
         let left = plot.left() + step * place as f32;
         let height = plot.height() * *bar as f32 / most;
-        let right = left + (step - 1.0).max(1.0).min(40.0);
+        let right = left + (step - 1.0).clamp(1.0, 40.0);
         let bar = Rect::from_min_max(
             pos2(left, plot.bottom() - height),
             pos2(right, plot.bottom()),
