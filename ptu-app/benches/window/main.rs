@@ -6,14 +6,18 @@
 
 mod hour;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
+use btu_rig::stimulus::Stimulus;
 use divan::Bencher;
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput, Rect, pos2, vec2};
+use protocol::Speed;
 use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::library::Shelf;
 use ptu_app::gui::{App, Options, Page, Settings};
+use ptu_app::station::Phase;
 use ptu_app::trace_view::TraceView;
 use tempfile::TempDir;
 
@@ -22,6 +26,9 @@ const USUAL: [f32; 2] = [1280.0, 800.0];
 const TALL: [f32; 2] = [1280.0, 3400.0];
 /// Presses of + from the whole hour to about 10 s.
 const TO_TEN_SECONDS: usize = 17;
+
+/// By then a page has its answers.
+const ANSWERED: Duration = Duration::from_secs(2);
 
 fn main() {
     if let Some(file) = std::env::var_os("PTU_HOUR_DB") {
@@ -32,7 +39,7 @@ fn main() {
     divan::main();
 }
 
-/// The trace page of an open window.
+/// An open window.
 struct Window {
     context: Context,
     app: App,
@@ -42,10 +49,71 @@ struct Window {
 }
 
 impl Window {
+    /// The trace page with the hour in view.
     fn open(size: [f32; 2]) -> Self {
         let folder = TempDir::new().expect("folder");
         let database = folder.path().join("hour.db");
         hour::write(&database);
+        let settings = Settings {
+            page: Page::Traces,
+            lanes: hour::signals().map(|s| s.name().to_owned()).collect(),
+            ..Settings::default()
+        };
+        let mut window = Self::with(folder, database, settings, size);
+        // The list is read, then the trace; a window without it is painted from a few hundred shapes.
+        window.frames_until(|window| window.frame(&[]) >= 20_000);
+        window
+    }
+
+    /// A page on the history of one failing run of the whole suite.
+    fn with_a_run(page: Page) -> Self {
+        let folder = TempDir::new().expect("folder");
+        let database = folder.path().join("history.db");
+        let ptu = std::process::Command::new(env!("CARGO_BIN_EXE_ptu"))
+            .args(["run", "--inject", "eb_relay.slow", "--db"])
+            .arg(&database)
+            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+            .output()
+            .expect("ptu runs");
+        assert_eq!(ptu.status.code(), Some(1), "the fault is found");
+        let settings = Settings {
+            page,
+            ..Settings::default()
+        };
+        let mut window = Self::with(folder, database, settings, USUAL);
+        let began = Instant::now();
+        window.frames_until(|window| {
+            window.frame(&[]);
+            began.elapsed() > ANSWERED
+        });
+        window
+    }
+
+    /// The live page of the embedded unit on a moving train.
+    fn live() -> Self {
+        let folder = TempDir::new().expect("folder");
+        let database = folder.path().join("history.db");
+        let mut window = Self::with(folder, database, Settings::default(), USUAL);
+        window.frame(&[Key::F9]);
+        window.frames_until(|window| {
+            window.frame(&[]);
+            window.app.units().chosen().phase() == Phase::Idle
+        });
+        let speed = Stimulus::Speed {
+            to: Speed::from_kmh(60.0),
+            accel_mps2: 0.5,
+        };
+        let station = &window.app.units().chosen().station;
+        station.apply(speed).expect("permitted");
+        let began = Instant::now();
+        window.frames_until(|window| {
+            window.frame(&[]);
+            began.elapsed() > ANSWERED
+        });
+        window
+    }
+
+    fn with(folder: TempDir, database: PathBuf, settings: Settings, size: [f32; 2]) -> Self {
         let scripts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts"));
         let context = Context::default();
         let options = Options {
@@ -53,27 +121,25 @@ impl Window {
                 database,
                 scripts: ScriptsDirectory::find(Some(scripts)).expect("scripts"),
             },
-            settings: Settings {
-                page: Page::Traces,
-                lanes: hour::signals().map(|s| s.name().to_owned()).collect(),
-                ..Settings::default()
-            },
+            settings,
             settings_file: None,
             connect: false,
         };
         let app = App::new(&context, options, Arc::new(|| {})).expect("a window");
-        let mut window = Self {
+        Self {
             context,
             app,
             size,
             time_s: 0.0,
             _folder: folder,
-        };
-        // The list is read, then the trace; a window without it is painted from a few hundred shapes.
-        while window.frame(&[]) < 20_000 {
-            std::thread::sleep(std::time::Duration::from_millis(20));
         }
-        window
+    }
+
+    /// Frames, with a moment for the other threads after each, until this holds.
+    fn frames_until(&mut self, mut holds: impl FnMut(&mut Self) -> bool) {
+        while !holds(self) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     /// Vertices painted in one frame.
@@ -124,6 +190,20 @@ fn ten_seconds(bencher: Bencher<'_, '_>, size: [f32; 2]) {
         window.frame(&[Key::Plus]);
     }
     bencher.bench_local(|| window.frame(&[Key::ArrowRight]));
+}
+
+/// The live page while the train moves.
+#[divan::bench]
+fn live(bencher: Bencher<'_, '_>) {
+    let mut window = Window::live();
+    bencher.bench_local(|| window.frame(&[]));
+}
+
+/// The other pages, on a run of the whole suite that found a fault.
+#[divan::bench(args = [Page::Procedures, Page::Faults, Page::Diagnosis, Page::Report])]
+fn page(bencher: Bencher<'_, '_>, page: Page) {
+    let mut window = Window::with_a_run(page);
+    bencher.bench_local(|| window.frame(&[]));
 }
 
 /// What is done once when the trace is opened, on the library's thread.

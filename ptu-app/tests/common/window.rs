@@ -118,9 +118,11 @@ impl Window {
     /// Clicks the last of several of this name.
     pub fn click_last(&mut self, label: &str) {
         self.until(label, |window| window.enabled(label));
-        let nodes = self.harness.query_all_by_label(label);
-        let mut nodes = nodes.filter(|node| !node.accesskit_node().is_disabled());
-        nodes.next_back().expect("just seen").click();
+        self.harness
+            .query_all_by_label(label)
+            .rfind(|node| !node.accesskit_node().is_disabled())
+            .expect("just seen")
+            .click();
         self.harness.step();
         self.harness.step();
     }
