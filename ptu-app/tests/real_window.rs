@@ -121,6 +121,8 @@ impl<'a> Shown<'a> {
         shown.until("the window", |display| {
             display.tool(&["search", "--name", "PTU", "windowfocus"])
         });
+        // Out of the way, so that no hint covers what is looked at.
+        display.tool(&["mousemove", "1279", "799"]);
         shown.until("a picture", |display| display.picture().colours() > 20);
         shown
     }

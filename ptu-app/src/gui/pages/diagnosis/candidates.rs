@@ -3,6 +3,7 @@
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 use fault_db::diagnosis::Candidate;
 
+use super::Named;
 use crate::diagnosis::Answer;
 use crate::gui::parts::share_bar;
 use crate::gui::{Desk, Go, Palette};
@@ -23,11 +24,11 @@ pub fn parts(answer: &Answer) -> String {
 }
 
 /// Candidates, two faults at once, and the rest.
-pub fn ranked(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
+pub fn ranked(ui: &mut Ui, desk: &mut Desk<'_>, named: &Named) {
     let words = &desk.words.diagnosis;
-    let diagnosis = &answer.diagnosis;
+    let diagnosis = &named.answer.diagnosis;
     for (place, candidate) in diagnosis.candidates.iter().enumerate() {
-        show(ui, desk, answer, candidate, place == 0);
+        show(ui, desk, named, candidate, place == 0);
     }
     for two in &diagnosis.two_faults {
         let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
@@ -44,11 +45,12 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
     });
 }
 
-fn show(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer, candidate: &Candidate, open: bool) {
+fn show(ui: &mut Ui, desk: &mut Desk<'_>, named: &Named, candidate: &Candidate, open: bool) {
     let words = &desk.words.diagnosis;
     ui.horizontal(|ui| {
         share_bar(ui, candidate.probability, Palette::of(ui).accent);
         ui.label(RichText::new(&candidate.lru).strong().size(17.0));
+        ui.label(RichText::new(named.part(&candidate.lru, desk.words)).strong());
         ui.label(format!("{}: {}", candidate.fault, candidate.text));
     });
     CollapsingHeader::new(words.reasons)
@@ -69,7 +71,12 @@ fn show(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer, candidate: &Candidate
                 &candidate.against,
                 Palette::of(ui).warn,
             );
-            let traces = answer.traces.get(&candidate.lru).into_iter().flatten();
+            let traces = named
+                .answer
+                .traces
+                .get(&candidate.lru)
+                .into_iter()
+                .flatten();
             let traces: Vec<_> = traces.collect();
             if !traces.is_empty() {
                 ui.horizontal_wrapped(|ui| {

@@ -5,20 +5,39 @@ mod candidates;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::Id;
 use fault_db::diagnosis::Finding;
+use protocol::injection::Lru;
 
 use crate::clock;
 use crate::diagnosis::{Answer, diagnose_run};
 use crate::gui::library::Asked;
 use crate::gui::parts::RunList;
 use crate::gui::{Desk, Go, Palette};
-use crate::words::fill;
+use crate::words::{Language, Words, fill};
 
 /// The page.
 #[derive(Default)]
 pub struct DiagnosisPage {
     runs: RunList,
     run: Option<Id>,
-    answer: Asked<Answer>,
+    answer: Asked<Named>,
+}
+
+/// An answer, and what people call the parts.
+pub struct Named {
+    answer: Answer,
+    parts: Vec<Lru>,
+}
+
+impl Named {
+    /// What people call a part, in their language.
+    fn part(&self, id: &str, words: &Words) -> String {
+        let known = self.parts.iter().find(|part| part.id == id);
+        let name = known.map(|part| match words.language {
+            Language::English => part.name.clone(),
+            Language::Korean => part.name_ko.clone(),
+        });
+        name.unwrap_or_default()
+    }
 }
 
 impl DiagnosisPage {
@@ -45,17 +64,19 @@ impl DiagnosisPage {
     /// Shows what this run comes to.
     pub fn open(&mut self, run: Id, desk: &mut Desk<'_>) {
         self.run = Some(run);
-        self.answer = Asked::Pending(
-            desk.library
-                .ask(move |shelf| diagnose_run(&shelf.read()?, &shelf.scripts, run)),
-        );
+        self.answer = Asked::Pending(desk.library.ask(move |shelf| {
+            Ok(Named {
+                answer: diagnose_run(&shelf.read()?, &shelf.scripts, run)?,
+                parts: shelf.scripts.faults()?.lrus,
+            })
+        }));
     }
 
     fn answer(&self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let words = &desk.words.diagnosis;
         let palette = Palette::of(ui);
-        let answer = match &self.answer {
-            Asked::There(answer) => answer,
+        let named = match &self.answer {
+            Asked::There(named) => named,
             Asked::Not => {
                 ui.label(words.choose_run);
                 return;
@@ -70,12 +91,13 @@ impl DiagnosisPage {
                 return;
             }
         };
+        let answer = &named.answer;
         self.head(ui, desk, answer);
         for warning in &answer.warnings {
             ui.label(RichText::new(format!("⚠ {warning}")).color(palette.warn));
         }
         ui.separator();
-        candidates::ranked(ui, desk, answer);
+        candidates::ranked(ui, desk, named);
         let from = desk.words.report.origin(answer.dictionary_from);
         let from = fill(words.dictionary, &[("from", &from)]);
         ui.label(RichText::new(from).small().color(palette.quiet));
