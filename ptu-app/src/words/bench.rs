@@ -15,7 +15,7 @@ wordings! {
         no_unit: "No unit is connected", "연결된 유닛이 없습니다";
         run_has_bench: "A run has the bench: stop it first", "시험이 벤치를 사용 중입니다. 먼저 시험을 멈추십시오";
         needs_btu: "Goes through the bench harness: connect as BTU", "벤치 하네스로 주는 신호입니다. BTU로 연결하십시오";
-        not_armed: "The unit is not armed: press Arm first", "유닛이 무장되지 않았습니다. 먼저 무장을 누르십시오";
+        not_armed: "The unit is not armed: press Arm first", "시험 허가 상태가 아닙니다. 먼저 시험 허가를 누르십시오";
         key_off: "The maintenance key is off", "정비 키가 꺼져 있습니다";
 
         // What every value can be.
@@ -82,7 +82,7 @@ wordings! {
         coast: "coast", "타행";
         tcms_mode: "TCMS mode", "TCMS 모드";
         tcms_link: "TCMS link", "TCMS 통신";
-        tcms_alive: "TCMS alive", "TCMS 생존";
+        tcms_alive: "TCMS alive", "TCMS 생존 신호";
         tcms_fsb: "TCMS FSB", "TCMS FSB";
         tcms_holding: "TCMS holding", "TCMS 정차 제동";
         power_cuts: "Power cut by", "역행 차단 원인";
@@ -108,7 +108,7 @@ wordings! {
         answer_train: "Answer: train", "응답: 열차";
         answer_station: "Answer: station", "응답: 역";
         aligned: "At stop point", "정위치 정차";
-        route: "Route", "경로";
+        route: "Route", "진로";
         section: "Section", "구간";
         given: "given", "있음";
         held: "not given", "없음";
@@ -161,8 +161,8 @@ wordings! {
         factor: "Scale", "배율";
         train_model: "Train model", "열차 모델";
         marker_pulse: "Marker pulse", "지상자 펄스";
-        lay: "Lay section", "구간 설치";
-        take_up: "Take up", "철거";
+        lay: "Lay section", "구간 설정";
+        take_up: "Take up", "해제";
         marker: "Marker", "지상자";
         move_by: "Moved by", "이동";
         move_marker: "Move", "이동 적용";
@@ -184,7 +184,7 @@ wordings! {
         ato_enable: "ATO permitted", "ATO 허가";
         load: "Load", "승객 하중";
         gradient: "Gradient", "구배";
-        adhesion: "Adhesion", "점착";
+        adhesion: "Adhesion", "점착계수";
         cut_out: "Cut out, car", "개방, 차호";
         cut_brake: "Brake", "제동";
         cut_inverter: "Inverter", "인버터";
@@ -193,8 +193,8 @@ wordings! {
         maintenance: "Tester", "시험기";
         silent: "silent", "무응답";
         speaks: "speaks", "통신";
-        arm: "Arm unit", "유닛 무장";
-        disarm: "Disarm unit", "유닛 무장 해제";
+        arm: "Arm unit", "유닛 시험 허가";
+        disarm: "Disarm unit", "유닛 시험 허가 해제";
         inputs: "Inputs", "입력 채널";
         test_code: "Test code", "시험 코드";
         test_speed: "Test speed", "시험 속도";
@@ -206,7 +206,7 @@ wordings! {
 
         // Switches of the train.
         other_cab: "HCR of the other cab", "반대 운전실 HCR";
-        dead_man: "Dead man held", "데드맨 누름";
+        dead_man: "Dead man held", "운전자 경계장치";
         button_1: "Emergency button 1", "비상 버튼 1";
         button_2: "Emergency button 2", "비상 버튼 2";
         eb_cut_out: "EB cut-out", "EB 개방";
@@ -218,7 +218,7 @@ wordings! {
         regeneration: "Line takes regeneration", "회생 가능";
 
         // States by name.
-        mode_off: "off", "정지";
+        mode_off: "off", "차단";
         mode_yard: "yard", "기지";
         mode_manual: "manual", "수동";
         mode_automatic: "automatic", "자동";

@@ -13,7 +13,7 @@ wordings! {
         connected: "connected", "연결됨";
         simulated: "simulated unit", "모의 유닛";
         armed: "ARMED: test signals act", "ARMED: 시험 신호 작동";
-        disarmed: "disarmed", "해제됨";
+        disarmed: "disarmed", "시험 허가 해제됨";
         stop_all: "Stop all", "전체 정지";
         language: "language", "언어";
         dark: "dark", "어둡게";
@@ -21,8 +21,8 @@ wordings! {
         scale: "size", "크기";
         cannot_connect: "The unit cannot be reached", "유닛에 연결할 수 없습니다";
         is_connected: "Connected to unit {unit}", "유닛 {unit} 연결됨";
-        is_disconnected: "Disconnected; outputs safe, unit disarmed", "연결 해제됨: 출력은 안전하고 유닛은 무장 해제됨";
-        link_lost: "The connection to the unit is lost", "유닛과의 연결이 끊어졌습니다";
+        is_disconnected: "Disconnected; outputs safe, unit disarmed", "연결 해제됨: 출력은 안전하고 시험 허가는 해제됨";
+        link_lost: "The connection to the unit is lost", "유닛과의 링크가 끊어졌습니다";
         not_safe: "Outputs were not confirmed safe: switch the unit off", "출력이 안전한지 확인되지 않았습니다: 유닛 전원을 끄십시오";
         unit_restarted: "The unit was started again", "유닛이 다시 시작되었습니다";
         not_done: "Not done: {what}", "실행되지 않음: {what}";
@@ -50,8 +50,8 @@ wordings! {
         link_good: "link {share} %", "링크 {share} %";
         add_unit: "Add a unit", "유닛 추가";
         remove_unit: "Remove", "제거";
-        arm: "Arm", "무장";
-        disarm: "Disarm", "무장 해제";
+        arm: "Arm", "시험 허가";
+        disarm: "Disarm", "시험 허가 해제";
         about: "About", "정보";
         versions: "software {software}, unit configuration {config}, track database {line}",
             "소프트웨어 {software}, 유닛 구성 {config}, 선로 데이터 {line}";

@@ -30,7 +30,7 @@ wordings! {
         not_loaded: "The scripts cannot be read", "스크립트를 읽을 수 없습니다";
         not_begun: "The run was not begun", "시험을 시작하지 못했습니다";
         no_such_step: "There is no such step in these scripts", "이 스크립트에는 그런 단계가 없습니다";
-        progress: "{done} of {all} steps, {bad} not passed", "{all}개 중 {done}개 단계, 합격 아님 {bad}";
+        progress: "{done} of {all} steps, {bad} not passed", "{all}개 중 {done}개 단계, 미합격 {bad}";
         elapsed: "{time} elapsed", "경과 {time}";
         left: "about {time} of bench time left", "벤치 시간 약 {time} 남음";
         bringing_up: "bringing the unit up", "유닛 준비 중";
@@ -41,7 +41,7 @@ wordings! {
         no: "No", "아니요";
         no_measurements: "This step measures nothing", "이 단계에는 측정이 없습니다";
         results: "results", "결과";
-        only_bad: "only those not passed", "합격이 아닌 것만";
+        only_bad: "only those not passed", "미합격만";
         faults_found: "faults found", "발견된 고장";
         suspect: "suspect: {part}", "의심 부품: {part}";
         to_diagnosis: "Diagnosis", "진단";

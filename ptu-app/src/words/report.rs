@@ -25,7 +25,7 @@ wordings! {
         tester: "Tested by", "시험자";
         nobody: "not stated", "기재 없음";
         seed: "Seed", "시드";
-        source: "Connection", "접속";
+        source: "Connection", "연결";
         started: "Started", "시작";
         finished: "Finished", "종료";
         bench_time: "Time on the bench", "벤치 시간";
@@ -87,15 +87,15 @@ wordings! {
         tester_signs: "Tester", "시험자";
         approver_signs: "Approver", "승인자";
         date: "Date", "일자";
-        notes: "Notes", "비고";
+        notes: "Notes", "메모";
         noted_by: "Noted by", "작성자";
-        noted: "Note", "내용";
-        note_field: "note on this run", "이 시험의 비고";
-        note_save: "Save note", "비고 저장";
+        noted: "Note", "메모 내용";
+        note_field: "note on this run", "이 시험의 메모";
+        note_save: "Save note", "메모 저장";
         note_hint: "State the operator's name, then write what is to be said; it stands on the test sheet",
             "시험자 이름을 먼저 적으십시오. 저장한 내용은 시험 성적서에 실립니다";
-        note_saved: "Note saved", "비고를 저장했습니다";
-        note_not_saved: "The note was not saved", "비고를 저장하지 못했습니다";
+        note_saved: "Note saved", "메모를 저장했습니다";
+        note_not_saved: "The note was not saved", "메모를 저장하지 못했습니다";
         from_scripts: "the scripts directory", "스크립트 폴더";
         from_campaign: "a campaign on this machine", "이 컴퓨터에서 수행한 캠페인";
         choose_run: "Choose a run on the left.", "왼쪽에서 시험을 고르십시오.";

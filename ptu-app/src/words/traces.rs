@@ -42,7 +42,7 @@ wordings! {
         close_axes_hint: "axes of quantities as long as what is in view needs, or as the whole trace needs", "세로축을 보이는 구간에 맞추거나 전체 트레이스에 맞춤";
         trigger: "trigger", "트리거";
         events: "events", "이벤트";
-        lanes: "lanes", "레인";
+        lanes: "lanes", "신호 칸";
         keys: "wheel or + and −: zoom; drag or arrows: pan; F: all; click or A: cursor A; Shift+click or B: cursor B; , and .: move A by a row (with Shift: B); Esc: no cursors", "휠 또는 + −: 확대/축소, 끌기 또는 화살표: 이동, F: 전체, 클릭 또는 A: 커서 A, Shift+클릭 또는 B: 커서 B, , 와 .: 커서 A를 한 행씩 이동 (Shift와 함께 B), Esc: 커서 지우기";
 
         // Lanes.
@@ -78,8 +78,8 @@ wordings! {
         overlay: "Compare with", "비교 대상";
         overlay_choice: "what to compare with", "비교할 대상";
         no_overlay: "nothing", "없음";
-        good_twin: "good twin", "정상 트윈";
-        making_twin: "running the same stimuli on a sound unit …", "같은 자극을 정상 유닛에 다시 주는 중 …";
+        good_twin: "good twin", "정상 비교 유닛";
+        making_twin: "running the same stimuli on a sound unit …", "같은 시험 입력을 정상 유닛에 다시 주는 중 …";
         cannot_overlay: "There is nothing to compare with", "비교할 수 없습니다";
         cannot_compare: "Where they differ cannot be told", "차이를 판단할 수 없습니다";
         offset: "offset", "이동";
