@@ -59,6 +59,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
         settings: Settings::default(),
         settings_file: None,
         connect: true,
+        interrupted: ptu_app::stop::Stop::default(),
     };
     let context = Context::default();
     let wake = Arc::new(move || noted.lock().expect("times").push(Instant::now()));

@@ -37,13 +37,18 @@ impl Stop {
     /// Listens to interrupt and termination signals on a thread of its own. Without it (no runtime,
     /// no signals) the process ends at once, and the unit's own time-out makes its outputs safe.
     pub fn listen(&self) {
+        self.listen_and(|| {});
+    }
+
+    /// The same, and does something at each signal.
+    pub fn listen_and(&self, then: impl Fn() + Send + 'static) {
         let stop = self.clone();
         let _ = std::thread::Builder::new()
             .name("signals".into())
-            .spawn(move || stop.wait());
+            .spawn(move || stop.wait(&then));
     }
 
-    fn wait(&self) {
+    fn wait(&self, then: &dyn Fn()) {
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_io()
             .build();
@@ -61,6 +66,7 @@ impl Stop {
                     _ = interrupt.recv() => self.press(),
                     _ = terminate.recv() => self.press(),
                 }
+                then();
             }
         });
     }

@@ -133,12 +133,94 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
 }
 
 #[test]
+fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.until("a step", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.done > 0)
+    });
+    for _ in 0..5 {
+        window.key(Key::F12);
+    }
+    window.wait_for_part("Run over: aborted");
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "aborted");
+    let run = window.app().units().chosen().run.as_ref().expect("a run");
+    let messages = run
+        .procedures
+        .iter()
+        .map(|procedure| procedure.message.as_str());
+    let messages: String = messages.collect();
+    assert!(messages.contains("stopped by the operator"), "{messages}");
+    assert!(!messages.contains("cut short"), "{messages}");
+}
+
+#[test]
+fn letting_go_in_a_run_closes_its_record_first() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.until("the run", running);
+    window.click("Disconnect");
+    window.wait_for_part("outputs safe");
+    window.wait_for("not connected");
+    assert_eq!(latest(&window)["run"]["verdict"], "aborted");
+}
+
+#[test]
+fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Lamp\", suspect = \"-\")\n\
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(60))])\n",
+    );
+    let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for("Does the lamp light?");
+    window.key(Page::Faults.key());
+    window.wait_for("a script asks");
+    let now = |window: &Window| window.app().units().chosen().station.live().now;
+    let (before, began) = (now(&window), std::time::Instant::now());
+    for _ in 0..100 {
+        window.step();
+    }
+    let bench_s = now(&window).since(before).as_secs();
+    let clock_s = began.elapsed().as_secs_f64();
+    assert!(
+        bench_s < clock_s + 0.5,
+        "{bench_s} s on the bench in {clock_s} s"
+    );
+    window.click("a script asks");
+    window.click("Yes");
+    window.wait_for_part("Run over: passed");
+}
+
+#[test]
+fn reaching_a_unit_can_be_given_up() {
+    let unit = Unit::on_pty(&[]);
+    let mut settings = settings(Page::Bench);
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.click("cancel");
+    window.wait_for_part("stopped before the unit was reached");
+    window.wait_for("not connected");
+}
+
+#[test]
 fn a_script_asks_and_the_answer_decides() {
     let place = Place::new();
     let scripts = own_scripts(
         &place,
         "procedure(title = \"Lamp\", suspect = \"-\")\n\
-         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(30))])\n",
     );
     for (answer, verdict) in [("Yes", "passed"), ("No", "failed")] {
         let mut window = Window::with(Place::new(), &scripts, settings(Page::Procedures));
@@ -227,10 +309,10 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     window.click("Connect");
     window.wait_for("SIM-0001");
     window.click("Run");
-    window.wait_for_part("The run could not be recorded");
-    window.until("the unit live again", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
-    });
+    window.wait_for_part("The run was not begun");
+    assert!(window.app().units().chosen().is_connected());
+    window.click("OK");
+    assert!(!window.shows_part("The run was not begun"));
 
     std::fs::remove_file(window.place.path("history.db")).expect("removed");
     window.click("Run");
@@ -239,14 +321,18 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     lock.execute_batch("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE")
         .expect("locked");
     window.click("Run");
-    window.until("a second message", |window| {
-        window.shows_part("The run could not be recorded")
+    window.until("the trouble", |window| {
+        window.shows_part("The run was not begun") || window.shows_part("could not be recorded")
     });
     drop(lock);
+    let before = window.place.json(&["runs", "list", "--json"]);
     window.click("Run");
-    window.until("the run", |window| {
+    window.until("one more run", |window| {
         let run = window.app().units().chosen().run.as_ref();
-        run.is_some_and(|run| run.id().is_some())
+        run.is_some_and(|run| {
+            run.id()
+                .is_some_and(|id| !before.to_string().contains(&id.to_string()))
+        })
     });
 }
 
@@ -303,6 +389,8 @@ fn two_units_are_tested_side_by_side() {
     });
     let runs = window.place.json(&["runs", "list", "--json"]);
     assert_eq!(runs.as_array().map(Vec::len), Some(2));
+    // Which unit is said of each.
+    window.wait_for_part("SIM-0001: Run over: ");
 }
 
 #[test]

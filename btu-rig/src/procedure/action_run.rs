@@ -143,6 +143,11 @@ impl ActionRun {
         Progress::Done
     }
 
+    /// An answer of the operator is waited for.
+    pub(super) fn asks(&self, actions: &[Action]) -> bool {
+        self.since.is_some() && matches!(actions.get(self.at), Some(Action::Prompt { .. }))
+    }
+
     /// Says what is waited for: prompts at once, the rest if it takes longer than a moment.
     fn report(&mut self, action: &Action, now: Instant, waited: Duration, out: &mut Vec<RunEvent>) {
         let left = action.worst_case() - waited;

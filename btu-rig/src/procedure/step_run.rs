@@ -52,6 +52,11 @@ impl StepRun {
         }
     }
 
+    /// An answer of the operator is waited for.
+    pub(super) fn asks(&self, step: &Step) -> bool {
+        self.actions.asks(&step.actions)
+    }
+
     pub(super) fn started(&self) -> Instant {
         self.started
     }

@@ -124,6 +124,7 @@ impl Window {
             settings,
             settings_file: None,
             connect: false,
+            interrupted: ptu_app::stop::Stop::default(),
         };
         let app = App::new(&context, options, Arc::new(|| {})).expect("a window");
         Self {

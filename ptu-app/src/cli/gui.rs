@@ -7,6 +7,7 @@ use crate::failure::{Exit, Failure};
 use crate::gui::library::Shelf;
 use crate::gui::{Options, Page, Settings, open};
 use crate::link::Endpoint;
+use crate::stop::Stop;
 use crate::words::Language;
 
 /// Open the technician's window
@@ -80,6 +81,7 @@ impl GuiArguments {
             settings,
             settings_file,
             connect: self.unit.is_some(),
+            interrupted: Stop::default(),
         })?;
         Ok(Exit::Passed)
     }

@@ -14,6 +14,7 @@ use super::units::Units;
 use super::{fonts, theme};
 use crate::failure::Failure;
 use crate::station::Wake;
+use crate::stop::Stop;
 
 /// How often a window that is being closed looks whether all units are let go.
 const CLOSING: Duration = Duration::from_millis(50);
@@ -28,6 +29,8 @@ pub struct Options {
     pub settings_file: Option<PathBuf>,
     /// Connect the unit at once.
     pub connect: bool,
+    /// Pressed when the system asks the program to end.
+    pub interrupted: Stop,
 }
 
 /// The window.
@@ -43,6 +46,10 @@ pub struct App {
     go: Vec<Go>,
     closing: bool,
     closed: bool,
+    /// The person knows that outputs were not confirmed safe.
+    noted_not_safe: bool,
+    /// The system asks the program to end.
+    interrupted: Stop,
 }
 
 impl App {
@@ -71,6 +78,8 @@ impl App {
             go: Vec::new(),
             closing: false,
             closed: false,
+            noted_not_safe: false,
+            interrupted: options.interrupted,
         })
     }
 
@@ -89,6 +98,7 @@ impl App {
             go: &mut self.go,
         };
         self.frame.keys(ui, &mut desk);
+        self.pages.poll(&mut desk);
         Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut desk));
         Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut desk));
         Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut desk));
@@ -96,7 +106,8 @@ impl App {
         desk.units.watch(page == Page::Bench);
         CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut desk));
         if self.closing {
-            self.frame.closing(ui, words);
+            let not_safe = self.units.any_not_safe() && !self.noted_not_safe;
+            self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
         for to in std::mem::take(&mut self.go) {
             let mut desk = Desk {
@@ -142,14 +153,18 @@ impl App {
 
     /// The window closes when runs are stopped and recorded, outputs safe and units disarmed.
     fn close_in_order(&mut self, context: &Context) {
-        if context.input(|input| input.viewport().close_requested()) {
+        let asked = context.input(|input| input.viewport().close_requested());
+        if (asked || self.interrupted.presses() > 0) && !self.closing {
             self.closing = true;
             self.save(context);
         }
         if !self.closing {
             return;
         }
-        if self.units.close() {
+        let let_go = self.units.close();
+        // The person is to know before the window is gone.
+        let known = !self.units.any_not_safe() || self.noted_not_safe;
+        if let_go && known {
             self.closed = true;
             context.send_viewport_cmd(ViewportCommand::Close);
         } else {

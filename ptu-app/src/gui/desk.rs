@@ -1,12 +1,11 @@
 //! What every page has at hand.
 
-use std::time::Instant;
-
 use fault_db::Id;
 
 use super::library::Library;
 use super::settings::Settings;
 use super::units::Units;
+use crate::clock;
 use crate::words::Words;
 
 /// What every page has at hand.
@@ -42,12 +41,18 @@ pub enum Go {
         procedure: String,
         /// Step by its name; none = all of them.
         step: Option<String>,
+        /// The unit it is for, by its serial number.
+        unit: String,
     },
 }
 
 /// What the person is told, the latest last.
 #[derive(Debug, Default)]
-pub struct Messages(Vec<Message>);
+pub struct Messages {
+    all: Vec<Message>,
+    /// The latest trouble, until the person has taken note of it.
+    unread: Option<usize>,
+}
 
 /// One thing told.
 #[derive(Debug)]
@@ -58,8 +63,8 @@ pub struct Message {
     pub detail: String,
     /// Something went wrong.
     pub bad: bool,
-    /// When.
-    pub at: Instant,
+    /// When, µs since 1970.
+    pub at_us: i64,
 }
 
 /// As many as are kept.
@@ -78,23 +83,38 @@ impl Messages {
 
     /// All, oldest first.
     pub fn all(&self) -> &[Message] {
-        &self.0
+        &self.all
+    }
+
+    /// The latest trouble the person has not taken note of.
+    pub fn unread_trouble(&self) -> Option<&Message> {
+        self.all.get(self.unread?)
+    }
+
+    /// The person has taken note of the trouble.
+    pub fn take_note(&mut self) {
+        self.unread = None;
     }
 
     /// The person has read them.
     pub fn clear(&mut self) {
-        self.0.clear();
+        self.all.clear();
+        self.unread = None;
     }
 
     fn push(&mut self, text: String, detail: String, bad: bool) {
-        if self.0.len() == KEPT {
-            self.0.remove(0);
+        if self.all.len() == KEPT {
+            self.all.remove(0);
+            self.unread = self.unread.and_then(|place| place.checked_sub(1));
         }
-        self.0.push(Message {
+        if bad {
+            self.unread = Some(self.all.len());
+        }
+        self.all.push(Message {
             text,
             detail,
             bad,
-            at: Instant::now(),
+            at_us: clock::now_us(),
         });
     }
 }

@@ -44,6 +44,8 @@ pub fn open(options: Options) -> Result<(), Failure> {
         native,
         Box::new(|creation| {
             let wake = waker(&creation.egui_ctx)?;
+            let woken = wake.clone();
+            options.interrupted.listen_and(move || woken());
             Ok(Box::new(App::new(&creation.egui_ctx, options, wake)?))
         }),
     )

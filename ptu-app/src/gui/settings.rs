@@ -8,6 +8,11 @@ use super::Page;
 use super::units::UnitChoice;
 use crate::words::Language;
 
+/// Everything is at least and at most so large.
+pub const SMALLEST_ZOOM: f32 = 0.7;
+/// See [`SMALLEST_ZOOM`].
+pub const LARGEST_ZOOM: f32 = 2.5;
+
 /// What the window keeps between starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -60,7 +65,9 @@ impl Settings {
     /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
     pub fn load(file: &Path) -> Self {
         let text = std::fs::read_to_string(file).unwrap_or_default();
-        serde_json::from_str(&text).unwrap_or_default()
+        let mut settings: Self = serde_json::from_str(&text).unwrap_or_default();
+        settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
+        settings
     }
 
     /// Keeps them in `file`, at once or not at all.

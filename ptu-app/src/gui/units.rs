@@ -6,6 +6,7 @@ use std::str::FromStr;
 use btu_rig::procedure::UnitEvent;
 use btu_rig::procedure::plan::Connection;
 use protocol::message::Identity;
+use protocol::signal::Signal;
 use serde::{Deserialize, Serialize};
 
 use super::desk::Messages;
@@ -105,6 +106,8 @@ impl UnitChoice {
 
 /// One unit.
 pub struct Unit {
+    /// Its own number in this window, never used again for another.
+    pub id: u64,
     /// What is chosen for it.
     pub choice: UnitChoice,
     /// Its bench.
@@ -119,11 +122,14 @@ pub struct Unit {
     runs_ended: usize,
     /// The person knows that it cannot be reached.
     lost: bool,
+    /// It was let go without its outputs being confirmed safe.
+    not_safe: bool,
 }
 
 impl Unit {
-    fn new(choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
+    fn new(id: u64, choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
         Ok(Self {
+            id,
             choice,
             station: Station::new(wake)?,
             setup: Asked::Not,
@@ -131,6 +137,7 @@ impl Unit {
             run: None,
             runs_ended: 0,
             lost: false,
+            not_safe: false,
         })
     }
 
@@ -167,44 +174,85 @@ impl Unit {
             Asked::Pending(library.ask(move |shelf| choice.named()?.setup(&shelf.scripts)));
     }
 
-    /// Begins a run.
-    pub fn begin(&mut self, order: RunOrder) {
-        self.run = Some(Progress::new(&order.plan));
+    /// Lets it go, or gives up reaching it.
+    pub fn disconnect(&mut self) {
+        if matches!(self.setup, Asked::Pending(_)) {
+            self.setup = Asked::Not;
+        }
+        self.station.disconnect();
+    }
+
+    /// Begins a run, if nothing else has the bench; whether it did.
+    pub fn begin(&mut self, order: RunOrder) -> bool {
+        if self.phase() != Phase::Idle {
+            return false;
+        }
+        self.run = Some(Progress::new(&order.plan, self.name()));
         self.station.run(order);
+        true
+    }
+
+    /// Answers what the run's script asks; it asks nothing more then.
+    pub fn answer(&mut self, yes: bool) {
+        if let Some(present) = self.run.as_mut().and_then(|run| run.present.as_mut())
+            && present.prompt.take().is_some()
+        {
+            self.station.board().answer(yes);
+        }
+    }
+
+    /// Test signals act on it.
+    pub fn is_armed(&self) -> bool {
+        self.station.live().sample.get(Signal::Armed) == Some(1.0)
     }
 
     /// Takes what happened since the last time, and tells the person what matters.
-    fn poll(&mut self, words: &Words, messages: &mut Messages) {
+    fn poll(&mut self, words: &Words, said: &mut Said<'_>) {
         if self.setup.poll() {
             match &self.setup {
                 Asked::There(setup) => self
                     .station
                     .connect(setup.clone(), self.choice.connection()),
-                Asked::Failed(why) => messages.trouble(words.frame.cannot_connect, why.clone()),
+                Asked::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
                 _ => {}
             }
         }
         let news: Vec<_> = self.station.news().collect();
         for news in news {
-            self.hear(news, words, messages);
+            self.hear(news, words, said);
         }
     }
 
-    fn hear(&mut self, news: News, words: &Words, messages: &mut Messages) {
+    fn hear(&mut self, news: News, words: &Words, said: &mut Said<'_>) {
         let frame = &words.frame;
         match news {
             News::Connected { serial } => {
                 self.log.clear();
                 self.lost = false;
-                messages.tell(fill(frame.is_connected, &[("unit", &serial)]));
+                self.not_safe = false;
+                // What another unit's run came to is not this one's.
+                if self.run.as_ref().is_some_and(|run| run.unit != serial) {
+                    self.run = None;
+                }
+                said.tell(fill(frame.is_connected, &[("unit", &serial)]));
             }
-            News::NotConnected(why) => messages.trouble(frame.cannot_connect, why),
-            News::Disconnected => messages.tell(frame.is_disconnected),
-            News::LinkLost(why) => self.lose(why, words, messages),
-            News::NotSafe => messages.trouble(frame.not_safe, ""),
-            News::UnitRestarted => messages.trouble(frame.unit_restarted, ""),
+            News::NotConnected(why) => said.trouble(frame.cannot_connect, why),
+            News::Disconnected { safe: true } => said.tell(frame.is_disconnected),
+            News::Disconnected { safe: false } | News::NotSafe => {
+                self.not_safe = true;
+                said.trouble(frame.not_safe, "");
+            }
+            News::LinkLost(why) => self.lose(why, words, said),
+            News::Broken => {
+                self.not_safe = true;
+                said.trouble(frame.broken, "");
+                if let Some(run) = self.run.as_mut().filter(|run| run.is_running()) {
+                    run.end(None);
+                }
+            }
+            News::UnitRestarted => said.trouble(frame.unit_restarted, ""),
             News::NotDone { asked, why } => {
-                messages.trouble(fill(frame.not_done, &[("what", &asked)]), why);
+                said.trouble(fill(frame.not_done, &[("what", &asked)]), why);
             }
             News::Logged(entry) => {
                 if self.log.len() == LOG {
@@ -214,7 +262,7 @@ impl Unit {
             }
             News::Run { procedure, what } => {
                 if let RunNews::LinkLost(why) = &what {
-                    self.lose(why.clone(), words, messages);
+                    self.lose(why.clone(), words, said);
                 }
                 if let Some(run) = &mut self.run {
                     run.hear(&procedure, &what);
@@ -223,27 +271,52 @@ impl Unit {
             News::RunEnded(outcome) => {
                 self.runs_ended += 1;
                 let verdict = words.common.verdict(outcome.verdict);
-                messages.tell(fill(frame.run_ended, &[("verdict", &verdict)]));
+                said.tell(fill(frame.run_ended, &[("verdict", &verdict)]));
                 if let Some(run) = &mut self.run {
                     run.end(Some(outcome));
                 }
             }
             News::RunFailed(why) => {
-                messages.trouble(frame.run_failed, why);
+                self.runs_ended += 1;
+                said.trouble(frame.run_failed, why);
                 if let Some(run) = &mut self.run {
                     run.end(None);
                 }
             }
         }
     }
+
+    /// Said once, though every procedure of a run finds it out for itself.
+    fn lose(&mut self, why: String, words: &Words, said: &mut Said<'_>) {
+        if !std::mem::replace(&mut self.lost, true) {
+            said.trouble(words.frame.link_lost, why);
+        }
+    }
 }
 
-impl Unit {
-    /// Said once, though every procedure of a run finds it out for itself.
-    fn lose(&mut self, why: String, words: &Words, messages: &mut Messages) {
-        if !std::mem::replace(&mut self.lost, true) {
-            messages.trouble(words.frame.link_lost, why);
+/// Messages that say which unit they are about when there are several.
+struct Said<'a> {
+    unit: Option<String>,
+    messages: &'a mut Messages,
+}
+
+impl Said<'_> {
+    fn named(&self, text: impl Into<String>) -> String {
+        let text = text.into();
+        match &self.unit {
+            Some(unit) => format!("{unit}: {text}"),
+            None => text,
         }
+    }
+
+    fn trouble(&mut self, text: impl Into<String>, detail: impl Into<String>) {
+        let text = self.named(text);
+        self.messages.trouble(text, detail);
+    }
+
+    fn tell(&mut self, text: impl Into<String>) {
+        let text = self.named(text);
+        self.messages.tell(text);
     }
 }
 
@@ -252,6 +325,9 @@ pub struct Units {
     first: Unit,
     more: Vec<Unit>,
     chosen: usize,
+    next_id: u64,
+    /// Counts the times everything was stopped: what was ordered before is not begun after.
+    stops: u64,
     wake: Wake,
 }
 
@@ -262,9 +338,11 @@ impl Units {
     /// The system gives no thread.
     pub fn new(choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
         Ok(Self {
-            first: Unit::new(choice, wake.clone())?,
+            first: Unit::new(0, choice, wake.clone())?,
             more: Vec::new(),
             chosen: 0,
+            next_id: 1,
+            stops: 0,
             wake,
         })
     }
@@ -274,14 +352,17 @@ impl Units {
     /// # Errors
     /// The system gives no thread.
     pub fn add(&mut self, choice: UnitChoice) -> Result<(), Failure> {
-        self.more.push(Unit::new(choice, self.wake.clone())?);
+        let unit = Unit::new(self.next_id, choice, self.wake.clone())?;
+        self.next_id += 1;
+        self.more.push(unit);
         self.chosen = self.more.len();
         Ok(())
     }
 
     /// Takes away one that is not connected, but never the last.
     pub fn remove(&mut self, place: usize) {
-        if self.more.is_empty() {
+        let offline = |unit: &Unit| unit.phase() == Phase::Offline;
+        if self.more.is_empty() || !self.iter().nth(place).is_some_and(offline) {
             return;
         }
         if place == 0 {
@@ -348,10 +429,39 @@ impl Units {
         }
     }
 
+    /// The one of this number, if it is still there.
+    pub fn of_id(&mut self, id: u64) -> Option<&mut Unit> {
+        self.iter_mut().find(|unit| unit.id == id)
+    }
+
+    /// Stops every run, takes every stimulus away and disarms, at all units.
+    pub fn stop_all(&mut self) {
+        self.stops += 1;
+        for unit in self.iter() {
+            unit.station.stop_all();
+        }
+    }
+
+    /// Times everything was stopped.
+    pub fn stops(&self) -> u64 {
+        self.stops
+    }
+
+    /// One of them was let go without its outputs being confirmed safe.
+    pub(super) fn any_not_safe(&self) -> bool {
+        self.iter().any(|unit| unit.not_safe)
+    }
+
     /// Takes what happened at all of them.
     pub(super) fn poll(&mut self, words: &Words, messages: &mut Messages) {
-        for unit in self.iter_mut() {
-            unit.poll(words, messages);
+        let several = !self.more.is_empty();
+        for (place, unit) in (1..).zip(self.iter_mut()) {
+            let unit_said = several.then(|| format!("{place} {}", unit.name()));
+            let mut said = Said {
+                unit: unit_said,
+                messages,
+            };
+            unit.poll(words, &mut said);
         }
     }
 

@@ -24,7 +24,7 @@ use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
 use super::{Attendant, ProcedureStream, RunPlan, Task, stream};
 use crate::data::DataFile;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
 use crate::stop::Stop;
 
@@ -96,7 +96,14 @@ impl BenchSetup {
         let mut session = Session::new(bench, Pace::real(), stop.clone(), false)
             .attended_by(self.attendant.clone());
         let mut found = Vec::new();
-        let identity = self.bring_up(&mut session, &mut found)?;
+        let identity = self.bring_up(&mut session, &mut found);
+        if stop.presses() > 0 {
+            return Err(Failure {
+                exit: Exit::Aborted,
+                message: format!("{}: stopped before the unit was reached", self.endpoint),
+            });
+        }
+        let identity = identity?;
         self.check_identity(&identity)?;
         Ok(Connected::Port(Box::new(session), identity, found))
     }

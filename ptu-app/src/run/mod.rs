@@ -20,6 +20,7 @@ mod session;
 mod store_thread;
 mod suite;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
@@ -118,18 +119,28 @@ pub fn run_on(
     let id = run_store.id;
     let made = BenchMade::of(setup, connected.serial());
     let mut collector = Collector::new(run_store, listener, made, plan.stop_on_fail);
-    std::thread::scope(|scope| match &plan.adaptive {
-        Some(adaptive) => {
-            let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
-            collect(procedures, &mut collector, stop);
-        }
-        None => {
-            let procedures = benches::start(scope, plan, connected, stop);
-            collect(procedures, &mut collector, stop);
-        }
-    });
+    let worked = catch_unwind(AssertUnwindSafe(|| {
+        std::thread::scope(|scope| match &plan.adaptive {
+            Some(adaptive) => {
+                let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
+                collect(procedures, &mut collector, stop);
+            }
+            None => {
+                let procedures = benches::start(scope, plan, connected, stop);
+                collect(procedures, &mut collector, stop);
+            }
+        });
+    }));
     let (run_store, mut outcome) = collector.finish(id);
     let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
+    if worked.is_err() {
+        // What was recorded stays, and the run is no pass.
+        run_store.finish(began.end(Verdict::Error, outcome.bench_time.as_us() as i64))?;
+        return Err(Failure::bench(format!(
+            "the program failed in run {}, which is recorded as an error; please report what stands before this",
+            id.short()
+        )));
+    }
     let store = run_store.finish(end)?;
     if stop.presses() > 0 {
         outcome.exit = Exit::Aborted;

@@ -58,6 +58,8 @@ pub struct Session<L: UnitLink> {
     link_error: Option<String>,
     fresh_unit: bool,
     attendant: Option<Arc<dyn Attendant>>,
+    /// Virtual time goes at the clock's pace, because a person is waited for.
+    with_person: bool,
 }
 
 /// A window of time on a bench.
@@ -94,6 +96,7 @@ impl<L: UnitLink> Session<L> {
             link_error: None,
             fresh_unit,
             attendant: None,
+            with_person: false,
         }
     }
 
@@ -255,6 +258,7 @@ impl<L: UnitLink> Session<L> {
             if let Some(attendant) = &self.attendant {
                 attendant.direct(&mut runner);
             }
+            self.wait_with(runner.awaits_operator());
             let mut rig = Taping::new(self.bench.rig_mut(), &mut taped.tape);
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
             for event in runner.take_events() {
@@ -268,6 +272,7 @@ impl<L: UnitLink> Session<L> {
                 break;
             }
         }
+        self.wait_with(false);
         self.finish_window(sink);
         if traced.get() {
             sink(SessionEvent::Recording(Box::new(taped)));
@@ -310,6 +315,21 @@ impl<L: UnitLink> Session<L> {
             self.take_events();
         }
         false
+    }
+
+    /// A person takes time by the clock: virtual time keeps to it while one is waited for.
+    fn wait_with(&mut self, waits: bool) {
+        match (waits, self.with_person, &self.pace) {
+            (true, false, Pace::Virtual) => {
+                self.with_person = true;
+                self.pace = Pace::real();
+            }
+            (false, true, _) => {
+                self.with_person = false;
+                self.pace = Pace::Virtual;
+            }
+            _ => {}
+        }
     }
 
     /// Lets an open window run out on a quiet bench. What is logged meanwhile waits for whoever idles next.

@@ -7,12 +7,11 @@ use std::time;
 
 use btu_rig::procedure::Runner;
 use btu_rig::rig::Rig;
-use protocol::link::Counters;
 use protocol::message::Identity;
 use protocol::signal::{Sample, Signal};
 use protocol::{CYCLE, Duration, Instant};
 
-use super::Wake;
+use super::{LinkQuality, Wake};
 use crate::run::Attendant;
 
 /// Rows are kept for this long.
@@ -69,10 +68,12 @@ pub struct Live {
     pub sample: Sample,
     /// Who the unit is.
     pub identity: Option<Identity>,
-    /// Frames taken and refused.
-    pub counters: Counters,
+    /// How well frames come through.
+    pub link: LinkQuality,
     /// Times the unit was started again.
     pub restarts: u32,
+    /// Counts benches made anew and made safe: what was given by hand before is gone.
+    pub generation: u64,
     /// The latest rows, oldest first, one per 50 ms; they begin anew with each bench.
     pub rows: VecDeque<Row>,
 }
@@ -161,10 +162,19 @@ impl Board {
             let mut live = held(&self.live);
             live.phase = phase;
             if phase == Phase::Offline {
-                *live = Live::default();
+                let generation = live.generation + 1;
+                *live = Live {
+                    generation,
+                    ..Live::default()
+                };
             }
         }
         (self.wake)();
+    }
+
+    /// What was given by hand is gone: the bench is another one, or was made safe.
+    pub(super) fn begin_anew(&self) {
+        held(&self.live).generation += 1;
     }
 
     pub(super) fn wake(&self) {
@@ -207,7 +217,7 @@ impl Attendant for Board {
         live.now = now;
         live.sample.clone_from(rig.sample());
         live.identity = rig.identity().copied();
-        live.counters = *rig.counters();
+        live.link.note(now, rig.counters());
         live.restarts = rig.unit_restarts();
         drop(live);
         let shown = rig.sample().values().map(f64::to_bits);

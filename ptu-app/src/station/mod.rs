@@ -8,6 +8,7 @@
 //! the next one, and news wait in a queue.
 
 mod board;
+mod link_quality;
 mod news;
 mod permit;
 mod progress;
@@ -21,6 +22,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
 
 pub use board::{Board, HISTORY, Live, Phase, Row};
+pub use link_quality::LinkQuality;
 pub use news::{News, RunNews};
 pub use permit::{Refused, permit};
 pub use progress::{Present, ProcedureProgress, Progress, Waiting};
@@ -37,18 +39,19 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 pub struct RunOrder {
     /// Procedures and steps.
     pub plan: RunPlan,
-    /// Opens the database the run is recorded in, on the bench's thread.
-    pub open_store: Box<dyn FnOnce() -> Result<fault_db::Store, Failure> + Send>,
+    /// The database the run is recorded in, open: a bench does not wait for one.
+    pub store: fault_db::Store,
     /// The embedded unit runs at the wall clock's pace.
     pub realtime: bool,
 }
 
 /// What the bench is told.
 enum Order {
-    Connect(Box<BenchSetup>, Stop),
+    Connect(Box<BenchSetup>, Connection, Stop),
     Disconnect,
-    Apply(Stimulus),
-    Arm,
+    /// A stimulus for the bench as it was then, by its generation.
+    Apply(Stimulus, u64),
+    Arm(u64),
     MakeSafe,
     Run(Box<RunOrder>, Stop),
 }
@@ -76,7 +79,7 @@ impl Station {
         let server = Server::new(board.clone(), sender);
         let thread = std::thread::Builder::new()
             .name("bench".into())
-            .spawn(move || server.serve(&receiver))
+            .spawn(move || server.serve_whatever_happens(&receiver))
             .map_err(|error| Failure::bench(format!("cannot start a bench thread: {error}")))?;
         Ok(Self {
             orders: Some(orders),
@@ -93,7 +96,8 @@ impl Station {
         self.connection = connection;
         self.board.enter(Phase::Connecting);
         self.stop = Stop::default();
-        self.send(Order::Connect(Box::new(setup), self.stop.clone()));
+        let setup = Box::new(setup);
+        self.send(Order::Connect(setup, connection, self.stop.clone()));
     }
 
     /// Makes outputs safe, disarms and lets the unit go.
@@ -108,13 +112,15 @@ impl Station {
     /// It is not possible now, or not with this connection; see [`permit`].
     pub fn apply(&self, stimulus: Stimulus) -> Result<(), Refused> {
         self.permits(&stimulus)?;
-        self.send(Order::Apply(stimulus));
+        let generation = self.board.read().generation;
+        self.send(Order::Apply(stimulus, generation));
         Ok(())
     }
 
-    /// Turns the maintenance key on if the bench has it in hand, and arms the unit.
+    /// Turns the maintenance key on, which is a person's to do on a train, and arms the unit.
     pub fn arm(&self) {
-        self.send(Order::Arm);
+        let generation = self.board.read().generation;
+        self.send(Order::Arm(generation));
     }
 
     /// Whether something can be done to the unit by hand now.
@@ -126,8 +132,12 @@ impl Station {
     }
 
     /// Stops a run and takes every stimulus away; the unit stays connected, disarmed.
+    ///
+    /// Asked for again it does no more: clean-up is cut short only by [`stop_run`](Self::stop_run).
     pub fn stop_all(&self) {
-        self.stop.press();
+        if self.stop.presses() == 0 {
+            self.stop.press();
+        }
         self.send(Order::MakeSafe);
     }
 

@@ -14,14 +14,19 @@ pub enum News {
     },
     /// It could not be reached, or is not what was expected.
     NotConnected(String),
-    /// It was let go, disarmed.
-    Disconnected,
+    /// It was let go.
+    Disconnected {
+        /// Outputs were confirmed safe, and the unit disarmed.
+        safe: bool,
+    },
     /// It cannot be reached any more.
     LinkLost(String),
     /// It was started again by itself or by somebody.
     UnitRestarted,
-    /// Outputs were not confirmed safe when it was let go.
+    /// Outputs were not confirmed safe before something else was done with it.
     NotSafe,
+    /// The bench's program failed; the unit disarms by itself when nothing more comes.
+    Broken,
     /// The bench did not do what was asked of it by hand.
     NotDone {
         /// What was asked.

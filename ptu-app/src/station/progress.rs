@@ -17,6 +17,10 @@ const KEPT: usize = 5_000;
 /// A run's procedures, steps, measurements and faults so far.
 #[derive(Debug)]
 pub struct Progress {
+    /// Unit it is run on.
+    pub unit: String,
+    /// SHA-256 over the scripts it is of.
+    pub scripts_sha256: String,
     /// Procedures in order.
     pub procedures: Vec<ProcedureProgress>,
     /// Steps in all, repetitions counted.
@@ -99,8 +103,8 @@ impl Waiting {
 }
 
 impl Progress {
-    /// Of a plan that has not begun.
-    pub fn new(plan: &RunPlan) -> Self {
+    /// Of a plan that has not begun, on this unit.
+    pub fn new(plan: &RunPlan, unit: String) -> Self {
         let procedure = |task: &crate::run::Task| {
             let all = || (0..task.procedure.steps.len()).collect();
             ProcedureProgress {
@@ -125,6 +129,8 @@ impl Progress {
             })
             .fold(Duration::ZERO, |sum, step| sum + step);
         Self {
+            unit,
+            scripts_sha256: plan.scripts_sha256.clone(),
             steps: steps_of(&plan.tasks),
             procedures,
             done: 0,

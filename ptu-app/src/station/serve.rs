@@ -1,18 +1,20 @@
 //! The bench's thread: reaches a unit, keeps it alive and live, runs procedures on it, lets it go.
 
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 
-use btu_rig::procedure::Procedure;
+use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{Procedure, UnitEvent};
 use btu_rig::rig::UnitLink;
 use btu_rig::stimulus::Stimulus;
-use protocol::signal::Signal;
+use protocol::signal::{Sample, Signal};
 use protocol::{Duration, SCAN};
 
 use super::board::{Board, Phase};
 use super::news::{News, RunNews};
-use super::{Order, RunOrder};
+use super::{Order, RunOrder, permit};
 use crate::link::Pace;
 use crate::run::{
     Began, BenchSetup, Connected, Listener, READY_WITHIN, Session, SessionEvent, run_on, settled,
@@ -21,6 +23,9 @@ use crate::stop::Stop;
 
 /// Seed of the embedded unit's live session, as one procedure among others.
 const LIVE: &str = "live";
+
+/// Why a run cannot be begun.
+const NO_UNIT: &str = "no unit is connected";
 
 /// The thread's side of a station.
 pub(super) struct Server {
@@ -45,16 +50,28 @@ impl Server {
         Self { board, news }
     }
 
-    /// Serves until the station is gone.
-    pub(super) fn serve(self, orders: &Receiver<Order>) {
+    /// Serves until the station is gone. Should the program fail, nobody is shown a unit that is not
+    /// served any more.
+    pub(super) fn serve_whatever_happens(self, orders: &Receiver<Order>) {
+        while catch_unwind(AssertUnwindSafe(|| self.serve(orders))).is_err() {
+            self.board.enter(Phase::Offline);
+            self.tell(News::Broken);
+        }
+    }
+
+    fn serve(&self, orders: &Receiver<Order>) {
         while let Ok(order) = orders.recv() {
-            // Nothing else can be done without a unit.
-            if let Order::Connect(setup, stop) = order {
-                let flow = self.attend(*setup, &stop, orders);
-                self.board.enter(Phase::Offline);
-                if flow.is_break() {
-                    return;
+            match order {
+                Order::Connect(setup, connection, stop) => {
+                    let flow = self.attend(*setup, connection, &stop, orders);
+                    self.board.enter(Phase::Offline);
+                    if flow.is_break() {
+                        return;
+                    }
                 }
+                Order::Run(..) => self.tell(News::RunFailed(NO_UNIT.into())),
+                // Nothing to do it with, and nothing on.
+                Order::Apply(..) | Order::Arm(_) | Order::MakeSafe | Order::Disconnect => {}
             }
         }
     }
@@ -63,6 +80,7 @@ impl Server {
     fn attend(
         &self,
         mut setup: BenchSetup,
+        connection: Connection,
         stop: &Stop,
         orders: &Receiver<Order>,
     ) -> ControlFlow<()> {
@@ -78,55 +96,69 @@ impl Server {
             serial: connected.serial(),
         });
         loop {
+            self.board.begin_anew();
             self.board.enter(Phase::Idle);
-            match self.watch(&mut connected, orders) {
-                Leave::Run(order, stop) => self.run(&mut connected, &mut setup, *order, &stop),
+            let (leave, safe) = self.watch(&mut connected, connection, orders);
+            match leave {
+                Leave::Run(order, stop) => {
+                    if !safe {
+                        self.tell(News::NotSafe);
+                    }
+                    self.run(&mut connected, &mut setup, *order, &stop);
+                }
                 Leave::Disconnect => {
-                    self.tell(News::Disconnected);
+                    self.tell(News::Disconnected { safe });
                     return ControlFlow::Continue(());
                 }
                 Leave::LinkLost(why) => {
                     self.tell(News::LinkLost(why));
                     return ControlFlow::Continue(());
                 }
-                Leave::Closed => return ControlFlow::Break(()),
+                Leave::Closed => {
+                    self.tell(News::Disconnected { safe });
+                    return ControlFlow::Break(());
+                }
             }
         }
     }
 
-    /// The unit live, until something else is asked; then outputs are safe and the unit disarmed.
-    fn watch(&self, connected: &mut Connected, orders: &Receiver<Order>) -> Leave {
+    /// The unit live, until something else is asked; then outputs are made safe and the unit disarmed,
+    /// which may be confirmed or not.
+    fn watch(
+        &self,
+        connected: &mut Connected,
+        connection: Connection,
+        orders: &Receiver<Order>,
+    ) -> (Leave, bool) {
         match connected {
             Connected::Sim(setup) => {
                 let mut session = setup.sim_session(LIVE, &Stop::default());
                 // Powering up is not worth waiting for.
                 session.set_pace(Pace::Virtual);
-                session.idle(READY_WITHIN + READY_WITHIN, |_, _, _| {}, settled());
+                let mut logged = |entry: &UnitEvent, _, _: &Sample| self.tell(News::Logged(*entry));
+                session.idle(READY_WITHIN + READY_WITHIN, &mut logged, settled());
                 session.set_pace(Pace::real());
-                let leave = self.watch_session(&mut session, orders);
+                let leave = self.watch_session(&mut session, connection, orders);
                 session.set_pace(Pace::Virtual);
-                self.let_go(&mut session);
-                leave
+                (leave, self.let_go(&mut session))
             }
             Connected::Port(session, ..) => {
                 session.heed(&Stop::default());
-                let leave = self.watch_session(session, orders);
-                self.let_go(session);
-                leave
+                let leave = self.watch_session(session, connection, orders);
+                (leave, self.let_go(session))
             }
         }
     }
 
-    fn let_go<L: UnitLink>(&self, session: &mut Session<L>) {
+    fn let_go<L: UnitLink>(&self, session: &mut Session<L>) -> bool {
         self.board.enter(Phase::MakingSafe);
-        if !session.make_safe() && session.link_error().is_none() {
-            self.tell(News::NotSafe);
-        }
+        session.make_safe()
     }
 
     fn watch_session<L: UnitLink>(
         &self,
         session: &mut Session<L>,
+        connection: Connection,
         orders: &Receiver<Order>,
     ) -> Leave {
         let mut restarts = session.bench().rig().unit_restarts();
@@ -134,8 +166,12 @@ impl Server {
         let mut arm_at = None;
         loop {
             match orders.try_recv() {
-                Ok(Order::Apply(stimulus)) => asked = self.apply(session, &stimulus),
-                Ok(Order::Arm) => {
+                Ok(Order::Apply(stimulus, generation)) => {
+                    if self.is_permitted(&stimulus, connection, generation) {
+                        asked = self.apply(session, &stimulus);
+                    }
+                }
+                Ok(Order::Arm(generation)) if generation == self.board.read().generation => {
                     let mut wait = Duration::ZERO;
                     let rig = session.bench().rig();
                     if rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
@@ -144,7 +180,10 @@ impl Server {
                     }
                     arm_at = Some(session.now() + wait);
                 }
+                Ok(Order::Arm(_)) => {}
                 Ok(Order::MakeSafe) => {
+                    (asked, arm_at) = (None, None);
+                    self.board.begin_anew();
                     let now = session.now();
                     session.bench().rig_mut().make_safe(now);
                 }
@@ -180,6 +219,13 @@ impl Server {
         }
     }
 
+    /// What was asked of a bench that was made safe since is not done to it any more; nor is what is
+    /// no longer possible.
+    fn is_permitted(&self, stimulus: &Stimulus, connection: Connection, generation: u64) -> bool {
+        let live = self.board.read();
+        live.generation == generation && permit(stimulus, connection, &live).is_ok()
+    }
+
     /// What was asked, if the bench began it.
     fn apply<L: UnitLink>(&self, session: &mut Session<L>, stimulus: &Stimulus) -> Option<String> {
         let now = session.now();
@@ -200,17 +246,9 @@ impl Server {
             made.realtime = order.realtime;
         }
         let mut ear = Ear(self);
-        let result = (order.open_store)().and_then(|store| {
-            run_on(
-                connected,
-                &Began::now(),
-                &order.plan,
-                setup,
-                store,
-                stop,
-                &mut ear,
-            )
-        });
+        let began = Began::now();
+        let (plan, store) = (&order.plan, order.store);
+        let result = run_on(connected, &began, plan, setup, store, stop, &mut ear);
         let closed = result.and_then(|(store, outcome)| {
             store.close()?;
             Ok(outcome)

@@ -23,6 +23,14 @@ wordings! {
         is_connected: "Connected to unit {unit}", "유닛 {unit} 연결됨";
         is_disconnected: "Disconnected; outputs safe, unit disarmed", "연결 해제됨: 출력은 안전하고 시험 허가는 해제됨";
         link_lost: "The connection to the unit is lost", "유닛과의 링크가 끊어졌습니다";
+        broken: "The bench's program failed: switch the unit off and report what was done", "벤치 프로그램에 오류가 발생했습니다: 유닛 전원을 끄고 상황을 보고하십시오";
+        cannot_list: "Ports, lines or units cannot be listed", "포트, 노선, 유닛 목록을 읽을 수 없습니다";
+        close_anyway: "Close", "닫기";
+        dismiss: "OK", "확인";
+        armed_unit: "ARMED: {unit}", "ARMED: {unit}";
+        running: "run {share} %", "시험 {share} %";
+        asks: "a script asks", "스크립트 질문 있음";
+        is_paused: "run paused", "시험 일시 정지";
         not_safe: "Outputs were not confirmed safe: switch the unit off", "출력이 안전한지 확인되지 않았습니다: 유닛 전원을 끄십시오";
         unit_restarted: "The unit was started again", "유닛이 다시 시작되었습니다";
         not_done: "Not done: {what}", "실행되지 않음: {what}";

@@ -29,6 +29,8 @@ wordings! {
         scripts_changed: "Scripts changed since they were shown: look again, then run", "표시된 뒤 스크립트가 바뀌었습니다. 다시 확인한 후 시작하십시오";
         not_loaded: "The scripts cannot be read", "스크립트를 읽을 수 없습니다";
         not_begun: "The run was not begun", "시험을 시작하지 못했습니다";
+        other_unit: "The diagnosed run is of unit {unit}: connect that one first", "진단한 시험은 유닛 {unit}의 것입니다: 먼저 그 유닛을 연결하십시오";
+        of_unit: "unit {unit}", "유닛 {unit}";
         no_such_step: "There is no such step in these scripts", "이 스크립트에는 그런 단계가 없습니다";
         progress: "{done} of {all} steps, {bad} not passed", "{all}개 중 {done}개 단계, 미합격 {bad}";
         elapsed: "{time} elapsed", "경과 {time}";

@@ -43,6 +43,7 @@ impl Window {
             settings,
             settings_file,
             connect: false,
+            interrupted: ptu_app::stop::Stop::default(),
         });
         let show = move |ui: &mut eframe::egui::Ui, app: &mut Option<App>| match app {
             Some(app) => app.show(ui),

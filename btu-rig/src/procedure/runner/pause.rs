@@ -2,7 +2,7 @@
 
 use protocol::Instant;
 
-use super::Runner;
+use super::{Phase, Runner};
 use crate::procedure::report::RunEvent;
 
 /// Whether a step may begin.
@@ -30,6 +30,24 @@ impl Runner {
     /// One more step may begin while paused.
     pub fn single_step(&mut self) {
         self.pause.single = self.pause.single.saturating_add(1);
+    }
+
+    /// Nothing goes on until the operator answers a prompt or lets the next step begin.
+    pub fn awaits_operator(&self) -> bool {
+        let procedure = &self.procedure;
+        match &self.phase {
+            Phase::Setup(actions) => actions.asks(&procedure.setup),
+            Phase::Steps { next, live } => match live {
+                Some(run) => {
+                    let step = self.schedule.get(*next);
+                    let step = step.and_then(|turn| procedure.steps.get(turn.index));
+                    step.is_some_and(|step| run.asks(step))
+                }
+                None => self.pause.on && self.pause.said,
+            },
+            Phase::CleanUp { actions, .. } => actions.asks(&procedure.cleanup),
+            Phase::NotStarted | Phase::MakeSafe { .. } | Phase::Done => false,
+        }
     }
 
     /// Whether the next step, called `name`, must wait; says so once.

@@ -2,14 +2,12 @@
 
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Align, Button, Color32, Frame, Layout, Margin, RichText, Ui};
-use protocol::link::Counters;
-use protocol::message::{Channel, Identity};
-use protocol::signal::Signal;
+use protocol::message::Identity;
 
-use super::keys::{STOP_ALL, stop_all};
+use super::keys::STOP_ALL;
 use super::setup::Setup;
 use crate::gui::parts::chip;
-use crate::gui::{Desk, Palette};
+use crate::gui::{Desk, Page, Palette};
 use crate::station::Phase;
 use crate::words::{Words, fill};
 
@@ -20,6 +18,7 @@ pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>, setup: &mut Setup) {
         setup.endpoint(ui, desk);
         connect(ui, desk);
         identity(ui, desk);
+        running(ui, desk);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_button(ui, desk);
             arming(ui, desk);
@@ -74,12 +73,12 @@ fn connect(ui: &mut Ui, desk: &mut Desk<'_>) {
             ui.spinner();
             ui.label(frame.connecting);
             if ui.button(desk.words.common.cancel).clicked() {
-                unit.station.disconnect();
+                unit.disconnect();
             }
         }
         Phase::Idle | Phase::Running | Phase::MakingSafe => {
             if ui.button(frame.disconnect).clicked() {
-                unit.station.disconnect();
+                unit.disconnect();
             }
         }
     }
@@ -90,9 +89,9 @@ fn identity(ui: &mut Ui, desk: &Desk<'_>) {
     let frame = &words.frame;
     let palette = Palette::of(ui);
     let unit = desk.units.chosen();
-    let (phase, identity, counters) = {
+    let (phase, identity, share) = {
         let live = unit.station.live();
-        (live.phase, live.identity, live.counters)
+        (live.phase, live.identity, live.link.share())
     };
     if phase == Phase::Offline {
         ui.label(RichText::new(frame.not_connected).color(palette.quiet));
@@ -110,7 +109,7 @@ fn identity(ui: &mut Ui, desk: &Desk<'_>) {
         let serial = crate::run::text(&identity.serial);
         let label = ui.label(RichText::new(serial).strong());
         label.on_hover_text(versions(&identity, words));
-        let share = link_quality(&counters);
+        let share = 100.0 * share.unwrap_or(1.0);
         let colour = if share >= 99.9 {
             palette.good
         } else {
@@ -144,53 +143,86 @@ fn versions(identity: &Identity, words: &Words) -> String {
     )
 }
 
-/// Frames taken of all that came, %.
-fn link_quality(counters: &Counters) -> f64 {
-    let taken: u64 = Channel::ALL
-        .iter()
-        .map(|channel| counters.accepted(*channel))
-        .sum();
-    let lost: u64 = Channel::ALL
-        .iter()
-        .map(|channel| counters.gaps(*channel) + counters.rejected_on(*channel))
-        .sum();
-    match taken + lost {
-        0 => 100.0,
-        all => 100.0 * taken as f64 / all as f64,
-    }
-}
-
 fn arming(ui: &mut Ui, desk: &mut Desk<'_>) {
     let frame = &desk.words.frame;
+    let chosen = desk.units.chosen_place();
+    for (_, other) in (0..)
+        .zip(desk.units.iter())
+        .filter(|(place, _)| *place != chosen)
+    {
+        if other.is_armed() {
+            armed_sign(ui, &fill(frame.armed_unit, &[("unit", &other.name())]));
+        }
+    }
     let unit = desk.units.chosen();
-    if !unit.is_connected() {
+    let phase = unit.phase();
+    if matches!(phase, Phase::Offline | Phase::Connecting) {
         return;
     }
-    let armed = unit.station.live().sample.get(Signal::Armed) == Some(1.0);
-    if armed {
+    if unit.is_armed() {
         let may = unit.station.permits(&Stimulus::PtuDisarm).is_ok();
         if ui.add_enabled(may, Button::new(frame.disarm)).clicked() {
             // Refused only while a run has the bench, when the button is not enabled.
             let _ = unit.station.apply(Stimulus::PtuDisarm);
         }
-        Frame::new()
-            .fill(Palette::of(ui).armed)
-            .inner_margin(Margin::symmetric(10, 4))
-            .corner_radius(4)
-            .show(ui, |ui| {
-                ui.label(
-                    RichText::new(frame.armed)
-                        .color(Color32::WHITE)
-                        .strong()
-                        .size(17.0),
-                );
-            });
+        armed_sign(ui, frame.armed);
     } else {
-        let may = unit.phase() == Phase::Idle;
-        if ui.add_enabled(may, Button::new(frame.arm)).clicked() {
+        if ui
+            .add_enabled(phase == Phase::Idle, Button::new(frame.arm))
+            .clicked()
+        {
             unit.station.arm();
         }
         ui.label(RichText::new(frame.disarmed).color(Palette::of(ui).quiet));
+    }
+}
+
+/// Outranks everything else on the screen.
+fn armed_sign(ui: &mut Ui, text: &str) {
+    Frame::new()
+        .fill(Palette::of(ui).armed)
+        .inner_margin(Margin::symmetric(10, 4))
+        .corner_radius(4)
+        .show(ui, |ui| {
+            ui.label(
+                RichText::new(text)
+                    .color(Color32::WHITE)
+                    .strong()
+                    .size(17.0),
+            );
+        });
+}
+
+/// What a run is at, whatever page is in front.
+fn running(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let frame = &desk.words.frame;
+    let palette = Palette::of(ui);
+    let Some(run) = desk
+        .units
+        .chosen()
+        .run
+        .as_ref()
+        .filter(|run| run.is_running())
+    else {
+        return;
+    };
+    let present = run.present.as_ref();
+    if present.is_some_and(|present| present.prompt.is_some()) {
+        if ui
+            .button(RichText::new(frame.asks).color(palette.warn).strong())
+            .clicked()
+        {
+            desk.settings.page = Page::Procedures;
+        }
+    } else if present.is_some_and(|present| present.paused.is_some()) {
+        chip(ui, frame.is_paused, palette.warn);
+    } else {
+        let share = format!("{:.0}", 100.0 * run.share());
+        chip(
+            ui,
+            &fill(frame.running, &[("share", &share)]),
+            palette.accent,
+        );
     }
 }
 
@@ -204,6 +236,6 @@ fn stop_button(ui: &mut Ui, desk: &mut Desk<'_>) {
         .fill(palette.armed)
         .shortcut_text(RichText::new(STOP_ALL.name()).color(Color32::WHITE));
     if ui.add(button).clicked() {
-        stop_all(desk);
+        desk.units.stop_all();
     }
 }

@@ -14,26 +14,19 @@ pub const CONNECT: Key = Key::F9;
 /// Acts on them.
 pub fn keys(context: &Context, desk: &mut Desk<'_>) {
     if context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
-        stop_all(desk);
+        desk.units.stop_all();
     }
     if context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
         let unit = desk.units.chosen_mut();
         if unit.phase() == Phase::Offline {
             unit.connect(desk.library);
         } else {
-            unit.station.disconnect();
+            unit.disconnect();
         }
     }
     for page in Page::ALL {
         if context.input_mut(|input| input.consume_key(Modifiers::NONE, page.key())) {
             desk.settings.page = page;
         }
-    }
-}
-
-/// Stops every run and takes every stimulus away, at all units.
-pub fn stop_all(desk: &mut Desk<'_>) {
-    for unit in desk.units.iter() {
-        unit.station.stop_all();
     }
 }

@@ -1,53 +1,61 @@
-//! The latest message, and all of them on demand.
+//! The latest trouble until it was taken note of, the latest message, and all of them on demand.
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
+use crate::clock;
+use crate::gui::desk::Message;
 use crate::gui::{Desk, Palette};
 
 /// The bar.
 pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let palette = Palette::of(ui);
-    let Some(last) = desk.messages.all().last() else {
-        ui.label(RichText::new(desk.words.frame.title).color(palette.quiet));
+    let all = desk.messages.all();
+    let Some(last) = all.last() else {
+        let quiet = Palette::of(ui).quiet;
+        ui.label(RichText::new(desk.words.frame.title).color(quiet));
         return;
     };
-    let said = |ui: &mut Ui, message: &crate::gui::desk::Message| {
-        let colour = if message.bad {
-            palette.bad
-        } else {
-            ui.visuals().text_color()
-        };
-        let mark = if message.bad { "⚠ " } else { "" };
-        ui.label(
-            RichText::new(format!("{mark}{}", message.text))
-                .color(colour)
-                .strong(),
-        );
-        if !message.detail.is_empty() {
-            ui.label(&message.detail);
-        }
-    };
     let mut clear = false;
+    let mut noted = false;
     ui.horizontal(|ui| {
-        ui.menu_button(
-            format!(
-                "{} ({})",
-                desk.words.frame.messages,
-                desk.messages.all().len()
-            ),
-            |ui| {
-                ui.set_min_width(560.0);
-                ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-                    for message in desk.messages.all().iter().rev() {
-                        ui.horizontal_wrapped(|ui| said(ui, message));
-                    }
-                });
-                clear = ui.button(desk.words.frame.clear).clicked();
-            },
-        );
-        said(ui, last);
+        let button = format!("{} ({})", desk.words.frame.messages, all.len());
+        ui.menu_button(button, |ui| {
+            ui.set_min_width(560.0);
+            ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+                for message in all.iter().rev() {
+                    ui.horizontal_wrapped(|ui| {
+                        ui.label(RichText::new(clock::local(message.at_us)).small());
+                        said(ui, message);
+                    });
+                }
+            });
+            clear = ui.button(desk.words.frame.clear).clicked();
+        });
+        if let Some(trouble) = desk.messages.unread_trouble() {
+            noted = ui.button(desk.words.frame.dismiss).clicked();
+            said(ui, trouble);
+        }
+        // Trouble is shown until it was taken note of, and not again as the latest message.
+        if !last.bad {
+            said(ui, last);
+        }
     });
+    if noted {
+        desk.messages.take_note();
+    }
     if clear {
         desk.messages.clear();
+    }
+}
+
+fn said(ui: &mut Ui, message: &Message) {
+    let palette = Palette::of(ui);
+    let (mark, colour) = match message.bad {
+        true => ("⚠ ", palette.bad),
+        false => ("", ui.visuals().text_color()),
+    };
+    let text = format!("{mark}{}", message.text);
+    ui.label(RichText::new(text).color(colour).strong());
+    if !message.detail.is_empty() {
+        ui.label(&message.detail);
     }
 }

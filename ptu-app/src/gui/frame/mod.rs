@@ -9,7 +9,7 @@ mod setup;
 
 use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
-use super::Desk;
+use super::{Desk, Palette};
 use crate::words::Words;
 use about::About;
 use setup::Setup;
@@ -42,14 +42,24 @@ impl Frame {
         messages::bar(ui, desk);
     }
 
-    /// Over everything while the window is being closed.
-    pub fn closing(&self, ui: &mut Ui, words: &Words) {
+    /// Over everything while the window is being closed; true once the person has taken note that
+    /// outputs were not confirmed safe.
+    pub fn closing(&self, ui: &mut Ui, words: &Words, not_safe: bool) -> bool {
+        let mut noted = false;
         over_everything(ui.ctx(), |ui| {
+            if not_safe {
+                let bad = Palette::of(ui).bad;
+                let said = format!("⚠ {}", words.frame.not_safe);
+                ui.label(RichText::new(said).color(bad).heading());
+                noted = ui.button(words.frame.close_anyway).clicked();
+                return;
+            }
             ui.horizontal(|ui| {
                 ui.add(Spinner::new());
                 ui.label(RichText::new(words.frame.closing).heading());
             });
         });
+        noted
     }
 }
 

@@ -4,11 +4,10 @@ use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 
 use super::about::About;
 use crate::gui::parts::named_combo;
+use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
 use crate::gui::{Desk, Page};
 use crate::words::Language;
 
-const SMALLEST: f32 = 0.7;
-const LARGEST: f32 = 2.5;
 const STEP: f32 = 0.1;
 
 /// The bar.
@@ -34,11 +33,11 @@ fn look(ui: &mut Ui, desk: &mut Desk<'_>) {
     let settings = &mut *desk.settings;
     let smaller = ui.button("A-").on_hover_text(frame.scale);
     if smaller.clicked() {
-        settings.zoom = (settings.zoom - STEP).max(SMALLEST);
+        settings.zoom = (settings.zoom - STEP).max(SMALLEST_ZOOM);
     }
     let larger = ui.button("A+").on_hover_text(frame.scale);
     if larger.clicked() {
-        settings.zoom = (settings.zoom + STEP).min(LARGEST);
+        settings.zoom = (settings.zoom + STEP).min(LARGEST_ZOOM);
     }
     let light = if settings.dark {
         frame.light

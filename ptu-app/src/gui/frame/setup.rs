@@ -36,7 +36,12 @@ impl Setup {
         if self.names.is_not() {
             self.ask(desk);
         }
-        self.names.poll();
+        if self.names.poll()
+            && let Asked::Failed(why) = &self.names
+        {
+            desk.messages
+                .trouble(desk.words.frame.cannot_list, why.clone());
+        }
         let free = desk.units.chosen().phase() == Phase::Offline;
         let words = desk.words;
         let choice = &mut desk.units.chosen_mut().choice;

@@ -101,6 +101,11 @@ pub struct Pages {
 }
 
 impl Pages {
+    /// Takes what has come for the pages, whichever is in front.
+    pub fn poll(&mut self, desk: &mut Desk<'_>) {
+        self.procedures.poll(desk);
+    }
+
     /// Shows a page.
     pub fn show(&mut self, page: Page, ui: &mut Ui, desk: &mut Desk<'_>) {
         match page {
@@ -132,8 +137,12 @@ impl Pages {
                 self.faults.open(id, desk);
                 Page::Faults
             }
-            Go::RunStep { procedure, step } => {
-                self.procedures.run_step(&procedure, step.as_deref(), desk);
+            Go::RunStep {
+                procedure,
+                step,
+                unit,
+            } => {
+                self.procedures.run_step(procedure, step, &unit, desk);
                 Page::Procedures
             }
         }

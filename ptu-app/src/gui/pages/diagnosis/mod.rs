@@ -152,6 +152,7 @@ fn next_check(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
             desk.go.push(Go::RunStep {
                 procedure: next.check.procedure.clone(),
                 step: Some(next.check.step.clone()),
+                unit: answer.run.run.unit_serial.clone(),
             });
         }
     });

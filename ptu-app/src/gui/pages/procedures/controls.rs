@@ -25,26 +25,24 @@ impl ProceduresPage {
     fn begin(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, phase: Phase) {
         let words = &desk.words.procedures;
         let sound = matches!(&self.suite, Asked::There(suite) if suite.errors.is_empty());
-        let may = phase == Phase::Idle && sound && self.order.is_empty();
+        let may = phase == Phase::Idle && sound && self.orders.is_empty();
         let run = Button::new(RichText::new(words.run).strong().size(17.0));
         let run = ui.add_enabled(may, run);
         if run.on_disabled_hover_text(words.connect_first).clicked() {
-            self.order(desk.units.chosen_place(), false, desk);
+            self.order(desk.units.chosen().id, false, desk);
         }
         let find = ui.add_enabled(may, Button::new(words.find_part));
         if find.on_hover_text(words.find_part_hint).clicked() {
-            self.order(desk.units.chosen_place(), true, desk);
+            self.order(desk.units.chosen().id, true, desk);
         }
         if desk.units.count() > 1 {
-            let idle = |place: &usize| {
-                let unit = desk.units.iter().nth(*place);
-                unit.is_some_and(|unit| unit.phase() == Phase::Idle)
-            };
-            let ready: Vec<_> = (0..desk.units.count()).filter(idle).collect();
-            let all = ui.add_enabled(sound && !ready.is_empty(), Button::new(words.run_all));
+            let idle = desk.units.iter().filter(|unit| unit.phase() == Phase::Idle);
+            let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
+            let may = sound && !ready.is_empty() && self.orders.is_empty();
+            let all = ui.add_enabled(may, Button::new(words.run_all));
             if all.clicked() {
-                for place in ready {
-                    self.order(place, false, desk);
+                for unit in ready {
+                    self.order(unit, false, desk);
                 }
             }
         }

@@ -17,6 +17,7 @@ use crate::gui::parts::RunNoteForm;
 use crate::gui::{Desk, Palette, UnitChoice};
 use crate::run::Suite;
 use crate::station::Phase;
+use crate::words::fill;
 use prepare::{How, Prepared};
 use results::Shown;
 use selection::Selection;
@@ -31,15 +32,24 @@ pub struct ProceduresPage {
     find: String,
     repeat: u32,
     stop_on_fail: bool,
-    /// An order that is being made, for the unit at this place.
-    order: Vec<(usize, Asked<Prepared>)>,
-    /// A step to run as soon as the suite is there.
-    wanted: Option<(String, Option<String>)>,
+    /// Orders that are being made.
+    orders: Vec<Ordered>,
+    /// Times everything had been stopped when these were looked at last.
+    stops: u64,
+    /// A step to run as soon as the suite is there: procedure, step, unit by its own number.
+    wanted: Option<(String, Option<String>, u64)>,
     shown: Shown,
     /// What the last run comes to, by run.
     conclusion: Asked<String>,
     concluded: Option<fault_db::Id>,
     note: RunNoteForm,
+}
+
+/// An order that is being made.
+struct Ordered {
+    /// The unit it is for, by its own number.
+    unit: u64,
+    order: Asked<Prepared>,
 }
 
 impl Default for ProceduresPage {
@@ -51,7 +61,8 @@ impl Default for ProceduresPage {
             find: String::new(),
             repeat: 1,
             stop_on_fail: false,
-            order: Vec::new(),
+            orders: Vec::new(),
+            stops: 0,
             wanted: None,
             shown: Shown::default(),
             conclusion: Asked::Not,
@@ -65,7 +76,6 @@ impl ProceduresPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         self.keep_loaded(desk);
-        self.poll(desk);
         Panel::left("procedures")
             .default_size(380.0)
             .size_range(260.0..=640.0)
@@ -83,14 +93,25 @@ impl ProceduresPage {
         });
     }
 
-    /// Runs this step, or all of a procedure, on the chosen unit.
-    pub fn run_step(&mut self, procedure: &str, step: Option<&str>, desk: &mut Desk<'_>) {
-        if desk.units.chosen().phase() != Phase::Idle {
-            desk.messages
-                .trouble(desk.words.procedures.connect_first, "");
+    /// Runs this step, or all of a procedure, on the chosen unit if it is the one called `unit`.
+    pub fn run_step(
+        &mut self,
+        procedure: String,
+        step: Option<String>,
+        unit: &str,
+        desk: &mut Desk<'_>,
+    ) {
+        let words = &desk.words.procedures;
+        let chosen = desk.units.chosen();
+        if chosen.phase() != Phase::Idle {
+            desk.messages.trouble(words.connect_first, "");
+        } else if chosen.name() != unit {
+            let said = fill(words.other_unit, &[("unit", &unit)]);
+            desk.messages.trouble(said, "");
+        } else {
+            self.wanted = Some((procedure, step, chosen.id));
+            self.keep_loaded(desk);
         }
-        self.wanted = Some((procedure.to_owned(), step.map(str::to_owned)));
-        self.keep_loaded(desk);
     }
 
     /// Scripts are loaded for the unit's configuration, line and train: anew when these change.
@@ -112,7 +133,14 @@ impl ProceduresPage {
         self.suite = Asked::Pending(desk.library.ask(move |shelf| prepare::load(shelf, &choice)));
     }
 
-    fn poll(&mut self, desk: &mut Desk<'_>) {
+    /// Takes what has come, whatever page is in front.
+    pub fn poll(&mut self, desk: &mut Desk<'_>) {
+        if self.stops != desk.units.stops() {
+            // Nothing begins by itself after everything was stopped.
+            self.stops = desk.units.stops();
+            self.orders.clear();
+            self.wanted = None;
+        }
         if self.suite.poll()
             && let Asked::Failed(why) = &self.suite
         {
@@ -125,12 +153,12 @@ impl ProceduresPage {
         self.conclude(desk);
     }
 
-    /// Runs the step another page asked for, once the suite is there.
+    /// Runs the step another page asked for, once the suite is there; what is chosen here stays chosen.
     fn run_wanted(&mut self, desk: &mut Desk<'_>) {
         let Some(suite) = self.suite.value() else {
             return;
         };
-        let Some((procedure, step)) = self.wanted.take() else {
+        let Some((procedure, step, unit)) = self.wanted.take() else {
             return;
         };
         let found = suite.procedures.iter().find(|known| known.id == procedure);
@@ -141,10 +169,13 @@ impl ProceduresPage {
                 .trouble(desk.words.procedures.no_such_step, what);
             return;
         };
-        self.selection = Some(only);
-        if desk.units.chosen().phase() == Phase::Idle {
-            self.order(desk.units.chosen_place(), false, desk);
-        }
+        let how = How {
+            operator: desk.settings.operator.clone(),
+            repeat: 1,
+            stop_on_fail: false,
+            adaptive: false,
+        };
+        self.order_of(unit, only, how, desk);
     }
 
     /// What is chosen, or would be run without a choice.
@@ -157,38 +188,51 @@ impl ProceduresPage {
         chosen.unwrap_or_default()
     }
 
-    /// Has an order made for the unit at this place.
-    fn order(&mut self, place: usize, adaptive: bool, desk: &Desk<'_>) {
-        let Some(unit) = desk.units.iter().nth(place) else {
-            return;
-        };
-        let Some(shown) = self.suite.value().map(|suite| suite.sha256.clone()) else {
-            return;
-        };
+    /// Has an order of what is chosen made for a unit.
+    fn order(&mut self, unit: u64, adaptive: bool, desk: &mut Desk<'_>) {
         let how = How {
             operator: desk.settings.operator.clone(),
             repeat: if adaptive { 1 } else { self.repeat },
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
         };
-        let selection = self.chosen(unit.choice.connection());
+        let connection = desk.units.of_id(unit).map(|unit| unit.choice.connection());
+        if let Some(connection) = connection {
+            let selection = self.chosen(connection);
+            self.order_of(unit, selection, how, desk);
+        }
+    }
+
+    fn order_of(&mut self, id: u64, selection: Selection, how: How, desk: &mut Desk<'_>) {
+        let Some(shown) = self.suite.value().map(|suite| suite.sha256.clone()) else {
+            return;
+        };
+        let Some(unit) = desk.units.of_id(id) else {
+            return;
+        };
         let (choice, serial) = (unit.choice.clone(), unit.name());
         let order = desk
             .library
             .ask(move |shelf| prepare::order(shelf, &choice, &serial, &selection, how, &shown));
-        self.order.push((place, Asked::Pending(order)));
+        self.orders.push(Ordered {
+            unit: id,
+            order: Asked::Pending(order),
+        });
     }
 
+    /// Begins what is ready, unless something else has the bench since.
     fn poll_orders(&mut self, desk: &mut Desk<'_>) {
         let words = &desk.words.procedures;
-        for (place, mut order) in std::mem::take(&mut self.order) {
-            order.poll();
-            match order {
+        for mut ordered in std::mem::take(&mut self.orders) {
+            ordered.order.poll();
+            match ordered.order {
                 Asked::There(Prepared::Order(order)) => {
-                    if let Some(unit) = desk.units.iter_mut().nth(place) {
-                        unit.begin(*order);
+                    let unit = desk.units.of_id(ordered.unit);
+                    if unit.is_some_and(|unit| unit.begin(*order)) {
+                        self.shown = Shown::default();
+                    } else {
+                        desk.messages.trouble(words.not_begun, "");
                     }
-                    self.shown = Shown::default();
                 }
                 Asked::There(Prepared::Changed(suite)) => {
                     let said = if suite.errors.is_empty() {
@@ -200,7 +244,7 @@ impl ProceduresPage {
                     self.suite = Asked::There(*suite);
                 }
                 Asked::Failed(why) => desk.messages.trouble(words.not_begun, why),
-                waiting => self.order.push((place, waiting)),
+                order => self.orders.push(Ordered { order, ..ordered }),
             }
         }
     }
@@ -228,20 +272,26 @@ impl ProceduresPage {
 
     fn run(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let words = desk.words;
-        let texts = self.suite.value().map(|suite| &suite.texts);
         let unit = desk.units.chosen();
         let Some(run) = &unit.run else {
             ui.label(words.procedures.choose_and_run);
             return;
         };
-        let board = unit.station.board();
-        present::present(ui, words, run, board, texts);
-        if let Some(conclusion) = self.conclusion.value().filter(|_| !run.is_running()) {
+        // The text of other scripts would show another line than the one that ran.
+        let suite = self.suite.value();
+        let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
+        let texts = texts.map(|suite| &suite.texts);
+        let answer = present::present(ui, words, run, texts);
+        let conclusion = self.conclusion.value();
+        if let Some(conclusion) = conclusion.filter(|_| self.concluded == run.id()) {
             ui.label(RichText::new(conclusion).strong().size(17.0));
         }
         let note = (&mut self.note, desk.settings.operator.as_str());
         results::after_run(ui, (words, desk.library), run, note, desk.go);
         results::results(ui, words, run, &mut self.shown, texts);
+        if let Some(yes) = answer {
+            desk.units.chosen_mut().answer(yes);
+        }
     }
 }
 

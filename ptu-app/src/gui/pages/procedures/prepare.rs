@@ -63,6 +63,7 @@ pub fn order(
     if tasks.is_empty() {
         return Err(Failure::usage("no step is chosen"));
     }
+    let store = shelf.open()?;
     let adaptive = match how.adaptive {
         true => {
             let setup = choice.named()?.setup(&shelf.scripts)?;
@@ -71,12 +72,10 @@ pub fn order(
                 line: &choice.line,
                 train: &choice.train,
             };
-            let store = shelf.read()?;
             Some(diagnosis::adaptive(&store, &shelf.scripts, serial, &bench)?)
         }
         false => None,
     };
-    let own = shelf.clone();
     Ok(Prepared::Order(Box::new(RunOrder {
         plan: RunPlan {
             tasks,
@@ -86,7 +85,7 @@ pub fn order(
             scripts_sha256: suite.sha256,
             adaptive,
         },
-        open_store: Box::new(move || own.open()),
+        store,
         realtime: choice.realtime,
     })))
 }

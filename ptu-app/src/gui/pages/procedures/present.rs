@@ -9,31 +9,28 @@ use super::results::{measurements, source};
 use super::tree::{minutes, title};
 use crate::gui::Palette;
 use crate::gui::parts::verdict_chip;
-use crate::station::{Board, Present, Progress};
+use crate::station::{Present, Progress};
 use crate::words::{Words, fill};
 
 /// Lines shown before and after the script's present one.
 const AROUND: Range<u32> = 2..5;
 
-/// How far the run is, and the step under way.
+/// How far the run is, and the step under way; what the operator answers.
 pub fn present(
     ui: &mut Ui,
     words: &Words,
     run: &Progress,
-    board: &Board,
     texts: Option<&BTreeMap<String, String>>,
-) {
+) -> Option<bool> {
     head(ui, words, run);
     if !run.is_running() {
-        return;
+        return None;
     }
     let Some(present) = &run.present else {
         ui.label(words.procedures.bringing_up);
-        return;
+        return None;
     };
-    let Some(progress) = run.procedures.get(present.procedure) else {
-        return;
-    };
+    let progress = run.procedures.get(present.procedure)?;
     let procedure = &progress.procedure;
     ui.label(
         RichText::new(format!("{}: {}", procedure.id, present.name))
@@ -42,17 +39,23 @@ pub fn present(
     );
     ui.label(RichText::new(title(procedure, words)).italics());
     waits(ui, words, present);
-    prompt(ui, words, present, board);
-    let Some(step) = run.step() else { return };
+    let answer = prompt(ui, words, present);
+    let Some(step) = run.step() else {
+        return answer;
+    };
     if let Some(note) = &step.note {
         ui.label(format!("{}: {note}", words.common.note));
     }
     source(ui, texts, &procedure.path, step.line, AROUND);
     measurements(ui, &present.measured);
+    answer
 }
 
 fn head(ui: &mut Ui, words: &Words, run: &Progress) {
     let procedures = &words.procedures;
+    let quiet = Palette::of(ui).quiet;
+    let of_unit = fill(procedures.of_unit, &[("unit", &run.unit)]);
+    ui.label(RichText::new(of_unit).color(quiet));
     ui.horizontal(|ui| {
         ui.add(
             ProgressBar::new(run.share())
@@ -98,10 +101,9 @@ fn waits(ui: &mut Ui, words: &Words, present: &Present) {
     }
 }
 
-fn prompt(ui: &mut Ui, words: &Words, present: &Present, board: &Board) {
-    let Some(prompt) = &present.prompt else {
-        return;
-    };
+fn prompt(ui: &mut Ui, words: &Words, present: &Present) -> Option<bool> {
+    let prompt = present.prompt.as_ref()?;
+    let mut answer = None;
     let warn = Palette::of(ui).warn;
     Frame::new()
         .stroke((2.0, warn))
@@ -115,12 +117,13 @@ fn prompt(ui: &mut Ui, words: &Words, present: &Present, board: &Board) {
                     .button(RichText::new(words.procedures.yes).strong())
                     .clicked()
                 {
-                    board.answer(true);
+                    answer = Some(true);
                 }
                 if ui.button(words.procedures.no).clicked() {
-                    board.answer(false);
+                    answer = Some(false);
                 }
                 ui.label(format!("{:.0} s", prompt.left_s()));
             });
         });
+    answer
 }
