@@ -58,6 +58,11 @@ pub fn local_zoned(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d %H:%M:%S UTC%:z")
 }
 
+/// How far local time is ahead of UTC now, microseconds.
+pub fn utc_offset_us() -> i64 {
+    i64::from(Local::now().offset().local_minus_utc()) * 1_000_000
+}
+
 /// Local date, for sentences.
 pub fn local_day(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d")

@@ -70,6 +70,42 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     }
 }
 
+/// Goal: what is written about one fault is never stored on another. Method: a note and a serial number
+/// typed for the one, then the other is chosen, acknowledged and repaired.
+#[test]
+fn what_was_typed_for_one_fault_is_not_stored_on_another() {
+    let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
+    let faults = place.json(&["faults", "list", "--json"]);
+    let part = |fault: &Value| fault["lru"].as_str().expect("a part").to_owned();
+    let faults = faults.as_array().expect("faults");
+    let other = faults
+        .iter()
+        .find(|fault| part(fault) != "eb_relay")
+        .expect("the run tells of more than the relay");
+    let (other, id) = (part(other), other["id"].as_str().expect("an id").to_owned());
+    let mut window = on(place, Page::Faults, Language::English);
+    window.wait_for_part("2 of 2");
+    // The list finds its width.
+    window.step();
+    window.click("eb_relay");
+    window.wait_for("what was done");
+    assert!(!window.enabled("Add note"), "there is nothing to add");
+    window.write("note", "relay ordered");
+    window.write("serial number put in", "SN-77");
+    assert!(window.enabled("Add note"));
+    window.click(&other);
+    window.until("an empty form", |window| !window.enabled("Add note"));
+    window.click("Acknowledge");
+    window.wait_for("acknowledged");
+    window.click("Repaired");
+    window.wait_for("repaired");
+    let stored = window.place.json(&["faults", "show", &id, "--json"]);
+    assert_eq!(stored["state"], "repaired");
+    let stored = stored.to_string();
+    assert!(!stored.contains("relay ordered"), "{stored}");
+    assert!(!stored.contains("SN-77"), "{stored}");
+}
+
 #[test]
 fn filters_leave_what_they_say_in_korean_too() {
     let place = with_a_run("tra.dead", &["ato/markers"]);

@@ -9,11 +9,15 @@ use egui_kittest::kittest::Queryable;
 use ptu_app::gui::{Page, Settings};
 use ptu_app::words::Language;
 
-/// A window on the report page over a run that failed, and a later one that passed.
+/// A window on the report page over a run that passed, and a later one that failed.
 fn window(language: Language) -> Window {
     let place = Place::new();
-    record_bad_unit(&place);
     place.recorded_run();
+    record_bad_unit(&place);
+    on(place, language)
+}
+
+fn on(place: Place, language: Language) -> Window {
     let settings = Settings {
         page: Page::Report,
         language,
@@ -43,7 +47,7 @@ fn begins(window: &Window, name: &str, with: &[u8]) -> bool {
 }
 
 #[test]
-fn the_latest_run_that_failed_is_shown_and_written_to_files() {
+fn the_latest_run_is_shown_and_written_to_files() {
     let mut window = window(Language::English);
     window.wait_for("Test sheet");
     window.wait_for("Failed");
@@ -62,6 +66,21 @@ fn the_latest_run_that_failed_is_shown_and_written_to_files() {
         assert!(begins(&window, name, begin), "{name}");
     }
     assert!(window.place.read("mine.html").contains("eb_reaction"));
+    // Never over a file that is there.
+    window.click("PDF");
+    let beside = window.place.text_path("mine-2.pdf");
+    window.wait_for(&format!("Written: {beside}"));
+}
+
+/// What was done last is what the person wants to see, whether it passed or not.
+#[test]
+fn a_run_that_passed_after_one_that_failed_is_shown() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let good = place.recorded_run();
+    let mut window = on(place, Language::English);
+    let short = good.get(good.len() - 8..).expect("an id");
+    window.wait_for_part(&format!(", run {short}"));
 }
 
 #[test]
@@ -87,7 +106,7 @@ fn a_note_is_kept_and_stands_on_the_sheet() {
     window.wait_for("Note saved");
     window.wait_for("relay K3 clicks late");
     window.wait_for("Noted by");
-    let bad = window.place.run_ids().pop().expect("two runs");
+    let bad = window.place.run_ids().swap_remove(0);
     let run = window.place.json(&["runs", "show", &bad, "--json"]);
     let [note] = list(&run["notes"]) else {
         panic!("one note: {run}")

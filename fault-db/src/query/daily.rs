@@ -12,7 +12,7 @@ const DAY_US: i64 = 86_400_000_000;
 /// How often one fault of one unit was seen on one day.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DailyCount {
-    /// Beginning of the day (UTC).
+    /// Beginning of the day, microseconds since 1970, UTC.
     pub day_us: i64,
     /// Serial number of the unit.
     pub unit_serial: String,
@@ -27,16 +27,21 @@ pub struct DailyCount {
 }
 
 impl Store {
-    /// Counts what was seen since `since_us`, oldest day first.
-    pub fn daily_occurrences(&self, since_us: i64) -> Result<Vec<DailyCount>, StoreError> {
+    /// Counts what was seen since `since_us`, oldest day first. Days are of a clock that is
+    /// `utc_offset_us` ahead of UTC; the offset is one for all of them.
+    pub fn daily_occurrences(
+        &self,
+        since_us: i64,
+        utc_offset_us: i64,
+    ) -> Result<Vec<DailyCount>, StoreError> {
         let list = || -> rusqlite::Result<Vec<_>> {
             let mut select = self.conn.prepare_cached(
-                "SELECT o.at_us / ?2 * ?2, u.serial, f.code, f.code_name, f.lru, count(*)
+                "SELECT (o.at_us + ?3) / ?2 * ?2 - ?3, u.serial, f.code, f.code_name, f.lru, count(*)
                  FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
                     JOIN unit u ON u.seq = f.unit
                  WHERE o.at_us >= ?1 GROUP BY 1, f.seq ORDER BY 1, u.serial, f.code",
             )?;
-            let rows = select.query_map(params![since_us, DAY_US], |row| {
+            let rows = select.query_map(params![since_us, DAY_US, utc_offset_us], |row| {
                 Ok(DailyCount {
                     day_us: row.get(0)?,
                     unit_serial: row.get(1)?,

@@ -170,3 +170,101 @@ impl<T> Asked<T> {
         matches!(self, Self::Not)
     }
 }
+
+/// Something asked for again and again: what is there stays until the newer answer has come, so that a
+/// page does not jump.
+pub struct Kept<T> {
+    shown: Asked<T>,
+    newer: Asked<T>,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self {
+            shown: Asked::Not,
+            newer: Asked::Not,
+        }
+    }
+}
+
+impl<T> Kept<T> {
+    /// Asked once more for the same.
+    pub fn ask(&mut self, pending: Pending<T>) {
+        match self.shown {
+            Asked::There(_) => self.newer = Asked::Pending(pending),
+            _ => self.shown = Asked::Pending(pending),
+        }
+    }
+
+    /// Asked for something else: what is there is no answer to it.
+    pub fn ask_other(&mut self, pending: Pending<T>) {
+        self.newer = Asked::Not;
+        self.shown = Asked::Pending(pending);
+    }
+
+    /// Takes the answer if it has come.
+    pub fn poll(&mut self) {
+        self.shown.poll();
+        if self.newer.poll() {
+            self.shown = std::mem::take(&mut self.newer);
+        }
+    }
+
+    /// The latest there is.
+    pub fn get(&self) -> &Asked<T> {
+        &self.shown
+    }
+
+    /// A newer answer is under way.
+    pub fn is_stale(&self) -> bool {
+        !self.newer.is_not()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pending() -> (Sender<Result<u32, Failure>>, Pending<u32>) {
+        let (sender, receiver) = mpsc::channel();
+        (sender, Pending(receiver))
+    }
+
+    #[test]
+    fn what_is_there_stays_until_the_newer_answer_has_come() {
+        let mut kept = Kept::default();
+        let (first, asked) = pending();
+        kept.ask(asked);
+        assert!(kept.get().value().is_none() && !kept.is_stale());
+        first.send(Ok(1)).expect("heard");
+        kept.poll();
+        let (second, asked) = pending();
+        kept.ask(asked);
+        kept.poll();
+        assert!(kept.get().value() == Some(&1) && kept.is_stale());
+        second.send(Ok(2)).expect("heard");
+        kept.poll();
+        assert!(kept.get().value() == Some(&2) && !kept.is_stale());
+        let (third, asked) = pending();
+        kept.ask(asked);
+        third.send(Err(Failure::bench("gone"))).expect("heard");
+        kept.poll();
+        assert!(matches!(kept.get(), Asked::Failed(_)));
+    }
+
+    #[test]
+    fn an_answer_to_something_else_is_never_shown() {
+        let mut kept = Kept::default();
+        let (first, asked) = pending();
+        kept.ask(asked);
+        first.send(Ok(1)).expect("heard");
+        kept.poll();
+        let (again, asked) = pending();
+        kept.ask(asked);
+        let (_other, asked) = pending();
+        kept.ask_other(asked);
+        assert!(again.send(Ok(2)).is_err(), "nobody wants to know any more");
+        kept.poll();
+        assert!(kept.get().value().is_none());
+    }
+}

@@ -13,6 +13,7 @@ wordings! {
         error: "error", "오류";
         skipped: "skipped", "생략";
         aborted: "aborted", "중단";
+        running: "running", "진행 중";
         interrupted: "interrupted", "미완료";
         open: "open", "미조치";
         acknowledged: "acknowledged", "확인됨";

@@ -14,7 +14,6 @@ wordings! {
         not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
         all_passed: "{of} steps", "{of}개 단계";
         no_steps: "No steps were run.", "수행된 단계가 없습니다.";
-        running: "running", "진행 중";
         not_finished: "The run has no verdict: it is under way or was broken off. What is here was recorded until then.",
             "판정이 없는 시험입니다. 진행 중이거나 도중에 끊겼으며, 그때까지 기록된 내용만 실었습니다.";
         the_run: "Run", "시험 개요";
@@ -105,7 +104,7 @@ wordings! {
         write_html: "HTML", "HTML";
         write_pdf: "PDF", "PDF";
         write_csv: "CSV", "CSV";
-        write_hint: "Written to the file named beside it, with its own ending", "옆에 적은 파일에 해당 확장자로 저장합니다";
+        write_hint: "Written to the file named beside it, with its own ending; never over one that is there, but beside it as -2, -3 …", "옆에 적은 파일에 해당 확장자로 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
         written: "Written: {file}", "저장 완료: {file}";
         not_written: "The report was not written", "성적서를 저장하지 못했습니다";
         name_file: "name a file", "파일 이름을 적으십시오";

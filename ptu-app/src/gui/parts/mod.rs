@@ -1,6 +1,7 @@
-//! Small widgets that several pages use.
+//! What several pages use: small widgets, and files a person asks for.
 
 mod chip;
+mod file;
 pub mod lane;
 mod limit_bar;
 mod named;
@@ -9,6 +10,7 @@ mod run_note;
 mod share_bar;
 
 pub use chip::{chip, verdict_chip};
+pub use file::{cannot_write, new_file, usual_folder};
 pub use limit_bar::{limit_bar, value_text};
 pub use named::named_combo;
 pub use run_list::RunList;

@@ -1,11 +1,11 @@
 //! A list of runs to choose from, the latest first.
 
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextStyle, Ui};
-use fault_db::{Id, RunFilter, RunSummary};
+use fault_db::{Id, RunFilter, RunState, RunSummary};
 
 use super::chip;
 use crate::clock;
-use crate::gui::library::Asked;
+use crate::gui::library::{Asked, Kept};
 use crate::gui::{Desk, Palette};
 use crate::owner;
 use crate::words::Words;
@@ -16,9 +16,9 @@ const MOST: u32 = 2_000;
 /// The list's own state.
 #[derive(Default)]
 pub struct RunList {
-    runs: Asked<Vec<RunSummary>>,
-    /// Runs that had ended when it was asked for.
-    ended: usize,
+    runs: Kept<Vec<RunSummary>>,
+    /// Runs that had ended when it was asked for; none = not asked yet.
+    ended: Option<usize>,
     find: String,
 }
 
@@ -32,10 +32,10 @@ impl RunList {
             ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
                 .labelled_by(label.id);
             if ui.button(words.common.refresh).clicked() {
-                self.runs = Asked::Not;
+                self.ended = None;
             }
         });
-        let runs = match &self.runs {
+        let runs = match self.runs.get() {
             Asked::There(runs) => runs,
             Asked::Failed(why) => {
                 ui.label(RichText::new(why).color(Palette::of(ui).bad));
@@ -68,20 +68,19 @@ impl RunList {
         clicked
     }
 
-    /// The run to show when none was chosen: the latest that did not pass, or else the latest.
+    /// The run to show when none was chosen: the latest that ended, since it is what the person has just
+    /// done.
     pub fn foremost(&self) -> Option<Id> {
-        let runs = self.runs.value()?;
-        let failed = |run: &&RunSummary| run.verdict == Some(fault_db::Verdict::Failed);
-        let run = runs.iter().find(failed).or_else(|| runs.first())?;
-        Some(run.id)
+        let mut runs = self.runs.get().value()?.iter();
+        Some(runs.find(|run| run.verdict.is_some())?.id)
     }
 
     /// Asks when it was not asked yet, and when a run has ended since.
     fn keep_up(&mut self, desk: &Desk<'_>) {
         let ended = desk.units.runs_ended();
-        if self.runs.is_not() || self.ended != ended {
-            self.ended = ended;
-            self.runs = Asked::Pending(desk.library.ask(|shelf| {
+        if self.ended != Some(ended) {
+            self.ended = Some(ended);
+            self.runs.ask(desk.library.ask(|shelf| {
                 let filter = RunFilter {
                     limit: Some(MOST),
                     ..RunFilter::default()
@@ -102,18 +101,16 @@ fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
     ui.horizontal(|ui| {
         ui.add_space(14.0);
         let palette = Palette::of(ui);
-        match run.verdict {
-            Some(verdict) => {
-                chip(
-                    ui,
-                    words.common.stored_verdict(verdict),
-                    palette.stored_verdict(verdict),
-                );
-            }
-            None => {
-                chip(ui, words.common.interrupted, palette.warn);
-            }
-        }
+        let common = &words.common;
+        let (said, colour) = match (run.verdict, run.state) {
+            (Some(verdict), _) => (
+                common.stored_verdict(verdict),
+                palette.stored_verdict(verdict),
+            ),
+            (None, RunState::Running) => (common.running, palette.accent),
+            (None, _) => (common.interrupted, palette.warn),
+        };
+        chip(ui, said, colour);
         ui.label(RichText::new(&run.unit_serial).color(palette.quiet));
     });
     clicked

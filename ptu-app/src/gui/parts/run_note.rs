@@ -16,25 +16,29 @@ const BUTTON: f32 = 130.0;
 pub struct RunNoteForm {
     text: String,
     run: Option<Id>,
-    under_way: Asked<()>,
+    /// Answers with the run that was noted on.
+    under_way: Asked<Id>,
 }
 
 impl RunNoteForm {
-    /// True when a note has just been stored.
-    pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> bool {
+    /// The run on which a note has just been stored.
+    pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<Id> {
         if !self.under_way.poll() {
-            return false;
+            return None;
         }
         match std::mem::take(&mut self.under_way) {
             Asked::Failed(why) => {
                 messages.trouble(words.report.note_not_saved, why);
-                false
+                None
             }
-            _ => {
+            Asked::There(noted) => {
                 messages.tell(words.report.note_saved);
-                self.text.clear();
-                true
+                if self.run == Some(noted) {
+                    self.text.clear();
+                }
+                Some(noted)
             }
+            Asked::Not | Asked::Pending(_) => None,
         }
     }
 
@@ -58,7 +62,7 @@ impl RunNoteForm {
         {
             self.under_way = Asked::Pending(library.ask(move |shelf| {
                 shelf.open()?.add_run_note(run, &who, &text, now_us())?;
-                Ok(())
+                Ok(run)
             }));
         }
     }

@@ -40,7 +40,7 @@ pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
 fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
     match (run.verdict, run.state) {
         (Some(verdict), _) => (tone(verdict), words.common.stored_verdict(verdict)),
-        (None, RunState::Running) => (Tone::Soft, words.report.running),
+        (None, RunState::Running) => (Tone::Soft, words.common.running),
         (None, _) => (Tone::Bad, words.common.interrupted),
     }
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{Align2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use fault_db::DailyCount;
 
-use super::charts::{OverTime, by_name, over_time};
+use super::charts::{DAY_US, OverTime, by_name, over_time};
 use crate::clock;
 use crate::gui::Palette;
 use crate::words::{Words, fill};
@@ -48,7 +48,8 @@ fn in_time(ui: &mut Ui, words: &Words, chart: &OverTime, width: f32) {
         );
         painter.rect_filled(bar, 0.0, palette.accent);
     }
-    let from = clock::local_day(chart.from_us);
+    // Noon, since a day of summer time begins an hour before one of winter.
+    let from = clock::local_day(chart.from_us + DAY_US / 2);
     painter.text(
         rect.left_bottom(),
         Align2::LEFT_BOTTOM,

@@ -1,7 +1,7 @@
 //! What a person does to a fault: states, repairs, notes.
 
-use eframe::egui::{RichText, TextEdit, Ui};
-use fault_db::{FaultAction, FaultState, FaultSummary, RepairRecord};
+use eframe::egui::{Button, RichText, TextEdit, Ui};
+use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
 use crate::clock::now_us;
 use crate::gui::library::Asked;
@@ -17,50 +17,74 @@ const TOWARDS: [FaultState; 5] = [
     FaultState::Open,
 ];
 
-/// The form.
+/// The form, and what becomes of it.
 #[derive(Default)]
 pub struct Change {
+    form: Form,
+    /// Answers with the fault that was changed.
+    under_way: Asked<Id>,
+}
+
+/// What is written about one fault.
+#[derive(Default)]
+struct Form {
+    of: Option<Id>,
     note: String,
     serial_old: String,
     serial_new: String,
-    under_way: Asked<()>,
+}
+
+impl Form {
+    fn about(of: Id) -> Self {
+        Self {
+            of: Some(of),
+            ..Self::default()
+        }
+    }
 }
 
 impl Change {
-    /// True when a change has just been stored.
-    pub fn poll(&mut self, desk: &mut Desk<'_>) -> bool {
+    /// The fault a change of which has just been stored.
+    pub fn poll(&mut self, desk: &mut Desk<'_>) -> Option<Id> {
         if !self.under_way.poll() {
-            return false;
+            return None;
         }
         match std::mem::take(&mut self.under_way) {
             Asked::Failed(why) => {
                 desk.messages.trouble(desk.words.faults.not_changed, why);
-                false
+                None
             }
-            _ => {
-                *self = Self::default();
-                true
+            Asked::There(changed) => {
+                if self.form.of == Some(changed) {
+                    self.form = Form::about(changed);
+                }
+                Some(changed)
             }
+            Asked::Not | Asked::Pending(_) => None,
         }
     }
 
-    /// Shows it: only what the fault's state allows.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, fault: &FaultSummary) {
+    /// Shows it: only what the fault's state allows, and nothing while that state is being read anew.
+    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, fault: &FaultSummary, is_stale: bool) {
         let words = desk.words;
+        if self.form.of != Some(fault.id) {
+            // What was begun about another fault is not meant for this one.
+            self.form = Form::about(fault.id);
+        }
         ui.horizontal(|ui| {
             let label = ui.label(words.common.operator);
             ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(110.0))
                 .labelled_by(label.id);
             let label = ui.label(words.common.note);
-            ui.add(TextEdit::singleline(&mut self.note).desired_width(f32::INFINITY))
+            ui.add(TextEdit::singleline(&mut self.form.note).desired_width(f32::INFINITY))
                 .labelled_by(label.id);
         });
         let who = desk.settings.operator.trim().to_owned();
         if fault.state.next(FaultAction::Repair).is_ok() {
             ui.horizontal(|ui| {
                 for (name, text) in [
-                    (words.faults.serial_old, &mut self.serial_old),
-                    (words.faults.serial_new, &mut self.serial_new),
+                    (words.faults.serial_old, &mut self.form.serial_old),
+                    (words.faults.serial_new, &mut self.form.serial_new),
                 ] {
                     let label = ui.label(name);
                     ui.add(TextEdit::singleline(text).desired_width(90.0))
@@ -68,7 +92,8 @@ impl Change {
                 }
             });
         }
-        ui.add_enabled_ui(!who.is_empty(), |ui| {
+        let may = !who.is_empty() && self.under_way.is_not() && !is_stale;
+        ui.add_enabled_ui(may, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for state in TOWARDS {
                     if fault.state.next(FaultAction::towards(state)).is_ok()
@@ -77,11 +102,13 @@ impl Change {
                         self.bring(desk, fault, state, &who);
                     }
                 }
-                if ui.button(words.faults.add_note).clicked() && !self.note.trim().is_empty() {
-                    let (id, who, note) = (fault.id, who.clone(), self.note.clone());
+                let written = !self.form.note.trim().is_empty();
+                let add = ui.add_enabled(written, Button::new(words.faults.add_note));
+                if add.clicked() {
+                    let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
                     self.under_way = Asked::Pending(desk.library.ask(move |shelf| {
                         shelf.open()?.add_note(id, &who, &note, now_us())?;
-                        Ok(())
+                        Ok(id)
                     }));
                 }
             });
@@ -95,11 +122,11 @@ impl Change {
         let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         let repair = RepairRecord {
             part: fault.lru.clone(),
-            serial_old: some(&self.serial_old),
-            serial_new: some(&self.serial_new),
-            note: self.note.clone(),
+            serial_old: some(&self.form.serial_old),
+            serial_new: some(&self.form.serial_new),
+            note: self.form.note.clone(),
         };
-        let (id, who, note) = (fault.id, who.to_owned(), self.note.clone());
+        let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
         self.under_way = Asked::Pending(desk.library.ask(move |shelf| {
             let store = shelf.open()?;
             if state == FaultState::Repaired {
@@ -107,7 +134,7 @@ impl Change {
             } else {
                 store.set_state(id, state, &who, &note, now_us())?;
             }
-            Ok(())
+            Ok(id)
         }));
     }
 }

@@ -11,7 +11,7 @@ use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
 use crate::clock;
-use crate::gui::library::Asked;
+use crate::gui::library::{Asked, Kept, Pending};
 use crate::gui::{Desk, Palette};
 use change::Change;
 use filter::Filter;
@@ -29,11 +29,11 @@ struct History {
 #[derive(Default)]
 pub struct FaultsPage {
     filter: Filter,
-    history: Asked<History>,
+    history: Kept<History>,
     /// What the history was asked for with: days, and runs that had ended.
     asked: Option<(Option<i64>, usize)>,
     chosen: Option<Id>,
-    detail: Asked<FaultDetail>,
+    detail: Kept<FaultDetail>,
     change: Change,
 }
 
@@ -57,16 +57,21 @@ impl FaultsPage {
     /// Shows this fault.
     pub fn open(&mut self, id: Id, desk: &mut Desk<'_>) {
         self.chosen = Some(id);
-        self.detail = Asked::Pending(desk.library.ask(move |shelf| Ok(shelf.read()?.fault(id)?)));
+        self.detail.ask_other(detail_of(id, desk));
     }
 
     /// Asks anew when a run has ended or the span is another.
     fn keep_up(&mut self, desk: &mut Desk<'_>) {
         let wanted = (self.filter.days, desk.units.runs_ended());
         if self.asked != Some(wanted) {
-            self.asked = Some(wanted);
+            if let Some((_, ended)) = self.asked.replace(wanted)
+                && ended != wanted.1
+            {
+                self.reread(desk);
+            }
             let since_us = self.filter.since_us(clock::now_us());
-            self.history = Asked::Pending(desk.library.ask(move |shelf| {
+            let utc_offset_us = clock::utc_offset_us();
+            self.history.ask(desk.library.ask(move |shelf| {
                 let store = shelf.read()?;
                 let filter = FaultFilter {
                     since_us: Some(since_us),
@@ -75,23 +80,29 @@ impl FaultsPage {
                 };
                 Ok(History {
                     faults: store.faults(&filter)?,
-                    daily: store.daily_occurrences(since_us)?,
+                    daily: store.daily_occurrences(since_us, utc_offset_us)?,
                 })
             }));
         }
         self.history.poll();
         self.detail.poll();
-        if self.change.poll(desk) {
+        if let Some(changed) = self.change.poll(desk) {
             self.asked = None;
-            if let Some(id) = self.chosen {
-                self.open(id, desk);
+            if self.chosen == Some(changed) {
+                self.reread(desk);
             }
+        }
+    }
+
+    fn reread(&mut self, desk: &Desk<'_>) {
+        if let Some(id) = self.chosen {
+            self.detail.ask(detail_of(id, desk));
         }
     }
 
     fn list(&mut self, ui: &mut Ui, desk: &Desk<'_>) -> Option<Id> {
         let words = desk.words;
-        match &self.history {
+        match self.history.get() {
             Asked::There(history) => {
                 list::filters(ui, words, &mut self.filter, &history.faults);
                 let counts = history
@@ -118,10 +129,11 @@ impl FaultsPage {
     }
 
     fn chosen(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        match &self.detail {
+        let stale = self.detail.is_stale();
+        match self.detail.get() {
             Asked::There(detail) => {
                 detail::head(ui, desk.words, detail);
-                self.change.show(ui, desk, &detail.fault);
+                self.change.show(ui, desk, &detail.fault, stale);
                 detail::rest(ui, desk.words, detail, desk.go);
             }
             Asked::Failed(why) => {
@@ -135,4 +147,8 @@ impl FaultsPage {
             }
         }
     }
+}
+
+fn detail_of(id: Id, desk: &Desk<'_>) -> Pending<FaultDetail> {
+    desk.library.ask(move |shelf| Ok(shelf.read()?.fault(id)?))
 }

@@ -4,11 +4,9 @@ use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 use fault_db::Id;
 
 use super::{ReportPage, Shown, file};
-use crate::gui::library::Asked;
+use crate::gui::library::{Asked, Shelf};
 use crate::gui::parts::named_combo;
 use crate::gui::{Desk, Go};
-use crate::owner;
-use crate::report::{self, Target};
 use crate::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.
@@ -62,18 +60,8 @@ impl ReportPage {
             desk.messages.trouble(words.not_written, words.name_file);
             return;
         };
-        match path.to_string_lossy().parse::<Target>() {
-            Err(why) => desk.messages.trouble(words.not_written, why),
-            Ok(target) => {
-                self.writing = Asked::Pending(desk.library.ask(move |shelf| {
-                    target.check()?;
-                    let store = shelf.read()?;
-                    let detail = store.run(run, &owner::is_alive)?;
-                    report::write(&[target], &store, Some(&shelf.scripts), &detail, language)?;
-                    Ok(path)
-                }));
-            }
-        }
+        let write = move |shelf: &Shelf| file::write(shelf, run, &path, language);
+        self.writing = Asked::Pending(desk.library.ask(write));
     }
 }
 

@@ -1,20 +1,18 @@
-//! Which file a report is written to.
+//! Which file a report is written to, and writing it.
 
 use std::path::{Path, PathBuf};
 
 use fault_db::Id;
 
+use crate::failure::Failure;
+use crate::gui::library::Shelf;
+use crate::gui::parts::{new_file, usual_folder};
+use crate::owner;
+use crate::report::{self, Target};
+use crate::words::Language;
+
 /// Endings a typed name may have; the one of the format asked for takes its place.
 const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
-
-/// The folder for documents, or the one the program was started in.
-pub fn usual_folder() -> PathBuf {
-    directories::UserDirs::new()
-        .and_then(|folders| folders.document_dir().map(Path::to_path_buf))
-        .filter(|folder| folder.is_dir())
-        .or_else(|| std::env::current_dir().ok())
-        .unwrap_or_default()
-}
 
 /// A name for the sheet of this run, in the folder of the file named before.
 pub fn named_after(run: Id, before: &str) -> String {
@@ -33,6 +31,32 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
     let named = !stem.is_empty() && !stem.ends_with(['/', std::path::MAIN_SEPARATOR]);
     let path = PathBuf::from(format!("{stem}{ending}"));
     named.then(|| std::path::absolute(&path).unwrap_or(path))
+}
+
+/// Writes the report of a run to the file wanted, or beside it if that is there already; which it was.
+///
+/// # Errors
+/// The file cannot be written, or the database not be read.
+pub fn write(
+    shelf: &Shelf,
+    run: Id,
+    wanted: &Path,
+    language: Language,
+) -> Result<PathBuf, Failure> {
+    let target = |path: &Path| -> Result<Target, Failure> {
+        path.to_string_lossy().parse().map_err(Failure::usage)
+    };
+    target(wanted)?.check()?;
+    let store = shelf.read()?;
+    let detail = store.run(run, &owner::is_alive)?;
+    let (_, path) = new_file(wanted)?;
+    let scripts = Some(&shelf.scripts);
+    let written = report::write(&[target(&path)?], &store, scripts, &detail, language);
+    if written.is_err() {
+        // An empty file would pass for a report.
+        let _ = std::fs::remove_file(&path);
+    }
+    written.map(|()| path)
 }
 
 #[cfg(test)]

@@ -129,10 +129,10 @@ impl ReportPage {
                 Asked::Not | Asked::Pending(_) => {}
             }
         }
-        if self.note.poll(desk.words, desk.messages)
-            && let Some(run) = self.run()
+        if let Some(noted) = self.note.poll(desk.words, desk.messages)
+            && self.run() == Some(noted)
         {
-            self.ask(run, desk);
+            self.ask(noted, desk);
         }
     }
 

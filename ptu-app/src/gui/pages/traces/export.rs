@@ -1,5 +1,6 @@
 //! The view as a picture or a table.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
@@ -12,12 +13,10 @@ use crate::data;
 use crate::failure::Failure;
 use crate::gui::Desk;
 use crate::gui::library::Pending;
+use crate::gui::parts::{cannot_write, new_file, usual_folder};
 use crate::trace_view::csv::csv;
 use crate::trace_view::{Kind, Scene};
 use crate::words::fill;
-
-/// Names tried beside one that is taken.
-const BESIDE: u32 = 1000;
 
 /// What is to be written, and what is under way.
 #[derive(Default)]
@@ -72,7 +71,7 @@ impl Export {
             let question = move |_: &_| {
                 let part = image.region(&rect, Some(scale));
                 let (file, path) = create(&name, "png")?;
-                encode(&part, file).map_err(|error| cannot(&path, &error))?;
+                encode(&part, file).map_err(|error| cannot_write(&path, &error))?;
                 Ok(path)
             };
             self.writing.push(desk.library.ask(question));
@@ -110,40 +109,20 @@ impl Export {
     }
 }
 
-/// The usual name for what is exported of a trace: in the user's documents, or else where the program was
-/// started.
+/// The usual name for what is exported of a trace.
 pub fn usual_name(id: Id) -> String {
-    let documents = directories::UserDirs::new()
-        .and_then(|user| user.document_dir().map(Path::to_owned))
-        .filter(|folder| folder.is_dir());
-    let folder = documents.or_else(|| std::env::current_dir().ok());
-    let file = folder
-        .unwrap_or_default()
-        .join(format!("trace-{}", id.short()));
+    let file = usual_folder().join(format!("trace-{}", id.short()));
     file.display().to_string()
 }
 
-/// A new file of this name, or of one beside it: nothing is written over.
-fn create(name: &str, ending: &str) -> Result<(std::fs::File, PathBuf), Failure> {
+/// A new file of this name with this ending, which may have been typed with it.
+fn create(name: &str, ending: &str) -> Result<(File, PathBuf), Failure> {
     let name = name.trim();
     let name = name.strip_suffix(&format!(".{ending}")).unwrap_or(name);
-    let first = PathBuf::from(format!("{name}.{ending}"));
-    let beside = (2..BESIDE).map(|n| PathBuf::from(format!("{name}-{n}.{ending}")));
-    for path in std::iter::once(first.clone()).chain(beside) {
-        match std::fs::File::create_new(&path) {
-            Ok(file) => return Ok((file, path)),
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(cannot(&path, &error)),
-        }
-    }
-    Err(cannot(&first, &"it is there already"))
+    new_file(Path::new(&format!("{name}.{ending}")))
 }
 
-fn cannot(path: &Path, why: &dyn std::fmt::Display) -> Failure {
-    Failure::bench(format!("cannot write {}: {why}", path.display()))
-}
-
-fn encode(image: &ColorImage, file: std::fs::File) -> Result<(), png::EncodingError> {
+fn encode(image: &ColorImage, file: File) -> Result<(), png::EncodingError> {
     let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
     let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
     encoder.set_color(png::ColorType::Rgba);
@@ -157,17 +136,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_written_over_and_a_folder_that_is_not_there_is_told() {
+    fn an_ending_that_was_typed_is_not_doubled() {
         let folder = tempfile::tempdir().expect("folder");
-        let name = folder.path().join("trace.v2").display().to_string();
-        let names: Vec<_> = (0..3)
-            .map(|_| create(&name, "csv").expect("made").1)
-            .map(|path| path.file_name().expect("named").to_owned())
-            .collect();
-        assert_eq!(names, ["trace.v2.csv", "trace.v2-2.csv", "trace.v2-3.csv"]);
-        let nowhere = folder.path().join("no/where").display().to_string();
-        let failure = create(&nowhere, "csv").expect_err("no folder");
-        assert!(failure.message.contains("where.csv"), "{}", failure.message);
+        for (typed, made) in [("a", "a.csv"), (" b.csv ", "b.csv"), ("c.v2", "c.v2.csv")] {
+            let name = format!("{}/{}", folder.path().display(), typed.trim_start());
+            let (_, path) = create(&name, "csv").expect("made");
+            assert_eq!(path, folder.path().join(made));
+        }
     }
 
     #[test]
@@ -175,8 +150,8 @@ mod tests {
         let image = ColorImage::filled([3, 2], eframe::egui::Color32::from_rgb(1, 2, 3));
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("picture.png");
-        encode(&image, std::fs::File::create(&path).expect("file")).expect("encoded");
-        let file = std::io::BufReader::new(std::fs::File::open(&path).expect("file"));
+        encode(&image, File::create(&path).expect("file")).expect("encoded");
+        let file = std::io::BufReader::new(File::open(&path).expect("file"));
         let mut reader = png::Decoder::new(file).read_info().expect("a picture");
         let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
         let info = reader.next_frame(&mut pixels).expect("a frame");
