@@ -750,6 +750,66 @@ fn a_procedure_can_be_left_between_two_steps() {
     assert_eq!(whole.steps().len(), 3);
 }
 
+/// The step under way is finished, the next waits, one at a time may go, and going on needs no more.
+#[test]
+fn a_paused_procedure_goes_step_by_step_and_on() {
+    let script = format!("{HEAD}step('a')\nstep('b')\nstep('c')\nstep('d')");
+    let mut waits = Vec::new();
+    let outcome = run(&script, |world| {
+        match world.ms() {
+            0 => world.runner.pause(),
+            1_000 | 2_000 => world.runner.single_step(),
+            3_000 => world.runner.resume(),
+            _ => {}
+        }
+        if world.ms().is_multiple_of(500) {
+            waits.push(world.runner.awaits_operator());
+        }
+    });
+    assert_eq!(waits, [false, true, true, true, true, true, false]);
+    let began = outcome.events.iter().filter_map(|event| match event {
+        RunEvent::StepStarted { name, at, .. } => Some((name.as_str(), at.as_us() / 1000)),
+        _ => None,
+    });
+    let began: Vec<_> = began.collect();
+    assert_eq!(
+        began,
+        [("a", 1_000), ("b", 2_000), ("c", 3_000), ("d", 3_000)]
+    );
+    let said = outcome.events.iter().filter_map(|event| match event {
+        RunEvent::Paused { next, .. } => Some(next.as_str()),
+        _ => None,
+    });
+    assert_eq!(
+        said.collect::<Vec<_>>(),
+        ["a", "b", "c"],
+        "each wait is said once"
+    );
+    assert_eq!(outcome.finished().0, Verdict::Passed);
+}
+
+/// A pause keeps neither stop nor a lost link from clean-up and safe outputs.
+#[test]
+fn a_pause_holds_up_no_stop() {
+    let script = format!("{HEAD}step('a')\nstep('b')");
+    let outcome = run(&script, |world| match world.ms() {
+        0 => world.runner.pause(),
+        1_000 => world.runner.stop(),
+        _ => {}
+    });
+    assert_eq!(outcome.finished().0, Verdict::Aborted);
+    assert_eq!(outcome.fake.applied, [ON, OFF]);
+    assert_eq!(outcome.fake.made_safe, 1);
+    let lost = run(&script, |world| {
+        if world.ms() == 0 {
+            world.runner.pause();
+        }
+        world.link_error = (world.ms() >= 1_000).then_some("silent");
+    });
+    assert_eq!(lost.finished().0, Verdict::Error);
+    assert!(lost.fake.made_safe > 0);
+}
+
 #[test]
 fn nothing_chosen_is_an_error() {
     for chosen in [vec![], vec![7]] {
