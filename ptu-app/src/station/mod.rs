@@ -5,7 +5,8 @@
 //!                                                          ↘ News (what happened, in order)
 //! ```
 //! The thread never waits for who looks on: a cycle that finds the board being read is shown with
-//! the next one, and news wait in a queue.
+//! the next one, and news wait in a queue that is as long as it takes: losing the end of a run would
+//! be worse than some memory while a window is not painted.
 
 mod board;
 mod link_quality;

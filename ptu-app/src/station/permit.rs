@@ -39,7 +39,7 @@ pub fn permit(stimulus: &Stimulus, connection: Connection, live: &Live) -> Resul
     match stimulus {
         Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => Ok(()),
         Stimulus::PtuArm if !on(Signal::MaintenanceKey) => Err(Refused::KeyOff),
-        // The key of a train is turned by hand.
+        // The key is no test signal: on a train a person turns it, and the bench is told.
         Stimulus::PtuArm | Stimulus::MaintenanceKey { .. } => Ok(()),
         _ if stimulus.on_test_board() && !on(Signal::Armed) => Err(Refused::NotArmed),
         _ if stimulus.on_test_board() => Ok(()),

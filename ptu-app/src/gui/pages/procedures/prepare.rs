@@ -1,9 +1,5 @@
 //! Loads the suite for a unit, and makes an order of what is chosen; on the library's thread.
 
-use std::sync::Arc;
-
-use btu_rig::procedure::Procedure;
-
 use super::selection::{Selection, possible};
 use crate::diagnosis;
 use crate::failure::Failure;
@@ -88,18 +84,4 @@ pub fn order(
         store,
         realtime: choice.realtime,
     })))
-}
-
-/// Procedures by their folder, in order.
-pub fn folders(procedures: &[Arc<Procedure>]) -> Vec<(&str, &[Arc<Procedure>])> {
-    let folder = |procedure: &Arc<Procedure>| procedure.id.rfind('/').unwrap_or(0);
-    let name = |procedure: &'_ Arc<Procedure>| procedure.id[..folder(procedure)].to_owned();
-    procedures
-        .chunk_by(|a, b| name(a) == name(b))
-        .filter_map(|chunk| {
-            chunk
-                .first()
-                .map(|first| (&first.id[..folder(first)], chunk))
-        })
-        .collect()
 }

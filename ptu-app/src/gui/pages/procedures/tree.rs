@@ -6,7 +6,6 @@ use btu_rig::procedure::Procedure;
 use eframe::egui::{Checkbox, Response, RichText, ScrollArea, TextEdit, Ui, collapsing_header};
 
 use super::ProceduresPage;
-use super::prepare::folders;
 use super::selection::{Selection, Share, possible};
 use crate::gui::library::Asked;
 use crate::gui::{Desk, Palette};
@@ -154,4 +153,18 @@ fn matches(procedure: &Procedure, find: &str) -> bool {
 pub fn minutes(seconds: f64) -> String {
     let seconds = seconds.round().max(0.0) as u64;
     format!("{}:{:02}", seconds / 60, seconds % 60)
+}
+
+/// Procedures by their folder, in order.
+fn folders(procedures: &[Arc<Procedure>]) -> Vec<(&str, &[Arc<Procedure>])> {
+    let folder = |procedure: &Arc<Procedure>| procedure.id.rfind('/').unwrap_or(0);
+    let name = |procedure: &'_ Arc<Procedure>| procedure.id[..folder(procedure)].to_owned();
+    procedures
+        .chunk_by(|a, b| name(a) == name(b))
+        .filter_map(|chunk| {
+            chunk
+                .first()
+                .map(|first| (&first.id[..folder(first)], chunk))
+        })
+        .collect()
 }
