@@ -2,6 +2,7 @@
 
 mod common;
 
+use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
 use common::{Place, scripts, window::Window};
@@ -71,6 +72,30 @@ fn the_test_board_is_for_an_armed_unit_only() {
     window.until("the TEST board out of reach", |window| {
         !window.enabled("Test code: 55")
     });
+}
+
+/// Goal: what was laid by hand is not shown once it is gone, whatever page was in front then. Method: a
+/// section laid, "Stop all" pressed on another page, and back.
+#[test]
+fn a_section_laid_by_hand_is_forgotten_with_stop_all_on_another_page() {
+    let mut window = connected(on_bench());
+    fold(&mut window, &["ATP signal", "Speed", "Train lines"]);
+    window.wait_for_part("no section laid along the way");
+    window.click("Markers");
+    window.click("Section: Lay section");
+    window.until("a section", |window| {
+        !window.shows_part("no section laid along the way")
+    });
+    window.key(Page::Procedures.key());
+    let generation = |window: &Window| {
+        let unit = window.app().units().chosen();
+        unit.station.live().generation
+    };
+    let before = generation(&window);
+    window.key(Key::F12);
+    window.until("a safe bench", |window| generation(window) > before);
+    window.key(Page::Bench.key());
+    window.wait_for_part("no section laid along the way");
 }
 
 /// Goal: a laptop on the maintenance port has the TEST board first, and what needs the harness says why it

@@ -13,6 +13,8 @@ mod stimuli;
 mod text;
 mod track;
 
+use std::collections::BTreeMap;
+
 use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
 use crate::gui::Desk;
@@ -38,10 +40,12 @@ const HEADING: f32 = 8.0;
 /// Share of the log in the width.
 const LOG_SHARE: f32 = 0.4;
 
-/// What is filled in and remembered for one bench.
+/// What is filled in and remembered for one unit's bench.
 struct Sheet {
-    /// The unit's place, and checksums of its configuration and line.
-    of: (usize, u32, u32),
+    /// Checksums of the unit's configuration and line.
+    of: (u32, u32),
+    /// Of the bench when something was given.
+    generation: u64,
     forms: Forms,
     given: Given,
 }
@@ -49,22 +53,24 @@ struct Sheet {
 /// The page.
 #[derive(Default)]
 pub struct BenchPage {
-    sheet: Option<Sheet>,
+    /// By the unit's id.
+    sheets: BTreeMap<u64, Sheet>,
     plot: Plot,
 }
 
 impl BenchPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let place = desk.units.chosen_place();
+        self.sheets
+            .retain(|id, _| desk.units.iter().any(|unit| unit.id == *id));
         let unit = desk.units.chosen();
         let Some(setup) = unit.setup.value() else {
             ui.label(desk.words.bench.connect_first);
             return;
         };
         let seen = Seen::of(&unit.station);
-        let sheet = sheet(&mut self.sheet, place, setup);
-        // A run lays its own track, and a bench that begins anew has none.
+        let sheet = sheet(&mut self.sheets, unit.id, setup, seen.generation);
+        // A run lays its own track; what was given before it is gone already.
         if seen.phase != Phase::Idle {
             sheet.given = Given::default();
         }
@@ -95,17 +101,29 @@ impl BenchPage {
     }
 }
 
-/// The sheet of this bench; a new one when it is another bench.
-fn sheet<'a>(sheet: &'a mut Option<Sheet>, place: usize, setup: &BenchSetup) -> &'a mut Sheet {
-    let of = (place, setup.config.crc, setup.line.crc);
-    if sheet.as_ref().is_some_and(|sheet| sheet.of != of) {
-        *sheet = None;
-    }
-    sheet.get_or_insert_with(|| Sheet {
+/// The unit's sheet: filled in anew for another configuration, and without what is no longer given.
+fn sheet<'a>(
+    sheets: &'a mut BTreeMap<u64, Sheet>,
+    unit: u64,
+    setup: &BenchSetup,
+    generation: u64,
+) -> &'a mut Sheet {
+    let of = (setup.config.crc, setup.line.crc);
+    let new = || Sheet {
         of,
+        generation,
         forms: Forms::new(setup),
         given: Given::default(),
-    })
+    };
+    let sheet = sheets.entry(unit).or_insert_with(new);
+    if sheet.of != of {
+        *sheet = new();
+    }
+    if sheet.generation != generation {
+        sheet.generation = generation;
+        sheet.given = Given::default();
+    }
+    sheet
 }
 
 /// Room for stimuli at the right.

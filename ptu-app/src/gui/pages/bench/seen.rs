@@ -9,6 +9,8 @@ use crate::station::{Phase, Station};
 pub struct Seen {
     /// What its thread is at.
     pub phase: Phase,
+    /// Counts benches made anew and made safe.
+    pub generation: u64,
     /// Every signal.
     pub sample: Sample,
 }
@@ -19,6 +21,7 @@ impl Seen {
         let live = station.live();
         Self {
             phase: live.phase,
+            generation: live.generation,
             sample: live.sample.clone(),
         }
     }
