@@ -9,7 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::Place;
+use common::{Place, list};
+use ptu_app::gui::{Page, Settings, UnitChoice};
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 
 /// Patience with a busy machine that paints in software.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -22,6 +25,9 @@ const PAGES: [&str; 6] = [
     "diagnosis",
     "report",
 ];
+
+/// Where the button that begins a run is on the page of procedures.
+const RUN: [&str; 2] = ["333", "89"];
 
 /// A private X server; ends with the value.
 struct Display {
@@ -81,6 +87,27 @@ impl Display {
             .flat_map(|pixel| [pixel[2], pixel[1], pixel[0]])
             .collect();
         Picture { width, height, rgb }
+    }
+
+    /// There is no window manager here, so the test sends what one would send.
+    fn ask_to_close(&self) {
+        let (connection, screen) = x11rb::connect(Some(&self.name)).expect("the server");
+        let atom = |name: &str| {
+            let asked = connection.intern_atom(false, name.as_bytes());
+            asked.expect("asked").reply().expect("an atom").atom
+        };
+        let (protocols, delete) = (atom("WM_PROTOCOLS"), atom("WM_DELETE_WINDOW"));
+        let root = connection.setup().roots[screen].root;
+        let tree = connection.query_tree(root).expect("asked").reply();
+        let takes_part = |window: &u32| {
+            let asked = connection.list_properties(*window).expect("asked").reply();
+            asked.is_ok_and(|properties| properties.atoms.contains(&protocols))
+        };
+        let windows = tree.expect("windows").children;
+        let window = windows.into_iter().find(takes_part).expect("its window");
+        let event = ClientMessageEvent::new(32, window, protocols, [delete, 0, 0, 0, 0]);
+        let sent = connection.send_event(false, window, EventMask::NO_EVENT, event);
+        sent.expect("sent").check().expect("taken");
     }
 
     fn tool(&self, arguments: &[&str]) -> bool {
@@ -168,20 +195,30 @@ impl<'a> Shown<'a> {
         (ticks() - before) / 100.0 / began.elapsed().as_secs_f64()
     }
 
-    /// Asks it to close, as the person does, and waits for its end.
-    fn close(mut self) -> Option<i32> {
-        assert!(
-            self.display
-                .tool(&["search", "--name", "PTU", "windowclose"])
-        );
+    /// Asks it to close, as the cross in its title bar does.
+    fn close(self) {
+        self.display.ask_to_close();
+        self.ends_well();
+    }
+
+    /// Tells it to end, as a system that is shut down does.
+    fn terminate(self) {
+        let id = self.child.id().to_string();
+        let told = Command::new("kill").args(["-TERM", &id]).status();
+        assert!(told.expect("kill starts").success());
+        self.ends_well();
+    }
+
+    fn ends_well(mut self) {
         let began = Instant::now();
-        loop {
+        let status = loop {
             if let Some(status) = self.child.try_wait().expect("its state") {
-                return status.code();
+                break status;
             }
             assert!(began.elapsed() < PATIENCE, "it does not close");
             std::thread::sleep(Duration::from_millis(50));
-        }
+        };
+        assert_eq!(status.code(), Some(0), "{status}");
     }
 }
 
@@ -246,15 +283,60 @@ fn every_page_is_shown_on_a_real_display_in_both_languages() {
     }
 }
 
+/// Goal: a run is not lost with the window. Method: a run that takes as long as on a real unit, and the
+/// window closed, or told to end, in the midst of it.
+#[test]
+fn a_window_closed_in_mid_run_leaves_a_closed_record() {
+    for told_to_end in [false, true] {
+        let place = Place::new();
+        let settings = Settings {
+            page: Page::Procedures,
+            unit: UnitChoice {
+                realtime: true,
+                ..UnitChoice::default()
+            },
+            ..Settings::default()
+        };
+        let file = place.path("config/ptu/window.json");
+        settings.save(&file).expect("settings");
+        let display = Display::new(&place);
+        let shown = Shown::open(&place, &display, &["--unit", "sim"]);
+        shown.settled();
+        let [x, y] = RUN;
+        shown.display.tool(&["mousemove", x, y, "click", "1"]);
+        shown.until("the run", |_| {
+            place.ptu(&["runs", "show", "latest"]).code == Some(0)
+        });
+        if told_to_end {
+            shown.terminate();
+        } else {
+            shown.close();
+        }
+        let runs = place.json(&["runs", "list", "--json"]);
+        let [run] = list(&runs) else {
+            panic!("one run: {runs}")
+        };
+        assert_eq!(run["verdict"], "aborted", "{run}");
+        assert_eq!(run["state"], "finished", "{run}");
+    }
+}
+
+/// The figures are measured in release mode; here only that it does not repaint without a pause.
 #[test]
 fn a_window_nobody_touches_is_idle() {
     let place = Place::new();
     let display = Display::new(&place);
-    let shown = Shown::open(&place, &display, &["--page", "procedures"]);
-    shown.settled();
-    let share = shown.idle_share();
-    // The figure is measured in release mode; here only that it does not repaint without a pause.
-    assert!(share < 0.2, "{:.1} % of a core", 100.0 * share);
+    for (unit, most) in [(&[][..], 0.2), (&["--unit", "sim"], 0.3)] {
+        let shown = Shown::open(
+            &place,
+            &display,
+            &[&["--page", "procedures"], unit].concat(),
+        );
+        shown.settled();
+        let share = shown.idle_share();
+        assert!(share < most, "{unit:?}: {:.1} % of a core", 100.0 * share);
+        shown.close();
+    }
 }
 
 #[test]
