@@ -311,7 +311,7 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     window.click("Run");
     window.wait_for_part("The run was not begun");
     assert!(window.app().units().chosen().is_connected());
-    window.click("OK");
+    window.click("Noted");
     assert!(!window.shows_part("The run was not begun"));
 
     std::fs::remove_file(window.place.path("history.db")).expect("removed");

@@ -26,7 +26,7 @@ wordings! {
         broken: "The bench's program failed: switch the unit off and report what was done", "벤치 프로그램에 오류가 발생했습니다: 유닛 전원을 끄고 상황을 보고하십시오";
         cannot_list: "Ports, lines or units cannot be listed", "포트, 노선, 유닛 목록을 읽을 수 없습니다";
         close_anyway: "Close", "닫기";
-        dismiss: "OK", "확인";
+        dismiss: "Noted", "확인";
         armed_unit: "ARMED: {unit}", "ARMED: {unit}";
         running: "run {share} %", "시험 {share} %";
         asks: "a script asks", "스크립트 질문 있음";
