@@ -28,6 +28,8 @@ pub struct Setup {
     names: Asked<Names>,
     find: String,
     open: bool,
+    /// It has just been opened.
+    opened: bool,
 }
 
 impl Setup {
@@ -63,6 +65,7 @@ impl Setup {
             let setup = ui.selectable_label(self.open, words.frame.setup);
             if setup.clicked() {
                 self.open = !self.open;
+                self.opened = self.open;
             }
             below = setup.rect.left_bottom();
         });
@@ -183,8 +186,12 @@ impl Setup {
         };
         ui.label(format!("{}: {chosen}", words.frame.inject));
         let label = ui.label(words.frame.find);
-        ui.add(TextEdit::singleline(&mut self.find))
-            .labelled_by(label.id);
+        let find = ui.add(TextEdit::singleline(&mut self.find));
+        // What is mostly wanted can be typed at once.
+        if std::mem::take(&mut self.opened) {
+            find.request_focus();
+        }
+        find.labelled_by(label.id);
         let known = self
             .names
             .value()
