@@ -21,6 +21,8 @@ const ROWS: usize = (HISTORY.as_us() / CYCLE.as_us()) as usize;
 const OFTEN: time::Duration = time::Duration::from_millis(33);
 /// … and at least this often while nothing changes but the time and counts.
 const SELDOM: time::Duration = time::Duration::from_secs(1);
+/// … or this often, when only the connection bar shows the unit.
+const RARELY: time::Duration = time::Duration::from_secs(5);
 /// Counts that run on while a unit does nothing: not worth waking anybody.
 const COUNTS: [Signal; 2] = [Signal::TwcReceived, Signal::TwcAnswers];
 /// What the connection bar shows, whatever page is in front.
@@ -222,7 +224,9 @@ impl Attendant for Board {
         drop(live);
         let shown = rig.sample().values().map(f64::to_bits);
         let since = pending.woken.elapsed();
-        if since >= SELDOM || (since >= OFTEN && self.is_worth_a_look(&pending.shown, &shown)) {
+        let watched = self.watched.load(Ordering::Relaxed);
+        let at_least = if watched { SELDOM } else { RARELY };
+        if since >= at_least || (since >= OFTEN && self.is_worth_a_look(&pending.shown, &shown)) {
             pending.woken = time::Instant::now();
             pending.shown = shown;
             (self.wake)();
