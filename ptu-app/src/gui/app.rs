@@ -106,20 +106,11 @@ impl App {
         desk.units.watch(page == Page::Bench);
         CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut desk));
         if self.closing {
-            let not_safe = self.units.any_not_safe() && !self.noted_not_safe;
+            let not_safe = desk.units.any_not_safe() && !self.noted_not_safe;
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
-        for to in std::mem::take(&mut self.go) {
-            let mut desk = Desk {
-                words,
-                library: &self.library,
-                units: &mut self.units,
-                settings: &mut self.settings,
-                messages: &mut self.messages,
-                go: &mut self.go,
-            };
-            let page = self.pages.go(to, &mut desk);
-            self.settings.page = page;
+        for to in std::mem::take(desk.go) {
+            desk.settings.page = self.pages.go(to, &mut desk);
             ui.ctx().request_repaint();
         }
     }

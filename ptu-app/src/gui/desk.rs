@@ -33,14 +33,12 @@ pub enum Go {
     Report(Id),
     /// To the diagnosis of a run.
     Diagnosis(Id),
-    /// To a fault.
-    Fault(Id),
     /// To the procedures, to run this step.
     RunStep {
         /// Procedure, as `atp/overspeed`.
         procedure: String,
-        /// Step by its name; none = all of them.
-        step: Option<String>,
+        /// Step by its name.
+        step: String,
         /// The unit it is for, by its serial number.
         unit: String,
     },

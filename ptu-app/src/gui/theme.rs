@@ -4,6 +4,8 @@
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Context, TextStyle, Theme, Ui};
 
+use crate::run::stored;
+
 /// Colours of meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Palette {
@@ -98,14 +100,18 @@ impl Palette {
         if ui.visuals().dark_mode { DARK } else { LIGHT }
     }
 
+    /// The strongest ink there is on the window's ground.
+    pub fn ink(&self) -> Color32 {
+        if self.dark {
+            Color32::WHITE
+        } else {
+            Color32::BLACK
+        }
+    }
+
     /// A verdict's colour.
     pub fn verdict(&self, verdict: Verdict) -> Color32 {
-        match verdict {
-            Verdict::Passed => self.good,
-            Verdict::Failed => self.bad,
-            Verdict::Error | Verdict::Aborted => self.warn,
-            Verdict::Skipped => self.quiet,
-        }
+        self.stored_verdict(stored(verdict))
     }
 
     /// A stored verdict's colour.

@@ -33,7 +33,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The verdict in the words of the store.
+    /// Its verdict in the words of the store.
     pub fn stored_verdict(&self) -> fault_db::Verdict {
         stored(self.verdict)
     }
@@ -233,7 +233,8 @@ impl<'a> Collector<'a> {
     }
 }
 
-fn stored(verdict: Verdict) -> fault_db::Verdict {
+/// A verdict in the words of the store.
+pub fn stored(verdict: Verdict) -> fault_db::Verdict {
     match verdict {
         Verdict::Passed => fault_db::Verdict::Passed,
         Verdict::Failed => fault_db::Verdict::Failed,

@@ -32,7 +32,7 @@ pub use attendant::Attendant;
 pub use benches::{BenchSetup, Connected, run_here};
 pub(crate) use benches::{READY_WITHIN, settled, text};
 pub use choice::Choice;
-pub use collector::{Listener, Outcome, steps_of};
+pub use collector::{Listener, Outcome, steps_of, stored};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use made::{BenchMade, Made, Stimuli};

@@ -4,6 +4,7 @@ use btu_rig::procedure::Verdict;
 use fault_db::FaultState;
 
 use super::wordings;
+use crate::run::stored;
 
 wordings! {
     /// Verdicts, states and what every page says.
@@ -51,13 +52,7 @@ wordings! {
 impl Common {
     /// A verdict.
     pub fn verdict(&self, verdict: Verdict) -> &'static str {
-        match verdict {
-            Verdict::Passed => self.passed,
-            Verdict::Failed => self.failed,
-            Verdict::Error => self.error,
-            Verdict::Skipped => self.skipped,
-            Verdict::Aborted => self.aborted,
-        }
+        self.stored_verdict(stored(verdict))
     }
 
     /// A stored verdict.

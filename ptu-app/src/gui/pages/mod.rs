@@ -133,10 +133,6 @@ impl Pages {
                 self.diagnosis.open(run, desk);
                 Page::Diagnosis
             }
-            Go::Fault(id) => {
-                self.faults.open(id, desk);
-                Page::Faults
-            }
             Go::RunStep {
                 procedure,
                 step,

@@ -147,11 +147,7 @@ pub fn choice(
     label: impl Fn(f64) -> String,
 ) {
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
-    let text = if palette.dark {
-        Color32::WHITE
-    } else {
-        Color32::BLACK
-    };
+    let text = palette.ink();
     let ground = colour.gamma_multiply(0.18);
     let mut narrow = Slabs::new(&painter);
     for span in spans {

@@ -151,7 +151,7 @@ fn next_check(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
         if ui.button(RichText::new(words.run_it).strong()).clicked() {
             desk.go.push(Go::RunStep {
                 procedure: next.check.procedure.clone(),
-                step: Some(next.check.step.clone()),
+                step: next.check.step.clone(),
                 unit: answer.run.run.unit_serial.clone(),
             });
         }

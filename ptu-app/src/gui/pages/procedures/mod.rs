@@ -37,7 +37,7 @@ pub struct ProceduresPage {
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
     /// A step to run as soon as the suite is there: procedure, step, unit by its own number.
-    wanted: Option<(String, Option<String>, u64)>,
+    wanted: Option<(String, String, u64)>,
     shown: Shown,
     /// What the last run comes to, by run.
     conclusion: Asked<String>,
@@ -93,14 +93,8 @@ impl ProceduresPage {
         });
     }
 
-    /// Runs this step, or all of a procedure, on the chosen unit if it is the one called `unit`.
-    pub fn run_step(
-        &mut self,
-        procedure: String,
-        step: Option<String>,
-        unit: &str,
-        desk: &mut Desk<'_>,
-    ) {
+    /// Runs this step on the chosen unit if it is the one called `unit`.
+    pub fn run_step(&mut self, procedure: String, step: String, unit: &str, desk: &mut Desk<'_>) {
         let words = &desk.words.procedures;
         let chosen = desk.units.chosen();
         if chosen.phase() != Phase::Idle {
@@ -162,9 +156,9 @@ impl ProceduresPage {
             return;
         };
         let found = suite.procedures.iter().find(|known| known.id == procedure);
-        let only = found.map(|found| Selection::only(found, step.as_deref()));
+        let only = found.map(|found| Selection::only(found, &step));
         let Some(only) = only.filter(|only| only.extent(&suite.procedures).0 > 0) else {
-            let what = format!("{procedure} {}", step.unwrap_or_default());
+            let what = format!("{procedure} {step}");
             desk.messages
                 .trouble(desk.words.procedures.no_such_step, what);
             return;

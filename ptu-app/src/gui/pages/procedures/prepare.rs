@@ -50,7 +50,8 @@ pub fn order(
     how: How,
     shown_sha256: &str,
 ) -> Result<Prepared, Failure> {
-    let suite = load(shelf, choice)?;
+    let setup = choice.named()?.setup(&shelf.scripts)?;
+    let suite = Suite::load(&shelf.scripts, &[], &setup)?;
     if suite.sha256 != shown_sha256 || !suite.errors.is_empty() {
         return Ok(Prepared::Changed(Box::new(suite)));
     }
@@ -62,7 +63,6 @@ pub fn order(
     let store = shelf.open()?;
     let adaptive = match how.adaptive {
         true => {
-            let setup = choice.named()?.setup(&shelf.scripts)?;
             let bench = diagnosis::Bench {
                 unit_config_sha256: &setup.config.sha256,
                 line: &choice.line,

@@ -41,16 +41,11 @@ impl Selection {
         usual
     }
 
-    /// One procedure, or one step of it; nothing if there is none of that name.
-    pub fn only(procedure: &Procedure, step: Option<&str>) -> Self {
+    /// One step of a procedure; nothing if there is none of that name.
+    pub fn only(procedure: &Procedure, step: &str) -> Self {
         let mut only = Self::default();
-        match step {
-            None => only.set(procedure, true),
-            Some(name) => {
-                if let Some(place) = procedure.steps.iter().position(|step| step.name == name) {
-                    only.set_step(procedure, place, true);
-                }
-            }
+        if let Some(place) = procedure.steps.iter().position(|known| known.name == step) {
+            only.set_step(procedure, place, true);
         }
         only
     }
@@ -220,7 +215,7 @@ mod tests {
     #[test]
     fn a_step_that_is_not_there_chooses_nothing() {
         let procedures = procedures();
-        let only = Selection::only(&procedures[0], Some("no such step"));
+        let only = Selection::only(&procedures[0], "no such step");
         assert!(only.tasks(&procedures, 1, false).is_empty());
         assert_eq!(only.share_of(&procedures), Share::None);
     }
