@@ -3,6 +3,9 @@
 mod common;
 
 use common::Place;
+use fault_db::Store;
+use ptu_app::report::run::{Sheet, html};
+use ptu_app::words::Language;
 
 /// A failed run in all formats at once, and the same from the store: sheets say what failed, and are
 /// the same files again.
@@ -97,7 +100,6 @@ fn a_table_has_a_line_for_each_measurement_and_each_step_without() {
     );
 }
 
-/// A sheet needs no scripts; a directory that was named and is not there is told.
 #[test]
 fn what_cannot_be_written_or_found_is_named() {
     let place = Place::new();
@@ -120,12 +122,15 @@ fn what_cannot_be_written_or_found_is_named() {
         let told = place.ptu(&all).exits(code);
         assert!(told.err.contains(said), "{}", told.all());
     }
-    let show = ["runs", "show", "latest", "--report", "alone.html"];
-    let output = place.command(&show).env_remove("PTU_SCRIPTS").output();
-    assert!(output.is_ok_and(|output| output.status.success()));
-    assert!(
-        place
-            .read("alone.html")
-            .contains("No diagnosis: no scripts directory")
-    );
+}
+
+#[test]
+fn a_sheet_without_scripts_says_why_it_has_no_diagnosis() {
+    let place = Place::new();
+    place.recorded_run();
+    let store = Store::open_read_only(&place.path("history.db")).expect("the test's database");
+    let run = store.resolve_run("latest").expect("the run");
+    let sheet = Sheet::gather(&store, None, run).expect("a sheet");
+    let page = html(&sheet, Language::English.words());
+    assert!(page.contains("No diagnosis: no scripts directory"));
 }
