@@ -170,7 +170,7 @@ proptest! {
             for _ in 0..times {
                 let out = step(&mut ato, &drawn, &config);
                 prop_assert!((-1024..=1023).contains(&out.effort));
-                prop_assert!(out.target.mps().is_finite() && out.target >= Speed::ZERO);
+                prop_assert!(out.target.mps().is_finite() && out.target >= Speed::ZERO, "{:?}", out);
                 let may_power = drawn.mode == Mode::AutomaticRun
                     && drawn.checks == Checks::Passed
                     && !drawn.power_cut

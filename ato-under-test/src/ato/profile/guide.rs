@@ -59,7 +59,11 @@ impl Guide {
         let command_mps = inputs.cruise_mps.max(0.0);
         self.keep_to_the_train(command_mps, inputs.train);
         let from = self.ramp.setpoint();
-        let ramp = self.ramp.step(command_mps, CYCLE.as_secs());
+        if self.ramp.step(command_mps, CYCLE.as_secs()).speed_mps < 0.0 {
+            // A train that brakes to its last moment would be led backward by the jerk that is left.
+            self.ramp.place(Setpoint::default());
+        }
+        let ramp = self.ramp.setpoint();
         let stop = inputs.to_stop_m.map(|way| self.descent.follow(from, way));
         let lower = stop
             .filter(|stop| stop.accel_mps2 < ramp.accel_mps2 || stop.speed_mps < ramp.speed_mps);
@@ -128,6 +132,16 @@ mod tests {
             speed = (speed + 0.2 * CYCLE.as_secs()).min(ramp);
         }
         assert_eq!(guide.ramp.setpoint().speed_mps, 15.0);
+    }
+
+    /// A train at 0.01 m/s that brakes with 0.8 m/s²: without jerk above the limit it cannot end there.
+    #[test]
+    fn the_reference_is_never_below_standstill() {
+        let mut guide = Guide::new(&config());
+        for _ in 0..40 {
+            let ramp = guide.step(inputs(0.0, 0.01, -0.8)).setpoint.speed_mps;
+            assert!(ramp >= 0.0, "{ramp} m/s");
+        }
     }
 
     #[test]
