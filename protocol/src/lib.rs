@@ -5,6 +5,7 @@
 //! * [`link`]: sequence, time stamp, time-out and address checks for each peer;
 //! * [`message`]: the typed messages of the four channels, with declared field layouts;
 //! * [`signal`], [`event`]: the catalogue of recorded signals and of unit events;
+//! * [`Backlog`]: what a program does with bytes that waited while it was held up;
 //! * [`config`], [`mod@line`], [`injection`]: unit configuration, track database and fault modes as
 //!   checked data.
 //!
@@ -14,6 +15,7 @@
 
 extern crate alloc;
 
+mod backlog;
 pub mod config;
 pub mod event;
 pub mod frame;
@@ -25,5 +27,6 @@ pub mod signal;
 mod speed;
 mod time;
 
+pub use backlog::Backlog;
 pub use speed::Speed;
 pub use time::{CYCLE, Duration, Instant, SCAN};

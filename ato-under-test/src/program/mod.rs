@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use ato_under_test::Unit;
 use clap::{ArgGroup, Parser};
-use protocol::{Instant, SCAN};
+use protocol::{Backlog, Duration, Instant, SCAN};
 use rustix::time::{ClockId, Timespec};
 
 pub use data::UsageError;
@@ -52,6 +52,10 @@ pub struct Arguments {
     /// Seed of arm challenges and injected noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Go so many times slower than the clock, for a computer too busy for real time; the tester must do
+    /// the same, `ptu run --slower`
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
+    slower: u32,
     /// Directory with units/ and lines/
     #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
     scripts: Option<PathBuf>,
@@ -65,19 +69,23 @@ pub fn serve(arguments: &Arguments) -> Result<()> {
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name
     );
-    run(Unit::new(setup), &mut wire)
+    run(Unit::new(setup), &mut wire, arguments.slower)
 }
 
-/// One scan every 10 ms of the monotonic clock; a late scan is made up, not skipped.
-fn run(mut unit: Unit, wire: &mut Wire) -> Result<()> {
+/// One scan every 10 ms of the monotonic clock, or so many times that; a late scan is made up, not skipped.
+fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
     let mut due = rustix::time::clock_gettime(ClockId::Monotonic);
     let mut now = Instant::ZERO;
-    let mut received = [0u8; 4096];
+    let mut read = [0u8; 4096];
+    let mut backlog = Backlog::default();
+    let mut received = Vec::with_capacity(1024);
     let mut to_send = Vec::with_capacity(1024);
     loop {
-        sleep_until(&mut due)?;
-        let count = wire.read(&mut received).context("reading from the wire")?;
-        unit.receive(&received[..count]);
+        let behind = sleep_until(&mut due, i64::from(slower))?;
+        let count = wire.read(&mut read).context("reading from the wire")?;
+        received.clear();
+        backlog.share(&read[..count], behind, &mut received);
+        unit.receive(&received);
         to_send.clear();
         unit.step(now, &mut to_send);
         wire.write(&to_send).context("writing to the wire")?;
@@ -86,12 +94,12 @@ fn run(mut unit: Unit, wire: &mut Wire) -> Result<()> {
 }
 
 /// Sleeps to the next scan. Late scans are made up no faster than one a millisecond, so that the
-/// other end can follow scan by scan.
-fn sleep_until(due: &mut Timespec) -> Result<()> {
-    *due = later(*due, SCAN.as_us() as i64 * 1000);
+/// other end can follow scan by scan. Gives how far the scan is behind its time.
+fn sleep_until(due: &mut Timespec, slower: i64) -> Result<Duration> {
+    *due = later(*due, SCAN.as_us() as i64 * 1000 * slower);
     let soonest = later(
         rustix::time::clock_gettime(ClockId::Monotonic),
-        MAKE_UP_NANOS,
+        MAKE_UP_NANOS * slower,
     );
     let late = (due.tv_sec, due.tv_nsec) < (soonest.tv_sec, soonest.tv_nsec);
     let wake = if late { soonest } else { *due };
@@ -102,14 +110,20 @@ fn sleep_until(due: &mut Timespec) -> Result<()> {
             return Err(error).context("waiting for the next scan");
         }
     }
-    Ok(())
+    let late_nanos = nanos_since(*due, rustix::time::clock_gettime(ClockId::Monotonic));
+    let late_us = late_nanos / 1000 / slower;
+    Ok(Duration::from_us(
+        u64::try_from(late_us).unwrap_or_default(),
+    ))
+}
+
+fn nanos_since(before: Timespec, at: Timespec) -> i64 {
+    (at.tv_sec - before.tv_sec) * NANOS_PER_SECOND + at.tv_nsec - before.tv_nsec
 }
 
 fn later(mut at: Timespec, nanos: i64) -> Timespec {
     at.tv_nsec += nanos;
-    if at.tv_nsec >= NANOS_PER_SECOND {
-        at.tv_nsec -= NANOS_PER_SECOND;
-        at.tv_sec += 1;
-    }
+    at.tv_sec += at.tv_nsec / NANOS_PER_SECOND;
+    at.tv_nsec %= NANOS_PER_SECOND;
     at
 }
