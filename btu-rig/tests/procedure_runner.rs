@@ -16,7 +16,7 @@ use protocol::event::Event;
 use protocol::line::Line;
 use protocol::message::{EbCause, Mode};
 use protocol::signal::{Sample, Signal};
-use protocol::{Instant, SCAN, Speed};
+use protocol::{Duration, Instant, SCAN, Speed};
 
 /// Scans after which a run that does not end is a bug.
 const MOST_SCANS: u32 = 60_000;
@@ -534,6 +534,81 @@ fn a_lost_link_ends_the_step_as_an_error_and_skips_the_rest() {
     assert_eq!(outcome.finished(), (Verdict::Error, text));
     assert_eq!(outcome.fake.applied, [ON, OFF]);
     assert!(outcome.scans < 110);
+}
+
+/// Goal: a computer that stands still for a moment is no fault of the unit. Method: brake and event that
+/// come in with the scan after it, as the unit's inputs were gone meanwhile.
+#[test]
+fn what_a_held_up_tester_sees_is_an_error_and_no_fault() {
+    let script = format!(
+        "{HEAD}step('a')\nstep('b', do = wait(s(5)), measure = value('v', speed, low = kmh(5)))\nstep('c')"
+    );
+    let outcome = run(&script, |world| {
+        if world.ms() == 1000 {
+            world.runner.held_up("held up for 0.50 s".into());
+            world.sample.set(Signal::Eb, 1.0);
+            world.log(Event::InputsLost);
+        }
+    });
+    let text = "held up for 0.50 s";
+    let expected = [
+        ("a", Verdict::Passed, ""),
+        ("b", Verdict::Error, text),
+        ("c", Verdict::Skipped, "not run, held up for 0.50 s"),
+    ];
+    assert_eq!(outcome.summary(), expected);
+    assert_eq!(outcome.finished(), (Verdict::Error, text));
+    assert_eq!(outcome.steps()[1].measurements[0].value, None);
+    let blamed = |event: &RunEvent| {
+        matches!(
+            event,
+            RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
+        )
+    };
+    assert!(!outcome.events.iter().any(blamed));
+    assert_eq!(outcome.fake.applied, [ON, OFF], "clean-up is run");
+}
+
+/// Goal: no verdict on time from a bench that was late. Method: the same failures, in time and behind.
+#[test]
+fn what_fails_while_the_bench_is_behind_is_an_error_unless_the_unit_said_so() {
+    let script =
+        format!("{HEAD}step('a', do = wait(s(1)), expect = becomes(eb, 'applied', within = s(1)))");
+    let verdict_of = |behind_ms: u64, says: bool| {
+        let outcome = run(&script, |world| {
+            if world.ms() == 500 {
+                world.runner.behind(Duration::from_ms(behind_ms));
+                if says {
+                    world.log(Event::TwcLost);
+                }
+            }
+        });
+        outcome.steps()[0].verdict
+    };
+    assert_eq!(verdict_of(40, false), Verdict::Failed);
+    assert_eq!(verdict_of(60, false), Verdict::Error);
+    assert_eq!(
+        verdict_of(60, true),
+        Verdict::Failed,
+        "an event is an event"
+    );
+}
+
+#[test]
+fn held_up_in_its_setup_a_procedure_runs_no_step_and_cleans_up() {
+    let script =
+        "procedure(title = 'x', setup = [wait(s(5))], cleanup = [cab.key(False)])\nstep('a')";
+    let outcome = run(script, |world| {
+        if world.ms() == 1000 {
+            world.runner.held_up("held up".into());
+        }
+    });
+    assert_eq!(
+        outcome.summary(),
+        [("a", Verdict::Skipped, "not run, held up")]
+    );
+    assert_eq!(outcome.finished(), (Verdict::Error, "held up"));
+    assert_eq!(outcome.fake.applied, [OFF]);
 }
 
 #[test]

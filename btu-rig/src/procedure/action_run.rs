@@ -41,6 +41,10 @@ pub(super) enum Problem {
 }
 
 impl Problem {
+    pub(super) fn is_failure(&self) -> bool {
+        matches!(self, Self::Failed(_))
+    }
+
     pub(super) fn message(&self) -> &str {
         match self {
             Self::Failed(text) | Self::NoData(text) | Self::Bench(text) => text,

@@ -103,6 +103,13 @@ impl Taking {
         (measurement, message)
     }
 
+    /// Ends the measurement without a value.
+    pub(super) fn untaken(self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+        let measurement = measured(measure, None, scan.captured);
+        let message = self.message(measure, &measurement);
+        (measurement, message)
+    }
+
     fn time(
         &mut self,
         from: &TimeFrom,

@@ -1,7 +1,7 @@
 //! One repetition of one step, from its first scan to its verdict.
 
 use protocol::event::Event;
-use protocol::{Duration, Instant};
+use protocol::{CYCLE, Duration, Instant};
 
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
 use super::event_set::EventSet;
@@ -10,6 +10,9 @@ use super::measure_run::Taking;
 use super::plan::Step;
 use super::report::{Measurement, RunEvent, Verdict};
 use super::{Driver, UnitEvent};
+
+/// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
+const TOO_LATE: Duration = CYCLE;
 
 /// A live step.
 #[derive(Debug)]
@@ -25,6 +28,10 @@ pub(super) struct StepRun {
     blamed: Option<&'static str>,
     /// The step was given up: its remaining expectations are not judged.
     given_up: bool,
+    /// Nothing is measured any more: what is seen now is not the unit's doing.
+    broken_off: bool,
+    /// How far the bench was behind at most.
+    behind: Duration,
 }
 
 /// How a step ended.
@@ -49,6 +56,8 @@ impl StepRun {
             logged: EventSet::default(),
             blamed: None,
             given_up: false,
+            broken_off: false,
+            behind: Duration::ZERO,
         }
     }
 
@@ -98,6 +107,17 @@ impl StepRun {
         self.given_up = true;
     }
 
+    /// Ends the step as it stands, for a reason that makes what is seen now worthless.
+    pub(super) fn break_off(&mut self, problem: Problem) {
+        self.broken_off = true;
+        self.give_up(problem);
+    }
+
+    /// Takes note of how far the bench is behind the unit's clock.
+    pub(super) fn note_behind(&mut self, by: Duration) {
+        self.behind = self.behind.max(by);
+    }
+
     /// One scan; `true` when the step is over.
     pub(super) fn advance(
         &mut self,
@@ -145,6 +165,7 @@ impl StepRun {
     pub(super) fn finish(mut self, step: &Step, scan: Scan<'_>, aborted: bool) -> StepEnd {
         let bench_time = scan.now.since(self.started);
         let complete = !self.given_up && !aborted;
+        let blamed = self.problems.iter().any(Problem::is_failure);
         for (watch, expectation) in self.watches.into_iter().zip(&step.expectations) {
             let decided = complete || !watch.is_open(expectation);
             self.problems
@@ -152,7 +173,10 @@ impl StepRun {
         }
         let mut measurements = Vec::with_capacity(step.measures.len());
         for (taking, measure) in self.takings.into_iter().zip(&step.measures) {
-            let (measurement, message) = taking.finish(measure, scan);
+            let (measurement, message) = match self.broken_off {
+                true => taking.untaken(measure, scan),
+                false => taking.finish(measure, scan),
+            };
             match measurement.verdict {
                 Verdict::Passed => {}
                 Verdict::Failed => self.problems.push(Problem::Failed(message)),
@@ -160,6 +184,13 @@ impl StepRun {
                 _ => {}
             }
             measurements.push(measurement);
+        }
+        // Events and brakes are as they are; what was judged by the bench's clock may be its delay.
+        if !blamed && self.behind > TOO_LATE && self.problems.iter().any(Problem::is_failure) {
+            self.problems.push(Problem::Bench(format!(
+                "the tester was {:.2} s behind, held up by its own computer: run this again",
+                self.behind.as_secs()
+            )));
         }
         StepEnd {
             verdict: verdict(&self.problems, aborted),
@@ -203,7 +234,7 @@ fn verdict(problems: &[Problem], aborted: bool) -> Verdict {
         Verdict::Aborted
     } else if any(|p| matches!(p, Problem::Bench(_))) {
         Verdict::Error
-    } else if any(|p| matches!(p, Problem::Failed(_))) {
+    } else if any(Problem::is_failure) {
         Verdict::Failed
     } else if any(|p| matches!(p, Problem::NoData(_))) {
         Verdict::Error

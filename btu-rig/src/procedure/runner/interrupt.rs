@@ -1,4 +1,4 @@
-//! What ends a run early: a lost link and the operator's stop.
+//! What ends a run early: a lost link, a tester that was held up, and the operator's stop.
 
 use protocol::Instant;
 use protocol::signal::Sample;
@@ -11,10 +11,19 @@ impl Runner {
     pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {
         self.link_lost = true;
         let text = format!("link to the unit: {error}");
+        if matches!(self.phase, Phase::CleanUp { .. }) {
+            self.fault(text);
+        } else {
+            self.break_off(now, sample, text);
+        }
+    }
+
+    /// Nothing more is judged: the present step ends as an error, the others are skipped.
+    pub(super) fn break_off(&mut self, now: Instant, sample: &Sample, text: String) {
         match &mut self.phase {
             Phase::Steps { live, .. } => {
                 if let Some(step) = live.as_mut() {
-                    step.give_up(Problem::Bench(text.clone()));
+                    step.break_off(Problem::Bench(text.clone()));
                     self.finish_step(now, sample, false);
                 }
                 self.fault(text.clone());
@@ -28,8 +37,7 @@ impl Runner {
                 };
                 self.skip_rest(now, &format!("not run, {text}"));
             }
-            Phase::CleanUp { .. } => self.fault(text),
-            Phase::NotStarted | Phase::MakeSafe { .. } | Phase::Done => {}
+            Phase::NotStarted | Phase::CleanUp { .. } | Phase::MakeSafe { .. } | Phase::Done => {}
         }
     }
 

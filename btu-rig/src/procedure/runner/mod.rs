@@ -13,9 +13,9 @@ mod unsolicited;
 
 use std::sync::Arc;
 
-use protocol::Instant;
 use protocol::event::{Event, Severity};
 use protocol::signal::Sample;
+use protocol::{Duration, Instant};
 
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
 use pause::Pause;
@@ -71,6 +71,8 @@ pub struct Runner {
     stop: Stop,
     answer: Option<bool>,
     link_lost: bool,
+    /// Why nothing since the last scan can be judged.
+    held_up: Option<String>,
     leaving: bool,
     pause: Pause,
     verdict: Verdict,
@@ -93,6 +95,7 @@ impl Runner {
             stop: Stop::No,
             answer: None,
             link_lost: false,
+            held_up: None,
             leaving: false,
             pause: Pause::default(),
             verdict: Verdict::Skipped,
@@ -113,6 +116,23 @@ impl Runner {
             Stop::No => Stop::Once,
             Stop::Once | Stop::CutShort => Stop::CutShort,
         };
+    }
+
+    /// The tester itself did not keep time since the last scan: what the unit did meanwhile says nothing
+    /// about the unit. The present step is an error with this reason, the others are not run.
+    pub fn held_up(&mut self, reason: String) {
+        self.held_up = Some(reason);
+    }
+
+    /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
+    /// late.
+    pub fn behind(&mut self, by: Duration) {
+        if let Phase::Steps {
+            live: Some(live), ..
+        } = &mut self.phase
+        {
+            live.note_behind(by);
+        }
     }
 
     /// What is left of the procedure is not wanted: after the present step, clean-up. The verdict is that
@@ -150,6 +170,10 @@ impl Runner {
         driver: &mut dyn Driver,
     ) -> Poll {
         self.begin(now);
+        // First: what comes in with this scan is the hold-up's doing.
+        if let Some(reason) = self.held_up.take() {
+            self.break_off(now, sample, reason);
+        }
         self.take_unit_events(events);
         self.watch_brake(now, sample);
         if let Some(error) = link_error.filter(|_| !self.link_lost) {
