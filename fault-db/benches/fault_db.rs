@@ -1,20 +1,16 @@
-//! What recording and reading cost: `cargo bench -p fault-db`.
+//! What recording and reading cost: `cargo bench -p fault-db`; traces are in `traces.rs`.
 //!
 //! Times of commits depend on the disk under the system's temporary directory.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{T0_US, end, fault, ids, open, realistic_trace, run_record, step};
+use common::{T0_US, end, fault, ids, open, run_record, step};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use fault_db::trace::TraceCodec;
-use fault_db::{
-    FaultFilter, Id, OpenOptions, RunWriter, Store, StoreError, Synchronous, TraceData, Verdict,
-};
+use fault_db::{FaultFilter, OpenOptions, RunWriter, Store, StoreError, Synchronous, Verdict};
 use tempfile::TempDir;
 
-const ROWS: usize = 600;
 const STEPS: u32 = 1_000;
 
 fn main() {
@@ -51,49 +47,6 @@ fn fault_committed(bencher: Bencher) {
     let store = store_at(&dir, Synchronous::Full).expect("opens");
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     bencher.bench_local(|| writer.fault(&fault(1, T0_US)).expect("committed"));
-}
-
-#[divan::bench]
-fn trace_encode(bencher: Bencher) {
-    let trace = realistic_trace(ROWS, 1);
-    let mut codec = TraceCodec::new().expect("a codec");
-    let bytes = codec.encode(&trace).expect("encodable").len();
-    let samples = ROWS * trace.channels.len();
-    println!(
-        "trace: {bytes} bytes, {:.3} per sample",
-        bytes as f64 / samples as f64
-    );
-    bencher.bench_local(|| codec.encode(&trace));
-}
-
-#[divan::bench(sample_count = 300, sample_size = 1)]
-fn trace_encode_and_insert_at_normal(bencher: Bencher) {
-    let dir = directory();
-    let store = store_at(&dir, Synchronous::Normal).expect("opens");
-    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
-    let trace = realistic_trace(ROWS, 1);
-    bencher.bench_local(|| writer.trace(&[], &trace).expect("stored"));
-}
-
-fn with_trace(trace: &TraceData) -> (TempDir, Store, Id) {
-    let dir = directory();
-    let store = store_at(&dir, Synchronous::Normal).expect("opens");
-    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
-    let id = writer.trace(&[], trace).expect("stored");
-    drop(writer);
-    (dir, store, id)
-}
-
-#[divan::bench]
-fn trace_read_one_channel(bencher: Bencher) {
-    let (_dir, store, id) = with_trace(&realistic_trace(ROWS, 1));
-    bencher.bench_local(|| store.trace_channels(id, &["speed"]).expect("readable"));
-}
-
-#[divan::bench]
-fn trace_read_whole(bencher: Bencher) {
-    let (_dir, store, id) = with_trace(&realistic_trace(ROWS, 1));
-    bencher.bench_local(|| store.trace(id).expect("readable"));
 }
 
 /// Open, list, close: what a command does, but for the process itself.

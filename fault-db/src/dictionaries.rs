@@ -1,7 +1,8 @@
 //! Fault dictionaries in the file: kept for good, the newest first.
 
-use rusqlite::{OptionalExtension, params};
+use rusqlite::params;
 
+use crate::base::values;
 use crate::diagnosis::Dictionary;
 use crate::error::StoreError;
 use crate::id::Id;
@@ -51,18 +52,14 @@ impl Store {
     /// The file cannot be read, or what it holds is no dictionary.
     pub fn dictionary(&self, basis_sha256: &str) -> Result<Option<(Dictionary, i64)>, StoreError> {
         const DOING: &str = "reading a fault dictionary";
-        let found = self
-            .conn
-            .prepare_cached(
+        let found = self.first(
+                DOING,
                 "SELECT made_at_us, data FROM dictionary
-                 ORDER BY basis_sha256 = ?1 DESC, modes DESC, made_at_us DESC, seq DESC
+                 ORDER BY CASE WHEN basis_sha256 = ?1 THEN 0 ELSE 1 END, modes DESC, made_at_us DESC, seq DESC
                  LIMIT 1",
-            )
-            .and_then(|mut query| {
-                let row = |row: &rusqlite::Row<'_>| Ok((row.get(0)?, row.get::<_, Vec<u8>>(1)?));
-                query.query_row([basis_sha256], row).optional()
-            })
-            .map_err(|error| self.failed(DOING, error))?;
+            &values![basis_sha256],
+            |row| Ok((row.get(0)?, row.get::<Vec<u8>>(1)?)),
+        )?;
         let Some((made_at_us, data)) = found else {
             return Ok(None);
         };

@@ -1,11 +1,13 @@
-//! What can go wrong, each with the file it concerns and the next move.
+//! What can go wrong, each with the file or server it concerns and the next move.
 
 use std::path::{Path, PathBuf};
 
 use rusqlite::ErrorCode;
 
+use crate::base::SqlError;
 use crate::fault_state::TransitionError;
 use crate::id::Id;
+use crate::server::trouble;
 use crate::trace::TraceError;
 
 /// An error of the store. Nothing committed before it is lost.
@@ -112,6 +114,12 @@ pub enum StoreError {
         /// A few of those that fit.
         matches: Vec<Id>,
     },
+    /// Nothing in it that could be searched for.
+    #[error("{asked:?} has no word to search for; give letters or digits")]
+    NoWords {
+        /// What was asked.
+        asked: String,
+    },
     /// Neither an id, nor a part of one, nor `latest`.
     #[error(
         "{asked:?} is no {what} id: give `latest`, a full id, or at least four hex digits of its beginning or end"
@@ -184,6 +192,102 @@ pub enum StoreError {
         /// What SQLite said.
         reason: String,
     },
+    /// What was asked needs a file, and this is a server.
+    #[error("{} is a server, and this needs a database file; name one with --db, and bring it to the server with `db sync`", .path.display())]
+    NotAFile {
+        /// The server.
+        path: PathBuf,
+    },
+    /// What was asked needs a server, and this is a file.
+    #[error("{} is a file, and this needs a server; name one as postgres://USER@HOST/DATABASE", .path.display())]
+    NotAServer {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It is no server's address.
+    #[error("bad server address: {reason}; write postgres://USER@HOST/DATABASE")]
+    BadAddress {
+        /// What is wrong with it, without its password.
+        reason: String,
+    },
+    /// The server does not answer, or no longer.
+    #[error("{} is away ({doing}: {reason}); look at the network and the server, then try again (nothing is lost: the laptop's file has everything)", .path.display())]
+    ServerAway {
+        /// The server.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// What went wrong.
+        reason: String,
+    },
+    /// The server answers, and will not have us.
+    #[error("{} refuses: {reason}; ask who looks after the server", .path.display())]
+    ServerRefuses {
+        /// The server.
+        path: PathBuf,
+        /// What it said.
+        reason: String,
+    },
+    /// The server did not prove who it is.
+    #[error("{} is not trusted: {reason}", .path.display())]
+    ServerNotTrusted {
+        /// The server.
+        path: PathBuf,
+        /// What is missing, and what to do.
+        reason: String,
+    },
+    /// Others keep the server busy for too long.
+    #[error("{} is busy ({doing}: {reason}); try again later", .path.display())]
+    ServerBusy {
+        /// The server.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// What it said.
+        reason: String,
+    },
+    /// There are no tables on the server yet.
+    #[error("there is no history on {} yet; `ptu db sync` brings a laptop's there", .path.display())]
+    ServerEmpty {
+        /// The server.
+        path: PathBuf,
+    },
+    /// The database on the server holds something else.
+    #[error("the database of {} holds tables of another program; make one of its own with createdb", .path.display())]
+    ServerForeign {
+        /// The server.
+        path: PathBuf,
+    },
+    /// The server's tables are of an earlier version.
+    #[error("{} has the older schema {found} (this program knows {known}); `ptu db sync` of this program brings it up to date", .path.display())]
+    ServerOlderSchema {
+        /// The server.
+        path: PathBuf,
+        /// Its schema version.
+        found: i32,
+        /// The one this crate knows.
+        known: i32,
+    },
+    /// The server's tables are of a later version.
+    #[error("this program knows schema {known}, {} has schema {found}; update ptu", .path.display())]
+    ServerNewerSchema {
+        /// The server.
+        path: PathBuf,
+        /// Its schema version.
+        found: i32,
+        /// The one this crate knows.
+        known: i32,
+    },
+    /// Anything else a server refuses.
+    #[error("{doing} at {}: {}", .path.display(), trouble::words(.source))]
+    Server {
+        /// The server.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// What it said.
+        source: postgres::Error,
+    },
     /// Anything else SQLite refuses: a bug of ours.
     #[error("{doing} in {}: {source}", .path.display())]
     Sqlite {
@@ -197,6 +301,26 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// There is no run, fault or trace of this id.
+    pub(crate) fn not_found(what: &'static str, id: Id) -> Self {
+        Self::NotFound {
+            what,
+            asked: id.to_string(),
+        }
+    }
+
+    /// Sorts an error of a file or a server into the kinds a caller can act on.
+    pub(crate) fn from_sql(path: &Path, doing: &'static str, error: SqlError) -> Self {
+        match error {
+            SqlError::File(error) => Self::from_sqlite(path, doing, error),
+            SqlError::Server(error) => trouble::sorted(path, doing, error),
+            SqlError::Value { column, reason } => Self::Corrupt {
+                path: path.to_path_buf(),
+                detail: format!("{doing}: column {column}: {reason}"),
+            },
+        }
+    }
+
     /// Sorts an error of SQLite into the kinds a caller can act on.
     pub(crate) fn from_sqlite(path: &Path, doing: &'static str, source: rusqlite::Error) -> Self {
         let path = path.to_path_buf();

@@ -1,11 +1,11 @@
 //! What people do to a fault: each act an event, and the fault's state the last one's.
 
-use rusqlite::{Connection, params};
-
+use crate::base::{Base, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::record::RepairRecord;
+use crate::server::said;
 use crate::store::Store;
 
 /// An event about to be added.
@@ -63,7 +63,7 @@ impl Store {
     pub fn add_note(&self, fault: Id, who: &str, note: &str, at_us: i64) -> Result<(), StoreError> {
         const DOING: &str = "storing a note";
         let id = self.mint()?;
-        self.write(DOING, |conn| {
+        self.change(DOING, |base| {
             let (seq, _) = self.fault_row(fault)?;
             let event = NewEvent {
                 id,
@@ -73,7 +73,7 @@ impl Store {
                 body: note,
                 state: None,
             };
-            insert_event(conn, seq, &event).map_err(|error| self.failed(DOING, error))
+            insert_event(base, seq, &event).map_err(|error| self.failed(DOING, error))
         })
     }
 
@@ -88,7 +88,7 @@ impl Store {
     ) -> Result<FaultState, StoreError> {
         const DOING: &str = "changing a fault's state";
         let id = self.mint()?;
-        self.write(DOING, |conn| {
+        self.change(DOING, |base| {
             let (seq, from) = self.fault_row(fault)?;
             let to = from.next(action);
             let to = to.map_err(|source| StoreError::Transition { fault, source })?;
@@ -102,9 +102,11 @@ impl Store {
                 state: Some(to),
             };
             let work = || {
-                insert_event(conn, seq, &event)?;
-                conn.prepare_cached("UPDATE fault SET state = ?2 WHERE seq = ?1")?
-                    .execute(params![seq, to])
+                insert_event(base, seq, &event)?;
+                base.execute(
+                    "UPDATE fault SET state = ?2, closed_at_us = ?3 WHERE seq = ?1",
+                    &values![seq, to, (to == FaultState::Closed).then_some(at_us)],
+                )
             };
             work().map_err(|error| self.failed(DOING, error))?;
             Ok(to)
@@ -112,32 +114,35 @@ impl Store {
     }
 
     fn fault_row(&self, fault: Id) -> Result<(i64, FaultState), StoreError> {
-        self.conn
-            .prepare_cached("SELECT seq, state FROM fault WHERE id = ?1")
-            .and_then(|mut select| {
-                select.query_row(params![fault], |row| Ok((row.get(0)?, row.get(1)?)))
-            })
-            .map_err(|error| self.not_found("fault", fault, error))
+        let found = self.first(
+            "looking up a fault",
+            "SELECT seq, state FROM fault WHERE id = ?1
+             UNION ALL SELECT f.seq, f.state FROM fault_alias a JOIN fault f ON f.seq = a.fault
+                WHERE a.id = ?1",
+            &values![fault],
+            |row| Ok((row.get(0)?, row.get(1)?)),
+        )?;
+        found.ok_or_else(|| StoreError::not_found("fault", fault))
     }
 }
 
-pub(crate) fn insert_event(
-    conn: &Connection,
-    fault: i64,
-    event: &NewEvent<'_>,
-) -> rusqlite::Result<()> {
-    conn.prepare_cached(
-        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
-    )?
-    .execute(params![
-        event.id,
-        fault,
-        event.kind,
-        event.at_us,
-        event.who,
-        event.body,
-        event.state
-    ])?;
+pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
+    if let Base::Server(_) = base {
+        return said::insert_event(base, fault, event);
+    }
+    base.execute(
+        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7,
+            (SELECT coalesce(max(turn), 0) + 1 FROM fault_event WHERE fault = ?2))",
+        &values![
+            event.id,
+            fault,
+            event.kind,
+            event.at_us,
+            event.who,
+            event.body,
+            event.state
+        ],
+    )?;
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! The rows a run adds, inside a transaction the caller holds.
 
-use rusqlite::{Connection, OptionalExtension, params};
+use rusqlite::{Connection, params};
 
+use crate::base::{Base, SqlError, SqlResult, values};
 use crate::fault_log::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
@@ -16,8 +17,8 @@ pub(crate) fn insert_run(
     let unit = upsert_unit(conn, &record.unit)?;
     conn.prepare_cached(
         "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version,
-            scripts_sha256, unit_config_sha256, injected, owner)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
+            scripts_sha256, unit_config_sha256, injected, owner, train)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
     )?
     .execute(params![
         id,
@@ -32,6 +33,7 @@ pub(crate) fn insert_run(
         record.unit_config_sha256,
         record.injected,
         record.owner,
+        record.train,
     ])?;
     let run = conn.last_insert_rowid();
     let mut insert = conn.prepare_cached(
@@ -113,51 +115,62 @@ pub(crate) struct FaultIds {
     pub event: Id,
 }
 
+/// Where a fault was seen.
+pub(crate) struct FaultPlace<'a> {
+    pub run: i64,
+    pub unit: i64,
+    pub line: &'a str,
+    /// In a log that was read later.
+    pub of_log: bool,
+    /// The last event that was known when the run began.
+    pub known_events: i64,
+}
+
 pub(crate) fn insert_fault(
-    conn: &Connection,
-    run: i64,
-    unit: i64,
+    base: &Base,
+    place: &FaultPlace<'_>,
     ids: FaultIds,
     record: &FaultRecord,
-) -> rusqlite::Result<FaultStored> {
-    let known = conn
-        .prepare_cached(
-            "SELECT seq, id, state FROM fault
-             WHERE unit = ?1 AND code = ?2 AND lru = ?3 AND state <> 'closed'
-             ORDER BY seq DESC LIMIT 1",
-        )?
-        .query_row(params![unit, record.code, record.lru], |row| {
+) -> SqlResult<FaultStored> {
+    let known = base.first(
+        "SELECT seq, id, state FROM fault
+         WHERE unit = ?1 AND code = ?2 AND lru = ?3 AND state <> 'closed'
+         ORDER BY seq DESC LIMIT 1",
+        &values![place.unit, record.code, &record.lru],
+        |row| {
             Ok((
-                row.get::<_, i64>(0)?,
-                row.get::<_, Id>(1)?,
-                row.get::<_, FaultState>(2)?,
+                row.get::<i64>(0)?,
+                row.get::<Id>(1)?,
+                row.get::<FaultState>(2)?,
             ))
-        })
-        .optional()?;
+        },
+    )?;
     let (fault, id, before) = match known {
         Some((seq, id, state)) => (seq, id, Some(state)),
-        None => (open_fault(conn, unit, ids.fault, record)?, ids.fault, None),
+        None => (open_fault(base, place, ids.fault, record)?, ids.fault, None),
     };
     // Every state but closed has an answer to a new occurrence, and closed was not asked for.
     let after = match before {
         None => FaultState::Open,
         // Out of a log that was read late: what was done since was done about that, too.
-        Some(state) if acted_since(conn, fault, record.at_us)? => state,
+        Some(state) if acted_since(base, fault, place, record.at_us)? => state,
         Some(state) => state.next(FaultAction::Occur).unwrap_or(FaultState::Open),
     };
-    insert_occurrence(conn, fault, run, ids.occurrence, record)?;
-    conn.prepare_cached(
+    insert_occurrence(base, fault, place, ids.occurrence, record)?;
+    base.execute(
         "UPDATE fault SET occurrences = occurrences + 1, state = ?2, severity = ?3,
-            code_name = ?4, first_at_us = min(first_at_us, ?5), last_at_us = max(last_at_us, ?5)
+            code_name = ?4, line = CASE WHEN ?5 < first_at_us THEN ?6 ELSE line END,
+            first_at_us = min(first_at_us, ?5), last_at_us = max(last_at_us, ?5)
          WHERE seq = ?1",
-    )?
-    .execute(params![
-        fault,
-        after,
-        record.severity,
-        record.code_name,
-        record.at_us
-    ])?;
+        &values![
+            fault,
+            after,
+            &record.severity,
+            &record.code_name,
+            record.at_us,
+            place.line
+        ],
+    )?;
     let reopened = before.is_some_and(|state| state != after);
     if before.is_none() || reopened {
         let kind = if reopened {
@@ -174,7 +187,7 @@ pub(crate) fn insert_fault(
             body,
             state: Some(after),
         };
-        insert_event(conn, fault, &event)?;
+        insert_event(base, fault, &event)?;
     }
     Ok(FaultStored {
         fault: id,
@@ -184,53 +197,66 @@ pub(crate) fn insert_fault(
     })
 }
 
-/// Somebody brought the fault to another state after this time.
-fn acted_since(conn: &Connection, fault: i64, at_us: i64) -> rusqlite::Result<bool> {
-    conn.prepare_cached(
-        "SELECT EXISTS (SELECT 1 FROM fault_event
-         WHERE fault = ?1 AND state IS NOT NULL AND at_us > ?2 AND kind NOT IN ('opened', 'recurred'))",
-    )?
-    .query_row(params![fault, at_us], |row| row.get(0))
+/// Somebody brought the fault to another state after this time. What was known when a run began came before
+/// all it sees, whatever the clock says of the laptop where it was said.
+fn acted_since(base: &Base, fault: i64, place: &FaultPlace<'_>, at_us: i64) -> SqlResult<bool> {
+    let acted = base.first(
+        "SELECT 1 FROM fault_event
+         WHERE fault = ?1 AND state IS NOT NULL AND at_us > ?2 AND kind NOT IN ('opened', 'recurred')
+            AND seq > ?3 LIMIT 1",
+        &values![fault, at_us, if place.of_log { 0 } else { place.known_events }],
+        |_| Ok(()),
+    )?;
+    Ok(acted.is_some())
 }
 
-fn open_fault(conn: &Connection, unit: i64, id: Id, record: &FaultRecord) -> rusqlite::Result<i64> {
-    conn.prepare_cached(
+fn open_fault(base: &Base, place: &FaultPlace<'_>, id: Id, record: &FaultRecord) -> SqlResult<i64> {
+    let opened = base.first(
         "INSERT INTO fault(id, unit, code, code_name, lru, severity, state, first_at_us,
-            last_at_us, occurrences) VALUES (?1, ?2, ?3, ?4, ?5, ?6, 'open', ?7, ?7, 0)",
-    )?
-    .execute(params![
-        id,
-        unit,
-        record.code,
-        record.code_name,
-        record.lru,
-        record.severity,
-        record.at_us
-    ])?;
-    Ok(conn.last_insert_rowid())
+            last_at_us, occurrences, line)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, 'open', ?7, ?7, 0, ?8)
+         RETURNING seq",
+        &values![
+            id,
+            place.unit,
+            record.code,
+            &record.code_name,
+            &record.lru,
+            &record.severity,
+            record.at_us,
+            place.line
+        ],
+        |row| row.get(0),
+    )?;
+    opened.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))
 }
 
 fn insert_occurrence(
-    conn: &Connection,
+    base: &Base,
     fault: i64,
-    run: i64,
+    place: &FaultPlace<'_>,
     id: Id,
     record: &FaultRecord,
-) -> rusqlite::Result<()> {
-    conn.prepare_cached(
+) -> SqlResult<()> {
+    base.execute(
         "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us, message,
-            freeze_json) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
-    )?
-    .execute(params![
-        id,
-        fault,
-        run,
-        record.step_index,
-        record.at_us,
-        record.bench_us,
-        record.message,
-        json(&record.freeze)?,
-    ])?;
+            freeze_json, unit, code, lru, line)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
+        &values![
+            id,
+            fault,
+            place.run,
+            record.step_index,
+            record.at_us,
+            record.bench_us,
+            &record.message,
+            json(&record.freeze)?,
+            place.unit,
+            record.code,
+            &record.lru,
+            place.line
+        ],
+    )?;
     Ok(())
 }
 

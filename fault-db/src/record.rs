@@ -51,6 +51,8 @@ pub struct RunRecord {
     pub unit: UnitRecord,
     /// Line data in use.
     pub line: String,
+    /// The train the unit is in, as the tester names it; empty if nobody said.
+    pub train: String,
     /// Seed of everything random.
     pub seed: u64,
     /// Who is testing.
@@ -161,6 +163,11 @@ pub struct FreezeSample {
     /// The value's word, for an enum or a bit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
+}
+
+/// A part's name as it is compared: people write it as they like.
+pub(crate) fn part_name(part: &str) -> String {
+    part.trim().to_lowercase()
 }
 
 /// A repair made for a fault.

@@ -1,9 +1,10 @@
 //! Recordings: what was done to the bench in a procedure that found a fault, so that it can be done
 //! again. This crate keeps the two JSON texts and does not look into them.
 
-use rusqlite::{OptionalExtension, params};
+use rusqlite::{Connection, params};
 use serde::Serialize;
 
+use crate::base::values;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::packed;
@@ -59,7 +60,7 @@ impl RunWriter<'_> {
                 }
             })?;
         store.write(DOING, |conn| {
-            let work = || {
+            let work = || -> rusqlite::Result<()> {
                 conn.prepare_cached(
                     "INSERT INTO recording(run, ordinal, procedure, t0_bench_us, bench_json, stimuli)
                      VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
@@ -91,22 +92,17 @@ impl Store {
         const SQL: &str = "SELECT u.id, r.procedure, r.t0_bench_us, r.bench_json, r.stimuli
             FROM trace t JOIN run u ON u.seq = t.run
             JOIN recording r ON r.run = t.run AND r.ordinal = t.recording WHERE t.id = ?1";
-        let found = self.conn.prepare_cached(SQL).and_then(|mut select| {
-            select
-                .query_row([trace], |row| {
-                    let packed: Vec<u8> = row.get(4)?;
-                    let recording = Recording {
-                        run_id: row.get(0)?,
-                        procedure: row.get(1)?,
-                        t0_bench_us: row.get(2)?,
-                        bench_json: row.get(3)?,
-                        stimuli_json: String::new(),
-                    };
-                    Ok((recording, packed))
-                })
-                .optional()
-        });
-        let found = found.map_err(|error| self.failed("reading a recording", error))?;
+        let found = self.first("reading a recording", SQL, &values![trace], |row| {
+            let packed: Vec<u8> = row.get(4)?;
+            let recording = Recording {
+                run_id: row.get(0)?,
+                procedure: row.get(1)?,
+                t0_bench_us: row.get(2)?,
+                bench_json: row.get(3)?,
+                stimuli_json: String::new(),
+            };
+            Ok((recording, packed))
+        })?;
         found
             .map(|(recording, packed)| match unpack(&packed) {
                 Ok(stimuli_json) => Ok(Recording {
@@ -120,33 +116,33 @@ impl Store {
             })
             .transpose()
     }
+}
 
-    /// Recordings that cannot be read back, in words, and how many were looked at.
-    pub(crate) fn check_recordings(&self) -> rusqlite::Result<(u32, Vec<String>)> {
-        let mut select = self.conn.prepare(
-            "SELECT 'recording ' || r.ordinal || ' of run ' || hex(u.id), r.bench_json, r.stimuli
-             FROM recording r JOIN run u ON u.seq = r.run ORDER BY r.run, r.ordinal",
-        )?;
-        let mut rows = select.query([])?;
-        let (mut count, mut wrong) = (0, Vec::new());
-        while let Some(row) = rows.next()? {
-            count += 1;
-            let name: String = row.get(0)?;
-            let bench: String = row.get(1)?;
-            let packed: Vec<u8> = row.get(2)?;
-            let json = |text: &str| {
-                let read = serde_json::from_str::<serde::de::IgnoredAny>(text);
-                read.map(drop).map_err(|error| error.to_string())
-            };
-            let found = unpack(&packed)
-                .and_then(|stimuli| json(&stimuli))
-                .and_then(|()| json(&bench));
-            if let Err(detail) = found {
-                wrong.push(format!("{name}: {detail}"));
-            }
+/// Recordings that cannot be read back, in words, and how many were looked at.
+pub(crate) fn check_recordings(conn: &Connection) -> rusqlite::Result<(u32, Vec<String>)> {
+    let mut select = conn.prepare(
+        "SELECT 'recording ' || r.ordinal || ' of run ' || hex(u.id), r.bench_json, r.stimuli
+         FROM recording r JOIN run u ON u.seq = r.run ORDER BY r.run, r.ordinal",
+    )?;
+    let mut rows = select.query([])?;
+    let (mut count, mut wrong) = (0, Vec::new());
+    while let Some(row) = rows.next()? {
+        count += 1;
+        let name: String = row.get(0)?;
+        let bench: String = row.get(1)?;
+        let packed: Vec<u8> = row.get(2)?;
+        let json = |text: &str| {
+            let read = serde_json::from_str::<serde::de::IgnoredAny>(text);
+            read.map(drop).map_err(|error| error.to_string())
+        };
+        let found = unpack(&packed)
+            .and_then(|stimuli| json(&stimuli))
+            .and_then(|()| json(&bench));
+        if let Err(detail) = found {
+            wrong.push(format!("{name}: {detail}"));
         }
-        Ok((count, wrong))
     }
+    Ok((count, wrong))
 }
 
 fn unpack(packed: &[u8]) -> Result<String, String> {

@@ -1,10 +1,11 @@
 //! What the tester has to say about a run: kept for good, never changed.
 
-use rusqlite::params;
 use serde::Serialize;
 
+use crate::base::{Base, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::server::said;
 use crate::store::Store;
 
 /// A note on a run.
@@ -32,33 +33,41 @@ impl Store {
     ) -> Result<(), StoreError> {
         const DOING: &str = "storing a note on a run";
         let id = self.mint()?;
-        self.write(DOING, |conn| {
-            let seq: i64 = conn
-                .prepare_cached("SELECT seq FROM run WHERE id = ?1")
-                .and_then(|mut select| select.query_row([run], |row| row.get(0)))
-                .map_err(|error| self.not_found("run", run, error))?;
-            conn.prepare_cached(
-                "INSERT INTO run_note(id, run, at_us, who, text) VALUES (?1, ?2, ?3, ?4, ?5)",
-            )
-            .and_then(|mut insert| insert.execute(params![id, seq, at_us, who, text]))
-            .map_err(|error| self.failed(DOING, error))?;
-            Ok(())
+        self.change(DOING, |base| {
+            let seq: Option<i64> = self.first(
+                DOING,
+                "SELECT seq FROM run WHERE id = ?1",
+                &values![run],
+                |row| row.get(0),
+            )?;
+            let seq = seq.ok_or_else(|| StoreError::not_found("run", run))?;
+            let add = || match base {
+                Base::Server(_) => said::insert_run_note(base, id, seq, at_us, who, text),
+                Base::File(_) => {
+                    base.execute(
+                        "INSERT INTO run_note(id, run, at_us, who, text)
+                         VALUES (?1, ?2, ?3, ?4, ?5)",
+                        &values![id, seq, at_us, who, text],
+                    )?;
+                    Ok(())
+                }
+            };
+            add().map_err(|error| self.failed(DOING, error))
         })
     }
 
     /// Notes on the run of this number, oldest first.
-    pub(crate) fn run_notes(&self, run: i64) -> rusqlite::Result<Vec<RunNote>> {
-        self.conn
-            .prepare_cached(
-                "SELECT at_us, who, text FROM run_note WHERE run = ?1 ORDER BY at_us, id",
-            )?
-            .query_map([run], |row| {
+    pub(crate) fn run_notes(&self, run: i64) -> SqlResult<Vec<RunNote>> {
+        self.base().select(
+            "SELECT at_us, who, text FROM run_note WHERE run = ?1 ORDER BY at_us, id",
+            &values![run],
+            |row| {
                 Ok(RunNote {
                     at_us: row.get(0)?,
                     who: row.get(1)?,
                     text: row.get(2)?,
                 })
-            })?
-            .collect()
+            },
+        )
     }
 }

@@ -7,10 +7,13 @@
 
 use rusqlite::params;
 
+use crate::base::SqlError;
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::insert::{FaultIds, insert_fault, insert_run, insert_steps};
+use crate::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps};
+use crate::query::LOG_SOURCE;
 use crate::record::{FaultRecord, RunEnd, RunRecord, StepRecord};
+use crate::seal::seal;
 use crate::store::Store;
 use crate::trace::TraceData;
 
@@ -29,6 +32,11 @@ pub struct RunWriter<'a> {
     id: Id,
     pub(crate) run: i64,
     unit: i64,
+    line: String,
+    /// It is no test but a log that was read.
+    of_log: bool,
+    /// The last event the file knew when the run began.
+    known_events: i64,
     waiting: Vec<StepRecord>,
     last_index: Option<u32>,
     finished: bool,
@@ -61,6 +69,9 @@ impl<'a> RunWriter<'a> {
             id,
             run,
             unit,
+            line: record.line.clone(),
+            of_log: record.source.starts_with(LOG_SOURCE),
+            known_events: store.last_event()?,
             waiting,
             last_index: None,
             finished: false,
@@ -125,7 +136,14 @@ impl<'a> RunWriter<'a> {
     pub fn fault(&mut self, record: &FaultRecord) -> Result<FaultStored, StoreError> {
         const DOING: &str = "storing a fault";
         self.check_unfinished()?;
-        let (store, run, unit, waiting) = (self.store, self.run, self.unit, &self.waiting);
+        let (store, run, waiting) = (self.store, self.run, &self.waiting);
+        let place = FaultPlace {
+            run,
+            unit: self.unit,
+            line: &self.line,
+            of_log: self.of_log,
+            known_events: self.known_events,
+        };
         let ids = FaultIds {
             fault: store.mint()?,
             occurrence: store.mint()?,
@@ -134,9 +152,9 @@ impl<'a> RunWriter<'a> {
         let stored = store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
-                insert_fault(conn, run, unit, ids, record)
+                insert_fault(store.base(), &place, ids, record)
             };
-            work().map_err(|error| store.failed(DOING, error))
+            work().map_err(|error: SqlError| store.failed(DOING, error))
         })?;
         self.waiting.clear();
         Ok(stored)
@@ -148,13 +166,16 @@ impl<'a> RunWriter<'a> {
         self.store.insert_trace(self.run, occurrences, trace)
     }
 
-    /// Commits the waiting steps and the verdict. After an error it may be tried again.
+    /// Commits the waiting steps and the verdict, and verifies repairs that a passed run has proven. After
+    /// an error it may be tried again.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         const DOING: &str = "finishing a run";
         const SQL: &str = "UPDATE run SET verdict = ?2, finished_at_us = ?3, bench_time_us = ?4,
             wall_time_us = ?5 WHERE seq = ?1";
         self.check_unfinished()?;
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
+        let (unit, id, known_events) = (self.unit, self.id, self.known_events);
+        let origin = store.file_id()?;
         store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
@@ -165,9 +186,11 @@ impl<'a> RunWriter<'a> {
                     wall_time_us,
                 } = end;
                 let values = params![run, verdict, finished_at_us, bench_time_us, wall_time_us];
-                conn.prepare_cached(SQL)?.execute(values)
+                conn.prepare_cached(SQL)?.execute(values)?;
+                seal(store.base(), origin, run)
             };
-            work().map_err(|error| store.failed(DOING, error))
+            work().map_err(|error: SqlError| store.failed(DOING, error))?;
+            store.verify_proven((unit, run, id), known_events, end)
         })?;
         self.waiting.clear();
         self.finished = true;

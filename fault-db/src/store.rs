@@ -1,19 +1,24 @@
-//! One open database file: how it is opened, checked and written to.
+//! One open history, in a file or on a server: how it is opened, asked and written to.
 
 use std::cell::{RefCell, RefMut};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rusqlite::{Connection, ErrorCode, OpenFlags, Transaction, TransactionBehavior};
+use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 
+use crate::base::{Base, Row, Server, SqlError, SqlResult, Value, values};
 use crate::error::StoreError;
+use crate::file::{
+    READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy, set_up,
+};
 use crate::id::{Id, IdSource};
-use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
+use crate::schema::SCHEMA_VERSION;
+use crate::seal::seal_all;
 use crate::trace::{Channel, TraceCodec, TraceError};
 
-/// Programs that create one file at the same time may get in each other's way this often.
-const WAL_TRIES: u32 = 200;
+/// More than the crate has statements that repeat.
+const STATEMENT_CACHE: usize = 64;
 
 /// How far a commit goes before it returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,11 +68,16 @@ impl OpenOptions {
     }
 }
 
-/// One open database. Not shared between threads; open the file once per thread instead.
+/// One open history. Not shared between threads; open it once per thread instead.
+///
+/// Runs are recorded in a file. What is asked of a history, and what people say about faults, goes to
+/// a server as well.
 pub struct Store {
-    pub(crate) conn: Connection,
+    base: Base,
     path: PathBuf,
     ids: Option<RefCell<IdSource>>,
+    /// Names the file for ever; none of a server, or before it was opened for writing.
+    file_id: Option<Id>,
     codec: RefCell<TraceCodec>,
     pub(crate) channel_sets: RefCell<BTreeMap<i64, Arc<[Channel]>>>,
 }
@@ -109,8 +119,16 @@ impl Store {
         if (1..SCHEMA_VERSION).contains(&version) {
             keep_copy(&conn, path, version)?;
         }
-        set_up(&mut conn, version, &options).map_err(failed)?;
-        Self::wrap(conn, path, Some(options.ids))
+        let OpenOptions {
+            ids,
+            synchronous,
+            max_pages,
+            ..
+        } = options;
+        set_up(&mut conn, version, synchronous, max_pages).map_err(failed)?;
+        let mut store = Self::of_file(conn, path, Some(ids))?;
+        store.file_id = Some(store.name_file()?);
+        Ok(store)
     }
 
     /// Opens a file for reading only; never creates, migrates or locks it.
@@ -150,11 +168,11 @@ impl Store {
                     known,
                 })
             }
-            _ => Self::wrap(conn, path, None),
+            _ => Self::of_file(conn, path, None),
         }
     }
 
-    /// The file's path, as it was given.
+    /// The file's path, as it was given; of a server its address without a password.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -164,47 +182,167 @@ impl Store {
         self.ids.is_none()
     }
 
+    /// The file's own name, given to it once; runs recorded until then are sealed as they are found.
+    fn name_file(&self) -> Result<Id, StoreError> {
+        const DOING: &str = "naming the file";
+        let known = "SELECT value FROM about WHERE key = 'file_id'";
+        if let Some(id) = self.first(DOING, known, &[], |row| row.get(0))? {
+            return Ok(id);
+        }
+        let minted = self.mint()?;
+        self.change(DOING, |base| {
+            let name = || {
+                // Another program may have opened it, too.
+                if let Some(id) = base.first(known, &[], |row| row.get(0))? {
+                    return Ok(id);
+                }
+                base.execute(
+                    "INSERT INTO about(key, value) VALUES ('file_id', ?1)",
+                    &values![minted],
+                )?;
+                seal_all(base, minted)?;
+                Ok(minted)
+            };
+            name().map_err(|error: SqlError| self.failed(DOING, error))
+        })
+    }
+
+    /// The name runs of this file are sealed with.
+    pub(crate) fn file_id(&self) -> Result<Id, StoreError> {
+        self.file_id.ok_or_else(|| StoreError::ReadOnly {
+            path: self.path.clone(),
+        })
+    }
+
     /// Moves everything into the one file and closes it. Dropping closes it too, but cannot say
     /// what went wrong.
     pub fn close(self) -> Result<(), StoreError> {
-        if !self.is_read_only() {
+        if !self.is_read_only() && matches!(self.base, Base::File(_)) {
             self.checkpoint()?;
         }
         let path = self.path;
-        let closed = self.conn.close();
-        closed.map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error))
+        match self.base {
+            Base::File(conn) => conn
+                .close()
+                .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error)),
+            Base::Server(_) => Ok(()),
+        }
     }
 
     /// Empties the write-ahead log as far as other readers allow.
     pub(crate) fn checkpoint(&self) -> Result<(), StoreError> {
         let done = self
-            .conn
+            .file()?
             .query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
         done.map_err(|error| self.failed("writing back the log", error))
     }
 
-    /// Runs `work` in one short write transaction; rolls back when it fails.
+    /// The file's connection, for what only a file does.
+    pub(crate) fn file(&self) -> Result<&Connection, StoreError> {
+        match &self.base {
+            Base::File(conn) => Ok(conn),
+            Base::Server(_) => Err(StoreError::NotAFile {
+                path: self.path.clone(),
+            }),
+        }
+    }
+
+    /// The server's connection, for what only a server does.
+    pub(crate) fn server(&self) -> Result<&Server, StoreError> {
+        match &self.base {
+            Base::Server(server) => Ok(server),
+            Base::File(_) => Err(StoreError::NotAServer {
+                path: self.path.clone(),
+            }),
+        }
+    }
+
+    /// Runs `work` in one short write transaction on the file, or in the one that is open; rolls back
+    /// when it fails.
     pub(crate) fn write<T>(
         &self,
         doing: &'static str,
         work: impl FnOnce(&Connection) -> Result<T, StoreError>,
     ) -> Result<T, StoreError> {
-        if self.is_read_only() {
-            return Err(StoreError::ReadOnly {
-                path: self.path.clone(),
-            });
+        self.check_writable()?;
+        let conn = self.file()?;
+        if !conn.is_autocommit() {
+            return self.write_within(doing, conn, work);
         }
         let failed = |error| self.failed(doing, error);
         // Immediate: a transaction that begins by reading cannot wait for another writer.
-        let begun = Transaction::new_unchecked(&self.conn, TransactionBehavior::Immediate);
+        let begun = Transaction::new_unchecked(conn, TransactionBehavior::Immediate);
         let transaction = begun.map_err(failed)?;
         let result = work(&transaction)?;
         transaction.commit().map_err(failed)?;
         Ok(result)
     }
 
-    pub(crate) fn failed(&self, doing: &'static str, error: rusqlite::Error) -> StoreError {
-        StoreError::from_sqlite(&self.path, doing, error)
+    /// Runs `work` in one short write transaction on the file or the server; rolls back when it fails.
+    pub(crate) fn change<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce(&Base) -> Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
+        let Base::Server(server) = &self.base else {
+            return self.write(doing, |_| work(&self.base));
+        };
+        self.check_writable()?;
+        let failed = |error: SqlError| self.failed(doing, error);
+        server.begin().map_err(failed)?;
+        match work(&self.base) {
+            Ok(result) => {
+                server.batch("COMMIT").map_err(failed)?;
+                Ok(result)
+            }
+            Err(error) => {
+                // If even this fails the server has let go of the connection, and of the work with it.
+                let _ = server.batch("ROLLBACK");
+                Err(error)
+            }
+        }
+    }
+
+    /// All rows of an answer.
+    pub(crate) fn select<T>(
+        &self,
+        doing: &'static str,
+        sql: &str,
+        values: &[Value<'_>],
+        read: impl FnMut(Row<'_>) -> SqlResult<T>,
+    ) -> Result<Vec<T>, StoreError> {
+        let found = self.base.select(sql, values, read);
+        found.map_err(|error| self.failed(doing, error))
+    }
+
+    /// The first row of an answer, if there is one.
+    pub(crate) fn first<T>(
+        &self,
+        doing: &'static str,
+        sql: &str,
+        values: &[Value<'_>],
+        read: impl FnMut(Row<'_>) -> SqlResult<T>,
+    ) -> Result<Option<T>, StoreError> {
+        let found = self.base.first(sql, values, read);
+        found.map_err(|error| self.failed(doing, error))
+    }
+
+    /// What it is kept in.
+    pub(crate) fn base(&self) -> &Base {
+        &self.base
+    }
+
+    pub(crate) fn failed(&self, doing: &'static str, error: impl Into<SqlError>) -> StoreError {
+        StoreError::from_sql(&self.path, doing, error.into())
+    }
+
+    fn check_writable(&self) -> Result<(), StoreError> {
+        if self.is_read_only() {
+            return Err(StoreError::ReadOnly {
+                path: self.path.clone(),
+            });
+        }
+        Ok(())
     }
 
     pub(crate) fn mint(&self) -> Result<Id, StoreError> {
@@ -220,176 +358,23 @@ impl Store {
         self.codec.borrow_mut()
     }
 
-    fn wrap(conn: Connection, path: &Path, ids: Option<IdSource>) -> Result<Self, StoreError> {
+    fn of_file(conn: Connection, path: &Path, ids: Option<IdSource>) -> Result<Self, StoreError> {
         conn.set_prepared_statement_cache_capacity(STATEMENT_CACHE);
+        Self::of(Base::File(conn), path, ids)
+    }
+
+    pub(crate) fn of(base: Base, path: &Path, ids: Option<IdSource>) -> Result<Self, StoreError> {
         let codec = TraceCodec::new().map_err(|error: TraceError| StoreError::Io {
             path: path.to_path_buf(),
             reason: error.to_string(),
         })?;
         Ok(Self {
-            conn,
+            base,
             path: path.to_path_buf(),
             ids: ids.map(RefCell::new),
+            file_id: None,
             codec: RefCell::new(codec),
             channel_sets: RefCell::default(),
         })
     }
-}
-
-/// Copies of files of an earlier schema that may lie beside a file.
-const MAX_COPIES: u32 = 9;
-
-/// More than the crate has statements that repeat.
-const STATEMENT_CACHE: usize = 64;
-
-/// One page of the smallest size SQLite has.
-const SMALLEST_FILE_BYTES: u64 = 512;
-
-const READ_BUSY_TIMEOUT_MS: u32 = 5_000;
-
-fn connect(
-    path: &Path,
-    name: &Path,
-    flags: OpenFlags,
-    busy_timeout_ms: u32,
-) -> Result<Connection, StoreError> {
-    if path.is_dir() {
-        let reason = "it is a directory".to_owned();
-        return Err(StoreError::CannotOpen {
-            path: path.to_path_buf(),
-            reason,
-        });
-    }
-    let failed = |error| StoreError::from_sqlite(path, "opening", error);
-    let conn = Connection::open_with_flags(name, flags).map_err(failed)?;
-    conn.busy_timeout(std::time::Duration::from_millis(busy_timeout_ms.into()))
-        .map_err(failed)?;
-    Ok(conn)
-}
-
-/// The schema version of a file of ours, 0 for an empty one; an error for any other file. Looks
-/// only, so that a file that is not ours stays as it is.
-fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError> {
-    // SQLite takes a file too short for its header for an empty one, and would write over it.
-    if std::fs::metadata(path).is_ok_and(|file| (1..SMALLEST_FILE_BYTES).contains(&file.len())) {
-        return Err(StoreError::NotADatabase {
-            path: path.to_path_buf(),
-        });
-    }
-    let failed = |error| StoreError::from_sqlite(path, "opening", error);
-    // One snapshot: another program may be creating the file this moment.
-    let _snapshot = conn.unchecked_transaction().map_err(failed)?;
-    let pragma = |sql: &str| {
-        conn.query_row(sql, [], |row| row.get::<_, i32>(0))
-            .map_err(failed)
-    };
-    let application_id = pragma("PRAGMA application_id")?;
-    let version = schema::user_version(conn).map_err(failed)?;
-    let is_empty = pragma("SELECT count(*) FROM sqlite_schema")? == 0;
-    let is_new = application_id == 0 && version == 0 && is_empty;
-    if !is_new && application_id != APPLICATION_ID {
-        return Err(StoreError::ForeignDatabase {
-            path: path.to_path_buf(),
-            application_id,
-        });
-    }
-    if version > SCHEMA_VERSION {
-        let known = SCHEMA_VERSION;
-        return Err(StoreError::NewerSchema {
-            path: path.to_path_buf(),
-            found: version,
-            known,
-        });
-    }
-    Ok(version)
-}
-
-fn set_up(
-    conn: &mut Connection,
-    version: i32,
-    options: &OpenOptions,
-) -> Result<(), rusqlite::Error> {
-    if version == 0 {
-        // Takes effect only before the first table.
-        conn.execute_batch("PRAGMA auto_vacuum = INCREMENTAL")?;
-    }
-    enter_wal(conn)?;
-    conn.execute_batch(match options.synchronous {
-        Synchronous::Full => "PRAGMA synchronous = FULL",
-        Synchronous::Normal => "PRAGMA synchronous = NORMAL",
-    })?;
-    conn.execute_batch("PRAGMA foreign_keys = ON")?;
-    if version < SCHEMA_VERSION {
-        conn.set_transaction_behavior(TransactionBehavior::Immediate);
-        schema::migrate(conn)?;
-    }
-    if let Some(pages) = options.max_pages {
-        conn.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
-    }
-    Ok(())
-}
-
-/// Copies a file of an earlier schema before it is brought up to date. A copy that is there already
-/// is left alone: it may be the better one.
-fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<(), StoreError> {
-    let mut copies = (1..=MAX_COPIES).map(|number| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(format!(".schema{version}"));
-        if number > 1 {
-            name.push(format!(".{number}"));
-        }
-        PathBuf::from(name)
-    });
-    let Some(copy) = copies.find(|copy| !copy.exists()) else {
-        let mut first = path.as_os_str().to_owned();
-        first.push(format!(".schema{version}"));
-        return Err(StoreError::TargetExists { path: first.into() });
-    };
-    let name = copy.to_str().ok_or_else(|| StoreError::CannotOpen {
-        path: copy.clone(),
-        reason: "the name is not UTF-8".to_owned(),
-    })?;
-    conn.execute("VACUUM INTO ?1", [name])
-        .map(drop)
-        .map_err(|error| {
-            // A copy cut short is worse than none.
-            let _ = std::fs::remove_file(&copy);
-            StoreError::from_sqlite(&copy, "keeping a copy of the older schema", error)
-        })
-}
-
-/// Turns write-ahead logging on. SQLite does not wait for others while it changes a new file over;
-/// waiting for a write lock in between does, as long as the busy timeout allows.
-fn enter_wal(conn: &Connection) -> Result<(), rusqlite::Error> {
-    let turn_on = || conn.query_row("PRAGMA journal_mode = WAL", [], |_| Ok(()));
-    for _ in 1..WAL_TRIES {
-        match turn_on() {
-            Err(error) if error.sqlite_error_code() == Some(ErrorCode::DatabaseBusy) => {
-                conn.execute_batch("BEGIN IMMEDIATE; COMMIT")?;
-            }
-            done => return done,
-        }
-    }
-    turn_on()
-}
-
-fn has_write_ahead_log(path: &Path) -> bool {
-    let mut name = path.as_os_str().to_owned();
-    name.push("-wal");
-    std::fs::metadata(name).is_ok_and(|log| log.len() > 0)
-}
-
-/// `file:` with everything escaped that has a meaning in a URI.
-fn immutable_uri(path: &Path) -> PathBuf {
-    let mut uri = String::from("file:");
-    for byte in path.as_os_str().as_encoded_bytes() {
-        match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'/' | b'.' | b'-' | b'_' | b'~' => {
-                uri.push(char::from(*byte));
-            }
-            _ => uri.push_str(&format!("%{byte:02X}")),
-        }
-    }
-    uri.push_str("?immutable=1");
-    PathBuf::from(uri)
 }

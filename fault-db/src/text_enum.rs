@@ -55,6 +55,19 @@ macro_rules! text_enum {
                 value.as_str()?.parse().map_err(rusqlite::types::FromSqlError::other)
             }
         }
+
+        impl crate::base::FromField<'_> for $name {
+            fn from_field(field: crate::base::Field<'_>) -> Result<Self, String> {
+                let word = <&str as crate::base::FromField>::from_field(field)?;
+                word.parse().map_err(|error: crate::text_enum::UnknownWord| error.to_string())
+            }
+        }
+
+        impl From<$name> for crate::base::Value<'_> {
+            fn from(value: $name) -> Self {
+                value.as_str().into()
+            }
+        }
     };
 }
 

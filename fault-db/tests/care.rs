@@ -7,7 +7,7 @@ use std::path::Path;
 use common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
 use fault_db::{
     FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, RunFilter, RunState,
-    RunWriter, SqlValue, StatKey, Store, StoreError, Verdict,
+    RunWriter, SqlValue, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -52,7 +52,7 @@ fn check_finds_a_flipped_bit_in_a_trace_and_a_lost_row() {
         .expect("damaged");
     let problems = store.check().expect("checked").problems;
     let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
-    assert_eq!(kinds, ["foreign_key", "trace"], "{problems:?}");
+    assert_eq!(kinds, ["foreign_key", "trace", "tally"], "{problems:?}");
     assert!(
         problems[1].detail.contains(&trace.to_string()),
         "{problems:?}"
@@ -81,6 +81,61 @@ fn a_backup_is_whole_and_overwrites_nothing() {
     assert!(matches!(error, StoreError::TargetExists { .. }), "{error}");
 }
 
+/// Goal: a backup made while another program records is whole, and can be gone on with like the file
+/// itself: its schema, its search words, its way of giving back room.
+#[test]
+fn a_backup_made_while_others_write_is_a_file_to_go_on_with() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let (_, stored, _) = one_run(&store, "ATC-7", 1);
+    store
+        .add_note(stored.fault, "kim", "커넥터 재체결", T0_US)
+        .expect("noted");
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let copies: Vec<_> = (0..5).map(|n| dir.path().join(format!("{n}.db"))).collect();
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let store = Store::open(&path, OpenOptions::new(ids(9))).expect("opens");
+            for code in 0.. {
+                if stop.load(std::sync::atomic::Ordering::Relaxed) {
+                    break;
+                }
+                one_run(&store, "ATC-8", code);
+            }
+        });
+        let reader = Store::open_read_only(&path).expect("opens");
+        for copy in &copies {
+            reader.backup(copy).expect("copied");
+        }
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    });
+    for path in &copies {
+        let copy = Store::open(path, OpenOptions::new(ids(10))).expect("one of ours");
+        one_run(&copy, "ATC-9", 3);
+        assert_eq!(copy.check().expect("checked").problems, []);
+        let conn = Connection::open(path).expect("opens");
+        let one = |sql: &str| {
+            conn.query_row(sql, [], |row| row.get::<_, i64>(0))
+                .expect(sql)
+        };
+        assert_eq!(
+            one("PRAGMA user_version"),
+            i64::from(fault_db::SCHEMA_VERSION)
+        );
+        assert_eq!(one("PRAGMA auto_vacuum"), 2, "incremental");
+        let found = "SELECT count(*) FROM event_words WHERE event_words MATCH '\"체 결\"'";
+        assert_eq!(one(found), 1);
+    }
+    let parts = std::fs::read_dir(dir.path())
+        .expect("read")
+        .filter(|entry| {
+            let name = entry.as_ref().expect("an entry").file_name();
+            name.to_string_lossy().ends_with(".part")
+        });
+    assert_eq!(parts.count(), 0, "nothing half done is left");
+}
+
 #[test]
 fn prune_takes_old_traces_of_closed_faults_only_and_shrinks_the_file() {
     let dir = tempdir().expect("a directory");
@@ -98,8 +153,9 @@ fn prune_takes_old_traces_of_closed_faults_only_and_shrinks_the_file() {
     let prune = |older_than_us, dry_run| {
         store
             .prune(&PruneRule {
-                older_than_us,
+                older_than_us: Some(older_than_us),
                 dry_run,
+                ..PruneRule::default()
             })
             .expect("pruned")
     };
@@ -348,12 +404,21 @@ fn filters_stats_and_trends_answer() {
         1
     );
 
-    let by_lru = store.stats(StatKey::Lru).expect("counted");
+    let stats = |by| {
+        let query = StatQuery {
+            by,
+            filter: FaultFilter::default(),
+            now_us: T0_US + 1_000,
+            back_within_days: 30,
+        };
+        store.stats(&query).expect("counted")
+    };
+    let by_lru = stats(StatKey::Lru);
     assert_eq!(
         (by_lru[0].faults, by_lru[0].not_closed, by_lru[0].units),
         (3, 2, 3)
     );
-    assert_eq!(store.stats(StatKey::Code).expect("counted").len(), 3);
+    assert_eq!(stats(StatKey::Code).len(), 3);
     let filter = RunFilter {
         unit: some("ATC-2"),
         ..Default::default()
@@ -363,13 +428,20 @@ fn filters_stats_and_trends_answer() {
         runs[2]
     );
 
-    assert_eq!(store.trend("eb_reaction", None).expect("known").len(), 3);
-    let points = store.trend("eb_reaction", Some("ATC-1")).expect("known");
+    let of = |measurement: &str, unit: Option<&str>| TrendQuery {
+        measurement: measurement.to_owned(),
+        unit: unit.map(str::to_owned),
+        ..TrendQuery::default()
+    };
+    let points = store.trend(&of("eb_reaction", None)).expect("known");
+    assert_eq!(points.len(), 3);
+    let points = store.trend(&of("eb_reaction", Some("ATC-1")));
+    let points = points.expect("known");
     assert_eq!(
         (points[0].value, points[0].high, points[0].run_id),
         (Some(0.42), Some(0.5), runs[1])
     );
-    let error = store.trend("eb_reacton", None).expect_err("misspelt");
+    let error = store.trend(&of("eb_reacton", None)).expect_err("misspelt");
     assert!(
         error.to_string().contains("no measurement \"eb_reacton\""),
         "{error}"

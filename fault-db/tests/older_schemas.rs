@@ -4,15 +4,16 @@ mod common;
 
 use std::path::Path;
 
-use common::{T0_US, open};
-use fault_db::{RunFilter, SCHEMA_VERSION, Store, StoreError};
+use common::{T0_US, ids, open};
+use fault_db::{FaultState, OpenOptions, RunFilter, SCHEMA_VERSION, Store, StoreError};
 use rusqlite::Connection;
 use tempfile::tempdir;
 
 /// What each schema added to the one before.
-const STEPS: [&str; 2] = [
+const STEPS: [&str; 3] = [
     include_str!("../src/schema/0001.sql"),
     include_str!("../src/schema/0002.sql"),
+    include_str!("../src/schema/0003.sql"),
 ];
 
 /// A file of an earlier schema with a run in it.
@@ -27,6 +28,106 @@ fn old_file(path: &Path, version: usize) {
             'sim', 1, 2, 'passed', 1, 1, '0.1.0', '', '', NULL, '')"
     ))
     .expect("an old file");
+}
+
+/// What happened on two lines in two years: a fault that was repaired, came back and was closed by people
+/// whose clocks differ, one that is open, and one of a run that never ended.
+const PAST: &str = r#"
+    INSERT INTO run VALUES
+        (2, x'0198c0de00007000800000000000cafd', 1, 'line6', 1, '', 'sim', 31536000000000, 31536000000009,
+            'failed', 1, 1, '0.1.0', '', '', NULL, ''),
+        (3, x'0198c0de00007000800000000000cafc', 1, 'line8', 1, '', 'sim', 31536000000000, NULL, NULL,
+            NULL, NULL, '0.1.0', '', '', NULL, '');
+    INSERT INTO step VALUES (2, 0, 'atp/overspeed', 'EB', 'failed', 0, 1, '', 1);
+    INSERT INTO measurement VALUES
+        (2, 0, 0, 'eb_reaction', 0.61, 's', NULL, 0.58, 'failed'), (2, 0, 1, 'eb_reaction', NULL, 's', 0, 1, 'error');
+    INSERT INTO fault VALUES
+        (1, x'00000000000000000000000000000001', 1, 231, 'eb_relay_open', 'eb_relay', 'critical', 'closed', 5, 31536000000002, 3),
+        (2, x'00000000000000000000000000000002', 1, 400, 'twc_lost', 'twc_cpu', 'minor', 'open', 31536000000001, 31536000000001, 1);
+    INSERT INTO fault_occurrence VALUES
+        (1, x'00000000000000000000000000000011', 1, 1, NULL, 5, 5, 'late', '[]', NULL),
+        (2, x'00000000000000000000000000000012', 1, 2, 0, 31536000000001, 1, 'again', '[]', NULL),
+        (3, x'00000000000000000000000000000013', 1, 2, 0, 31536000000002, 2, 'again', '[]', NULL),
+        (4, x'00000000000000000000000000000014', 2, 3, NULL, 31536000000001, 1, '', '[]', NULL);
+    INSERT INTO fault_event VALUES
+        (1, x'00000000000000000000000000000021', 1, 'opened', 5, '', 'late', 'open'),
+        (2, x'00000000000000000000000000000022', 1, 'closed', 31536000000900, 'lee', '이상 없음', 'closed'),
+        (3, x'00000000000000000000000000000023', 1, 'recurred', 31536000000001, '', 'again', 'open'),
+        (4, x'00000000000000000000000000000024', 1, 'note', 31536000000003, 'kim', 'contacts burnt', NULL),
+        (5, x'00000000000000000000000000000025', 1, 'repair', 400, 'kim', '{"part":" EB_relay","note":"changed"}', 'repaired'),
+        (6, x'00000000000000000000000000000026', 1, 'repair', 31536000000004, 'kim', 'no json', 'repaired'),
+        (7, x'00000000000000000000000000000027', 2, 'opened', 31536000000001, '', '', 'open');
+"#;
+
+/// Goal: what is counted, who repaired what, whose turn it was and the chain of runs follow from the old rows
+/// as they would have from new ones; and the file takes part in everything as one that was always new.
+#[test]
+fn what_happened_is_counted_and_sealed_like_new() {
+    for version in 1..=STEPS.len() {
+        let dir = tempdir().expect("a directory");
+        let path = dir.path().join("a.db");
+        old_file(&path, version);
+        let conn = Connection::open(&path).expect("opens");
+        conn.execute_batch(PAST).expect("a past");
+        let store = open(&path);
+        let report = store.check().expect("checked");
+        assert_eq!(
+            (report.runs, report.problems),
+            (2, vec![]),
+            "schema {version}"
+        );
+        let told = |sql: &str| -> Vec<String> {
+            let mut select = conn.prepare(sql).expect(sql);
+            let rows = select.query_map([], |row| row.get(0)).expect(sql);
+            rows.collect::<Result<_, _>>().expect(sql)
+        };
+        let turns = "SELECT hex(substr(id, 16)) || turn FROM fault_event ORDER BY fault, turn";
+        assert_eq!(
+            told(turns),
+            ["211", "252", "233", "244", "265", "226", "271"]
+        );
+        let faults = "SELECT line || ' ' || repairs || ' ' || ifnull(closed_at_us, '-') FROM fault";
+        assert_eq!(told(faults), ["line8 2 31536000000900", "line8 0 -"]);
+        let repairs =
+            "SELECT part || '/' || opened_at_us || '/' || ifnull(back_at_us, '-') FROM repair";
+        assert_eq!(
+            told(repairs),
+            ["eb_relay/5/31536000000001", "/31536000000001/-"]
+        );
+        let years =
+            "SELECT at || ': ' || seen || ' ' || opened || ' ' || closed || ' ' || bare FROM tally
+            WHERE dim = 0 AND grain = 0 ORDER BY at";
+        assert_eq!(told(years), ["0: 1 1 0 0", "12: 3 1 1 0"]);
+        let found = "SELECT CAST(rowid AS TEXT) FROM event_words WHERE event_words MATCH '\"없 음\" OR burnt'
+            ORDER BY rowid";
+        assert_eq!(told(found), ["2", "4"]);
+        let new = Store::open(&dir.path().join("b.db"), OpenOptions::new(ids(2))).expect("opens");
+        assert_eq!(new.merge_from(&store).expect("merged").faults, 2);
+        assert_eq!(new.check().expect("checked").problems, []);
+        let closed = fault_db::FaultFilter {
+            state: Some(FaultState::Closed),
+            ..Default::default()
+        };
+        assert_eq!(new.faults(&closed).expect("listed").len(), 1);
+    }
+}
+
+/// Two files that shared runs before runs were sealed: each has sealed them, and both chains stay whole.
+#[test]
+fn runs_that_two_files_shared_before_are_in_both_chains() {
+    let dir = tempdir().expect("a directory");
+    let (a, b) = (dir.path().join("a.db"), dir.path().join("b.db"));
+    for path in [&a, &b] {
+        old_file(path, 3);
+        Connection::open(path)
+            .and_then(|conn| conn.execute_batch(PAST))
+            .expect("a past");
+    }
+    let a = open(&a);
+    let b = Store::open(&b, OpenOptions::new(ids(2))).expect("opens");
+    assert_eq!(a.merge_from(&b).expect("merged").runs, 0);
+    let report = a.check().expect("checked");
+    assert_eq!((report.runs, report.problems), (4, vec![]));
 }
 
 /// Schema and number of runs, read without this crate.

@@ -182,3 +182,108 @@ fn a_truncated_file_is_damaged_not_a_panic() {
         );
     }
 }
+
+/// A file with enough in it to be cut and scratched.
+fn full_file(path: &Path) -> Vec<u8> {
+    let store = open(path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    for code in 0..50 {
+        writer.fault(&fault(code, T0_US)).expect("stored");
+    }
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    drop(writer);
+    store.close().expect("closed");
+    std::fs::read(path).expect("there")
+}
+
+/// Goal: a copy that broke off is refused by name, also for writing and as the source of an import, and
+/// nothing is written to it.
+#[test]
+fn a_half_copied_file_is_named_and_left_as_it_is() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("half.db");
+    let bytes = full_file(&path);
+    let ours = open(&dir.path().join("ours.db"));
+    for part in [2, 3, 10] {
+        let half = &bytes[..bytes.len() / part];
+        std::fs::write(&path, half).expect("cut");
+        for error in [
+            refusal(&path),
+            Store::open_read_only(&path).expect_err("nor to read"),
+            ours.import(&path).expect_err("nor to merge"),
+        ] {
+            assert!(
+                matches!(error, StoreError::Corrupt { .. }),
+                "{part}: {error}"
+            );
+            let text = error.to_string();
+            assert!(
+                text.contains("half.db") && text.contains("db check"),
+                "{text}"
+            );
+        }
+        assert_eq!(std::fs::read(&path).expect("there"), half, "1/{part}");
+    }
+    assert_eq!(
+        ours.runs(&RunFilter::default(), &|_| false)
+            .expect("listed"),
+        []
+    );
+}
+
+/// Goal: a file with a stretch of garbage in it never passes for whole, wherever that is, and neither a
+/// check nor a refused import writes to it.
+#[test]
+fn garbage_in_the_middle_is_found() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("scratched.db");
+    let bytes = full_file(&path);
+    let pages = bytes.len() / 4096;
+    let mut refused = 0;
+    for page in (1..pages).step_by(3) {
+        let mut scratched = bytes.clone();
+        scratched[page * 4096..][..4096].fill(0xA5);
+        std::fs::write(&path, &scratched).expect("written");
+        let found = Store::open_read_only(&path)
+            .and_then(|store| store.check())
+            .map(|report| report.problems.len());
+        assert!(!matches!(found, Ok(0)), "page {page} passed for whole");
+        // A merge may not need that page; if it does, all or nothing, and the right file is named.
+        let ours = open(&dir.path().join(format!("ours{page}.db")));
+        if let Err(error) = ours.import(&path) {
+            refused += 1;
+            assert!(error.to_string().contains("scratched.db"), "{error}");
+            let runs = ours.runs(&RunFilter::default(), &|_| false);
+            assert_eq!(runs.expect("listed"), []);
+        }
+        assert_eq!(
+            std::fs::read(&path).expect("there"),
+            scratched,
+            "page {page}"
+        );
+    }
+    assert!(refused > 3, "{refused}");
+}
+
+/// Goal: the database file copied alone, while a program had it open, is as it was when its log was last
+/// written back: whole, or refused, never something in between.
+#[test]
+fn a_file_without_its_log_is_an_earlier_one_or_none() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    full_file(&path);
+    let store = Store::open(&path, OpenOptions::new(ids(2))).expect("opens");
+    for code in 100..104 {
+        let mut writer = RunWriter::begin(&store, &run_record("ATC-8")).expect("begun");
+        writer.fault(&fault(code, T0_US)).expect("stored");
+        writer.finish(&end(Verdict::Failed)).expect("finished");
+    }
+    let alone = dir.path().join("alone.db");
+    std::fs::copy(&path, &alone).expect("copied");
+    let copy = Store::open_read_only(&alone).expect("opens");
+    assert_eq!(copy.check().expect("checked").problems, []);
+    let runs = copy
+        .runs(&RunFilter::default(), &|_| false)
+        .expect("listed");
+    assert_eq!(runs.len(), 1, "what was in the log is not there");
+}

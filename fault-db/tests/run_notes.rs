@@ -30,8 +30,8 @@ fn notes_stand_at_their_run_in_their_order_and_survive_pruning() {
     note(&store, run, "second", T0_US + 2);
     note(&store, run, "first; \"김\"\n'--", T0_US + 1);
     let rule = PruneRule {
-        older_than_us: T0_US + 9,
-        dry_run: false,
+        older_than_us: Some(T0_US + 9),
+        ..PruneRule::default()
     };
     assert_eq!(store.prune(&rule).expect("pruned").traces, 2);
     let texts: Vec<_> = notes(&store, run).into_iter().map(|n| n.text).collect();

@@ -81,8 +81,9 @@ fn a_recording_goes_with_its_last_trace() {
     let store = open(&dir.path().join("a.db"));
     let (closed, _) = two_procedures(&store);
     let rule = |dry_run| PruneRule {
-        older_than_us: T0_US + 1,
+        older_than_us: Some(T0_US + 1),
         dry_run,
+        ..PruneRule::default()
     };
     assert_eq!(store.prune(&rule(false)).expect("pruned").recordings, 0);
     store

@@ -45,6 +45,7 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
         scatter: None,
         serial: None,
         realtime: false,
+        slower: 1,
         attendant: None,
     };
     (directory, setup)
@@ -73,6 +74,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         jobs: 1,
         stop_on_fail: false,
         operator: String::new(),
+        train: String::new(),
         scripts_sha256: String::new(),
         adaptive: None,
     };

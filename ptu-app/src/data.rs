@@ -262,6 +262,19 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
 }
 
+/// Keeps a value as JSON, beside first and then in its place: a full disk loses nothing that was there.
+///
+/// # Errors
+/// The file or its folder cannot be written.
+pub fn keep(file: &Path, value: &impl serde::Serialize) -> std::io::Result<()> {
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    let beside = file.with_extension("new");
+    std::fs::write(&beside, serde_json::to_vec_pretty(value)?)?;
+    std::fs::rename(beside, file)
+}
+
 fn collect(root: &Path, folder: &Path, into: &mut BTreeMap<String, String>) -> Result<(), Failure> {
     let cannot = |e| Failure::usage(format!("cannot read {}: {e}", folder.display()));
     for entry in std::fs::read_dir(folder).map_err(cannot)? {

@@ -74,6 +74,10 @@ impl From<StoreError> for Failure {
             StoreError::NotFound { .. }
             | StoreError::Ambiguous { .. }
             | StoreError::BadId { .. }
+            | StoreError::NoWords { .. }
+            | StoreError::NotAFile { .. }
+            | StoreError::NotAServer { .. }
+            | StoreError::BadAddress { .. }
             | StoreError::Transition { .. }
             | StoreError::TargetExists { .. }
             | StoreError::SameFile { .. }

@@ -10,6 +10,7 @@
 //! * [`diagnosis`]: from a run to the part to replace;
 //! * [`field`]: a unit's own event log becomes faults in the history;
 //! * [`trace_view`]: recorded signals as lanes of a plot, without anything of a window;
+//! * [`trace_io`]: traces to and from other programs' files;
 //! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
 //! * [`data`]: the scripts directory.
 //!
@@ -34,8 +35,10 @@ mod progress;
 pub mod replay;
 pub mod report;
 pub mod run;
+mod sparkline;
 pub mod station;
 pub mod stop;
 mod table;
+pub mod trace_io;
 pub mod trace_view;
 pub mod words;

@@ -3,6 +3,7 @@
 /// A table being filled.
 pub struct Table {
     rows: Vec<Vec<String>>,
+    right: Vec<usize>,
 }
 
 impl Table {
@@ -15,7 +16,14 @@ impl Table {
                     .map(|heading| (*heading).to_owned())
                     .collect(),
             ],
+            right: Vec::new(),
         }
+    }
+
+    /// Puts the cells of these columns, counted from 0, at the right: numbers.
+    pub fn right(mut self, columns: impl IntoIterator<Item = usize>) -> Self {
+        self.right = columns.into_iter().collect();
+        self
     }
 
     /// Adds a row.
@@ -38,7 +46,13 @@ impl Table {
             let cells: Vec<_> = row
                 .iter()
                 .zip(&widths)
-                .map(|(cell, width)| format!("{cell:<width$}"))
+                .enumerate()
+                .map(
+                    |(column, (cell, width))| match self.right.contains(&column) {
+                        true => format!("{cell:>width$}"),
+                        false => format!("{cell:<width$}"),
+                    },
+                )
                 .collect();
             cells.join("  ").trim_end().to_owned()
         };

@@ -159,8 +159,8 @@ fn unknown_records_and_wrong_times_are_refused() {
             &["\"good\"", "passed"],
         ),
         (
-            &["runs", "list", "--since", "yesterday"],
-            &["yesterday", "30d", "2026-03-21"],
+            &["runs", "list", "--since", "last week"],
+            &["last week", "30d", "2026-03-21"],
         ),
         (&["faults", "show", "abcd1234"], &["no fault \"abcd1234\""]),
         (&["faults", "show", "latest"], &["no fault"]),

@@ -192,7 +192,7 @@ fn a_measurement_is_shown_over_time() {
     let place = history();
     let mean = |unit: &str| {
         let trend = place.json(&["faults", "trend", "eb_reaction", "--unit", unit, "--json"]);
-        let overspeed: Vec<_> = list(&trend)
+        let overspeed: Vec<_> = list(&trend["points"])
             .iter()
             .filter(|p| (450.0..600.0).contains(&number(&p["high"])))
             .collect();

@@ -1,14 +1,15 @@
-//! A real port in real time: the suite passes, and whoever dies or is stopped leaves the unit safe
-//! and the record closed.
+//! A real port in real time, slower only where the machine is held up: the suite passes, and whoever dies
+//! or is stopped leaves the unit safe and the record closed.
 //!
-//! The first test takes about six minutes, all others together less; they run beside it.
+//! The first test takes about four minutes on a quiet machine, all others together less; they run beside it.
 
 mod common;
 
 use std::time::{Duration, Instant};
 
 use common::served::{Observer, Running, Unit};
-use common::{Place, list, number, text};
+use common::steady::{self, steadily};
+use common::{Place, Said, list, number, text};
 use protocol::message::{Message, Outputs, StatusBits};
 use serde_json::Value;
 
@@ -18,8 +19,11 @@ const SAFE_WITHIN: Duration = Duration::from_millis(1000);
 const SLACK: Duration = Duration::from_millis(200);
 /// A stopped run makes its outputs safe and ends within this time.
 const ENDS_WITHIN: Duration = Duration::from_secs(45);
+/// Times slower than the clock at most, after hold-ups; and no attempt begins after this time.
+const SLOWEST: u32 = 4;
+const ATTEMPTED: Duration = Duration::from_secs(25 * 60);
 /// Units tested side by side.
-const BENCHES: usize = 4;
+const BENCHES: usize = 6;
 
 fn eb_applied(message: &Message) -> bool {
     matches!(message, Message::IoOutput(out) if !out.outputs.contains(Outputs::EB_RELAY))
@@ -44,21 +48,14 @@ fn a_whole_acceptance_suite_over_pseudo_terminals_passes() {
     let place = Place::new();
     let planned = list(&place.json(&["run", "--list", "--json"])).to_vec();
     let shares = shared_out(&planned);
-    let reports: Vec<_> = std::thread::scope(|scope| {
-        let run = |share: &Vec<String>| {
-            let share = share.clone();
-            scope.spawn(move || on_a_unit_of_its_own(&share))
-        };
-        let running: Vec<_> = shares.iter().map(run).collect();
+    let passed: usize = std::thread::scope(|scope| {
+        let run = |share: Vec<String>| scope.spawn(move || steps_passed(share));
+        let running: Vec<_> = shares.into_iter().map(run).collect();
         let joined = running.into_iter().map(|thread| thread.join());
-        joined.map(|report| report.expect("a bench")).collect()
+        joined.map(|steps| steps.expect("a bench")).sum()
     });
-    let steps = |report: &Value| list(&report["steps"]).len();
     let of_plan = |procedure: &Value| list(&procedure["steps"]).len();
-    assert_eq!(
-        reports.iter().map(steps).sum::<usize>(),
-        planned.iter().map(of_plan).sum::<usize>()
-    );
+    assert_eq!(passed, planned.iter().map(of_plan).sum::<usize>());
 }
 
 /// Procedures for each of the benches, the longest dealt out first, each to the bench that has the
@@ -82,106 +79,236 @@ fn shared_out(planned: &[Value]) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn on_a_unit_of_its_own(procedures: &[String]) -> Value {
-    let unit = Unit::on_pty(&[]);
+/// Runs the procedures on a unit of their own and counts the steps, all of which have passed. What did not
+/// pass while the machine was held up is run again, on another unit, and slower than real time: a machine
+/// that is held up once is held up twice, and what has passed on a quiet one has been in real time.
+fn steps_passed(mut procedures: Vec<String>) -> usize {
+    let mut passed = 0;
+    let first_began = Instant::now();
+    for slower in (1..).map(|attempt: u32| attempt.min(SLOWEST)) {
+        let began = Instant::now();
+        steady::held_up_since(began);
+        let (said, report) = on_a_unit_of_its_own(&procedures, slower);
+        let steps = report
+            .as_ref()
+            .map_or(&[][..], |report| list(&report["steps"]));
+        // How many steps of a procedure passed, if all of them did.
+        let complete = |procedure: &String| {
+            let of = |step: &&Value| step["procedure"] == procedure.as_str();
+            let verdicts: Vec<_> = steps.iter().filter(of).map(|s| &s["verdict"]).collect();
+            let all = verdicts.iter().all(|verdict| *verdict == "passed");
+            (all && !verdicts.is_empty()).then_some(verdicts.len())
+        };
+        passed += procedures.iter().filter_map(complete).sum::<usize>();
+        if let (Some(0), Some(report)) = (said.code, &report) {
+            assert_eq!(report["run"]["verdict"], "passed");
+            assert_eq!(report["run"]["unit_serial"], "SIM-0001");
+            assert!(text(&report["run"]["source"]).starts_with("serial:"));
+            assert!(list(&report["faults"]).is_empty(), "{}", said.all());
+            break;
+        }
+        let faults = report
+            .as_ref()
+            .map_or(&[][..], |report| list(&report["faults"]));
+        let all_passed = procedures.iter().all(|p| complete(p).is_some());
+        assert!(
+            faults.is_empty() || !all_passed,
+            "passed, with faults: {}",
+            said.all()
+        );
+        let excused = steady::held_up_since(began) && first_began.elapsed() < ATTEMPTED;
+        assert!(excused, "{slower} times slower: {}", said.all());
+        eprintln!("the machine was held up: {}", said.all());
+        procedures.retain(|procedure| complete(procedure).is_none());
+        if procedures.is_empty() {
+            break;
+        }
+        steady::wait_until_steady();
+    }
+    passed
+}
+
+/// What `ptu` said and reported; nothing of a unit it did not reach.
+fn on_a_unit_of_its_own(procedures: &[String], slower: u32) -> (Said, Option<Value>) {
+    let slower = slower.to_string();
+    let unit = Unit::on_pty(&["--slower", &slower]);
     let place = Place::new();
     let mut arguments: Vec<_> = procedures.iter().map(String::as_str).collect();
-    arguments.extend(["--report", "report.json"]);
-    Running::start(&place, &unit, &arguments).finish().exits(0);
-    let report = place.read_json("report.json");
-    assert_eq!(report["run"]["verdict"], "passed");
-    assert_eq!(report["run"]["unit_serial"], "SIM-0001");
-    assert!(text(&report["run"]["source"]).starts_with("serial:"));
-    assert!(list(&report["faults"]).is_empty());
-    report
+    arguments.extend(["--slower", &slower, "--report", "report.json"]);
+    let said = Running::start(&place, &unit, &arguments).finish();
+    let written = place.path("report.json").is_file();
+    let report = written.then(|| place.read_json("report.json"));
+    (said, report)
+}
+
+#[test]
+fn a_tester_slower_than_the_unit_is_told() {
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        Running::start(&place, &unit, &["tcms/link", "--slower", "2"])
+            .finish()
+            .exits(3)
+            .explains(&["times as fast", "--slower"]);
+        let as_slow = Unit::on_pty(&["--slower", "2"]);
+        Running::start(&place, &as_slow, &["tcms/link", "--slower", "2"])
+            .finish()
+            .exits(0);
+    });
+}
+
+/// Goal: a computer that holds a served unit up changes nothing that the unit sees. Method: it stands still for
+/// longer than it bears to hear nothing, while the tester goes on, for which it was silent and slow.
+#[test]
+fn a_unit_that_stood_still_has_heard_its_inputs_all_the_while() {
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let arguments = ["atp/limit_speed", "--report", "report.json"];
+        let mut run = Running::start(&place, &unit, &arguments);
+        run.recorded_steps(2);
+        unit.stand_still(Duration::from_millis(420));
+        let said = run.finish();
+        let report = place.read_json("report.json");
+        for fault in list(&report["faults"]) {
+            let of_tester = ["atc_silent", "check_failed"].contains(&text(&fault["name"]));
+            assert!(of_tester, "{}", said.all());
+        }
+        assert!(
+            said.code == Some(0) || said.code == Some(1),
+            "{}",
+            said.all()
+        );
+    });
+}
+
+/// Goal: a tester that is held up by its own computer blames nobody. Method: it stands still for longer than
+/// the unit bears to hear nothing, which brakes.
+#[test]
+fn a_tester_that_stood_still_is_an_error_and_no_fault_of_the_unit() {
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let arguments = ["atp/overspeed", "tcms/link", "--report", "report.json"];
+        let mut run = Running::start(&place, &unit, &arguments);
+        run.recorded_steps(1);
+        run.stand_still(Duration::from_millis(3000));
+        run.finish()
+            .exits(3)
+            .explains(&["held up for", "run this again"]);
+        let report = place.read_json("report.json");
+        assert_eq!(report["run"]["verdict"], "error");
+        assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
+        let verdict = |step: &Value| text(&step["verdict"]).to_owned();
+        let verdicts: Vec<_> = list(&report["steps"]).iter().map(verdict).collect();
+        let stood_still = verdicts.iter().position(|verdict| verdict == "error");
+        let skipped = verdicts
+            .iter()
+            .filter(|verdict| *verdict == "skipped")
+            .count();
+        assert!(
+            stood_still.is_some_and(|at| at > 0) && skipped > 10,
+            "{verdicts:?}"
+        );
+        assert_eq!(
+            verdicts.last().map(String::as_str),
+            Some("passed"),
+            "the next is not held up"
+        );
+    });
 }
 
 /// Goal: train lines and pulses that stop mean braking. Method: killed after the step before, early
 /// in the ramp, so that the brake is not applied yet.
 #[test]
 fn killed_in_an_overspeed_step_the_unit_brakes_within_a_second() {
-    let unit = Unit::on_pty(&[]);
-    let place = Place::new();
-    let mut run = Running::start(&place, &unit, &["atp/overspeed", "--step", "code 25*"]);
-    run.recorded_steps(1);
-    run.kill();
-    let killed = Instant::now();
-    let mut observer = Observer::on(&unit);
-    observer.wait(SLACK, "a brake still released", |message| {
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let mut run = Running::start(&place, &unit, &["atp/overspeed", "--step", "code 25*"]);
+        run.recorded_steps(1);
+        run.kill();
+        let killed = Instant::now();
+        let mut observer = Observer::on(&unit);
+        observer.wait(SLACK, "a brake still released", |message| {
         matches!(message, Message::IoOutput(out) if out.outputs.contains(Outputs::EB_RELAY))
     });
-    observer.wait(SAFE_WITHIN + SLACK, "the emergency brake", eb_applied);
-    assert!(
-        killed.elapsed() < SAFE_WITHIN + SLACK,
-        "{:?}",
-        killed.elapsed()
-    );
-    drop(observer);
+        observer.wait(SAFE_WITHIN + SLACK, "the emergency brake", eb_applied);
+        assert!(
+            killed.elapsed() < SAFE_WITHIN + SLACK,
+            "{:?}",
+            killed.elapsed()
+        );
+        drop(observer);
 
-    let killed_run = &place.json(&["runs", "list", "--json"])[0];
-    assert_eq!(killed_run["state"], "interrupted");
-    assert!(killed_run["verdict"].is_null(), "{killed_run}");
-    assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
-    passes(&place, &unit, "tcms/link");
-    let states: Vec<_> = list(&place.json(&["runs", "list", "--json"]))
-        .iter()
-        .map(|run| text(&run["state"]).to_owned())
-        .collect();
-    assert_eq!(states, ["finished", "interrupted"]);
+        let killed_run = &place.json(&["runs", "list", "--json"])[0];
+        assert_eq!(killed_run["state"], "interrupted");
+        assert!(killed_run["verdict"].is_null(), "{killed_run}");
+        assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
+        passes(&place, &unit, "tcms/link");
+        let states: Vec<_> = list(&place.json(&["runs", "list", "--json"]))
+            .iter()
+            .map(|run| text(&run["state"]).to_owned())
+            .collect();
+        assert_eq!(states, ["finished", "interrupted"]);
+    });
 }
 
 /// Goal: no test signal outlives its tester. Method: the step is run twice and killed the second
 /// time, after most of the time it took the first time.
 #[test]
 fn killed_in_an_overspeed_step_of_the_test_board_the_test_signals_go_within_a_second() {
-    let unit = Unit::on_pty(&[]);
-    let place = Place::new();
-    let mut run = Running::start(
-        &place,
-        &unit,
-        &["atp/ptu_overspeed", "--step", "code 25*", "--repeat", "2"],
-    );
-    let steps = run.recorded_steps(2);
-    assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
-    std::thread::sleep(Duration::from_secs_f64(
-        0.7 * number(&steps[0]["bench_time_s"]),
-    ));
-    run.kill();
-    let killed = Instant::now();
-    let mut observer = Observer::on(&unit);
-    observer.wait(SLACK, "an armed unit with test signals", |message| {
-        matches!(message, Message::Status(status)
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let mut run = Running::start(
+            &place,
+            &unit,
+            &["atp/ptu_overspeed", "--step", "code 25*", "--repeat", "2"],
+        );
+        let steps = run.recorded_steps(2);
+        assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
+        std::thread::sleep(Duration::from_secs_f64(
+            0.7 * number(&steps[0]["bench_time_s"]),
+        ));
+        run.kill();
+        let killed = Instant::now();
+        let mut observer = Observer::on(&unit);
+        observer.wait(SLACK, "an armed unit with test signals", |message| {
+            matches!(message, Message::Status(status)
             if status.bits.contains(StatusBits::ARMED) && !status.test_signals.is_empty())
-    });
-    let (mut brakes, mut free) = (None, None);
-    while killed.elapsed() < 2 * SAFE_WITHIN && (brakes.is_none() || free.is_none()) {
-        for message in observer.hear() {
-            if eb_applied(&message) {
-                brakes.get_or_insert(killed.elapsed());
-            }
-            if released(&message) {
-                free.get_or_insert(killed.elapsed());
+        });
+        let (mut brakes, mut free) = (None, None);
+        while killed.elapsed() < 2 * SAFE_WITHIN && (brakes.is_none() || free.is_none()) {
+            for message in observer.hear() {
+                if eb_applied(&message) {
+                    brakes.get_or_insert(killed.elapsed());
+                }
+                if released(&message) {
+                    free.get_or_insert(killed.elapsed());
+                }
             }
         }
-    }
-    for (what, after) in [("emergency brake", brakes), ("test signals gone", free)] {
-        let in_time = after.is_some_and(|after| after < SAFE_WITHIN + SLACK);
-        assert!(in_time, "{what} after {after:?}");
-    }
-    drop(observer);
-    assert_eq!(
-        place.json(&["runs", "list", "--json"])[0]["state"],
-        "interrupted"
-    );
-    passes(&place, &unit, "twc/ptu_exchange");
+        for (what, after) in [("emergency brake", brakes), ("test signals gone", free)] {
+            let in_time = after.is_some_and(|after| after < SAFE_WITHIN + SLACK);
+            assert!(in_time, "{what} after {after:?}");
+        }
+        drop(observer);
+        assert_eq!(
+            place.json(&["runs", "list", "--json"])[0]["state"],
+            "interrupted"
+        );
+        passes(&place, &unit, "twc/ptu_exchange");
+    });
 }
 
 /// Method: a clean-up that cannot succeed is reported when it ran.
 #[test]
 fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
-    let unit = Unit::on_pty(&[]);
-    let place = Place::new();
-    let script = place.write(
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let script = place.write(
         "long.star",
         "load(\"//_ptu.star\", \"train_as_found\", \"train_in_depot\")\n\
          procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_in_depot(),\n\
@@ -190,86 +317,93 @@ fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
          step(\"long\", do = wait(s(60)))\n\
          step(\"never\", do = wait(s(1)))\n",
     );
-    let mut run = Running::start(&place, &unit, &[&script, "--report", "report.json"]);
-    run.recorded_steps(1);
-    std::thread::sleep(Duration::from_millis(500));
-    run.interrupt();
-    let stopped = Instant::now();
-    let said = run.finish();
-    let mut observer = Observer::on(&unit);
-    observer.wait(SLACK, "a status", |message| {
-        if let Message::Status(status) = message {
-            assert!(released(message), "{status:?}");
-        }
-        matches!(message, Message::Status(_))
+        let mut run = Running::start(&place, &unit, &[&script, "--report", "report.json"]);
+        run.recorded_steps(1);
+        std::thread::sleep(Duration::from_millis(500));
+        run.interrupt();
+        let stopped = Instant::now();
+        let said = run.finish();
+        let mut observer = Observer::on(&unit);
+        observer.wait(SLACK, "a status", |message| {
+            if let Message::Status(status) = message {
+                assert!(released(message), "{status:?}");
+            }
+            matches!(message, Message::Status(_))
+        });
+        assert!(stopped.elapsed() < ENDS_WITHIN, "{:?}", stopped.elapsed());
+        let said = said
+            .exits(130)
+            .explains(&["stopped by the operator", "clean-up:", "yard"]);
+        let report = place.read_json("report.json");
+        assert_eq!(report["run"]["verdict"], "aborted", "{}", said.all());
+        assert_eq!(report["run"]["state"], "finished");
+        let verdicts: Vec<_> = list(&report["steps"])
+            .iter()
+            .map(|step| text(&step["verdict"]))
+            .collect();
+        assert_eq!(verdicts, ["passed", "aborted", "skipped"]);
     });
-    assert!(stopped.elapsed() < ENDS_WITHIN, "{:?}", stopped.elapsed());
-    let said = said
-        .exits(130)
-        .explains(&["stopped by the operator", "clean-up:", "yard"]);
-    let report = place.read_json("report.json");
-    assert_eq!(report["run"]["verdict"], "aborted", "{}", said.all());
-    assert_eq!(report["run"]["state"], "finished");
-    let verdicts: Vec<_> = list(&report["steps"])
-        .iter()
-        .map(|step| text(&step["verdict"]))
-        .collect();
-    assert_eq!(verdicts, ["passed", "aborted", "skipped"]);
 }
 
 #[test]
 fn a_unit_that_dies_in_a_run_is_an_error_and_the_record_is_closed() {
-    let mut unit = Unit::on_pty(&[]);
-    let place = Place::new();
-    let mut run = Running::start(
-        &place,
-        &unit,
-        &["atp/limit_speed", "--report", "report.json"],
-    );
-    run.recorded_steps(2);
-    unit.kill();
-    let died = Instant::now();
-    run.finish()
-        .exits(3)
-        .explains(&[&unit.port, "link to the unit"]);
-    assert!(died.elapsed() < ENDS_WITHIN, "{:?}", died.elapsed());
-    let report = place.read_json("report.json");
-    assert_eq!(report["run"]["verdict"], "error");
-    assert_eq!(report["run"]["state"], "finished");
-    let steps = list(&report["steps"]);
-    assert_eq!(steps[0]["verdict"], "passed");
-    assert!(steps.iter().any(|step| step["verdict"] == "error"));
-    assert!(steps.iter().all(|step| step["verdict"] != "failed"));
+    steadily(|| {
+        let mut unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let mut run = Running::start(
+            &place,
+            &unit,
+            &["atp/limit_speed", "--report", "report.json"],
+        );
+        run.recorded_steps(2);
+        unit.kill();
+        let died = Instant::now();
+        run.finish()
+            .exits(3)
+            .explains(&[&unit.port, "link to the unit"]);
+        assert!(died.elapsed() < ENDS_WITHIN, "{:?}", died.elapsed());
+        let report = place.read_json("report.json");
+        assert_eq!(report["run"]["verdict"], "error");
+        assert_eq!(report["run"]["state"], "finished");
+        let steps = list(&report["steps"]);
+        assert_eq!(steps[0]["verdict"], "passed");
+        assert!(steps.iter().any(|step| step["verdict"] == "error"));
+        assert!(steps.iter().all(|step| step["verdict"] != "failed"));
+    });
 }
 
 #[test]
 fn over_tcp_a_procedure_passes_and_the_next_tester_is_let_in() {
-    let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
-    let place = Place::new();
-    passes(&place, &unit, "tcms/link");
-    let run = &place.json(&["runs", "list", "--json"])[0];
-    assert_eq!(run["unit_serial"], "TCP-7");
-    assert_eq!(run["source"], unit.address);
-    let other = ["tcms/link", "--serial-no", "TCP-8"];
-    Running::start(&place, &unit, &other)
-        .finish()
-        .exits(3)
-        .explains(&["TCP-7", "TCP-8", "--serial-no"]);
+    steadily(|| {
+        let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
+        let place = Place::new();
+        passes(&place, &unit, "tcms/link");
+        let run = &place.json(&["runs", "list", "--json"])[0];
+        assert_eq!(run["unit_serial"], "TCP-7");
+        assert_eq!(run["source"], unit.address);
+        let other = ["tcms/link", "--serial-no", "TCP-8"];
+        Running::start(&place, &unit, &other)
+            .finish()
+            .exits(3)
+            .explains(&["TCP-7", "TCP-8", "--serial-no"]);
+    });
 }
 
 #[test]
 fn a_served_unit_with_a_slow_relay_fails() {
-    let unit = Unit::on_pty(&["--inject", "eb_relay.slow"]);
-    let place = Place::new();
-    let arguments = ["atp/power_up", "--report", "report.json"];
-    Running::start(&place, &unit, &arguments).finish().exits(1);
-    let report = place.read_json("report.json");
-    let failed = |step: &&serde_json::Value| step["verdict"] == "failed";
-    assert!(list(&report["steps"]).iter().any(|step| failed(&step)));
-    let fault = &list(&report["faults"])[0];
-    assert_eq!(fault["lru"], "eb_relay");
-    let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
-    assert!(number(&trace["trigger_row"]) >= 200.0, "ten seconds before");
+    steadily(|| {
+        let unit = Unit::on_pty(&["--inject", "eb_relay.slow"]);
+        let place = Place::new();
+        let arguments = ["atp/power_up", "--report", "report.json"];
+        Running::start(&place, &unit, &arguments).finish().exits(1);
+        let report = place.read_json("report.json");
+        let failed = |step: &&serde_json::Value| step["verdict"] == "failed";
+        assert!(list(&report["steps"]).iter().any(|step| failed(&step)));
+        let fault = &list(&report["faults"])[0];
+        assert_eq!(fault["lru"], "eb_relay");
+        let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
+        assert!(number(&trace["trigger_row"]) >= 200.0, "ten seconds before");
+    });
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod common;
 
 use common::served::Unit;
+use common::steady::steadily;
 use common::window::Window;
 use common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
@@ -259,29 +260,31 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
 
 #[test]
 fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
-    let mut unit = Unit::on_pty(&[]);
-    let mut settings = settings(Page::Procedures);
-    settings.language = Language::Korean;
-    settings.unit.endpoint = unit.address.clone();
-    let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("연결");
-    window.until("the unit", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
+    steadily(|| {
+        let mut unit = Unit::on_pty(&[]);
+        let mut settings = settings(Page::Procedures);
+        settings.language = Language::Korean;
+        settings.unit.endpoint = unit.address.clone();
+        let mut window = Window::with(Place::new(), scripts(), settings);
+        window.click("연결");
+        window.until("the unit", |window| {
+            window.app().units().chosen().phase() == Phase::Idle
+        });
+        window.click("시험 시작");
+        window.until("a step", |window| {
+            let run = window.app().units().chosen().run.as_ref();
+            run.is_some_and(|run| run.done > 0)
+        });
+        unit.kill();
+        window.wait_for_part("유닛과의 링크가 끊어졌습니다");
+        window.wait_for_part("시험 종료: 오류");
+        window.until("disconnected", |window| {
+            window.app().units().chosen().phase() == Phase::Offline
+        });
+        let run = latest(&window);
+        assert_eq!(run["run"]["verdict"], "error");
+        assert_eq!(run["run"]["state"], "finished");
     });
-    window.click("시험 시작");
-    window.until("a step", |window| {
-        let run = window.app().units().chosen().run.as_ref();
-        run.is_some_and(|run| run.done > 0)
-    });
-    unit.kill();
-    window.wait_for_part("유닛과의 링크가 끊어졌습니다");
-    window.wait_for_part("시험 종료: 오류");
-    window.until("disconnected", |window| {
-        window.app().units().chosen().phase() == Phase::Offline
-    });
-    let run = latest(&window);
-    assert_eq!(run["run"]["verdict"], "error");
-    assert_eq!(run["run"]["state"], "finished");
 }
 
 #[test]

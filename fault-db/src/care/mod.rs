@@ -1,5 +1,6 @@
 //! Keeping files well: [`check`](crate::Store::check), backup, prune, merge.
 
+mod backup;
 mod check;
 mod merge;
 mod prune;

@@ -1,18 +1,37 @@
 //! Room again: old traces go, and the recordings behind them; runs, verdicts and faults stay for ever.
 
-use rusqlite::params;
+use rusqlite::{Connection, params};
 use serde::Serialize;
 
 use crate::error::StoreError;
 use crate::store::Store;
 
-/// Which traces may go.
+/// Which traces may go. One that shows a fault that is not closed never does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PruneRule {
     /// Only those recorded before this time.
-    pub older_than_us: i64,
+    pub older_than_us: Option<i64>,
+    /// Only those of runs that passed.
+    pub passed_only: bool,
+    /// Only as many, the oldest first, as the file is larger than this.
+    pub max_file_bytes: Option<u64>,
+    /// Not those that wait to be sent to the server this file is brought to; without a server none waits.
+    pub keep_unsent: bool,
     /// Count only.
     pub dry_run: bool,
+}
+
+impl Default for PruneRule {
+    /// Every trace that nobody needs and no server waits for.
+    fn default() -> Self {
+        Self {
+            older_than_us: None,
+            passed_only: false,
+            max_file_bytes: None,
+            keep_unsent: true,
+            dry_run: false,
+        }
+    }
 }
 
 /// What went.
@@ -24,10 +43,14 @@ pub struct PruneCounts {
     pub recordings: u32,
     /// Bytes of samples in them.
     pub trace_bytes: u64,
-    /// Traces old enough, but kept for a fault that is not closed.
+    /// Traces the rule would let go, but kept for a fault that is not closed.
     pub kept_for_faults: u32,
+    /// Traces the rule would let go, but kept because they wait to be sent.
+    pub kept_unsent: u32,
     /// Bytes the file shrank by.
     pub freed_bytes: u64,
+    /// Bytes the file is still larger than it may be; 0 if it fits, or no limit was given.
+    pub over_bytes: u64,
 }
 
 /// A trace goes when every fault it shows is closed; one that shows none, when its run has no
@@ -39,69 +62,146 @@ const MAY_GO: &str = "
         OR NOT EXISTS (SELECT 1 FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
             WHERE o.run = t.run AND f.state <> 'closed'))";
 
+/// A trace that one of the servers has not been sent, if there is any: those of a run that was broken off
+/// wait for the next sync to find out that it was.
+const UNSENT: &str = "
+    t.seq IN (SELECT row FROM outbox
+        WHERE what = 'trace' AND seq > (SELECT min(sent_traces) FROM sync_server))
+    OR r.verdict IS NULL AND EXISTS (SELECT 1 FROM sync_server)
+        AND t.seq NOT IN (SELECT row FROM outbox WHERE what = 'trace')";
+
+/// Traces under the rule, in a temporary table, by what becomes of them.
+const GOES: i64 = 0;
+const FOR_FAULT: i64 = 1;
+const IS_UNSENT: i64 = 2;
+const FITS: i64 = 3;
+
+/// Recordings that no trace which stays was cut from.
+const RECORDINGS: &str = "
+    FROM recording AS r WHERE NOT EXISTS (SELECT 1 FROM trace t
+        WHERE t.run = r.run AND t.recording = r.ordinal
+            AND t.seq NOT IN (SELECT seq FROM temp.pruned WHERE fate = 0))";
+
 impl Store {
     /// Deletes old traces nobody needs any more, and gives the room back.
     pub fn prune(&self, rule: &PruneRule) -> Result<PruneCounts, StoreError> {
         const DOING: &str = "pruning";
         let failed = |error| self.failed(DOING, error);
-        let count = format!(
-            "SELECT ifnull(sum(go), 0), ifnull(sum(go * size), 0), ifnull(sum(NOT go), 0)
-             FROM (SELECT {MAY_GO} AS go, length(t.data) AS size FROM trace t WHERE t.t0_us < ?1)"
-        );
-        // A recording goes with its last trace.
-        let recordings = format!(
-            "FROM recording AS r WHERE NOT EXISTS (SELECT 1 FROM trace t WHERE t.run = r.run
-                AND t.recording = r.ordinal AND NOT (t.t0_us < ?1 AND {MAY_GO}))"
-        );
-        let counted = |conn: &rusqlite::Connection| {
-            let older_than = [rule.older_than_us];
-            let count_recordings = format!("SELECT count(*) {recordings}");
-            let recordings = conn.query_row(&count_recordings, older_than, |row| row.get(0))?;
-            conn.query_row(&count, older_than, |row| {
-                Ok(PruneCounts {
-                    traces: row.get(0)?,
-                    recordings,
-                    trace_bytes: row.get(1)?,
-                    kept_for_faults: row.get(2)?,
-                    freed_bytes: 0,
-                })
-            })
-        };
         if rule.dry_run {
-            return counted(&self.conn).map_err(failed);
+            return plan(self.file()?, rule).map_err(failed);
         }
-        let delete = format!("DELETE FROM trace AS t WHERE t.t0_us < ?1 AND {MAY_GO}");
-        let mut counts = self.write(DOING, |conn| {
-            let counts = counted(conn).map_err(failed)?;
-            conn.execute(&format!("DELETE {recordings}"), params![rule.older_than_us])
-                .map_err(failed)?;
-            conn.execute(&delete, params![rule.older_than_us])
-                .map_err(failed)?;
-            Ok(counts)
-        })?;
-        counts.freed_bytes = self.give_back_room()?;
-        Ok(counts)
+        let mut all = PruneCounts::default();
+        loop {
+            let counts = self.write(DOING, |conn| {
+                let counts = plan(conn, rule).map_err(failed)?;
+                delete(conn).map_err(failed)?;
+                Ok(counts)
+            })?;
+            all = PruneCounts {
+                traces: all.traces + counts.traces,
+                recordings: all.recordings + counts.recordings,
+                trace_bytes: all.trace_bytes + counts.trace_bytes,
+                over_bytes: over(self.file()?, rule).map_err(failed)?,
+                ..counts
+            };
+            // What a trace takes in the file is reckoned; it may take one more round.
+            if all.over_bytes == 0 || counts.traces == 0 {
+                break;
+            }
+        }
+        all.freed_bytes = self.give_back_room()?;
+        Ok(all)
     }
 
     /// Returns free pages to the system and says how many bytes that were.
     fn give_back_room(&self) -> Result<u64, StoreError> {
-        let give = || {
-            let pages = || {
-                self.conn
-                    .query_row("PRAGMA page_count", [], |row| row.get::<_, u64>(0))
-            };
-            let before = pages()?;
+        let conn = self.file()?;
+        let give = || -> rusqlite::Result<u64> {
+            let before = pragma(conn, "page_count")?;
             // Each step frees one page; run as a batch it would stop after the first.
-            let mut vacuum = self.conn.prepare("PRAGMA incremental_vacuum")?;
+            let mut vacuum = conn.prepare("PRAGMA incremental_vacuum")?;
             let mut steps = vacuum.query([])?;
             while steps.next()?.is_some() {}
-            let page_bytes: u64 = self
-                .conn
-                .query_row("PRAGMA page_size", [], |row| row.get(0))?;
-            Ok((before - pages()?) * page_bytes)
+            Ok((before - pragma(conn, "page_count")?) * pragma(conn, "page_size")?)
         };
         let freed = give().map_err(|error| self.failed("giving room back", error))?;
         self.checkpoint()?;
         Ok(freed)
     }
+}
+
+/// Sorts the traces under the rule by what becomes of them, and counts.
+fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
+    conn.execute_batch(
+        "DROP TABLE IF EXISTS temp.pruned;
+         CREATE TEMP TABLE pruned(seq INTEGER PRIMARY KEY, t0_us INTEGER, size INTEGER, fate INTEGER)",
+    )?;
+    let sort = format!(
+        "INSERT INTO temp.pruned
+         SELECT t.seq, t.t0_us, length(t.data),
+            CASE WHEN NOT ({MAY_GO}) THEN {FOR_FAULT}
+                WHEN ?3 AND ({UNSENT}) THEN {IS_UNSENT} ELSE {GOES} END
+         FROM trace t JOIN run r ON r.seq = t.run
+         WHERE (?1 IS NULL OR t.t0_us < ?1) AND (NOT ?2 OR r.verdict = 'passed')"
+    );
+    conn.execute(
+        &sort,
+        params![rule.older_than_us, rule.passed_only, rule.keep_unsent],
+    )?;
+    let over_bytes = over(conn, rule)?;
+    if rule.max_file_bytes.is_some() {
+        // The oldest, until what they take in whole pages is enough.
+        let page_bytes = pragma(conn, "page_size")?;
+        conn.execute(
+            &format!(
+                "UPDATE temp.pruned SET fate = {FITS} WHERE seq IN (
+                    SELECT seq FROM (SELECT seq, sum(size / ?1 + 1) OVER (ORDER BY t0_us, seq
+                            ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS pages_before
+                        FROM temp.pruned WHERE fate = {GOES})
+                    WHERE coalesce(pages_before, 0) * ?1 >= ?2)"
+            ),
+            params![page_bytes, over_bytes],
+        )?;
+    }
+    let recordings = conn.query_row(&format!("SELECT count(*) {RECORDINGS}"), [], |row| {
+        row.get(0)
+    })?;
+    let count = format!(
+        "SELECT coalesce(sum(fate = {GOES}), 0), coalesce(sum((fate = {GOES}) * size), 0),
+            coalesce(sum(fate = {FOR_FAULT}), 0), coalesce(sum(fate = {IS_UNSENT}), 0) FROM temp.pruned"
+    );
+    conn.query_row(&count, [], |row| {
+        let trace_bytes: u64 = row.get(1)?;
+        Ok(PruneCounts {
+            traces: row.get(0)?,
+            recordings,
+            trace_bytes,
+            kept_for_faults: row.get(2)?,
+            kept_unsent: row.get(3)?,
+            freed_bytes: 0,
+            over_bytes: over_bytes.saturating_sub(trace_bytes),
+        })
+    })
+}
+
+/// Deletes what was planned.
+fn delete(conn: &Connection) -> rusqlite::Result<()> {
+    conn.execute(&format!("DELETE {RECORDINGS}"), [])?;
+    let traces =
+        format!("DELETE FROM trace WHERE seq IN (SELECT seq FROM temp.pruned WHERE fate = {GOES})");
+    conn.execute(&traces, [])?;
+    conn.execute_batch("DROP TABLE temp.pruned")
+}
+
+/// Bytes the file would be larger than it may be, if it gave back its free pages.
+fn over(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<u64> {
+    let Some(max_file_bytes) = rule.max_file_bytes else {
+        return Ok(0);
+    };
+    let pages = pragma(conn, "page_count")?.saturating_sub(pragma(conn, "freelist_count")?);
+    Ok((pages * pragma(conn, "page_size")?).saturating_sub(max_file_bytes))
+}
+
+fn pragma(conn: &Connection, name: &str) -> rusqlite::Result<u64> {
+    conn.query_row(&format!("PRAGMA {name}"), [], |row| row.get(0))
 }

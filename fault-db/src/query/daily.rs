@@ -1,13 +1,11 @@
 //! How often faults were seen, day by day.
 
-use rusqlite::params;
 use serde::Serialize;
 
+use crate::base::values;
 use crate::error::StoreError;
+use crate::functions::DAY_US;
 use crate::store::Store;
-
-/// Microseconds of a day.
-const DAY_US: i64 = 86_400_000_000;
 
 /// How often one fault of one unit was seen on one day.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -34,25 +32,23 @@ impl Store {
         since_us: i64,
         utc_offset_us: i64,
     ) -> Result<Vec<DailyCount>, StoreError> {
-        let list = || -> rusqlite::Result<Vec<_>> {
-            let mut select = self.conn.prepare_cached(
-                "SELECT (o.at_us + ?3) / ?2 * ?2 - ?3, u.serial, f.code, f.code_name, f.lru, count(*)
+        self.select(
+            "counting occurrences",
+            "SELECT (o.at_us + ?3) / ?2 * ?2 - ?3, u.serial, f.code, f.code_name, f.lru, count(*)
                  FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
                     JOIN unit u ON u.seq = f.unit
-                 WHERE o.at_us >= ?1 GROUP BY 1, f.seq ORDER BY 1, u.serial, f.code",
-            )?;
-            let rows = select.query_map(params![since_us, DAY_US, utc_offset_us], |row| {
+                 WHERE o.at_us >= ?1 GROUP BY 1, 2, 3, 4, 5, f.seq ORDER BY 1, u.serial, f.code",
+            &values![since_us, DAY_US, utc_offset_us],
+            |row| {
                 Ok(DailyCount {
                     day_us: row.get(0)?,
                     unit_serial: row.get(1)?,
                     code: row.get(2)?,
                     code_name: row.get(3)?,
                     lru: row.get(4)?,
-                    count: row.get::<_, i64>(5)?.unsigned_abs(),
+                    count: row.get::<i64>(5)?.unsigned_abs(),
                 })
-            })?;
-            rows.collect()
-        };
-        list().map_err(|error| self.failed("counting occurrences", error))
+            },
+        )
     }
 }

@@ -1,22 +1,41 @@
 //! Filters as SQL: conditions joined by AND, values always bound.
 
-use rusqlite::params_from_iter;
-use rusqlite::types::Value;
+use crate::base::Value;
 
 /// Conditions of a filter, joined by AND, with their values.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Conditions {
     sql: Vec<String>,
-    values: Vec<Value>,
+    values: Vec<Value<'static>>,
 }
 
 impl Conditions {
-    /// Adds a condition with one `?`, if there is a value for it.
-    pub fn add(&mut self, sql: &str, value: Option<impl Into<Value>>) {
+    /// Adds a condition with `?` for a value, if there is a value for it.
+    pub fn add(&mut self, sql: &str, value: Option<impl Into<Value<'static>>>) {
         if let Some(value) = value {
-            self.sql.push(sql.to_owned());
-            self.values.push(value.into());
+            let place = self.place(value);
+            self.sql.push(sql.replace('?', &place));
         }
+    }
+
+    /// Adds a condition without values.
+    pub fn require(&mut self, sql: impl Into<String>) {
+        self.sql.push(sql.into());
+    }
+
+    /// Adds a condition that a column is one of these.
+    pub fn one_of<T: Into<Value<'static>>>(&mut self, column: &str, values: Vec<T>) {
+        let places: Vec<_> = values.into_iter().map(|value| self.place(value)).collect();
+        self.sql.push(match places.is_empty() {
+            true => "1 = 0".to_owned(),
+            false => format!("{column} IN ({})", places.join(", ")),
+        });
+    }
+
+    /// Binds a value, and says the place it has in the question.
+    pub fn place(&mut self, value: impl Into<Value<'static>>) -> String {
+        self.values.push(value.into());
+        format!("?{}", self.values.len())
     }
 
     /// `WHERE …`, or nothing.
@@ -28,7 +47,13 @@ impl Conditions {
         }
     }
 
-    pub fn params(&self) -> impl rusqlite::Params + '_ {
-        params_from_iter(self.values.iter())
+    /// The values, in order of their places.
+    pub fn values(&self) -> &[Value<'_>] {
+        &self.values
     }
+}
+
+/// `LIMIT …`, or nothing.
+pub(crate) fn limit(most: Option<u32>) -> String {
+    most.map_or_else(String::new, |most| format!("LIMIT {most}"))
 }

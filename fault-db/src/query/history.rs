@@ -3,13 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rusqlite::{OptionalExtension, Row, params};
-
 use super::faults::json;
+use crate::base::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_log::REPAIR;
 use crate::id::Id;
-use crate::record::RepairRecord;
+use crate::record::{RepairRecord, part_name};
 use crate::store::Store;
 
 /// How the source of a run begins that is no test but a log read from the unit.
@@ -75,7 +74,7 @@ impl Store {
             Ok((seen, self.repairs_before(unit, (since_us, before_us))?))
         };
         let (seen, repairs) =
-            read().map_err(|error| self.failed("reading a unit's history", error))?;
+            read().map_err(|error: SqlError| self.failed("reading a unit's history", error))?;
         let mut parts: BTreeMap<String, PartHistory> = BTreeMap::new();
         for (part, repairs) in by_part(repairs) {
             let repair = part_repair(&repairs, &seen);
@@ -100,29 +99,30 @@ impl Store {
         unit: &str,
         (since_us, before_us): (i64, i64),
         but: Option<Id>,
-    ) -> rusqlite::Result<Vec<Seen>> {
-        let mut select = self.conn.prepare_cached(
-            "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
-             FROM unit u JOIN run r ON r.unit = u.seq
-             JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
-             WHERE u.serial = ?1 AND r.started_at_us < ?3
-                AND (?4 IS NULL OR r.id <> ?4)
-                AND o.at_us >= ?2 AND o.at_us < ?3
-             ORDER BY r.seq, o.seq",
-        )?;
-        let row = |row: &Row<'_>| {
+    ) -> SqlResult<Vec<Seen>> {
+        let row = |row: Row<'_>| {
             Ok(Seen {
                 run: row.get(0)?,
-                of_log: row.get_ref(1)?.as_str()?.starts_with(LOG_SOURCE),
+                of_log: row.get::<&str>(1)?.starts_with(LOG_SOURCE),
                 code: row.get(2)?,
                 lru: row.get(3)?,
                 at_us: row.get(4)?,
                 message: row.get(5)?,
             })
         };
-        let all: Vec<_> = select
-            .query_map(params![unit, since_us, before_us, but], row)?
-            .collect::<rusqlite::Result<_>>()?;
+        // No id is empty: nothing is left out then.
+        let but = but.map_or_else(Vec::new, |id| id.as_bytes().to_vec());
+        let all = self.base().select(
+            "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
+             FROM unit u JOIN run r ON r.unit = u.seq
+             JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
+             WHERE u.serial = ?1 AND r.started_at_us < ?3
+                AND r.id <> ?4
+                AND o.at_us >= ?2 AND o.at_us < ?3
+             ORDER BY r.seq, o.seq",
+            &values![unit, since_us, before_us, &but[..]],
+            row,
+        )?;
         let told: Vec<bool> = all
             .iter()
             .map(|seen| seen.of_log && told_before(seen, &all))
@@ -135,22 +135,22 @@ impl Store {
         &self,
         unit: &str,
         (since_us, before_us): (i64, i64),
-    ) -> rusqlite::Result<Vec<Repaired>> {
-        let mut select = self.conn.prepare_cached(
+    ) -> SqlResult<Vec<Repaired>> {
+        self.base().select(
             "SELECT f.code, f.lru, e.at_us, e.body
              FROM unit u JOIN fault f ON f.unit = u.seq JOIN fault_event e ON e.fault = f.seq
              WHERE u.serial = ?1 AND e.kind = ?2 AND e.at_us >= ?3 AND e.at_us < ?4
              ORDER BY e.at_us, e.seq",
-        )?;
-        let repairs = select.query_map(params![unit, REPAIR, since_us, before_us], |row| {
-            Ok(Repaired {
-                code: row.get(0)?,
-                lru: row.get(1)?,
-                at_us: row.get(2)?,
-                repair: json(row, 3)?,
-            })
-        })?;
-        repairs.collect()
+            &values![unit, REPAIR, since_us, before_us],
+            |row| {
+                Ok(Repaired {
+                    code: row.get(0)?,
+                    lru: row.get(1)?,
+                    at_us: row.get(2)?,
+                    repair: json(row, 3)?,
+                })
+            },
+        )
     }
 
     /// Whether an occurrence of this fault with these words is known of the unit, at about this time or,
@@ -161,43 +161,34 @@ impl Store {
         (code, message): (i64, &str),
         at_us: Option<i64>,
     ) -> Result<bool, StoreError> {
-        self.conn
-            .prepare_cached(
-                "SELECT 1 FROM unit u JOIN fault f ON f.unit = u.seq
+        let from_us = at_us.map_or(i64::MIN, |at| at.saturating_sub(SAME_ENTRY_US));
+        let until_us = at_us.map_or(i64::MAX, |at| at.saturating_add(SAME_ENTRY_US));
+        let found = self.first(
+            "looking for a fault",
+            "SELECT 1 FROM unit u JOIN fault f ON f.unit = u.seq
                  JOIN fault_occurrence o ON o.fault = f.seq
                  WHERE u.serial = ?1 AND f.code = ?2 AND o.at_us BETWEEN ?3 AND ?4
                     AND o.message = ?5 LIMIT 1",
-            )
-            .and_then(|mut select| {
-                let from_us = at_us.map_or(i64::MIN, |at| at.saturating_sub(SAME_ENTRY_US));
-                let until_us = at_us.map_or(i64::MAX, |at| at.saturating_add(SAME_ENTRY_US));
-                select
-                    .query_row(params![unit, code, from_us, until_us, message], |_| Ok(()))
-                    .optional()
-            })
-            .map(|found| found.is_some())
-            .map_err(|error| self.failed("looking for a fault", error))
+            &values![unit, code, from_us, until_us, message],
+            |_| Ok(()),
+        )?;
+        Ok(found.is_some())
     }
 
     /// When the unit itself, on a port, was under test: from and until, µs UTC. A run that was
     /// interrupted lasted until its last step.
     pub fn tested_spans(&self, unit: &str) -> Result<Vec<(i64, i64)>, StoreError> {
-        let list = || -> rusqlite::Result<Vec<_>> {
-            self.conn
-                .prepare_cached(
-                    "SELECT r.started_at_us, coalesce(r.finished_at_us, r.started_at_us
+        self.select(
+            "listing a unit's runs",
+            "SELECT r.started_at_us, coalesce(r.finished_at_us, r.started_at_us
                         + coalesce((SELECT max(s.started_bench_us + s.bench_time_us)
                             FROM step s WHERE s.run = r.seq), 0))
                      FROM unit u JOIN run r ON r.unit = u.seq
-                     WHERE u.serial = ?1 AND r.source <> 'sim' AND instr(r.source, ?2) <> 1
+                     WHERE u.serial = ?1 AND r.source <> 'sim' AND r.source NOT LIKE ?2
                      ORDER BY r.started_at_us",
-                )?
-                .query_map(params![unit, LOG_SOURCE], |row| {
-                    Ok((row.get(0)?, row.get(1)?))
-                })?
-                .collect()
-        };
-        list().map_err(|error| self.failed("listing a unit's runs", error))
+            &values![unit, format!("{LOG_SOURCE}%")],
+            |row| Ok((row.get(0)?, row.get(1)?)),
+        )
     }
 }
 
@@ -216,7 +207,7 @@ fn told_before(seen: &Seen, all: &[Seen]) -> bool {
 fn by_part(repairs: Vec<Repaired>) -> BTreeMap<String, Vec<Repaired>> {
     let mut parts: BTreeMap<String, Vec<Repaired>> = BTreeMap::new();
     for repaired in repairs {
-        let part = repaired.repair.part.trim().to_ascii_lowercase();
+        let part = part_name(&repaired.repair.part);
         parts.entry(part).or_default().push(repaired);
     }
     parts

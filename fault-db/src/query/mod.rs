@@ -1,6 +1,7 @@
 //! The reading side: lists, single rows with all that belongs to them, counts, free questions.
 
 mod daily;
+mod fault_filter;
 mod faults;
 mod filter;
 mod history;
@@ -8,13 +9,19 @@ mod runs;
 mod signs;
 mod sql;
 mod stats;
+mod trace_read;
 mod traces;
+mod trend;
 
 pub use daily::DailyCount;
-pub use faults::{FaultDetail, FaultEvent, FaultFilter, FaultSummary, Occurrence};
+pub use fault_filter::FaultFilter;
+pub use faults::{FaultDetail, FaultEvent, FaultSummary, Occurrence};
 pub use history::{LOG_SOURCE, PartHistory, PartRepair, SAME_ENTRY_US};
 pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary, StepDetail};
 pub use signs::RunOccurrence;
+pub(crate) use sql::MOST_BYTES;
 pub use sql::{QueryResult, SqlValue};
-pub use stats::{FaultStat, StatKey, TrendPoint};
+pub use stats::{FaultStat, StatKey, StatQuery};
+pub use trace_read::TraceHead;
 pub use traces::TraceSummary;
+pub use trend::{TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit};

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use rusqlite::{Row, params};
 use serde::Serialize;
 
-use super::filter::Conditions;
+use super::filter::{Conditions, limit};
+use crate::base::{Row, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::id::Id;
@@ -58,6 +58,8 @@ pub struct RunSummary {
     pub unit_config_name: String,
     /// Line data used.
     pub line: String,
+    /// The train the unit was in; empty if nobody said.
+    pub train: String,
     /// Seed of everything random.
     pub seed: u64,
     /// Who tested.
@@ -164,7 +166,7 @@ const SELECT_RUN: &str = "
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
         (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.seq
+        r.seq, r.train
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
@@ -186,26 +188,21 @@ impl Store {
         conditions.add("r.started_at_us >= ?", filter.since_us);
         conditions.add("r.started_at_us < ?", filter.until_us);
         let order = "ORDER BY r.started_at_us DESC, r.seq DESC";
-        let limit = filter.limit.map_or(-1, i64::from);
-        let sql = format!("{SELECT_RUN} {} {order} LIMIT {limit}", conditions.sql());
-        let list = || -> rusqlite::Result<Vec<_>> {
-            self.conn
-                .prepare_cached(&sql)?
-                .query_map(conditions.params(), |row| summary(row, is_alive))?
-                .collect()
-        };
-        list().map_err(|error| self.failed("listing runs", error))
+        let limit = limit(filter.limit);
+        let sql = format!("{SELECT_RUN} {} {order} {limit}", conditions.sql());
+        self.select("listing runs", &sql, conditions.values(), |row| {
+            summary(row, is_alive)
+        })
     }
 
     /// One run with its steps, measurements, faults and notes.
     pub fn run(&self, id: Id, is_alive: &dyn Fn(&str) -> bool) -> Result<RunDetail, StoreError> {
+        const DOING: &str = "reading a run";
         let select = format!("{SELECT_RUN} WHERE r.id = ?1");
-        let found = self.conn.prepare_cached(&select).and_then(|mut select| {
-            let row = |row: &Row<'_>| Ok((summary(row, is_alive)?, row.get::<_, i64>(21)?));
-            select.query_row(params![id], row)
-        });
-        let (run, seq) = found.map_err(|error| self.not_found("run", id, error))?;
-        let rest = || -> rusqlite::Result<_> {
+        let row = |row: Row<'_>| Ok((summary(row, is_alive)?, row.get::<i64>(21)?));
+        let found = self.first(DOING, &select, &values![id], row)?;
+        let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
+        let rest = || -> SqlResult<_> {
             Ok(RunDetail {
                 run,
                 scripts: self.scripts(seq)?,
@@ -214,100 +211,102 @@ impl Store {
                 notes: self.run_notes(seq)?,
             })
         };
-        rest().map_err(|error| self.failed("reading a run", error))
+        rest().map_err(|error| self.failed(DOING, error))
     }
 
-    fn scripts(&self, run: i64) -> rusqlite::Result<Vec<ScriptRecord>> {
-        self.conn
-            .prepare_cached("SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path")?
-            .query_map([run], |row| {
+    fn scripts(&self, run: i64) -> SqlResult<Vec<ScriptRecord>> {
+        self.base().select(
+            "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
+            &values![run],
+            |row| {
                 Ok(ScriptRecord {
                     path: row.get(0)?,
                     sha256: row.get(1)?,
                 })
-            })?
-            .collect()
+            },
+        )
     }
 
-    fn steps(&self, run: i64) -> rusqlite::Result<Vec<StepDetail>> {
+    fn steps(&self, run: i64) -> SqlResult<Vec<StepDetail>> {
         let mut measurements = self.measurements(run)?;
-        let mut select = self.conn.prepare_cached(
+        self.base().select(
             "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
                 message, script_line FROM step WHERE run = ?1 ORDER BY step_index",
-        )?;
-        let steps = select.query_map([run], |row| {
-            let index = row.get(0)?;
-            Ok(StepDetail {
-                index,
-                procedure: row.get(1)?,
-                name: row.get(2)?,
-                verdict: row.get(3)?,
-                started_bench_us: row.get(4)?,
-                bench_time_us: row.get(5)?,
-                message: row.get(6)?,
-                script_line: row.get(7)?,
-                measurements: measurements.remove(&index).unwrap_or_default(),
-            })
-        })?;
-        steps.collect()
+            &values![run],
+            |row| {
+                let index = row.get(0)?;
+                Ok(StepDetail {
+                    index,
+                    procedure: row.get(1)?,
+                    name: row.get(2)?,
+                    verdict: row.get(3)?,
+                    started_bench_us: row.get(4)?,
+                    bench_time_us: row.get(5)?,
+                    message: row.get(6)?,
+                    script_line: row.get(7)?,
+                    measurements: measurements.remove(&index).unwrap_or_default(),
+                })
+            },
+        )
     }
 
-    fn measurements(&self, run: i64) -> rusqlite::Result<BTreeMap<u32, Vec<MeasurementRecord>>> {
+    fn measurements(&self, run: i64) -> SqlResult<BTreeMap<u32, Vec<MeasurementRecord>>> {
         let mut by_step = BTreeMap::<u32, Vec<MeasurementRecord>>::new();
-        let mut select = self.conn.prepare_cached(
+        self.base().each(
             "SELECT step_index, name, value, unit, low, high, verdict FROM measurement
              WHERE run = ?1 ORDER BY step_index, ordinal",
+            &values![run],
+            |row| {
+                by_step
+                    .entry(row.get(0)?)
+                    .or_default()
+                    .push(MeasurementRecord {
+                        name: row.get(1)?,
+                        value: row.get(2)?,
+                        unit: row.get(3)?,
+                        low: row.get(4)?,
+                        high: row.get(5)?,
+                        verdict: row.get(6)?,
+                    });
+                Ok(())
+            },
         )?;
-        let mut rows = select.query([run])?;
-        while let Some(row) = rows.next()? {
-            by_step
-                .entry(row.get(0)?)
-                .or_default()
-                .push(MeasurementRecord {
-                    name: row.get(1)?,
-                    value: row.get(2)?,
-                    unit: row.get(3)?,
-                    low: row.get(4)?,
-                    high: row.get(5)?,
-                    verdict: row.get(6)?,
-                });
-        }
         Ok(by_step)
     }
 
-    fn run_faults(&self, run: i64) -> rusqlite::Result<Vec<RunFault>> {
-        let mut select = self.conn.prepare_cached(
+    fn run_faults(&self, run: i64) -> SqlResult<Vec<RunFault>> {
+        self.base().select(
             "SELECT f.id, f.code, f.code_name, f.lru, f.severity, f.state, min(o.at_us),
                 max(o.at_us), min(o.bench_us), count(*),
                 (SELECT t.id FROM fault_occurrence p JOIN trace t ON t.seq = p.trace
                  WHERE p.run = ?1 AND p.fault = f.seq ORDER BY p.seq LIMIT 1)
              FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
              WHERE o.run = ?1 GROUP BY f.seq ORDER BY min(o.bench_us), min(o.seq)",
-        )?;
-        let faults = select.query_map([run], |row| {
-            Ok(RunFault {
-                id: row.get(0)?,
-                code: row.get(1)?,
-                code_name: row.get(2)?,
-                lru: row.get(3)?,
-                severity: row.get(4)?,
-                state: row.get(5)?,
-                first_at_us: row.get(6)?,
-                last_at_us: row.get(7)?,
-                first_bench_us: row.get(8)?,
-                occurrences: row.get(9)?,
-                trace_id: row.get(10)?,
-            })
-        })?;
-        faults.collect()
+            &values![run],
+            |row| {
+                Ok(RunFault {
+                    id: row.get(0)?,
+                    code: row.get(1)?,
+                    code_name: row.get(2)?,
+                    lru: row.get(3)?,
+                    severity: row.get(4)?,
+                    state: row.get(5)?,
+                    first_at_us: row.get(6)?,
+                    last_at_us: row.get(7)?,
+                    first_bench_us: row.get(8)?,
+                    occurrences: row.get(9)?,
+                    trace_id: row.get(10)?,
+                })
+            },
+        )
     }
 }
 
-fn summary(row: &Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> rusqlite::Result<RunSummary> {
+fn summary(row: Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> SqlResult<RunSummary> {
     let verdict: Option<Verdict> = row.get(10)?;
     let state = match verdict {
         Some(_) => RunState::Finished,
-        None if is_alive(row.get_ref(11)?.as_str()?) => RunState::Running,
+        None if is_alive(row.get(11)?) => RunState::Running,
         None => RunState::Interrupted,
     };
     Ok(RunSummary {
@@ -316,7 +315,8 @@ fn summary(row: &Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> rusqlite::Result<R
         unit_kind: row.get(2)?,
         unit_config_name: row.get(3)?,
         line: row.get(4)?,
-        seed: row.get::<_, i64>(5)?.cast_unsigned(),
+        train: row.get(22)?,
+        seed: row.get::<i64>(5)?.cast_unsigned(),
         operator: row.get(6)?,
         source: row.get(7)?,
         started_at_us: row.get(8)?,

@@ -1,5 +1,6 @@
 //! Every occurrence of a fault in one run, in order: what diagnosis reads.
 
+use crate::base::values;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
@@ -24,26 +25,23 @@ pub struct RunOccurrence {
 impl Store {
     /// The occurrences of faults in a run, in order.
     pub fn run_occurrences(&self, run: Id) -> Result<Vec<RunOccurrence>, StoreError> {
-        let list = || -> rusqlite::Result<Vec<_>> {
-            self.conn
-                .prepare_cached(
-                    "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id
+        self.select(
+            "listing a run's faults",
+            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id
                      FROM run r JOIN fault_occurrence o ON o.run = r.seq
                      JOIN fault f ON f.seq = o.fault LEFT JOIN trace t ON t.seq = o.trace
                      WHERE r.id = ?1 ORDER BY o.seq",
-                )?
-                .query_map([run], |row| {
-                    Ok(RunOccurrence {
-                        code: row.get(0)?,
-                        code_name: row.get(1)?,
-                        lru: row.get(2)?,
-                        step_index: row.get(3)?,
-                        bench_us: row.get(4)?,
-                        trace_id: row.get(5)?,
-                    })
-                })?
-                .collect()
-        };
-        list().map_err(|error| self.failed("listing a run's faults", error))
+            &values![run],
+            |row| {
+                Ok(RunOccurrence {
+                    code: row.get(0)?,
+                    code_name: row.get(1)?,
+                    lru: row.get(2)?,
+                    step_index: row.get(3)?,
+                    bench_us: row.get(4)?,
+                    trace_id: row.get(5)?,
+                })
+            },
+        )
     }
 }

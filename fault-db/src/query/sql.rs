@@ -6,8 +6,10 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, Statement};
 use serde::Serialize;
 
+use crate::base::Base;
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::server::query;
 use crate::store::Store;
 
 /// A value of an answer.
@@ -24,6 +26,27 @@ pub enum SqlValue {
     Text(String),
 }
 
+/// An answer holds about so much text: it is printed from memory.
+pub(crate) const MOST_BYTES: usize = 16 << 20;
+
+impl SqlValue {
+    /// An id as it is printed, other bytes as hex.
+    pub(crate) fn of_bytes(bytes: &[u8]) -> Self {
+        Self::Text(match <[u8; 16]>::try_from(bytes) {
+            Ok(id) => Id::from_bytes(id).to_string(),
+            Err(_) => bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
+        })
+    }
+
+    /// Bytes of its text.
+    pub(crate) fn bytes(&self) -> usize {
+        match self {
+            Self::Text(text) => text.len(),
+            Self::Null | Self::Integer(_) | Self::Real(_) => 0,
+        }
+    }
+}
+
 /// An answer: column names and rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct QueryResult {
@@ -36,12 +59,15 @@ pub struct QueryResult {
 }
 
 impl Store {
-    /// Answers one `SELECT`; anything that could change a file is refused. Reads at most
+    /// Answers one `SELECT`; anything that could change the history is refused. Reads at most
     /// `max_rows`, so that a careless question cannot fill the memory.
     pub fn query_read_only(&self, sql: &str, max_rows: usize) -> Result<QueryResult, StoreError> {
+        if let Base::Server(server) = self.base() {
+            return query::answer(server, self.path(), sql, max_rows);
+        }
         // A connection of its own: the authorizer would bind this one's writer, too.
         let reader = Store::open_read_only(self.path())?;
-        let conn = &reader.conn;
+        let conn = reader.file()?;
         let guarded = conn
             .execute_batch("PRAGMA query_only = ON")
             .and_then(|()| conn.authorizer(Some(allow_reading)));
@@ -110,14 +136,17 @@ fn read(
     max_rows: usize,
 ) -> rusqlite::Result<(Vec<Vec<SqlValue>>, bool)> {
     let width = statement.column_count();
-    let mut found = Vec::new();
+    let mut found: Vec<Vec<SqlValue>> = Vec::new();
+    let mut bytes = 0;
     let mut rows = statement.query([])?;
     while let Some(row) = rows.next()? {
-        if found.len() == max_rows {
+        if found.len() == max_rows || bytes > MOST_BYTES {
             return Ok((found, true));
         }
         let values = (0..width).map(|column| row.get_ref(column).map(value));
-        found.push(values.collect::<rusqlite::Result<_>>()?);
+        let values: Vec<_> = values.collect::<rusqlite::Result<_>>()?;
+        bytes += values.iter().map(SqlValue::bytes).sum::<usize>();
+        found.push(values);
     }
     Ok((found, false))
 }
@@ -128,10 +157,7 @@ fn value(value: ValueRef<'_>) -> SqlValue {
         ValueRef::Integer(integer) => SqlValue::Integer(integer),
         ValueRef::Real(real) => SqlValue::Real(real),
         ValueRef::Text(text) => SqlValue::Text(String::from_utf8_lossy(text).into_owned()),
-        ValueRef::Blob(bytes) => SqlValue::Text(match <[u8; 16]>::try_from(bytes) {
-            Ok(id) => Id::from_bytes(id).to_string(),
-            Err(_) => bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
-        }),
+        ValueRef::Blob(bytes) => SqlValue::of_bytes(bytes),
     }
 }
 

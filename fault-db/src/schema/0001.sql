@@ -105,7 +105,7 @@ CREATE TABLE trace(
   trigger_row INTEGER,
   flags INTEGER NOT NULL,               -- 1 partial, 2 gaps
   channel_set INTEGER NOT NULL REFERENCES channel_set(seq),
-  encoding INTEGER NOT NULL,            -- 1: fault-db/src/trace/codec.rs
+  encoding INTEGER NOT NULL,            -- fault-db/src/trace/layout.rs
   sha256 BLOB NOT NULL,                 -- of data
   data BLOB NOT NULL
 ) STRICT;

@@ -1,22 +1,17 @@
-//! A trace as one blob, encoding 1.
+//! A trace packed into one blob, laid out as `layout` says.
 //!
-//! ```text
-//! varint rows, varint columns
-//! directory, per column:  tag byte, varint length of its body
-//! bodies, one after the other, in channel order
-//! ```
 //! A compressed body is the varint length of the plain body, then a zstd frame without its
 //! four-byte magic number. Every column is compressed alone: one channel is then read in a few
 //! microseconds, for a third more bytes than one frame around all would take.
 
+use std::ops::Range;
+
 use zstd::bulk::{Compressor, Decompressor};
 
 use super::column::{self, Scratch, Tag};
+use super::layout::{self, Layout, Shape};
 use super::varint::{put, take};
-use super::{Channel, TraceData, TraceError};
-
-/// The number of this encoding in the trace table.
-pub const ENCODING: i64 = 1;
+use super::{TraceData, TraceError};
 
 /// A trace has at most this many rows.
 pub const MAX_ROWS: usize = 1_000_000;
@@ -37,6 +32,7 @@ pub struct TraceCodec {
     scratch: Scratch,
     plain: Vec<u8>,
     frame: Vec<u8>,
+    directory: Vec<u8>,
     bodies: Vec<u8>,
 }
 
@@ -44,7 +40,7 @@ impl TraceCodec {
     /// A codec with its compressor made.
     pub fn new() -> Result<Self, TraceError> {
         let mut compressor = Compressor::new(ZSTD_LEVEL).map_err(compression)?;
-        // The row's sha256 covers every byte; a checksum per column would only cost room.
+        // The directory has a checksum of every body, compressed or not.
         compressor.include_checksum(false).map_err(compression)?;
         Ok(Self {
             compressor,
@@ -52,6 +48,7 @@ impl TraceCodec {
             scratch: Scratch::default(),
             plain: Vec::new(),
             frame: Vec::new(),
+            directory: Vec::new(),
             bodies: Vec::new(),
         })
     }
@@ -59,21 +56,27 @@ impl TraceCodec {
     /// Packs a trace; refuses one that could not be read back.
     pub fn encode(&mut self, trace: &TraceData) -> Result<Vec<u8>, TraceError> {
         trace.check()?;
+        self.directory.clear();
         self.bodies.clear();
-        let mut blob = Vec::with_capacity(4096);
-        put(&mut blob, trace.rows() as u64);
-        put(&mut blob, trace.columns.len() as u64);
         for (channel, samples) in trace.channels.iter().zip(&trace.columns) {
             let lsb = channel.kind.lsb();
-            let mut tag = column::pack(samples, lsb, &mut self.scratch, &mut self.plain);
-            let before = self.bodies.len();
-            tag.compressed = self.put_compressed()?;
-            if !tag.compressed {
-                self.bodies.extend_from_slice(&self.plain);
+            for block in layout::blocks(samples) {
+                let mut tag = column::pack(block, lsb, &mut self.scratch, &mut self.plain);
+                let before = self.bodies.len();
+                tag.compressed = self.put_compressed()?;
+                if !tag.compressed {
+                    self.bodies.extend_from_slice(&self.plain);
+                }
+                layout::put_piece(&mut self.directory, tag, &self.bodies[before..]);
             }
-            blob.push(tag.byte());
-            put(&mut blob, (self.bodies.len() - before) as u64);
         }
+        let mut blob = Vec::with_capacity(self.directory.len() + self.bodies.len() + 32);
+        layout::put_head(
+            &mut blob,
+            trace.rows(),
+            trace.columns.len(),
+            &self.directory,
+        );
         blob.extend_from_slice(&self.bodies);
         Ok(blob)
     }
@@ -101,28 +104,59 @@ impl TraceCodec {
         Ok(true)
     }
 
-    /// Unpacks the columns at `wanted`, places in `channels`, in that order.
+    /// Unpacks `rows` of the columns at `wanted`, places in the shape's channels, in that order.
     pub fn decode(
         &mut self,
         blob: &[u8],
-        channels: &[Channel],
-        rows: usize,
+        shape: &Shape<'_>,
         wanted: &[usize],
+        rows: Range<usize>,
     ) -> Result<Vec<Vec<f64>>, TraceError> {
-        check_size(rows, wanted.len())?;
-        let directory = Directory::read(blob, channels.len(), rows)?;
-        let mut columns = Vec::with_capacity(wanted.len());
-        for &place in wanted {
-            let channel = &channels[place];
-            let (tag, body) = directory.columns[place];
-            let samples = self.column(tag, body, rows, channel.kind.lsb());
-            let damaged = |what| TraceError::Column {
-                channel: channel.name.clone(),
-                what,
-            };
-            columns.push(samples.map_err(damaged)?);
+        check_size(shape.rows, 1)?;
+        check_size(rows.len(), wanted.len())?;
+        let head = Layout::head_length(blob, blob.len(), shape)?;
+        let layout = Layout::read(&blob[..head], blob.len(), shape)?;
+        wanted
+            .iter()
+            .map(|&place| {
+                let bytes = layout.span(place, &rows);
+                self.part(&layout, shape, place, &rows, &blob[bytes])
+            })
+            .collect()
+    }
+
+    /// Unpacks `rows` of the column at `place`; `bytes` are those of the layout's span.
+    pub(crate) fn part(
+        &mut self,
+        layout: &Layout,
+        shape: &Shape<'_>,
+        place: usize,
+        rows: &Range<usize>,
+        bytes: &[u8],
+    ) -> Result<Vec<f64>, TraceError> {
+        let channel = &shape.channels[place];
+        let damaged = |what| TraceError::Column {
+            channel: channel.name.clone(),
+            what,
+        };
+        let mut samples = Vec::new();
+        let mut rest = bytes;
+        for piece in layout.pieces(place, rows) {
+            let parts = rest.split_at_checked(piece.bytes.len());
+            let (body, after) = parts.ok_or_else(|| damaged("it is cut off"))?;
+            rest = after;
+            piece.check(body).map_err(damaged)?;
+            let block = self.column(piece.tag, body, piece.rows.len(), channel.kind.lsb());
+            let block = block.map_err(damaged)?;
+            let from = rows.start.saturating_sub(piece.rows.start);
+            let to = rows.end.min(piece.rows.end) - piece.rows.start;
+            if samples.is_empty() && (from, to) == (0, block.len()) {
+                samples = block;
+            } else {
+                samples.extend_from_slice(&block[from..to]);
+            }
         }
-        Ok(columns)
+        Ok(samples)
     }
 
     fn column(
@@ -161,61 +195,8 @@ fn max_plain(rows: usize) -> usize {
     rows * 20 + 32
 }
 
-/// The parts of a blob, before any of them is unpacked.
-struct Directory<'a> {
-    columns: Vec<(Tag, &'a [u8])>,
-}
-
-impl<'a> Directory<'a> {
-    fn read(blob: &'a [u8], channels: usize, rows: usize) -> Result<Self, TraceError> {
-        let mut rest = blob;
-        let damaged = |rest: &[u8], what| TraceError::Blob {
-            offset: blob.len() - rest.len(),
-            what,
-        };
-        if take(&mut rest) != Some(rows as u64) {
-            return Err(damaged(
-                rest,
-                "its row count is another than its row in the table says",
-            ));
-        }
-        if take(&mut rest) != Some(channels as u64) {
-            return Err(damaged(
-                rest,
-                "its column count is another than its channel list has",
-            ));
-        }
-        // Two bytes of directory per column at least, so this allocates no more than the blob did.
-        if rest.len() / 2 < channels {
-            return Err(damaged(rest, "the directory is cut off"));
-        }
-        let mut entries = Vec::with_capacity(channels);
-        for _ in 0..channels {
-            let (&byte, after) = rest.split_first().ok_or_else(|| damaged(rest, "cut off"))?;
-            let tag = Tag::from_byte(byte).ok_or_else(|| damaged(rest, "unknown column form"))?;
-            rest = after;
-            let length = take(&mut rest).and_then(|length| usize::try_from(length).ok());
-            entries.push((
-                tag,
-                length.ok_or_else(|| damaged(rest, "bad column length"))?,
-            ));
-        }
-        let mut columns = Vec::with_capacity(channels);
-        for (tag, length) in entries {
-            let parts = rest.split_at_checked(length);
-            let (body, after) = parts.ok_or_else(|| damaged(rest, "a column is cut off"))?;
-            columns.push((tag, body));
-            rest = after;
-        }
-        if !rest.is_empty() {
-            return Err(damaged(rest, "bytes after the last column"));
-        }
-        Ok(Self { columns })
-    }
-}
-
 /// Refuses sizes before anything is allocated for them.
-pub(super) fn check_size(rows: usize, columns: usize) -> Result<(), TraceError> {
+pub(crate) fn check_size(rows: usize, columns: usize) -> Result<(), TraceError> {
     let samples = rows.checked_mul(columns);
     if rows > MAX_ROWS || samples.is_none_or(|samples| samples > MAX_SAMPLES) {
         return Err(TraceError::TooLarge { rows, columns });

@@ -12,6 +12,7 @@
 //! f32, f64:  the little-endian bytes as planes, all first bytes, then all second bytes …
 //! ```
 
+use super::scale::{changes, has_gaps, per_unit, scale};
 use super::varint::{put, take, unzigzag, zigzag};
 
 /// How the values of a column are written.
@@ -77,22 +78,25 @@ impl Tag {
 #[derive(Default)]
 pub(super) struct Scratch {
     integers: Vec<i64>,
+    filled: Vec<f64>,
 }
 
 /// Writes the plain body of a column to `out` and says how.
 pub(super) fn pack(samples: &[f64], lsb: f64, scratch: &mut Scratch, out: &mut Vec<u8>) -> Tag {
     out.clear();
-    let sparse = samples.iter().any(|sample| sample.is_nan());
+    let sparse = has_gaps(samples);
     if sparse {
         put_presence(samples, out);
+        filled(samples, &mut scratch.filled);
     }
+    let present = if sparse { &scratch.filled } else { samples };
     let plain = |form, divided| Tag {
         form,
         compressed: false,
         sparse,
         divided,
     };
-    if let Some(divided) = scale(samples, lsb, &mut scratch.integers) {
+    if let Some(divided) = scale(present, lsb, &mut scratch.integers) {
         return plain(put_integers(&scratch.integers, out), divided);
     }
     let fits_f32 = samples
@@ -107,71 +111,38 @@ pub(super) fn pack(samples: &[f64], lsb: f64, scratch: &mut Scratch, out: &mut V
     }
 }
 
-/// Samples as integers, missing ones as the one before, and whether reading divides. `None` when
-/// reading would not return every sample exactly.
-fn scale(samples: &[f64], lsb: f64, integers: &mut Vec<i64>) -> Option<bool> {
-    let per_unit = (1.0 / lsb).round();
-    let divides = per_unit >= 2.0 && (1.0 / per_unit - lsb).abs() <= lsb * 1e-9;
-    let tries: &[bool] = if divides { &[true, false] } else { &[false] };
-    tries.iter().copied().find(|divided| {
-        integers.clear();
-        let mut last = 0i64;
-        samples.iter().all(|&sample| {
-            if !sample.is_nan() {
-                let steps = if *divided {
-                    sample * per_unit
-                } else {
-                    sample / lsb
-                };
-                // Saturates; an overflow then fails the comparison or the range.
-                last = round_to_i64(steps);
-                if last.unsigned_abs() > MAX_INTEGER as u64
-                    || unscale(last, lsb, *divided) != sample
-                {
-                    return false;
-                }
-            }
-            integers.push(last);
-            true
-        })
-    })
-}
-
-/// Half away from zero; `f64::round` is a library call on the baseline x86-64, this is not.
-#[inline]
-fn round_to_i64(value: f64) -> i64 {
-    (value + 0.5f64.copysign(value)) as i64
-}
-
-#[inline]
-fn unscale(integer: i64, lsb: f64, divided: bool) -> f64 {
-    if divided {
-        integer as f64 / (1.0 / lsb).round()
-    } else {
-        integer as f64 * lsb
-    }
+/// Missing samples as the one before, or 0.
+fn filled(samples: &[f64], out: &mut Vec<f64>) {
+    out.clear();
+    let filled = samples.iter().scan(0.0, |last, sample| {
+        if !sample.is_nan() {
+            *last = *sample;
+        }
+        Some(*last)
+    });
+    out.extend(filled);
 }
 
 /// Writes the integers in the form that is likely to be smallest once compressed.
 fn put_integers(integers: &[i64], out: &mut Vec<u8>) -> Form {
-    let (mut changes, mut delta_bits, mut delta2_bits) = (0usize, 0u32, 0u32);
+    let changes = changes(integers);
+    if changes == 0 {
+        put(out, zigzag(integers.first().copied().unwrap_or(0)));
+        return Form::Constant;
+    }
+    if changes * RUNS_WORTH <= integers.len() {
+        put_runs(integers, out);
+        return Form::Runs;
+    }
+    let (mut delta_bits, mut delta2_bits) = (0u32, 0u32);
     let (mut last, mut last_delta) = (0i64, 0i64);
     for &integer in integers {
         let delta = integer - last;
-        changes += usize::from(delta != 0);
         delta_bits += bits(delta);
         delta2_bits += bits(delta - last_delta);
         (last, last_delta) = (integer, delta);
     }
-    let first = integers.first().copied().unwrap_or(0);
-    changes -= usize::from(first != 0);
-    if changes == 0 {
-        put(out, zigzag(first));
-        Form::Constant
-    } else if changes * RUNS_WORTH <= integers.len() {
-        put_runs(integers, out);
-        Form::Runs
-    } else if delta_bits <= delta2_bits {
+    if delta_bits <= delta2_bits {
         put_deltas(integers, out);
         Form::Delta
     } else {
@@ -256,7 +227,7 @@ pub(super) fn unpack(
         })?,
         Form::RawF64 => take_planes(&mut body, rows, f64::from_le_bytes)?,
         _ => {
-            let per_unit = (1.0 / lsb).round();
+            let per_unit = per_unit(lsb);
             if tag.divided {
                 take_integers(tag.form, &mut body, rows, |integer| {
                     integer as f64 / per_unit

@@ -1,17 +1,23 @@
 //! Traces: equally spaced rows of named channels, as they are handed in and out.
 //!
 //! `codec` packs one into a blob, column by column, so that one channel is read without
-//! unpacking the others; `column` holds what a column can look like.
+//! unpacking the others; `layout` says where in the blob which rows of it lie, `column` what a column
+//! can look like.
 
 mod codec;
 mod column;
+mod layout;
+mod scale;
 mod varint;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use codec::{ENCODING, MAX_ROWS, MAX_SAMPLES, TraceCodec};
+pub(crate) use codec::check_size;
+pub use codec::{MAX_ROWS, MAX_SAMPLES, TraceCodec};
+pub(crate) use layout::Layout;
+pub use layout::{ENCODING, Shape};
 
 /// One channel of a trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,6 +83,11 @@ impl TraceData {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Whether a sample is missing.
+    pub(crate) fn has_gaps(&self) -> bool {
+        self.columns.iter().any(|column| scale::has_gaps(column))
     }
 
     /// The samples of the channel of that name.

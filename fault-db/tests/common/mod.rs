@@ -64,6 +64,7 @@ pub fn run_record(serial: &str) -> RunRecord {
             sw_versions: BTreeMap::from([("atp".to_owned(), "1.2.0".to_owned())]),
         },
         line: "line-1".to_owned(),
+        train: String::new(),
         seed: u64::MAX - 3,
         operator: "kim".to_owned(),
         source: "sim".to_owned(),
@@ -170,6 +171,13 @@ pub fn realistic_trace(rows: usize, seed: u64) -> TraceData {
             (68.0 - 3.5 * (t_s - 10.0)).max(0.0)
         }
     };
+    let positions: Vec<f64> = (0..rows)
+        .scan(0.0, |position, row| {
+            let before = *position;
+            *position += speed(row) / 72.0;
+            Some(before)
+        })
+        .collect();
     let mut noisy = |name: &str, unit: &str, lsb: f64, noise_lsb: f64, f: &dyn Fn(usize) -> f64| {
         channels.push(number(name, unit, lsb));
         let sample = |row| quantised(f(row) + random.noise() * noise_lsb * lsb, lsb);
@@ -179,9 +187,7 @@ pub fn realistic_trace(rows: usize, seed: u64) -> TraceData {
     noisy("speed_2", "km/h", 0.1, 0.8, &speed);
     noisy("tacho_pulses_1", "1", 1.0, 0.6, &|row| speed(row) * 0.35);
     noisy("tacho_pulses_2", "1", 1.0, 0.6, &|row| speed(row) * 0.35);
-    noisy("position", "m", 0.01, 0.0, &|row| {
-        (0..row).map(|r| speed(r) / 72.0).sum()
-    });
+    noisy("position", "m", 0.01, 0.0, &|row| positions[row]);
     noisy("acceleration", "m/s2", 0.01, 1.5, &|row| {
         if row < 200 { 0.22 } else { -0.97 }
     });

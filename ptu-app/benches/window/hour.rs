@@ -68,6 +68,7 @@ pub fn write(file: &Path) {
         line: "line8".into(),
         seed: 1,
         operator: String::new(),
+        train: String::new(),
         source: "sim".into(),
         started_at_us: clock::now_us(),
         app_version: env!("CARGO_PKG_VERSION").into(),

@@ -64,6 +64,7 @@ impl Suite {
                 scatter: Some(Arc::new(scatter)),
                 serial: None,
                 realtime: false,
+                slower: 1,
                 attendant: None,
             },
             tasks: procedures

@@ -72,7 +72,7 @@ impl CampaignArguments {
         if let Some(file) = &self.save {
             crate::data::check_writable(file)?;
         }
-        let store = self.database.open()?;
+        let store = self.database.open_file()?;
         let stop = Stop::default();
         stop.listen();
         let mut progress = Progress::new(count, format!("{} fault modes", modes.len()));

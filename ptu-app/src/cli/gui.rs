@@ -67,7 +67,7 @@ impl GuiArguments {
         settings.language = self.lang.unwrap_or(settings.language);
         settings.page = self.page.unwrap_or(settings.page);
         let shelf = Shelf {
-            database: self.database.path()?,
+            database: self.database.file()?,
             scripts: self.scripts.find()?,
         };
         if let Some(unit) = &self.unit {

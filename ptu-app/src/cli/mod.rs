@@ -2,22 +2,25 @@
 
 mod campaign;
 mod catalog;
+mod database;
 mod db;
 mod diagnose;
 mod diagnose_matrix;
 mod drive;
 mod faults;
 mod gui;
+mod output;
 mod ports;
 mod reports;
 mod run;
 mod runs;
+mod saved;
 mod trace;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use fault_db::Store;
+pub use database::Database;
 use serde::Serialize;
 
 use crate::clock;
@@ -54,9 +57,10 @@ enum Verb {
     Runs(runs::RunsArguments),
     /// Query and keep the fault history
     Faults(faults::FaultsArguments),
+    Saved(saved::SavedArguments),
     /// Show and export recorded traces
     Trace(trace::TraceArguments),
-    /// Check, back up, prune, merge or query the database
+    /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
     /// List serial ports
     Ports(ports::PortsArguments),
@@ -80,46 +84,11 @@ impl Cli {
             Verb::Diagnose(arguments) => arguments.run(),
             Verb::Runs(arguments) => arguments.run(),
             Verb::Faults(arguments) => arguments.run(),
+            Verb::Saved(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
         }
-    }
-}
-
-/// Which database.
-#[derive(Debug, Args)]
-pub struct Database {
-    /// Database file [default: history.db in the user's data directory]
-    #[arg(long, value_name = "FILE", env = "PTU_DB", global = true)]
-    db: Option<PathBuf>,
-}
-
-impl Database {
-    /// Its path.
-    fn path(&self) -> Result<PathBuf, Failure> {
-        if let Some(path) = &self.db {
-            return Ok(path.clone());
-        }
-        directories::ProjectDirs::from("", "", "ptu")
-            .map(|directories| directories.data_dir().join("history.db"))
-            .ok_or_else(|| Failure::usage("no user data directory; name a database with --db"))
-    }
-
-    /// Opens it for writing; the user's own data directory is made if need be.
-    fn open(&self) -> Result<Store, Failure> {
-        let path = self.path()?;
-        if let Some(folder) = path.parent().filter(|_| self.db.is_none()) {
-            std::fs::create_dir_all(folder).map_err(|error| {
-                Failure::bench(format!("cannot make {}: {error}", folder.display()))
-            })?;
-        }
-        Ok(Store::open(&path, clock::open_options())?)
-    }
-
-    /// Opens it for reading.
-    fn open_read_only(&self) -> Result<Store, Failure> {
-        Ok(Store::open_read_only(&self.path()?)?)
     }
 }
 
@@ -156,9 +125,15 @@ fn print_out(text: &str) -> Result<Exit, Failure> {
     }
 }
 
-/// A point in time such as `30d`, `12h`, `2026-03` or `2026-03-21`.
+/// The beginning of a time such as `30d`, `12h`, `2026-03` or `2026-03-21`.
 fn since_argument(text: &str) -> Result<i64, String> {
-    clock::parse_since(text).ok_or_else(|| {
-        format!("\"{text}\" is neither a span (30d, 12h) nor a date (2026-03, 2026-03-21)")
+    if text.contains("..") {
+        return Err(format!(
+            "\"{text}\" is a span; write its beginning only, such as 2026-03"
+        ));
+    }
+    let span: clock::Span = text.parse()?;
+    span.since_us.ok_or_else(|| {
+        format!("\"{text}\" has no beginning; write 30d, 12h, 2026-03 or 2026-03-21")
     })
 }

@@ -57,6 +57,9 @@ pub struct RunArguments {
     /// Serial number: of the embedded unit, or expected of a real one
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
+    /// Train the unit is in, as the depot names it
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    train_no: String,
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
     operator: String,
@@ -73,6 +76,10 @@ pub struct RunArguments {
     /// Run the embedded unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
+    /// Go so many times slower than the clock, for a computer too busy for real time; a served unit must do
+    /// the same, `ato-under-test --slower`
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
+    slower: u32,
     /// Embedded units to test side by side
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: u32,
@@ -162,6 +169,7 @@ impl RunArguments {
             jobs: self.jobs as usize,
             stop_on_fail: self.stop_on_fail,
             operator: self.operator.clone(),
+            train: self.train_no.clone(),
             scripts_sha256,
             adaptive: None,
         };
@@ -172,6 +180,11 @@ impl RunArguments {
         if self.unit != Endpoint::Sim && self.jobs > 1 {
             return Err(Failure::usage(
                 "--jobs works on embedded units only; one port is one unit",
+            ));
+        }
+        if self.slower > 1 && self.unit == Endpoint::Sim && !self.realtime {
+            return Err(Failure::usage(
+                "--slower is for what goes by the clock: a unit on a port, or --realtime",
             ));
         }
         Choice {
@@ -185,6 +198,7 @@ impl RunArguments {
             seed: self.seed,
             scatter: self.scatter.clone(),
             realtime: self.realtime,
+            slower: self.slower,
         }
         .setup(directory)
     }
@@ -249,7 +263,7 @@ impl RunArguments {
         directory: &ScriptsDirectory,
     ) -> Result<Exit, Failure> {
         self.reports.check()?;
-        let store = self.database.open()?;
+        let store = self.database.open_file()?;
         if self.adaptive {
             if self.repeat > 1 || self.jobs > 1 {
                 return Err(Failure::usage(

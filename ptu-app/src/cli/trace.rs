@@ -1,21 +1,20 @@
-//! `ptu trace`: recorded traces, what was expected beside what came, and the same again.
+//! `ptu trace`: recorded traces, what was expected beside what came, and the same again; to and from
+//! other programs' files.
 
 mod diff;
 mod explained;
+mod export;
 mod plot;
 mod replay;
 mod show;
 mod words;
 
-use std::path::PathBuf;
-
 use clap::{Args, Subcommand};
 use fault_db::{Id, Store, TraceData};
 
-use super::{Database, print_out};
-use crate::data;
+use super::Database;
 use crate::failure::{Exit, Failure};
-use crate::trace_view::csv::csv;
+use crate::trace_io::Seconds;
 
 /// Show, explain, compare, replay and export recorded traces
 #[derive(Debug, Args)]
@@ -33,17 +32,29 @@ enum Verb {
     Show(show::ShowArguments),
     Diff(diff::DiffArguments),
     Replay(replay::ReplayArguments),
-    /// Write a trace to a .csv file
-    Export {
-        /// The trace
-        id: String,
-        /// The file
-        #[arg(long, value_name = "FILE.csv")]
-        to: PathBuf,
-        /// Only these signals
-        #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
-        signals: Vec<String>,
-    },
+    Export(export::ExportArguments),
+}
+
+/// Which part of a trace.
+#[derive(Debug, Args)]
+pub struct PartArguments {
+    /// Only these signals
+    #[arg(
+        long,
+        visible_alias = "channels",
+        value_name = "NAME[,NAME]",
+        value_delimiter = ','
+    )]
+    pub signals: Vec<String>,
+    /// Only this span, seconds from the trigger [default: all]
+    #[arg(
+        long,
+        value_name = "FROM..TO",
+        default_value = "..",
+        hide_default_value = true,
+        allow_hyphen_values = true
+    )]
+    pub window: Seconds,
 }
 
 impl TraceArguments {
@@ -53,30 +64,20 @@ impl TraceArguments {
             Verb::Show(arguments) => arguments.run(&self.database.open_read_only()?),
             Verb::Diff(arguments) => arguments.run(&self.database.open_read_only()?),
             Verb::Replay(arguments) => arguments.run(&self.database),
-            Verb::Export { id, to, signals } => {
-                if to.extension().is_none_or(|ending| ending != "csv") {
-                    return Err(Failure::usage("the file to export to must end in .csv"));
-                }
-                let (id, trace) = read(&self.database.open_read_only()?, &id, &signals)?;
-                let rows = trace.rows();
-                let channels: Vec<_> = (0..trace.channels.len()).collect();
-                data::write(&to, csv(&trace, &channels, 0..rows, None))?;
-                print_out(&format!(
-                    "trace {}: {rows} rows to {}",
-                    id.short(),
-                    to.display()
-                ))
-            }
+            Verb::Export(arguments) => arguments.run(&self.database.open_read_only()?),
         }
     }
 }
 
-fn read(store: &Store, asked: &str, signals: &[String]) -> Result<(Id, TraceData), Failure> {
+/// Some signals, or all where none is named, at some times.
+fn read(
+    store: &Store,
+    asked: &str,
+    signals: &[String],
+    span: Seconds,
+) -> Result<(Id, TraceData), Failure> {
     let id = store.resolve_trace(asked)?;
-    let trace = if signals.is_empty() {
-        store.trace(id)?
-    } else {
-        store.trace_channels(id, &signals.iter().map(String::as_str).collect::<Vec<_>>())?
-    };
-    Ok((id, trace))
+    let names: Vec<&str> = signals.iter().map(String::as_str).collect();
+    let rows = span.rows(&store.trace_head(id)?)?;
+    Ok((id, store.trace_window(id, &names, rows)?))
 }

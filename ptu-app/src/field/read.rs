@@ -162,6 +162,7 @@ pub(super) mod tests {
             scatter: None,
             serial: None,
             realtime: false,
+            slower: 1,
             attendant: None,
         };
         let mut session = setup.sim_session("field", &Stop::default());

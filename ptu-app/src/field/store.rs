@@ -28,6 +28,8 @@ pub struct Source {
     pub line: String,
     /// Who reads.
     pub operator: String,
+    /// The train the unit is in, as the tester names it; empty if nobody said.
+    pub train: String,
     /// When reading began, µs UTC.
     pub from_us: i64,
     /// When it ended.
@@ -93,6 +95,7 @@ fn run_record(source: &Source) -> RunRecord {
             sw_versions: BTreeMap::new(),
         },
         line: source.line.clone(),
+        train: source.train.clone(),
         seed: 0,
         operator: source.operator.clone(),
         source: format!("{LOG_SOURCE}{}", source.endpoint),

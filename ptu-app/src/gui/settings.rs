@@ -75,12 +75,7 @@ impl Settings {
     /// # Errors
     /// The file or its folder cannot be written.
     pub fn save(&self, file: &Path) -> std::io::Result<()> {
-        if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        let beside = file.with_extension("new");
-        std::fs::write(&beside, serde_json::to_vec_pretty(self)?)?;
-        std::fs::rename(beside, file)
+        crate::data::keep(file, self)
     }
 }
 

@@ -5,7 +5,7 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use btu_rig::rig::{LinkFailure, UnitLink};
-use protocol::Instant;
+use protocol::{Backlog, Duration as BenchDuration, Instant};
 use serialport::SerialPort;
 
 use crate::failure::Failure;
@@ -81,6 +81,12 @@ impl std::fmt::Display for Endpoint {
 pub struct WireLink {
     name: String,
     port: Port,
+    /// Times the bench is slower than the clock.
+    slower: u32,
+    /// When the first bytes were exchanged, by the clock and on the bench.
+    began: Option<(std::time::Instant, Instant)>,
+    read: Vec<u8>,
+    backlog: Backlog,
 }
 
 enum Port {
@@ -102,7 +108,30 @@ impl WireLink {
         Ok(Self {
             name: endpoint.to_string(),
             port,
+            slower: 1,
+            began: None,
+            read: Vec::new(),
+            backlog: Backlog::default(),
         })
+    }
+
+    /// To a unit that goes so many times slower than the clock.
+    pub fn slower(mut self, slower: u32) -> Self {
+        self.slower = slower;
+        self
+    }
+
+    /// How far the bench is behind the clock.
+    fn behind(&mut self, now: Instant) -> BenchDuration {
+        let clock = std::time::Instant::now();
+        let (clock_began, bench_began) = *self.began.get_or_insert((clock, now));
+        let clock_us = clock.duration_since(clock_began).as_micros() / u128::from(self.slower);
+        let bench_us = now.since(bench_began).as_us();
+        BenchDuration::from_us(
+            u64::try_from(clock_us)
+                .unwrap_or(u64::MAX)
+                .saturating_sub(bench_us),
+        )
     }
 }
 
@@ -142,14 +171,17 @@ fn connect(address: &str) -> Result<Port, Failure> {
 impl UnitLink for WireLink {
     fn exchange(
         &mut self,
-        _now: Instant,
+        now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkFailure> {
         let exchanged = match &mut self.port {
-            Port::Serial(port) => exchange(port, to_unit, from_unit),
-            Port::Tcp(stream) => exchange(stream, to_unit, from_unit),
+            Port::Serial(port) => exchange(port, to_unit, &mut self.read),
+            Port::Tcp(stream) => exchange(stream, to_unit, &mut self.read),
         };
+        let behind = self.behind(now);
+        self.backlog.share(&self.read, behind, from_unit);
+        self.read.clear();
         exchanged.map_err(|reason| LinkFailure {
             link: self.name.clone(),
             reason,

@@ -230,6 +230,7 @@ fn run_record(
             sw_versions: std::collections::BTreeMap::new(),
         },
         line: setup.line.content.name.clone(),
+        train: String::new(),
         seed: setup.seed,
         operator: rerunning.operator.clone(),
         source: format!("replay of {} on {}", original.id.short(), setup.endpoint),

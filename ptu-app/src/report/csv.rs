@@ -25,9 +25,11 @@ const COLUMNS: [&str; 15] = [
     "measurement_verdict",
 ];
 
-/// A cell: what people and scripts wrote must not act, what we counted must stay a number.
-enum Cell {
+/// A cell of a table: text must not act, a number must stay one.
+pub enum Cell {
+    /// What people and scripts wrote.
     Text(String),
+    /// What we counted.
     Number(String),
 }
 
@@ -73,7 +75,7 @@ fn cells(run: &RunDetail, step: &StepDetail, measured: Option<&MeasurementRecord
 impl Cell {
     /// As it stands in the file. A spreadsheet takes a text that begins like a formula for one; an
     /// apostrophe before it says that it is none.
-    fn written(self) -> String {
+    pub fn written(self) -> String {
         match self {
             Self::Number(number) => number,
             Self::Text(text) if text.starts_with(['=', '+', '-', '@', '\t', '\r']) => {

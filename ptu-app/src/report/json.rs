@@ -29,6 +29,7 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
         "unit_serial": run.unit_serial,
         "unit_config": run.unit_config_name,
         "line": run.line,
+        "train": run.train,
         "seed": run.seed,
         "source": run.source,
         "operator": run.operator,

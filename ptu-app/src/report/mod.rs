@@ -2,7 +2,7 @@
 //! `.json`, `.junit.xml`.
 
 pub mod campaign;
-mod csv;
+pub mod csv;
 pub mod diagnosis;
 pub mod drive;
 mod json;

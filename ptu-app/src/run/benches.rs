@@ -7,9 +7,8 @@ use std::thread::Scope;
 
 use ato_under_test::Setup;
 use btu_rig::bench_scatter::{BenchScatter, DrawnBench};
-use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::procedure::UnitEvent;
 use btu_rig::rig::{Bench, Rig, UnitLink};
-use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::event::Event;
@@ -20,11 +19,12 @@ use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant};
 
 use super::fault_watch::{self, FaultSeen};
+use super::reach::Reached;
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
 use super::{Attendant, ProcedureStream, RunPlan, Task, stream};
 use crate::data::DataFile;
-use crate::failure::{Exit, Failure};
+use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
 use crate::stop::Stop;
 
@@ -32,6 +32,8 @@ use crate::stop::Stop;
 pub(crate) const READY_WITHIN: Duration = Duration::from_ms(8_000);
 /// Quiet time after a unit is ready, before anything is judged.
 const SETTLE: Duration = Duration::from_ms(500);
+/// How often that is waited for, on a computer that is held up.
+const SETTLES: usize = 3;
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
@@ -56,6 +58,8 @@ pub struct BenchSetup {
     pub serial: Option<String>,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,
+    /// Times the bench is slower than the clock, where it goes by the clock.
+    pub slower: u32,
     /// Who looks on.
     pub attendant: Option<Arc<dyn Attendant>>,
 }
@@ -91,24 +95,15 @@ impl BenchSetup {
         if self.endpoint == Endpoint::Sim {
             return Ok(Connected::Sim(Box::new(self.clone())));
         }
-        let link = WireLink::open(&self.endpoint)?;
-        let bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
-        let mut session = Session::new(bench, Pace::real(), stop.clone(), false)
-            .attended_by(self.attendant.clone());
-        let mut found = Vec::new();
-        let identity = self.bring_up(&mut session, &mut found);
-        if stop.presses() > 0 {
-            return Err(Failure {
-                exit: Exit::Aborted,
-                message: format!("{}: stopped before the unit was reached", self.endpoint),
-            });
-        }
-        let identity = identity?;
-        self.check_identity(&identity)?;
+        let Reached {
+            session,
+            identity,
+            found,
+        } = self.reach(stop)?;
         Ok(Connected::Port(Box::new(session), identity, found))
     }
 
-    fn rig(&self, seed: u64, power_at: Instant) -> Rig {
+    pub(super) fn rig(&self, seed: u64, power_at: Instant) -> Rig {
         let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
         rig.set_train(self.train.clone());
         if let Some(drawn) = self.drawn() {
@@ -124,73 +119,6 @@ impl BenchSetup {
     fn drawn(&self) -> Option<DrawnBench> {
         let scatter = self.scatter.as_ref()?;
         Some(scatter.draw(self.seed, self.train.full_load_kg()))
-    }
-
-    /// Contact, identity, the old log read, and a brake left from before acknowledged. The unit's log has
-    /// a history; the train is this bench's, and what TCMS finds goes to `found`.
-    fn bring_up(
-        &self,
-        session: &mut Session<WireLink>,
-        found: &mut Vec<FaultSeen>,
-    ) -> Result<Identity, Failure> {
-        let mut seen = |entry: &UnitEvent, at, sample: &Sample| {
-            if entry.source == EventSource::Tcms && fault_watch::is_fault(entry) {
-                found.push(fault_watch::of_event(entry, at, sample));
-            }
-        };
-        let ready = session.idle(READY_WITHIN, &mut seen, |bench| {
-            bench.rig().identity().is_some() && started(bench)
-        });
-        if let Some(error) = session.link_failure() {
-            return Err(Failure::bench(format!(
-                "{error}; check the cable and that the unit is served there"
-            )));
-        }
-        if let Some(error) = session.link_error() {
-            return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
-        }
-        let Some(identity) = session.bench().rig().identity().copied().filter(|_| ready) else {
-            return Err(Failure::bench(format!(
-                "{}: the unit answers but does not become ready within {READY_WITHIN}; power it \
-                 off and on",
-                self.endpoint
-            )));
-        };
-        let now = session.now();
-        // A brake latched since the last tester left needs its acknowledgement.
-        let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
-        session.idle(BEFORE, &mut seen, |bench| {
-            bench.now().since(Instant::ZERO) > BEFORE
-        });
-        Ok(identity)
-    }
-
-    fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
-        let serial = text(&identity.serial);
-        if let Some(expected) = self.serial.as_ref().filter(|expected| **expected != serial) {
-            return Err(Failure::bench(format!(
-                "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
-                self.endpoint
-            )));
-        }
-        let checks = [
-            (
-                "unit configuration",
-                identity.config_crc,
-                self.config.crc,
-                "--unit-config",
-            ),
-            ("track database", identity.tdb_crc, self.line.crc, "--line"),
-        ];
-        for (what, unit, ours, option) in checks {
-            if unit != ours {
-                return Err(Failure::bench(format!(
-                    "the {what} of unit {serial} has checksum {unit:08x}, the tests were loaded \
-                     for {ours:08x}; choose the unit's with {option}"
-                )));
-            }
-        }
-        Ok(())
     }
 
     /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
@@ -211,7 +139,7 @@ impl BenchSetup {
         let link = Delayed::new(unit, &timing, seed ^ WIRE_SEQUENCE);
         let rig = self.rig(seed, power_at);
         let pace = if self.realtime {
-            Pace::real()
+            Pace::slower(self.slower)
         } else {
             Pace::Virtual
         };
@@ -287,17 +215,22 @@ pub fn start<'scope>(
 /// but the train's equipment may break at any time, and nobody else would tell.
 fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<FaultSeen> {
     let mut found = Vec::new();
-    session.idle(
-        READY_WITHIN,
-        |entry, at, sample| {
-            if Event::from_code(entry.code).is_some_and(Event::about_train)
-                && fault_watch::is_fault(entry)
-            {
-                found.push(fault_watch::of_event(entry, at, sample));
-            }
-        },
-        settled(),
-    );
+    let mut seen = |entry: &UnitEvent, at, sample: &Sample| {
+        if Event::from_code(entry.code).is_some_and(Event::about_train)
+            && fault_watch::is_fault(entry)
+        {
+            found.push(fault_watch::of_event(entry, at, sample));
+        }
+    };
+    // A bench that was held up has made the unit brake, and it has to settle again.
+    for _ in 0..SETTLES {
+        session.catch_up(&mut seen);
+        session.was_held_up();
+        session.idle(READY_WITHIN, &mut seen, settled());
+        if !session.was_held_up() {
+            break;
+        }
+    }
     found
 }
 
@@ -397,7 +330,7 @@ pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
     }
 }
 
-fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
+pub(super) fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
     bench.rig().sample().get(Signal::Started) == Some(1.0)
 }
 
@@ -519,6 +452,7 @@ mod tests {
             scatter: None,
             serial: None,
             realtime: false,
+            slower: 1,
             attendant: None,
         };
         (directory, setup)

@@ -36,6 +36,8 @@ pub struct Choice {
     pub scatter: Option<Option<PathBuf>>,
     /// The wall clock's pace also for the embedded unit.
     pub realtime: bool,
+    /// Times slower than the clock.
+    pub slower: u32,
 }
 
 impl Choice {
@@ -76,6 +78,7 @@ impl Choice {
             scatter,
             serial: self.serial.clone(),
             realtime: self.realtime,
+            slower: self.slower,
             attendant: None,
         })
     }

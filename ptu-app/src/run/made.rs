@@ -161,6 +161,7 @@ impl BenchMade {
             scatter: self.scatter.map(Arc::new),
             serial: Some(self.serial.clone()),
             realtime: false,
+            slower: 1,
             attendant: None,
         })
     }

@@ -14,6 +14,7 @@ mod choice;
 mod collector;
 mod fault_watch;
 mod made;
+mod reach;
 mod recorder;
 pub mod select;
 mod session;
@@ -68,6 +69,8 @@ pub struct RunPlan {
     pub stop_on_fail: bool,
     /// Who tests.
     pub operator: String,
+    /// The train the unit is in, as the tester names it; empty if nobody said.
+    pub train: String,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,
     /// Isolates a fault by itself, instead of running all tasks in order.
@@ -182,6 +185,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
             sw_versions: std::collections::BTreeMap::new(),
         },
         line: setup.line.content.name.clone(),
+        train: plan.train.clone(),
         seed: setup.seed,
         operator: plan.operator.clone(),
         source: setup.endpoint.to_string(),

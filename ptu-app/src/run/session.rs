@@ -11,13 +11,16 @@ use btu_rig::rig::{Bench, UnitLink};
 use btu_rig::tape::{Player, Tape, Taping};
 use fault_db::TraceData;
 use protocol::signal::Sample;
-use protocol::{CYCLE, Duration, Instant};
+use protocol::{CYCLE, Duration, Instant, SCAN};
 
 use super::Attendant;
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::{Cut, Recorder};
 use crate::link::Pace;
 use crate::stop::Stop;
+
+/// A bench less behind than this is in time.
+const IN_TIME: Duration = Duration::from_us(2 * SCAN.as_us());
 
 /// What happens on a bench. Times are the bench's own.
 #[derive(Debug)]
@@ -56,6 +59,10 @@ pub struct Session<L: UnitLink> {
     recorder: Recorder,
     sample: Sample,
     link_error: Option<String>,
+    /// How far the bench may be behind the clock; none for a unit whose clock is the bench's.
+    bears: Option<Duration>,
+    /// How far it was behind at most since that was asked, if too far.
+    held_up: Option<Duration>,
     fresh_unit: bool,
     attendant: Option<Arc<dyn Attendant>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
@@ -94,6 +101,8 @@ impl<L: UnitLink> Session<L> {
             recorder: Recorder::default(),
             sample: Sample::default(),
             link_error: None,
+            bears: None,
+            held_up: None,
             fresh_unit,
             attendant: None,
             with_person: false,
@@ -103,6 +112,13 @@ impl<L: UnitLink> Session<L> {
     /// From now on somebody looks on.
     pub fn attended_by(mut self, attendant: Option<Arc<dyn Attendant>>) -> Self {
         self.attendant = attendant;
+        self
+    }
+
+    /// The unit's time goes on by itself: a bench further behind it than this cannot tell what the unit does,
+    /// and makes it brake by its silence.
+    pub fn keeping_up(mut self, bears: Duration) -> Self {
+        self.bears = Some(bears);
         self
     }
 
@@ -147,6 +163,39 @@ impl<L: UnitLink> Session<L> {
         false
     }
 
+    /// Whether this computer has held the bench up since the last call, longer than the unit bears.
+    pub fn was_held_up(&mut self) -> bool {
+        self.held_up.take().is_some()
+    }
+
+    /// Makes up the scans that were missed; events go to `seen`.
+    pub fn catch_up(&mut self, mut seen: impl FnMut(&UnitEvent, Instant, &Sample)) {
+        self.make_up(&mut |_| {}, &mut seen);
+    }
+
+    fn make_up(
+        &mut self,
+        cut: &mut dyn FnMut(Cut),
+        seen: &mut dyn FnMut(&UnitEvent, Instant, &Sample),
+    ) {
+        // A computer that is too slow for good never catches up.
+        let at_most = 100 + 3 * self.behind().as_us() / SCAN.as_us();
+        for _ in 0..at_most {
+            if self.behind() < IN_TIME || self.stop.presses() > 0 || self.link_error.is_some() {
+                break;
+            }
+            self.scan(cut);
+            for entry in self.take_events() {
+                seen(&entry, self.bench.now(), &self.sample);
+            }
+        }
+    }
+
+    /// How far the bench is behind a unit that goes on by itself.
+    fn behind(&self) -> Duration {
+        self.bears.map_or(Duration::ZERO, |_| self.pace.behind())
+    }
+
     /// Why nothing can be sent or received any more, if so.
     pub fn link_failure(&self) -> Option<&str> {
         self.link_error.as_deref()
@@ -176,6 +225,10 @@ impl<L: UnitLink> Session<L> {
         self.pace.wait();
         if let Err(failure) = self.bench.tick() {
             self.link_error.get_or_insert(failure.to_string());
+        }
+        let behind = self.behind();
+        if self.bears.is_some_and(|bears| behind > bears) {
+            self.held_up = self.held_up.max(Some(behind));
         }
         self.sample.clone_from(self.bench.rig().sample());
         let now = self.bench.now();
@@ -244,10 +297,19 @@ impl<L: UnitLink> Session<L> {
         let mut presses = 0;
         let mut link_lost = false;
         loop {
-            self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));
+            let mut cut = |cut| sink(SessionEvent::Trace(Box::new(cut)));
+            self.scan(&mut cut);
+            if self.held_up.is_some() {
+                // What the unit logs meanwhile is not its own doing.
+                self.make_up(&mut cut, &mut |_, _, _| {});
+            }
             let pressed = self.stop.presses();
             (presses..pressed).for_each(|_| runner.stop());
             presses = pressed;
+            if let Some(behind) = self.held_up.take() {
+                runner.held_up(held_up(behind));
+            }
+            runner.behind(self.behind());
             let now = self.bench.now();
             let events = self.take_events();
             let link_error = self.link_error();
@@ -398,4 +460,12 @@ impl<L: UnitLink> Session<L> {
             sink(SessionEvent::Trace(Box::new(cut)));
         }
     }
+}
+
+fn held_up(behind: Duration) -> String {
+    format!(
+        "the tester was held up for {:.2} s by its own computer, which says nothing about the unit; end other \
+         programs and run this again",
+        behind.as_secs()
+    )
 }

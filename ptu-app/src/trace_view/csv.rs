@@ -1,10 +1,12 @@
 //! A trace, or a part of it, as a table.
 
-use std::fmt::Write as _;
+use std::io::{self, Write};
 use std::ops::Range;
 
+use fault_db::{Channel, TraceData};
+
 use super::Axis;
-use fault_db::TraceData;
+use crate::trace_io::csv::{put_headings, put_sample, put_time};
 
 /// Time in seconds from the trigger, the way in metres where one is asked for, then a column a channel;
 /// an unknown sample is empty.
@@ -14,40 +16,47 @@ pub fn csv(
     rows: Range<usize>,
     distance: Option<&Axis>,
 ) -> String {
-    let mut text = String::from("time_s");
-    if distance.is_some() {
-        text.push_str(",distance_m");
-    }
+    let mut text = Vec::new();
+    // Memory takes all that is written to it, and numbers and names are text.
+    let _ = put(&mut text, trace, channels, rows, distance);
+    String::from_utf8(text).unwrap_or_default()
+}
+
+fn put(
+    out: &mut impl Write,
+    trace: &TraceData,
+    channels: &[usize],
+    rows: Range<usize>,
+    distance: Option<&Axis>,
+) -> io::Result<()> {
     let known = || {
         channels
             .iter()
             .filter(|place| **place < trace.columns.len())
     };
-    for channel in known().map(|place| &trace.channels[*place]) {
-        let unit = channel.unit.replace('/', "");
-        let _ = match unit.as_str() {
-            "" => write!(text, ",{}", channel.name),
-            unit => write!(text, ",{}_{unit}", channel.name),
-        };
-    }
+    let before: &[&str] = if distance.is_some() {
+        &["distance_m"]
+    } else {
+        &[]
+    };
+    let named = known().map(|place| -> &Channel { &trace.channels[*place] });
+    put_headings(out, before, named)?;
     let trigger = i64::from(trace.trigger_row.unwrap_or(0));
     for row in rows.start..rows.end.min(trace.rows()) {
-        let time_us = (row as i64 - trigger) * trace.period_us;
-        let _ = write!(text, "\n{:.3}", time_us as f64 / 1e6);
+        put_time(
+            out,
+            (row as i64 - trigger) * trace.period_us,
+            trace.period_us,
+        )?;
         if let Some(axis) = distance {
-            let _ = write!(text, ",{:.2}", axis.at(row));
+            write!(out, ",{:.2}", axis.at(row))?;
         }
         for column in known().map(|place| &trace.columns[*place]) {
-            let value = column[row];
-            let _ = if value.is_nan() {
-                write!(text, ",")
-            } else {
-                write!(text, ",{value}")
-            };
+            put_sample(out, column[row])?;
         }
+        out.write_all(b"\n")?;
     }
-    text.push('\n');
-    text
+    Ok(())
 }
 
 #[cfg(test)]

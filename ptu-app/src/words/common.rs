@@ -38,6 +38,7 @@ wordings! {
         verdict: "verdict", "판정";
         operator: "operator", "시험자";
         line: "line", "노선";
+        train_no: "train number", "편성 번호";
         loading: "loading …", "불러오는 중 …";
         nothing: "nothing here yet", "아직 아무것도 없음";
         refresh: "refresh", "새로 고침";

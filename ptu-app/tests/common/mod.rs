@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 pub mod served;
+pub mod steady;
 pub mod window;
 
 use std::path::{Path, PathBuf};

@@ -72,6 +72,11 @@ impl Unit {
         }
     }
 
+    /// As if its computer did something else for so long.
+    pub fn stand_still(&self, time: Duration) {
+        stand_still(&self.child, time);
+    }
+
     /// Kills it, as a power cut would.
     pub fn kill(&mut self) {
         self.child.kill().expect("the unit is killed");
@@ -84,6 +89,13 @@ impl Drop for Unit {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+fn stand_still(child: &Child, time: Duration) {
+    let pid = Pid::from_child(child);
+    kill_process(pid, Signal::STOP).expect("a signal");
+    std::thread::sleep(time);
+    kill_process(pid, Signal::CONT).expect("a signal");
 }
 
 /// A `ptu run` under way on a served unit.
@@ -129,6 +141,11 @@ impl<'a> Running<'a> {
     /// Ctrl-C.
     pub fn interrupt(&self) {
         kill_process(Pid::from_child(&self.child), Signal::INT).expect("a signal");
+    }
+
+    /// As if its computer did something else for so long.
+    pub fn stand_still(&self, time: Duration) {
+        stand_still(&self.child, time);
     }
 
     /// SIGKILL: no chance to say anything.

@@ -43,6 +43,9 @@ pub struct ImportArguments {
     /// Line it has, lines/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "line8")]
     line: String,
+    /// Train the unit is in, as the depot names it
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    train_no: String,
     /// Who reads
     #[arg(long, value_name = "TEXT", default_value = "")]
     operator: String,
@@ -130,6 +133,7 @@ impl ImportArguments {
                 String::new()
             },
             line: line.content.name.clone(),
+            train: self.train_no.clone(),
             operator: self.operator.clone(),
             from_us,
             until_us: now_us(),

@@ -1,16 +1,18 @@
 //! `ptu trace diff`: two traces side by side.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use clap::Args;
-use fault_db::{Store, TraceData};
+use fault_db::{Channel, Id, Store, TraceData};
 use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{ScriptsOption, print_json, print_out};
 use crate::failure::{Exit, Failure};
-use crate::replay::{Comparison, Original, compare, good_twin, rule_between};
+use crate::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
+use crate::trace_io::{import, is_importable, lay};
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
@@ -19,21 +21,30 @@ use crate::replay::{Comparison, Original, compare, good_twin, rule_between};
 /// The number of log entries (`events`) is left out; on a port also efforts, accelerations and counts of
 /// frames.
 ///
+/// B may be a .csv or .mcap file: an export, or another program's table with seconds in its first column or
+/// messages in JSON. Seconds are from the trigger, messages at their time of day; each row is compared with
+/// the last sample until then, where they do not come at the trace's rows as with a unit on a port.
+///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest
 ///   ptu trace diff latest twin --signals speed,speed1,speed2,eb
+///   ptu trace diff latest oscilloscope.csv --shift -0.35
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DiffArguments {
     /// A trace
     #[arg(value_name = "A")]
     came: String,
-    /// Another, or `twin`: the same stimuli on a sound unit
+    /// Another; `twin`: the same stimuli on a sound unit; or a .csv or .mcap file
     #[arg(value_name = "B")]
     expected: String,
     /// Only these signals
     #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
     signals: Vec<String>,
+    /// Lay a file's samples so many seconds later; negative: sooner
+    #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,
+        allow_hyphen_values = true, value_parser = shift_argument)]
+    shift: f64,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -45,30 +56,119 @@ impl DiffArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         let a = store.resolve_trace(&self.came)?;
         let came = store.trace(a)?;
-        let (name, expected, rule) = if self.expected == "twin" {
+        let file = Path::new(&self.expected);
+        let sides = if is_importable(file) {
+            self.with_file(store, a, came, file)?
+        } else if file.extension().is_some() {
+            return Err(Failure::usage(format!(
+                "cannot compare with {}: a file to compare with must end in .csv or .mcap",
+                file.display()
+            )));
+        } else if self.shift != 0.0 {
+            return Err(Failure::usage(
+                "--shift lays a file elsewhere; traces are laid at their triggers",
+            ));
+        } else if self.expected == "twin" {
             let original = Original::read(store, a)?;
             let (twin, rule) = good_twin(&original, &self.scripts.find()?)?;
-            ("twin".to_owned(), twin, rule)
+            Sides::new("twin".to_owned(), came, twin, rule)
         } else {
             let b = store.resolve_trace(&self.expected)?;
             let rule = rule_between(store, a, b)?;
-            (b.to_string(), store.trace(b)?, rule)
+            Sides::new(b.to_string(), came, store.trace(b)?, rule)
         };
-        let comparison = compare(&came, &expected, &rule, &self.signals)?;
+        let mut comparison = compare(&sides.came, &sides.expected, &sides.rule, &self.signals)?;
+        if let Some(window_s) = sides.window_s {
+            comparison.window_s = window_s;
+        }
         if self.json {
             return print_json(&json!({
-                "a": a.to_string(), "b": name,
+                "a": a.to_string(), "b": sides.name,
                 "from_s": comparison.window_s.0, "to_s": comparison.window_s.1,
                 "missing_in_a": comparison.missing, "missing_in_b": comparison.missing_expected,
                 "deviations": deviations_json(&comparison),
             }));
         }
-        print_out(&text(&format!("{a}"), &name, &came, &expected, &comparison))
+        print_out(&text(a, &sides, &comparison))
+    }
+
+    fn with_file(
+        &self,
+        store: &Store,
+        a: Id,
+        came: TraceData,
+        file: &Path,
+    ) -> Result<Sides, Failure> {
+        let import = import(file, &came.channels)?;
+        let laid = lay(import, came, (self.shift * 1e6) as i64)?;
+        let is_known = |channel: &Channel| laid.trace.column(&channel.name).is_some();
+        // Nothing compared must not look like nothing that differs.
+        if !laid.imported.channels.iter().any(is_known) {
+            let names: Vec<_> = laid
+                .imported
+                .channels
+                .iter()
+                .map(|c| c.name.as_str())
+                .collect();
+            return Err(Failure::usage(format!(
+                "{}: none of its signals is one of the trace's: {}",
+                file.display(),
+                names.join(", ")
+            )));
+        }
+        let rule = if laid.is_row_by_row {
+            rule_between(store, a, a)?
+        } else {
+            Rule::wall_clock()
+        };
+        Ok(Sides {
+            name: self.expected.clone(),
+            came: laid.trace,
+            expected: laid.imported,
+            rule,
+            window_s: Some(laid.window_s),
+        })
     }
 }
 
-fn text(a: &str, b: &str, came: &TraceData, expected: &TraceData, found: &Comparison) -> String {
+/// What is compared.
+struct Sides {
+    /// What B is called.
+    name: String,
+    came: TraceData,
+    expected: TraceData,
+    rule: Rule,
+    /// Seconds from the trigger, where the rows say more than is known.
+    window_s: Option<(f64, f64)>,
+}
+
+impl Sides {
+    fn new(name: String, came: TraceData, expected: TraceData, rule: Rule) -> Self {
+        Self {
+            name,
+            came,
+            expected,
+            rule,
+            window_s: None,
+        }
+    }
+}
+
+fn shift_argument(text: &str) -> Result<f64, String> {
+    // A year either way.
+    let seconds = text.parse::<f64>().ok();
+    let seconds = seconds.filter(|seconds| seconds.abs() < 3.2e7);
+    seconds.ok_or_else(|| format!("\"{text}\" is no number of seconds"))
+}
+
+fn text(a: Id, sides: &Sides, found: &Comparison) -> String {
     let (from_s, to_s) = found.window_s;
+    let Sides {
+        name: b,
+        came,
+        expected,
+        ..
+    } = sides;
     let mut text =
         format!("A {a}\nB {b}\ncompared from {from_s:.2} s to {to_s:.2} s of the triggers\n");
     for (missing, of) in [(&found.missing, "A"), (&found.missing_expected, "B")] {

@@ -18,12 +18,19 @@ const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█']
 pub fn plot(id: Id, trace: &TraceData) -> String {
     let rows = trace.rows();
     let seconds = |rows: usize| rows as f64 * trace.period_us as f64 / 1e6;
-    let trigger = trace.trigger_row.unwrap_or(0) as usize;
+    let trigger = trace.trigger_row.map(|row| row as usize);
+    let long = match trigger {
+        Some(row) => format!(
+            "{:.1} s before the trigger and {:.1} s after",
+            seconds(row),
+            seconds(rows.saturating_sub(row + 1))
+        ),
+        // A part of a trace.
+        None => format!("{:.1} s, without the trigger", seconds(rows)),
+    };
     let mut text = format!(
-        "trace {id}\nbegins {}, {rows} rows, {:.1} s before the trigger and {:.1} s after{}\n",
+        "trace {id}\nbegins {}, {rows} rows, {long}{}\n",
         local(trace.t0_us),
-        seconds(trigger),
-        seconds(rows.saturating_sub(trigger + 1)),
         if trace.partial { ", cut short" } else { "" }
     );
     let width = trace
@@ -32,8 +39,10 @@ pub fn plot(id: Id, trace: &TraceData) -> String {
         .map(|c| c.name.len())
         .max()
         .unwrap_or(0);
-    let mark = trigger * PLOT_WIDTH / rows.max(1);
-    let _ = writeln!(text, "{:width$}  {:mark$}▼", "", "");
+    if let Some(row) = trigger {
+        let mark = row * PLOT_WIDTH / rows.max(1);
+        let _ = writeln!(text, "{:width$}  {:mark$}▼", "", "");
+    }
     for (channel, column) in trace.channels.iter().zip(&trace.columns) {
         let known = || column.iter().copied().filter(|v| !v.is_nan());
         let (low, high) = (

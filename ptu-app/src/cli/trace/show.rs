@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::explained::{explanation_json, explanation_text};
 use super::plot::{lanes, plot};
-use super::read;
+use super::{PartArguments, read};
 use crate::cli::{ScriptsOption, print_json, print_out};
 use crate::clock::rfc3339;
 use crate::failure::{Exit, Failure};
@@ -16,9 +16,8 @@ use crate::replay::{Explanation, explain};
 pub struct ShowArguments {
     /// The trace
     id: String,
-    /// Only these signals
-    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
-    signals: Vec<String>,
+    #[command(flatten)]
+    part: PartArguments,
     /// Show deviating signals beside those of the good twin: the same stimuli on a sound unit
     #[arg(long)]
     twin: bool,
@@ -31,7 +30,7 @@ pub struct ShowArguments {
 
 impl ShowArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
-        let (id, trace) = read(store, &self.id, &self.signals)?;
+        let (id, trace) = read(store, &self.id, &self.part.signals, self.part.window)?;
         if self.json {
             let mut document = trace_json(id, &trace);
             if self.twin {
@@ -56,7 +55,9 @@ impl ShowArguments {
                 .deviations
                 .iter()
                 .map(|deviation| deviation.signal.as_str())
-                .filter(|name| self.signals.is_empty() || self.signals.iter().any(|s| s == name))
+                .filter(|name| {
+                    self.part.signals.is_empty() || self.part.signals.iter().any(|s| s == name)
+                })
                 .collect();
             text.push_str("\n\n");
             text.push_str(&lanes(&came, &explanation.twin, &names));

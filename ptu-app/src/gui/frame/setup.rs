@@ -162,6 +162,10 @@ impl Setup {
             ui.add(TextEdit::singleline(&mut choice.serial).desired_width(140.0))
                 .labelled_by(label.id);
             ui.end_row();
+            let label = ui.label(words.common.train_no);
+            ui.add(TextEdit::singleline(&mut choice.train_no).desired_width(140.0))
+                .labelled_by(label.id);
+            ui.end_row();
             if choice.is_simulated() {
                 let label = ui.label(frame.seed);
                 ui.horizontal(|ui| {

@@ -25,6 +25,8 @@ pub struct UnitChoice {
     pub train: String,
     /// Serial number expected, or given to the embedded unit; empty = any.
     pub serial: String,
+    /// The train the unit is in, as the depot names it; empty = nobody says.
+    pub train_no: String,
     /// Faults injected; nobody wants to find one left over from yesterday.
     #[serde(skip)]
     pub faults: Vec<String>,
@@ -45,6 +47,7 @@ impl Default for UnitChoice {
             unit_config: "sg100".into(),
             train: "line6".into(),
             serial: String::new(),
+            train_no: String::new(),
             faults: Vec::new(),
             seed: 1,
             scatter: false,
@@ -89,6 +92,7 @@ impl UnitChoice {
             seed: self.seed,
             scatter: self.scatter.then_some(None),
             realtime: self.realtime,
+            slower: 1,
         })
     }
 }

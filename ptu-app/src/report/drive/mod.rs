@@ -13,6 +13,7 @@ mod text;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+pub use html::page;
 pub use json::json;
 pub use text::text;
 

@@ -338,6 +338,10 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         "" => report.nobody,
         name => name,
     };
+    let train = match run.train.trim() {
+        "" => "–",
+        train => train,
+    };
     let facts = [
         (report.run_id, run.id.to_string()),
         (report.unit_serial, run.unit_serial.clone()),
@@ -345,6 +349,7 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.unit_config, run.unit_config_name.clone()),
         ("SHA-256", run.unit_config_sha256.clone()),
         (words.common.line, run.line.clone()),
+        (words.common.train_no, train.to_owned()),
         (report.source, run.source.clone()),
         (report.seed, run.seed.to_string()),
         (report.tester, operator.to_owned()),

@@ -77,6 +77,7 @@ fn run() -> RunRecord {
         },
         line: "line8".into(),
         seed: 7,
+        train: "8203".into(),
         operator: "홍길동".into(),
         source: "sim".into(),
         started_at_us: 1_000_000,

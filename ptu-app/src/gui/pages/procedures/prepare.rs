@@ -78,6 +78,7 @@ pub fn order(
             jobs: 1,
             stop_on_fail: how.stop_on_fail,
             operator: how.operator,
+            train: choice.train_no.trim().to_owned(),
             scripts_sha256: suite.sha256,
             adaptive,
         },

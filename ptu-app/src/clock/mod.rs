@@ -1,9 +1,13 @@
 //! The only clock, and the only chance, of the program: wall-time labels and new identities.
 
+mod span;
+
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use chrono::{DateTime, Datelike, Local, SecondsFormat, Timelike, Utc};
 use fault_db::{IdSource, OpenOptions};
+
+pub use span::{Span, months};
 
 /// Microseconds since 1970, UTC.
 pub fn now_us() -> i64 {
@@ -63,6 +67,16 @@ pub fn utc_offset_us() -> i64 {
     i64::from(Local::now().offset().local_minus_utc()) * 1_000_000
 }
 
+/// Local date and time to the minute, for tables with little room.
+pub fn local_minute(at_us: i64) -> String {
+    local_as(at_us, "%Y-%m-%d %H:%M")
+}
+
+/// Local year and month.
+pub fn local_month(at_us: i64) -> String {
+    local_as(at_us, "%Y-%m")
+}
+
 /// Local date, for sentences.
 pub fn local_day(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d")
@@ -71,22 +85,4 @@ pub fn local_day(at_us: i64) -> String {
 fn local_as(at_us: i64, format: &str) -> String {
     let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
     at.with_timezone(&Local).format(format).to_string()
-}
-
-/// The point in time a span such as `30d` or `12h` ago, or a date such as `2026-03` or
-/// `2026-03-21`, stands for; microseconds since 1970.
-pub fn parse_since(text: &str) -> Option<i64> {
-    const DAY_US: i64 = 86_400_000_000;
-    if let Some(days) = text.strip_suffix('d').and_then(|n| n.parse::<i64>().ok()) {
-        return Some(now_us() - days.checked_mul(DAY_US)?);
-    }
-    if let Some(hours) = text.strip_suffix('h').and_then(|n| n.parse::<i64>().ok()) {
-        return Some(now_us() - hours.checked_mul(DAY_US / 24)?);
-    }
-    let day = match text.len() {
-        7 => format!("{text}-01"),
-        _ => text.to_owned(),
-    };
-    let date = chrono::NaiveDate::parse_from_str(&day, "%Y-%m-%d").ok()?;
-    Some(date.and_hms_opt(0, 0, 0)?.and_utc().timestamp_micros())
 }

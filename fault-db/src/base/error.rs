@@ -1,0 +1,23 @@
+//! What a base refuses, before it is known which file or server was meant.
+
+/// An error of a file, of a server, or of a value in a row.
+#[derive(Debug)]
+pub(crate) enum SqlError {
+    File(rusqlite::Error),
+    Server(postgres::Error),
+    Value { column: usize, reason: String },
+}
+
+pub(crate) type SqlResult<T> = Result<T, SqlError>;
+
+impl From<rusqlite::Error> for SqlError {
+    fn from(error: rusqlite::Error) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<postgres::Error> for SqlError {
+    fn from(error: postgres::Error) -> Self {
+        Self::Server(error)
+    }
+}

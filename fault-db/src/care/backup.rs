@@ -1,0 +1,19 @@
+//! A copy of a file, made while others write.
+
+use std::path::Path;
+
+use crate::error::StoreError;
+use crate::file::copy_to;
+use crate::store::Store;
+
+impl Store {
+    /// Copies the file as it stands now, compacted, while others may write to it.
+    pub fn backup(&self, to: &Path) -> Result<(), StoreError> {
+        if to.exists() {
+            return Err(StoreError::TargetExists {
+                path: to.to_path_buf(),
+            });
+        }
+        copy_to(self.file()?, to, "backing up")
+    }
+}

@@ -1,0 +1,133 @@
+//! What is counted from other rows, held against what counting all of them again gives.
+//!
+//! The same statements that fill these tables fill temporary ones of the same names: a name without its
+//! database means the temporary table, so nothing of the file is touched.
+
+use rusqlite::Connection;
+
+use super::Findings;
+use crate::base::values;
+use crate::error::StoreError;
+use crate::schema::{COUNTS, WORDS};
+use crate::settle::settle;
+use crate::store::Store;
+
+/// The tables, and the columns that name a row of those that are joined with themselves.
+const TABLES: [(&str, Option<&str>); 4] = [
+    ("repair", None),
+    ("tally", None),
+    ("measured_day", Some("name, day")),
+    ("measured_month", Some("name, month, unit")),
+];
+
+/// Rows that differ, by what they are. Sums differ by the order in which they were made up, too: that
+/// much is allowed, against the sum of squares.
+const DIFFERENCES: [(&str, &str); 6] = [
+    (
+        "rows of the table of repairs",
+        "SELECT count(DISTINCT event) FROM (
+            SELECT * FROM (SELECT * FROM main.repair EXCEPT SELECT * FROM temp.repair)
+            UNION ALL SELECT * FROM (SELECT * FROM temp.repair EXCEPT SELECT * FROM main.repair))",
+    ),
+    (
+        "counts by day or month",
+        "WITH kept AS (SELECT * FROM main.tally
+            WHERE seen <> 0 OR opened <> 0 OR closed <> 0 OR bare <> 0 OR repairs <> 0 OR repair_us <> 0
+                OR back <> 0 OR units <> x'')
+         SELECT count(*) FROM (SELECT DISTINCT dim, grain, at, key FROM (
+            SELECT * FROM (SELECT * FROM kept EXCEPT SELECT * FROM temp.tally)
+            UNION ALL SELECT * FROM (SELECT * FROM temp.tally EXCEPT SELECT * FROM kept)))",
+    ),
+    (
+        "sums of measured values by day",
+        "SELECT count(*) FROM main.measured_day a FULL JOIN temp.measured_day b USING (name, procedure, day)
+         WHERE a.n IS NOT b.n OR a.least IS NOT b.least OR a.most IS NOT b.most
+            OR a.not_passed IS NOT b.not_passed
+            OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx",
+    ),
+    (
+        "sums of measured values by month",
+        "SELECT count(*) FROM main.measured_month a FULL JOIN temp.measured_month b USING (name, procedure, month, unit)
+         WHERE a.n IS NOT b.n
+            OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx
+            OR (a.t - b.t) * (a.t - b.t) > 1e-18 * b.n * b.tt OR abs(a.tt - b.tt) > 1e-9 * b.tt
+            OR (a.tx - b.tx) * (a.tx - b.tx) > 1e-18 * b.tt * b.xx",
+    ),
+    (
+        "notes on faults that a search does not find, or finds and are not there",
+        "SELECT (SELECT count(*) FROM fault_event e WHERE e.kind NOT IN ('opened', 'recurred') AND e.body <> ''
+                AND NOT EXISTS (SELECT 1 FROM event_words_docsize w WHERE w.id = e.seq))
+            + (SELECT count(*) FROM event_words_docsize w
+                WHERE NOT EXISTS (SELECT 1 FROM fault_event e WHERE e.seq = w.id))",
+    ),
+    (
+        "notes on runs that a search does not find, or finds and are not there",
+        "SELECT (SELECT count(*) FROM run_note n
+                WHERE NOT EXISTS (SELECT 1 FROM note_words_docsize w WHERE w.id = n.seq))
+            + (SELECT count(*) FROM note_words_docsize w
+                WHERE NOT EXISTS (SELECT 1 FROM run_note n WHERE n.seq = w.id))",
+    ),
+];
+
+/// Compares, in one view of the file: others may write meanwhile.
+pub(super) fn check(conn: &Connection, mut found: Findings<'_>) -> rusqlite::Result<()> {
+    in_files(conn, || {
+        conn.execute_batch("BEGIN")?;
+        let compared = compare(conn, &mut found);
+        let ended = conn.execute_batch("ROLLBACK");
+        compared.and(ended)
+    })
+}
+
+fn compare(conn: &Connection, found: &mut Findings<'_>) -> rusqlite::Result<()> {
+    for (table, named_by) in TABLES {
+        conn.execute_batch(&format!(
+            "CREATE TEMP TABLE {table} AS SELECT * FROM main.{table} WHERE false"
+        ))?;
+        if let Some(columns) = named_by {
+            conn.execute_batch(&format!(
+                "CREATE INDEX temp.{table}_by_name ON {table}({columns})"
+            ))?;
+        }
+    }
+    conn.execute_batch(COUNTS)?;
+    for (what, sql) in DIFFERENCES {
+        let differ: i64 = conn.query_row(sql, [], |row| row.get(0))?;
+        if differ > 0 {
+            found.add(format!("{differ} {what} are not what the history says"));
+        }
+    }
+    Ok(())
+}
+
+/// Makes all of it anew.
+pub(super) fn rebuild(store: &Store) -> Result<(), StoreError> {
+    const DOING: &str = "counting anew";
+    let failed = |error| store.failed(DOING, error);
+    let wrong = "SELECT f.seq FROM fault f WHERE f.occurrences <>
+        (SELECT count(*) FROM fault_occurrence o WHERE o.fault = f.seq)";
+    let conn = store.file()?;
+    in_files(conn, || {
+        Ok(store.write(DOING, |conn| {
+            let faults = store.base().select(wrong, &values![], |row| row.get(0));
+            for fault in faults.map_err(|error| store.failed(DOING, error))? {
+                settle(store.base(), fault).map_err(|error| store.failed(DOING, error))?;
+            }
+            conn.execute_batch(COUNTS).map_err(failed)?;
+            conn.execute_batch(WORDS).map_err(failed)
+        }))
+    })
+    .map_err(failed)?
+}
+
+/// Sorts in files: all there is does not fit in memory.
+fn in_files<T>(
+    conn: &Connection,
+    work: impl FnOnce() -> rusqlite::Result<T>,
+) -> rusqlite::Result<T> {
+    let kept: i64 = conn.query_row("PRAGMA temp_store", [], |row| row.get(0))?;
+    conn.execute_batch("PRAGMA temp_store = FILE")?;
+    let done = work();
+    conn.execute_batch(&format!("PRAGMA temp_store = {kept}"))?;
+    done
+}

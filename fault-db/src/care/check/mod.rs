@@ -1,0 +1,196 @@
+//! Is a file whole, and does it say what was recorded?
+
+mod chain;
+mod counted;
+
+use rusqlite::Connection;
+use serde::Serialize;
+
+use crate::error::StoreError;
+use crate::id::Id;
+use crate::recording::check_recordings;
+use crate::store::Store;
+
+/// What a check looked at and found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CheckReport {
+    /// Runs that were held against their seals.
+    pub runs: u32,
+    /// Traces whose checksum and samples were read.
+    pub traces: u32,
+    /// Recordings that were unpacked and read.
+    pub recordings: u32,
+    /// What is wrong; empty is good.
+    pub problems: Vec<Problem>,
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Problem {
+    /// integrity, foreign_key, count, trace, recording, seal or tally.
+    pub kind: &'static str,
+    /// Which, and how.
+    pub detail: String,
+    /// What to do about it.
+    pub advice: &'static str,
+}
+
+/// So many problems of a kind are named; SQLite, too, stops describing damage then.
+const MAX_FINDINGS: u32 = 100;
+
+const FROM_BACKUP: &str = "keep this file as it is and go on with a backup; other laptops and the server may \
+    have what was recorded since";
+const LOST: &str =
+    "it cannot be brought back here; a backup, another laptop or the server may have it";
+const ALTERED: &str =
+    "hold it against the test sheet, a backup or the server; somebody has changed the file by hand";
+const REBUILD: &str = "`db rebuild` makes it anew from the rows it follows from";
+
+/// Problems of one kind, no more than are read.
+struct Findings<'a> {
+    problems: &'a mut Vec<Problem>,
+    kind: &'static str,
+    advice: &'static str,
+    found: u32,
+}
+
+impl<'a> Findings<'a> {
+    fn new(problems: &'a mut Vec<Problem>, kind: &'static str, advice: &'static str) -> Self {
+        Self {
+            problems,
+            kind,
+            advice,
+            found: 0,
+        }
+    }
+
+    fn add(&mut self, detail: String) {
+        self.found += 1;
+        if self.found <= MAX_FINDINGS {
+            self.say(detail);
+        }
+    }
+
+    fn say(&mut self, detail: String) {
+        self.problems.push(Problem {
+            kind: self.kind,
+            detail,
+            advice: self.advice,
+        });
+    }
+}
+
+impl Drop for Findings<'_> {
+    fn drop(&mut self) {
+        let more = self.found.saturating_sub(MAX_FINDINGS);
+        if more > 0 {
+            self.say(format!("and {more} more of this kind"));
+        }
+    }
+}
+
+impl Store {
+    /// Looks for damage and for what was changed by hand: SQLite's own check, foreign keys, every trace
+    /// and recording, every run against its seal and the seals against each other, and all that is
+    /// counted from other rows.
+    pub fn check(&self) -> Result<CheckReport, StoreError> {
+        let conn = self.file()?;
+        let mut problems = Vec::new();
+        let failed = |error| self.failed("checking", error);
+
+        let integrity = format!("PRAGMA integrity_check({MAX_FINDINGS})");
+        let mut found = Findings::new(&mut problems, "integrity", FROM_BACKUP);
+        each_text(conn, &integrity, |detail| {
+            if detail != "ok" {
+                found.add(detail);
+            }
+        })
+        .map_err(failed)?;
+        drop(found);
+        let is_damaged = !problems.is_empty();
+
+        let mut report = CheckReport {
+            runs: 0,
+            traces: 0,
+            recordings: 0,
+            problems,
+        };
+        match self.check_rows(conn, &mut report) {
+            // What SQLite has found already is worth more than where reading broke off.
+            Err(error) if is_damaged => report.problems.push(Problem {
+                kind: "integrity",
+                detail: format!("the rest could not be looked at: {error}"),
+                advice: FROM_BACKUP,
+            }),
+            done => done?,
+        }
+        Ok(report)
+    }
+
+    /// Looks at all rows for what contradicts them.
+    fn check_rows(&self, conn: &Connection, report: &mut CheckReport) -> Result<(), StoreError> {
+        let failed = |error| self.failed("checking", error);
+        let problems = &mut report.problems;
+        let mut found = Findings::new(problems, "foreign_key", FROM_BACKUP);
+        each_text(conn, FOREIGN, |detail| found.add(detail)).map_err(failed)?;
+        drop(found);
+
+        let mut found = Findings::new(problems, "count", REBUILD);
+        each_text(conn, COUNTS, |detail| found.add(detail)).map_err(failed)?;
+        drop(found);
+
+        let mut found = Findings::new(problems, "trace", LOST);
+        for id in trace_ids(conn).map_err(failed)? {
+            report.traces += 1;
+            match self.trace(id) {
+                Ok(_) => {}
+                // Another program may prune meanwhile.
+                Err(StoreError::NotFound { .. }) => report.traces -= 1,
+                Err(error) => found.add(error.to_string()),
+            }
+        }
+        drop(found);
+
+        let mut found = Findings::new(problems, "recording", LOST);
+        let (recordings, wrong) = check_recordings(conn).map_err(failed)?;
+        report.recordings = recordings;
+        wrong.into_iter().for_each(|detail| found.add(detail));
+        drop(found);
+
+        let found = Findings::new(problems, "seal", ALTERED);
+        let runs = chain::check(self.base(), found);
+        report.runs = runs.map_err(|error| self.failed("checking seals", error))?;
+
+        let found = Findings::new(problems, "tally", REBUILD);
+        counted::check(conn, found).map_err(failed)
+    }
+
+    /// Makes everything anew that follows from other rows: counts by day and month, repairs, sums of
+    /// measured values, words of notes, and of faults that have another number of occurrences than they
+    /// say, what follows from these. Runs, faults, events and traces stay as they are.
+    pub fn rebuild(&self) -> Result<(), StoreError> {
+        counted::rebuild(self)
+    }
+}
+
+const FOREIGN: &str = "SELECT coalesce('row ' || rowid, 'a row') || ' of ' || \"table\"
+    || ' points at a missing row of ' || parent FROM pragma_foreign_key_check";
+
+const COUNTS: &str = "SELECT 'fault ' || lower(hex(f.id)) || ' says ' || f.occurrences
+    || ' occurrences, has ' || n
+    FROM (SELECT f.id, f.occurrences, (SELECT count(*) FROM fault_occurrence o WHERE o.fault = f.seq) n
+        FROM fault f) f WHERE f.occurrences <> n";
+
+fn each_text(conn: &Connection, sql: &str, mut take: impl FnMut(String)) -> rusqlite::Result<()> {
+    let mut select = conn.prepare(sql)?;
+    let mut rows = select.query([])?;
+    while let Some(row) = rows.next()? {
+        take(row.get(0)?);
+    }
+    Ok(())
+}
+
+fn trace_ids(conn: &Connection) -> rusqlite::Result<Vec<Id>> {
+    let mut select = conn.prepare("SELECT id FROM trace ORDER BY seq")?;
+    select.query_map([], |row| row.get(0))?.collect()
+}

@@ -1,0 +1,215 @@
+//! Faults, what was seen of them and done about them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rusqlite::params;
+use rusqlite::types::Value;
+
+use super::Merge;
+use super::rows::{Numbers, renumber, values};
+use crate::base::SqlResult;
+use crate::id::Id;
+use crate::settle::{join, open_doubles, settle};
+
+impl Merge<'_> {
+    /// A fault of theirs is ours if it has an id in common with it, aliases included. Whether two laptops
+    /// saw one fault is decided when all events are known: both may know best about one that is closed.
+    pub(super) fn faults(
+        &mut self,
+        units: &Numbers,
+        runs: &Numbers,
+        traces: &Numbers,
+    ) -> SqlResult<()> {
+        let mut known = Known::default();
+        self.fault_rows(units, &mut known)?;
+        self.occurrences(runs, traces, &mut known)?;
+        self.events(&mut known)?;
+        for fault in &known.touched {
+            settle(self.base, *fault)?;
+        }
+        self.join_doubles(&mut known)?;
+        self.counts.faults = known.added.len();
+        Ok(())
+    }
+
+    fn fault_rows(&self, units: &Numbers, known: &mut Known) -> SqlResult<()> {
+        let aliases = self.their_aliases()?;
+        let mut select = self.theirs.prepare(
+            "SELECT seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, line
+             FROM fault",
+        )?;
+        let mut rows = select.query([])?;
+        while let Some(row) = rows.next()? {
+            let (theirs, id): (i64, Id) = (row.get(0)?, row.get(1)?);
+            let ids: Vec<Id> = std::iter::once(id)
+                .chain(aliases.get(&theirs).into_iter().flatten().copied())
+                .collect();
+            let mut ours = BTreeSet::new();
+            for id in &ids {
+                ours.extend(self.our_fault(*id)?);
+            }
+            let mut ours = ours.into_iter();
+            let fault = match ours.next() {
+                Some(fault) => fault,
+                None => {
+                    let mut fault = values(row, 1..11)?;
+                    fault[1] = renumber(units, row.get(2)?);
+                    let fault = self.add_fault(fault)?;
+                    known.added.insert(fault);
+                    known.touched.insert(fault);
+                    fault
+                }
+            };
+            // Two of ours turned out to be one of theirs.
+            for double in ours {
+                known.join(self, fault, double)?;
+            }
+            for id in ids {
+                self.note_alias(id, fault)?;
+            }
+            known.numbers.insert(theirs, fault);
+        }
+        Ok(())
+    }
+
+    /// Their other ids, by the number of the fault.
+    fn their_aliases(&self) -> rusqlite::Result<BTreeMap<i64, Vec<Id>>> {
+        let mut aliases = BTreeMap::<i64, Vec<Id>>::new();
+        let mut select = self.theirs.prepare("SELECT fault, id FROM fault_alias")?;
+        let mut rows = select.query([])?;
+        while let Some(row) = rows.next()? {
+            aliases.entry(row.get(0)?).or_default().push(row.get(1)?);
+        }
+        Ok(aliases)
+    }
+
+    /// Our fault of this id, be it one that was given to it elsewhere.
+    fn our_fault(&self, id: Id) -> rusqlite::Result<Option<i64>> {
+        let mut find = self.ours.prepare_cached(
+            "SELECT seq FROM fault WHERE id = ?1 UNION ALL SELECT fault FROM fault_alias WHERE id = ?1",
+        )?;
+        let mut rows = find.query([id])?;
+        rows.next()?.map(|row| row.get(0)).transpose()
+    }
+
+    /// What follows from occurrences and events is settled when they are here.
+    fn add_fault(&self, fault: Vec<Value>) -> rusqlite::Result<i64> {
+        let mut insert = self.ours.prepare_cached(
+            "INSERT INTO fault(id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us,
+                line, occurrences)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, 0)",
+        )?;
+        insert.insert(rusqlite::params_from_iter(fault))
+    }
+
+    fn note_alias(&self, id: Id, fault: i64) -> rusqlite::Result<()> {
+        let mut insert = self.ours.prepare_cached(
+            "INSERT INTO fault_alias(id, fault) SELECT ?1, ?2
+             WHERE NOT EXISTS (SELECT 1 FROM fault WHERE id = ?1) ON CONFLICT DO NOTHING",
+        )?;
+        insert.execute(params![id, fault])?;
+        Ok(())
+    }
+
+    fn occurrences(
+        &mut self,
+        runs: &Numbers,
+        traces: &Numbers,
+        known: &mut Known,
+    ) -> rusqlite::Result<()> {
+        let mut select = self.theirs.prepare(
+            "SELECT id, fault, run, step_index, at_us, bench_us, message, freeze_json, trace, code, lru, line
+             FROM fault_occurrence",
+        )?;
+        let mut rows = select.query([])?;
+        while let Some(row) = rows.next()? {
+            let mut occurrence = values(row, 0..12)?;
+            let fault = known.number(row.get(1)?);
+            occurrence[1] = fault.map_or(Value::Null, Value::Integer);
+            occurrence[2] = renumber(runs, row.get(2)?);
+            if let Some(trace) = row.get(8)? {
+                occurrence[8] = renumber(traces, trace);
+            }
+            let find = "SELECT seq FROM fault_occurrence WHERE id = ?1";
+            let insert = "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us,
+                    message, freeze_json, trace, code, lru, line, unit)
+                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12,
+                    (SELECT unit FROM fault WHERE seq = ?2))";
+            let (seq, is_new) = self.find_or_insert(find, insert, &occurrence)?;
+            if is_new {
+                self.counts.occurrences += 1;
+                known.touched.extend(fault);
+            } else if !matches!(occurrence[8], Value::Null) {
+                // Its trace may have come after an earlier copy.
+                self.ours
+                    .prepare_cached(
+                        "UPDATE fault_occurrence SET trace = ?2 WHERE seq = ?1 AND trace IS NULL",
+                    )?
+                    .execute(params![seq, occurrence[8]])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn events(&mut self, known: &mut Known) -> rusqlite::Result<()> {
+        let mut select = self.theirs.prepare(
+            "SELECT id, fault, kind, at_us, who, body, state, turn FROM fault_event ORDER BY seq",
+        )?;
+        let mut rows = select.query([])?;
+        while let Some(row) = rows.next()? {
+            let mut event = values(row, 0..8)?;
+            let fault = known.number(row.get(1)?);
+            event[1] = fault.map_or(Value::Null, Value::Integer);
+            let find = "SELECT seq FROM fault_event WHERE id = ?1";
+            let insert = "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn)
+                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)";
+            let (_, is_new) = self.find_or_insert(find, insert, &event)?;
+            if is_new {
+                self.counts.events += 1;
+                known.touched.extend(fault);
+            }
+        }
+        Ok(())
+    }
+
+    /// Faults of the same unit, code and part, none of them closed: two laptops saw one fault.
+    fn join_doubles(&self, known: &mut Known) -> SqlResult<()> {
+        for fault in known.touched.clone() {
+            let mut doubles = open_doubles(self.base, fault)?.into_iter();
+            if let Some(oldest) = doubles.next() {
+                for double in doubles {
+                    known.join(self, oldest, double)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is known of their faults so far.
+#[derive(Default)]
+struct Known {
+    numbers: Numbers,
+    /// Faults of ours that something was added to.
+    touched: BTreeSet<i64>,
+    /// Faults of ours that were theirs alone.
+    added: BTreeSet<i64>,
+}
+
+impl Known {
+    /// Our number of a fault of theirs.
+    fn number(&self, theirs: i64) -> Option<i64> {
+        self.numbers.get(&theirs).copied()
+    }
+
+    fn join(&mut self, merge: &Merge<'_>, stays: i64, goes: i64) -> SqlResult<()> {
+        join(merge.base, stays, goes)?;
+        for number in self.numbers.values_mut().filter(|number| **number == goes) {
+            *number = stays;
+        }
+        self.added.remove(&goes);
+        self.touched.remove(&goes);
+        self.touched.insert(stays);
+        Ok(())
+    }
+}

@@ -1,0 +1,162 @@
+//! One file's history into another's, as often as one likes: what is known by its id is not
+//! added again.
+
+mod faults;
+mod rows;
+mod runs;
+mod seals;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use rusqlite::{Connection, ErrorCode};
+use serde::Serialize;
+
+use crate::base::{Base, SqlError, SqlResult};
+use crate::error::StoreError;
+use crate::file::CACHE_KIB;
+use crate::id::Id;
+use crate::store::{OpenOptions, Store};
+use rows::{MEASUREMENTS, RECORDINGS, SCRIPTS, STEPS};
+
+/// What a merge added.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct MergeCounts {
+    /// Units not known before.
+    pub units: usize,
+    /// Runs not known before.
+    pub runs: usize,
+    /// Steps not known before.
+    pub steps: usize,
+    /// Measurements not known before.
+    pub measurements: usize,
+    /// Faults not known before.
+    pub faults: usize,
+    /// Occurrences not known before.
+    pub occurrences: usize,
+    /// Events not known before.
+    pub events: usize,
+    /// Traces not known before.
+    pub traces: usize,
+    /// Recordings not known before.
+    pub recordings: usize,
+    /// Notes on runs not known before.
+    pub notes: usize,
+}
+
+impl Store {
+    /// Adds all that the other file has and this one has not, in one transaction.
+    pub fn import(&self, from: &Path) -> Result<MergeCounts, StoreError> {
+        let same = |path: &Path| std::fs::canonicalize(path).ok();
+        if same(from).is_some() && same(from) == same(self.path()) {
+            return Err(StoreError::SameFile {
+                path: from.to_path_buf(),
+            });
+        }
+        // Opening checks that its schema is the same as ours.
+        let other = Store::open_read_only(from)?;
+        self.merge_from(&other)
+    }
+
+    /// Adds all that this file has to another one, which is created if need be.
+    pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
+        let target = Store::open(to, options)?;
+        let counts = target.merge_from(self)?;
+        target.close()?;
+        Ok(counts)
+    }
+
+    /// Adds all that the other store has and this one has not, in one transaction.
+    pub fn merge_from(&self, other: &Store) -> Result<MergeCounts, StoreError> {
+        const DOING: &str = "merging";
+        let theirs = other.file()?;
+        let file_id = self.file_id()?;
+        let set_cache = |size: i32| {
+            let set = self
+                .file()?
+                .execute_batch(&format!("PRAGMA cache_size = {size}"));
+            set.map_err(|error| self.failed(DOING, error))
+        };
+        // One reading transaction, so that all tables are seen at the same moment.
+        let begin = theirs.execute_batch("BEGIN");
+        begin.map_err(|error| other.failed(DOING, error))?;
+        // Indexes are filled all over at once; a larger part of them than usual has to be at hand.
+        let merged = set_cache(CACHE).and_then(|()| {
+            self.write(DOING, |ours| {
+                Merge {
+                    theirs,
+                    ours,
+                    base: self.base(),
+                    counts: MergeCounts::default(),
+                    fresh_runs: BTreeSet::new(),
+                }
+                .all(file_id)
+                .map_err(|error| self.blame(other, error))
+            })
+        });
+        let _ = theirs.execute_batch("COMMIT");
+        // It costs memory only as long as this store is open.
+        let _ = set_cache(-(CACHE_KIB as i32));
+        merged
+    }
+
+    /// Names the file that is to blame for what went wrong.
+    fn blame(&self, other: &Store, error: SqlError) -> StoreError {
+        const DOING: &str = "merging";
+        let SqlError::File(error) = error else {
+            return self.failed(DOING, error);
+        };
+        match error.sqlite_error_code() {
+            // A row of theirs without the one it belongs to.
+            Some(ErrorCode::ConstraintViolation) => StoreError::Corrupt {
+                path: other.path().to_path_buf(),
+                detail: error.to_string(),
+            },
+            // A value that is not of its column's kind.
+            None => other.failed(DOING, error),
+            Some(ErrorCode::DatabaseCorrupt) if !is_whole(other) => other.failed(DOING, error),
+            Some(_) => self.failed(DOING, error),
+        }
+    }
+}
+
+/// Whether SQLite finds no damage in a file.
+fn is_whole(store: &Store) -> bool {
+    let checked = store.file().map(|conn| {
+        let check = conn.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0));
+        check.is_ok_and(|found| found == "ok")
+    });
+    checked.unwrap_or(false)
+}
+
+/// SQLite's page cache while merging, and else, in KiB; SQLite wants sizes negative, as pages are not.
+const CACHE: i32 = -(64 << 10);
+
+struct Merge<'a> {
+    theirs: &'a Connection,
+    ours: &'a Connection,
+    /// The same as `ours`, for what is asked of a server as well.
+    base: &'a Base,
+    counts: MergeCounts,
+    /// Runs added, or ended meanwhile.
+    fresh_runs: BTreeSet<i64>,
+}
+
+impl Merge<'_> {
+    /// Parents before children, because children need their parents' new numbers.
+    fn all(mut self, file_id: Id) -> SqlResult<MergeCounts> {
+        let units = self.units()?;
+        let runs = self.runs(&units)?;
+        self.counts.steps = self.children(&runs, &STEPS)?;
+        self.counts.measurements = self.children(&runs, &MEASUREMENTS)?;
+        self.children(&runs, &SCRIPTS)?;
+        self.counts.recordings = self.children(&runs, &RECORDINGS)?;
+        self.notes(&runs)?;
+        let channel_sets = self.channel_sets()?;
+        let traces = self.traces(&runs, &channel_sets)?;
+        self.faults(&units, &runs, &traces)?;
+        self.seals(&runs)?;
+        self.seal_the_rest(file_id)?;
+        Ok(self.counts)
+    }
+}

@@ -1,0 +1,439 @@
+//! Which faults are meant: one filter for lists, counts and repairs.
+
+use super::filter::Conditions;
+use crate::base::{Base, values};
+use crate::error::StoreError;
+use crate::fault_state::FaultState;
+use crate::id::Id;
+use crate::store::Store;
+use crate::words::Search;
+
+/// Which faults; `None` does not restrict.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FaultFilter {
+    /// Serial number of the unit.
+    pub unit: Option<String>,
+    /// Serial number of a part that was taken out or put in for it.
+    pub serial: Option<String>,
+    /// The train its unit was in.
+    pub train: Option<String>,
+    /// Number (decimal, or hex after `0x`) or name of the fault.
+    pub code: Option<String>,
+    /// The part it points at.
+    pub lru: Option<String>,
+    /// How bad it is.
+    pub severity: Option<String>,
+    /// Where it stands.
+    pub state: Option<FaultState>,
+    /// Seen in this procedure.
+    pub procedure: Option<String>,
+    /// Line of the run that saw it.
+    pub line: Option<String>,
+    /// Seen in this run.
+    pub run: Option<Id>,
+    /// Seen at this time or later.
+    pub since_us: Option<i64>,
+    /// Seen before this time.
+    pub until_us: Option<i64>,
+    /// Words of a note on it, or on a run that saw it.
+    pub note: Option<String>,
+    /// At most so many, in a list.
+    pub limit: Option<u32>,
+}
+
+/// Rows a filter is applied to. All have the columns unit, code, lru and line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Of {
+    Faults,
+    Occurrences,
+    Repairs,
+}
+
+/// A filter whose names are the numbers they have here.
+#[derive(Clone)]
+pub(crate) struct Resolved<'a> {
+    filter: &'a FaultFilter,
+    unit: Option<i64>,
+    codes: Option<Vec<i64>>,
+    lrus: Option<Vec<String>>,
+    search: Option<Search>,
+    common: Common,
+}
+
+/// Whether what is looked for is said so often that going through faults finds enough of them sooner than
+/// going through all that say it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Common {
+    of_faults: bool,
+    of_runs: bool,
+}
+
+/// Said so often is common, if it was not long ago: so many of the latest things said, in so many.
+const COMMON: u32 = 3000;
+const AMONG: i64 = 300_000;
+/// More faults than this are not looked for one by one.
+const FEW: u32 = 200;
+
+impl FaultFilter {
+    /// Looks its names up.
+    pub(crate) fn resolve(&self, store: &Store) -> Result<Resolved<'_>, StoreError> {
+        let unit = self.unit.as_deref().map(|serial| store.unit_seq(serial));
+        let code = self.code.as_deref().map(|code| codes(store, code));
+        let lru = self.lru.as_deref().map(|lru| lrus(store, lru));
+        let search = self.note.as_deref().map(search);
+        Ok(Resolved {
+            filter: self,
+            unit: unit.transpose()?,
+            codes: code.transpose()?,
+            lrus: lru.transpose()?,
+            search: search.transpose()?,
+            common: Common::default(),
+        })
+    }
+}
+
+impl Resolved<'_> {
+    /// For a list of a few: finds out how common what is looked for is. A server knows that by itself.
+    pub fn weigh(&mut self, store: &Store) -> Result<(), StoreError> {
+        let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
+        let (Base::File(_), Some(search), true) = (store.base(), &self.search, is_few) else {
+            return Ok(());
+        };
+        let asked = search.for_file();
+        let is_common = |words: &str, table: &str| {
+            let sql = format!(
+                "SELECT count(*), min(rowid), (SELECT max(seq) FROM {table}) FROM
+                    (SELECT rowid FROM {words} WHERE {words} MATCH ?1 ORDER BY rowid DESC LIMIT {COMMON})"
+            );
+            let found = store.first("searching notes", &sql, &values![asked.as_str()], |row| {
+                let (first, last): (Option<i64>, Option<i64>) = (row.get(1)?, row.get(2)?);
+                let among = last.zip(first).map(|(last, first)| last - first);
+                Ok(row.get::<u32>(0)? == COMMON && among.is_some_and(|among| among <= AMONG))
+            })?;
+            Ok(found == Some(true))
+        };
+        self.common = Common {
+            of_faults: is_common("event_words", "fault_event")?,
+            of_runs: is_common("note_words", "run_note")?,
+        };
+        Ok(())
+    }
+
+    /// Unit, code, part or line are all it asks for, besides a span of time; and how many of them.
+    pub fn plain(&self) -> Option<usize> {
+        let FaultFilter {
+            serial,
+            train,
+            severity,
+            state,
+            procedure,
+            run,
+            note,
+            ..
+        } = self.filter;
+        let texts = [serial, train, severity, procedure, note];
+        let is_plain = texts.iter().all(|text| text.is_none()) && state.is_none() && run.is_none();
+        let asked = [
+            self.unit.is_some(),
+            self.codes.is_some(),
+            self.lrus.is_some(),
+            self.filter.line.is_some(),
+        ];
+        is_plain.then(|| asked.iter().filter(|asked| **asked).count())
+    }
+
+    /// The unit, if one was asked for.
+    pub fn unit(&self) -> Option<i64> {
+        self.unit
+    }
+
+    /// The codes, if a code was asked for.
+    pub fn codes(&self) -> Option<&[i64]> {
+        self.codes.as_deref()
+    }
+
+    /// The parts, if one was asked for: usually one, or more that differ in capitals.
+    pub fn lrus(&self) -> Option<&[String]> {
+        self.lrus.as_deref()
+    }
+
+    /// The filter it was made of.
+    pub fn filter(&self) -> &FaultFilter {
+        self.filter
+    }
+
+    /// Its conditions on rows called `x`, but for the span of time.
+    fn conditions(&self, base: &Base, of: Of, seen: Option<Seen>) -> Conditions {
+        let filter = self.filter;
+        let mut all = Conditions::default();
+        all.add("x.unit = ?", self.unit);
+        if let Some(codes) = &self.codes {
+            all.one_of("x.code", codes.clone());
+        }
+        if let Some(lrus) = &self.lrus {
+            all.one_of("x.lru", lrus.clone());
+        }
+        all.add("x.line = ?", filter.line.clone());
+        let fault = match of {
+            Of::Faults => "x.seq",
+            Of::Occurrences | Of::Repairs => "x.fault",
+        };
+        let of_fault = |condition: &str| match of {
+            Of::Faults => condition.replace("f.", "x."),
+            _ => format!("x.fault IN (SELECT f.seq FROM fault f WHERE {condition})"),
+        };
+        all.add(
+            &of_fault("lower(f.severity) = lower(?)"),
+            filter.severity.clone(),
+        );
+        all.add(&of_fault("f.state = ?"), filter.state);
+        self.of_occurrence(of, fault, seen, &mut all);
+        if let Some(search) = &self.search {
+            let typed = filter.note.clone().unwrap_or_default();
+            let of_fault = if self.common.of_faults {
+                fault_says(fault, typed.clone(), &mut all)
+            } else {
+                format!("{fault} IN ({})", said_of_fault(base, search, &mut all))
+            };
+            let of_run = if self.common.of_runs {
+                run_says(fault, typed, &mut all)
+            } else {
+                format!("{fault} IN ({})", said_of_run(base, search, &mut all))
+            };
+            all.require(format!("({of_fault} OR {of_run})"));
+        }
+        if let Some(serial) = &filter.serial {
+            let repaired = repaired_with(base, serial, &mut all);
+            all.require(format!("{fault} IN ({repaired})"));
+        }
+        all
+    }
+
+    /// What it asks of an occurrence: all of it of the same one.
+    fn of_occurrence(&self, of: Of, fault: &str, seen: Option<Seen>, all: &mut Conditions) {
+        let filter = self.filter;
+        let name = if of == Of::Occurrences { "x" } else { "o" };
+        let mut asked = Vec::new();
+        if let Some(train) = &filter.train {
+            let place = all.place(train.clone());
+            asked.push(format!(
+                "{name}.run IN (SELECT r.seq FROM run r WHERE r.train = {place} AND r.train <> '')"
+            ));
+        }
+        if let Some(run) = filter.run {
+            let place = all.place(run);
+            asked.push(format!(
+                "{name}.run IN (SELECT r.seq FROM run r WHERE r.id = {place})"
+            ));
+        }
+        let by_run = !asked.is_empty();
+        if let Some(procedure) = &filter.procedure {
+            let place = all.place(procedure.clone());
+            asked.push(format!(
+                "EXISTS (SELECT 1 FROM step s WHERE s.run = {name}.run
+                    AND s.step_index = {name}.step_index AND s.procedure = {place})"
+            ));
+        }
+        if of == Of::Occurrences {
+            asked
+                .into_iter()
+                .for_each(|condition| all.require(condition));
+            return;
+        }
+        // Whether a fault was seen since then its own row tells; before then, or then and so, does not.
+        let (since_us, until_us) = seen.unwrap_or_default();
+        if until_us.is_some() || !asked.is_empty() {
+            for (compared, at_us) in [(">=", since_us), ("<", until_us)] {
+                if let Some(at_us) = at_us {
+                    let place = all.place(at_us);
+                    asked.push(format!("o.at_us {compared} {place}"));
+                }
+            }
+        }
+        if asked.is_empty() {
+            return;
+        }
+        let asked = asked.join(" AND ");
+        // Few runs are gone through from their occurrences; else each fault is looked at for itself.
+        all.require(match by_run {
+            true => format!("{fault} IN (SELECT o.fault FROM fault_occurrence o WHERE {asked})"),
+            false => format!(
+                "EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = {fault} AND {asked})"
+            ),
+        });
+    }
+
+    /// The conditions and the span of time, on the column of `x` that says when.
+    pub fn conditions_at(&self, base: &Base, of: Of, at: &str) -> Conditions {
+        self.conditions_from(base, of, at, self.filter.since_us)
+    }
+
+    /// The same, and not before this time: one bound, since an index is gone through from one only.
+    pub fn conditions_from(
+        &self,
+        base: &Base,
+        of: Of,
+        at: &str,
+        since_us: Option<i64>,
+    ) -> Conditions {
+        let mut all = self.conditions(base, of, None);
+        all.add(&format!("x.{at} >= ?"), since_us.max(self.filter.since_us));
+        all.add(&format!("x.{at} < ?"), self.filter.until_us);
+        all
+    }
+
+    /// The conditions on faults, and that they were seen in the span of time.
+    pub fn conditions_seen(&self, base: &Base) -> Conditions {
+        let FaultFilter {
+            since_us, until_us, ..
+        } = *self.filter;
+        let mut all = self.conditions(base, Of::Faults, Some((since_us, until_us)));
+        all.add("x.last_at_us >= ?", since_us);
+        all.add("x.first_at_us < ?", until_us);
+        all
+    }
+}
+
+/// From and until, µs.
+type Seen = (Option<i64>, Option<i64>);
+
+/// Faults with these words in what was said about them.
+fn said_of_fault(base: &Base, search: &Search, all: &mut Conditions) -> String {
+    match base {
+        Base::File(_) => {
+            let place = all.place(search.for_file());
+            format!(
+                "SELECT e.fault FROM event_words w JOIN fault_event e ON e.seq = w.rowid
+                 WHERE event_words MATCH {place}"
+            )
+        }
+        Base::Server(_) => {
+            let place = all.place(search.for_server());
+            format!("SELECT e.fault FROM fault_event e WHERE e.words @@ CAST({place} AS tsquery)")
+        }
+    }
+}
+
+/// Whether what was said about a fault has these words.
+fn fault_says(fault: &str, typed: String, all: &mut Conditions) -> String {
+    let place = all.place(typed);
+    format!(
+        "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = {fault}
+            AND e.kind NOT IN ('opened', 'recurred') AND says(e.body, {place}))"
+    )
+}
+
+/// Whether what was said about a run that saw a fault has these words.
+fn run_says(fault: &str, typed: String, all: &mut Conditions) -> String {
+    let place = all.place(typed);
+    format!(
+        "EXISTS (SELECT 1 FROM fault_occurrence o JOIN run_note n ON n.run = o.run
+            WHERE o.fault = {fault} AND says(n.text, {place}))"
+    )
+}
+
+/// Faults seen in runs with these words in what was said about them.
+fn said_of_run(base: &Base, search: &Search, all: &mut Conditions) -> String {
+    match base {
+        Base::File(_) => {
+            let place = all.place(search.for_file());
+            format!(
+                "SELECT o.fault FROM note_words w JOIN run_note n ON n.seq = w.rowid
+                 JOIN fault_occurrence o ON o.run = n.run WHERE note_words MATCH {place}"
+            )
+        }
+        Base::Server(_) => {
+            let place = all.place(search.for_server());
+            format!(
+                "SELECT o.fault FROM run_note n JOIN fault_occurrence o ON o.run = n.run
+                 WHERE n.words @@ CAST({place} AS tsquery)"
+            )
+        }
+    }
+}
+
+/// Faults repaired with a part of this serial number: found by its words, then compared in full.
+fn repaired_with(base: &Base, serial: &str, all: &mut Conditions) -> String {
+    let Some(search) = Search::exactly(serial) else {
+        return "SELECT seq FROM fault WHERE 1 = 0".to_owned();
+    };
+    let said = said_of_fault(base, &search, all);
+    let places = ["serial_old", "serial_new"].map(|key| {
+        let quoted = serde_json::Value::from(serial).to_string();
+        all.place(format!("\"{key}\":{quoted}"))
+    });
+    let [old, new] = places;
+    format!(
+        "{said} AND e.kind = 'repair'
+            AND (replace(e.body, {old}, '') <> e.body OR replace(e.body, {new}, '') <> e.body)"
+    )
+}
+
+fn search(note: &str) -> Result<Search, StoreError> {
+    Search::new(note).ok_or_else(|| StoreError::NoWords {
+        asked: note.to_owned(),
+    })
+}
+
+/// The numbers of a code: itself, or those of the faults of that name.
+fn codes(store: &Store, code: &str) -> Result<Vec<i64>, StoreError> {
+    let number = match code.strip_prefix("0x") {
+        Some(hex) => i64::from_str_radix(hex, 16).ok(),
+        None => code.parse().ok(),
+    };
+    if let Some(number) = number {
+        return Ok(vec![number]);
+    }
+    let known = store.known_codes()?;
+    let named = known
+        .into_iter()
+        .filter(|(_, name)| name.eq_ignore_ascii_case(code));
+    Ok(named.map(|(number, _)| number).collect())
+}
+
+/// A part's name as it was written, in capitals or not.
+fn lrus(store: &Store, lru: &str) -> Result<Vec<String>, StoreError> {
+    let mut known = store.known_lrus()?;
+    known.retain(|known| known.eq_ignore_ascii_case(lru));
+    Ok(known)
+}
+
+impl Store {
+    /// Every code a fault was ever recorded with, and its latest name.
+    pub fn known_codes(&self) -> Result<Vec<(i64, String)>, StoreError> {
+        // From one code to the next by index: all faults need not be looked at.
+        let sql = "WITH RECURSIVE c(code) AS (
+                SELECT min(code) FROM fault
+                UNION ALL SELECT (SELECT min(f.code) FROM fault f WHERE f.code > c.code)
+                FROM c WHERE c.code IS NOT NULL)
+            SELECT code, (SELECT f.code_name FROM fault f WHERE f.code = c.code
+                ORDER BY f.last_at_us DESC LIMIT 1)
+            FROM c WHERE code IS NOT NULL ORDER BY code";
+        self.select("listing codes", sql, &[], |row| {
+            Ok((row.get(0)?, row.get(1)?))
+        })
+    }
+
+    /// Every part a fault ever pointed at.
+    pub fn known_lrus(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "WITH RECURSIVE c(lru) AS (
+                SELECT min(lru) FROM fault
+                UNION ALL SELECT (SELECT min(f.lru) FROM fault f WHERE f.lru > c.lru)
+                FROM c WHERE c.lru IS NOT NULL)
+            SELECT lru FROM c WHERE lru IS NOT NULL ORDER BY lru";
+        self.select("listing parts", sql, &[], |row| row.get(0))
+    }
+
+    pub(super) fn unit_seq(&self, serial: &str) -> Result<i64, StoreError> {
+        let found = self.first(
+            "looking up a unit",
+            "SELECT seq FROM unit WHERE serial = ?1",
+            &values![serial],
+            |row| row.get(0),
+        )?;
+        found.ok_or_else(|| StoreError::NotFound {
+            what: "unit",
+            asked: serial.to_owned(),
+        })
+    }
+}

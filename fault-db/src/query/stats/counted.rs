@@ -1,0 +1,184 @@
+//! What is counted, whichever way.
+
+use std::collections::BTreeMap;
+
+use crate::base::Field;
+use crate::functions::{DAY_US, utc_day, utc_month};
+use crate::units;
+
+/// A code or unit by its number, a part or line by its name; of all together an empty name.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Key {
+    Number(i64),
+    Text(String),
+}
+
+impl Key {
+    pub fn from_field(field: Field<'_>) -> Self {
+        match field {
+            Field::Integer(number) => Self::Number(number),
+            Field::Text(text) => Self::Text(text.to_owned()),
+            Field::Null | Field::Real(_) | Field::Bytes(_) => Self::Text(String::new()),
+        }
+    }
+}
+
+/// Counts of each key.
+pub(crate) type Counted = BTreeMap<Key, Counts>;
+
+/// What is counted of one key.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Counts {
+    pub seen: u64,
+    pub opened: u32,
+    pub not_closed: u32,
+    pub closed: u32,
+    pub bare: u32,
+    pub units: Units,
+    pub last_at_us: Option<i64>,
+    pub course: Vec<u64>,
+    pub repairs: super::repairs::Repairs,
+}
+
+impl Counts {
+    /// Nothing was there after all.
+    pub fn is_nothing(&self) -> bool {
+        self.seen == 0 && self.opened == 0 && self.closed == 0 && self.repairs.all == 0
+    }
+
+    /// Seen so often in a bin.
+    pub fn see(&mut self, bins: &Bins, bin: usize, times: u64) {
+        self.seen += times;
+        self.course.resize(bins.len(), 0);
+        if let Some(count) = self.course.get_mut(bin) {
+            *count += times;
+        }
+    }
+
+    /// Adds what was counted of a day or month.
+    pub fn take_in(&mut self, tally: &Tally<'_>) {
+        self.see(tally.bins, tally.bin, tally.seen);
+        self.opened += tally.opened;
+        self.closed += tally.closed;
+        self.bare += tally.bare;
+        self.units.add(tally.units);
+        self.repairs.all += tally.repairs;
+        self.repairs.us += tally.repair_us;
+        self.repairs.back += tally.back;
+    }
+
+    /// Takes a day out of its month; which units have none left is not known.
+    pub fn leave_out(&mut self, tally: &Tally<'_>) {
+        let less = |count: &mut u32, by: u32| *count = count.saturating_sub(by);
+        self.seen = self.seen.saturating_sub(tally.seen);
+        if let Some(count) = self.course.get_mut(tally.bin) {
+            *count = count.saturating_sub(tally.seen);
+        }
+        less(&mut self.opened, tally.opened);
+        less(&mut self.closed, tally.closed);
+        less(&mut self.bare, tally.bare);
+        less(&mut self.repairs.all, tally.repairs);
+        self.repairs.us -= tally.repair_us;
+        less(&mut self.repairs.back, tally.back);
+    }
+
+    /// Seen last at this time, or later.
+    pub fn seen_at(&mut self, at_us: i64) {
+        self.last_at_us = self.last_at_us.max(Some(at_us));
+    }
+}
+
+/// What a file keeps of a key on a day or in a month.
+pub(crate) struct Tally<'a> {
+    pub bins: &'a Bins,
+    pub bin: usize,
+    pub seen: u64,
+    pub opened: u32,
+    pub closed: u32,
+    pub bare: u32,
+    pub units: &'a [u8],
+    pub repairs: u32,
+    pub repair_us: i64,
+    pub back: u32,
+}
+
+/// How many units, or which.
+#[derive(Clone, Debug)]
+pub(crate) enum Units {
+    Set(Vec<u8>),
+    Number(u32),
+}
+
+impl Default for Units {
+    fn default() -> Self {
+        Self::Number(0)
+    }
+}
+
+impl Units {
+    pub fn count(&self) -> u32 {
+        match self {
+            Self::Set(set) => units::count(set),
+            Self::Number(number) => *number,
+        }
+    }
+
+    /// Adds a set to a set.
+    pub fn add(&mut self, more: &[u8]) {
+        match self {
+            Self::Set(set) => units::add(set, more),
+            Self::Number(_) => *self = Self::Set(more.to_vec()),
+        }
+    }
+
+    /// Adds a unit to a set.
+    pub fn add_one(&mut self, unit: i64) {
+        match self {
+            Self::Set(set) => units::insert(set, unit),
+            Self::Number(_) => *self = Self::Set(units::with(&[], unit)),
+        }
+    }
+}
+
+/// A span in days or months, UTC, for a course over time: days if there are not many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Bins {
+    pub by_day: bool,
+    first: i64,
+    last: i64,
+}
+
+/// So many days can be shown one by one.
+const MOST_DAYS: i64 = 62;
+
+impl Bins {
+    /// Of the span until just before `until_us`.
+    pub fn of(since_us: i64, until_us: i64) -> Self {
+        let last_us = since_us.max(until_us.saturating_sub(1));
+        let by_day = (last_us - since_us) / DAY_US < MOST_DAYS;
+        let number = if by_day { utc_day } else { utc_month };
+        Self {
+            by_day,
+            first: number(since_us),
+            last: number(last_us),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        usize::try_from(self.last - self.first + 1).unwrap_or(0)
+    }
+
+    /// The place of a day or month by its number.
+    pub fn place(&self, number: i64) -> usize {
+        usize::try_from((number - self.first).max(0)).unwrap_or(0)
+    }
+
+    /// The place of a time.
+    pub fn place_at(&self, at_us: i64) -> usize {
+        self.place(if self.by_day {
+            utc_day(at_us)
+        } else {
+            utc_month(at_us)
+        })
+    }
+}

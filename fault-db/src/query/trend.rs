@@ -1,0 +1,354 @@
+//! A measurement over time: every value, by day, and by unit.
+
+use serde::Serialize;
+
+use super::filter::Conditions;
+use crate::base::{Base, values};
+use crate::error::StoreError;
+use crate::functions::{DAY_US, month_start_us, utc_day, utc_month};
+use crate::id::Id;
+use crate::record::{Verdict, part_name};
+use crate::store::Store;
+
+const BY_DAY: &str = "reading a measurement by day";
+
+/// Which values of a measurement; `None` does not restrict.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TrendQuery {
+    /// Its name.
+    pub measurement: String,
+    /// Serial number of the unit.
+    pub unit: Option<String>,
+    /// Line of the run.
+    pub line: Option<String>,
+    /// The train the unit was in.
+    pub train: Option<String>,
+    /// The procedure that measured it: each may have limits of its own.
+    pub procedure: Option<String>,
+    /// In a run that began at this time or later.
+    pub since_us: Option<i64>,
+    /// In a run that began before this time.
+    pub until_us: Option<i64>,
+}
+
+/// A measurement taken once.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrendPoint {
+    /// When: the run's start. Within a run, points come in the order of its steps.
+    pub at_us: i64,
+    /// The run.
+    pub run_id: Id,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// The value; none if nothing could be measured.
+    pub value: Option<f64>,
+    /// Unit of value and limits.
+    pub unit: String,
+    /// Lowest allowed value.
+    pub low: Option<f64>,
+    /// Highest allowed value.
+    pub high: Option<f64>,
+    /// How it came out.
+    pub verdict: Verdict,
+}
+
+/// The values of one day, UTC.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TrendDay {
+    /// Beginning of the day, microseconds since 1970.
+    pub day_us: i64,
+    /// How many.
+    pub n: u32,
+    /// Their mean.
+    pub mean: f64,
+    /// The sum of their squares.
+    pub sum_of_squares: f64,
+    /// The least.
+    pub least: f64,
+    /// The greatest.
+    pub most: f64,
+    /// How many did not pass.
+    pub not_passed: u32,
+}
+
+/// The values of one unit in whole months, UTC.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrendUnit {
+    /// Serial number.
+    pub unit_serial: String,
+    /// How many.
+    pub n: u32,
+    /// Their mean.
+    pub mean: f64,
+    /// How much they rise in a day, by least squares; none of fewer than two times.
+    pub slope_per_day: Option<f64>,
+}
+
+/// What is allowed, as it was last.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrendLimits {
+    /// Unit of values and limits.
+    pub unit: String,
+    /// Lowest allowed value.
+    pub low: Option<f64>,
+    /// Highest allowed value.
+    pub high: Option<f64>,
+}
+
+impl Store {
+    /// Every value, oldest first.
+    ///
+    /// # Errors
+    /// No such measurement or unit; or of the file or server.
+    pub fn trend(&self, query: &TrendQuery) -> Result<Vec<TrendPoint>, StoreError> {
+        let mut conditions = self.measured(query)?;
+        conditions.require("u.seq = r.unit");
+        let sql = format!(
+            "SELECT r.started_at_us, r.id, u.serial, m.value, m.unit, m.low, m.high, m.verdict
+             FROM run r CROSS JOIN unit u CROSS JOIN measurement m
+             {} ORDER BY 1, m.run, m.step_index, m.ordinal",
+            conditions.sql()
+        );
+        self.select("reading a measurement", &sql, conditions.values(), |row| {
+            Ok(TrendPoint {
+                at_us: row.get(0)?,
+                run_id: row.get(1)?,
+                unit_serial: row.get(2)?,
+                value: row.get(3)?,
+                unit: row.get(4)?,
+                low: row.get(5)?,
+                high: row.get(6)?,
+                verdict: row.get(7)?,
+            })
+        })
+    }
+
+    /// The values day by day, oldest first.
+    ///
+    /// # Errors
+    /// As [`trend`](Self::trend).
+    pub fn trend_by_day(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
+        let is_fleet = query.unit.is_none() && query.line.is_none() && query.train.is_none();
+        // Whole days are kept; at both ends of the span less than one may be left.
+        let low = query.since_us.map_or(i64::MIN, |us| utc_day(us - 1) + 1);
+        let high = query.until_us.map_or(i64::MAX, utc_day);
+        if matches!(self.base(), Base::Server(_)) || !is_fleet || low >= high {
+            return self.days(query);
+        }
+        self.measured(query)?;
+        let mut kept = Conditions::default();
+        kept.add("m.name = ?", Some(query.measurement.clone()));
+        kept.add("m.procedure = ?", query.procedure.clone());
+        kept.add("m.day >= ?", Some(low));
+        kept.add("m.day < ?", Some(high));
+        let sql = format!(
+            "SELECT m.day, CAST(sum(m.n) AS BIGINT), sum(m.x), sum(m.xx), min(m.least), max(m.most),
+                CAST(sum(m.not_passed) AS BIGINT)
+             FROM measured_day m {} GROUP BY 1",
+            kept.sql()
+        );
+        let mut days = self.select(BY_DAY, &sql, kept.values(), trend_day)?;
+        if query.since_us.is_some() {
+            days.extend(self.days(&TrendQuery {
+                until_us: Some(low * DAY_US),
+                ..query.clone()
+            })?);
+        }
+        if query.until_us.is_some() {
+            days.extend(self.days(&TrendQuery {
+                since_us: Some(high * DAY_US),
+                ..query.clone()
+            })?);
+        }
+        days.sort_by_key(|day| day.day_us);
+        Ok(days)
+    }
+
+    /// Day by day, value by value.
+    fn days(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
+        let mut conditions = self.measured(query)?;
+        conditions.require("m.value IS NOT NULL");
+        let sql = format!(
+            "SELECT utc_day(r.started_at_us), count(*), sum(m.value), sum(m.value * m.value),
+                min(m.value), max(m.value), sum(CASE WHEN m.verdict <> 'passed' THEN 1 ELSE 0 END)
+             FROM run r CROSS JOIN measurement m {} GROUP BY 1 ORDER BY 1",
+            conditions.sql()
+        );
+        self.select(BY_DAY, &sql, conditions.values(), trend_day)
+    }
+
+    /// The values unit by unit, in the whole months the span touches.
+    ///
+    /// # Errors
+    /// As [`trend`](Self::trend).
+    pub fn trend_by_unit(&self, query: &TrendQuery) -> Result<Vec<TrendUnit>, StoreError> {
+        const DOING: &str = "reading a measurement by unit";
+        let query = TrendQuery {
+            since_us: query.since_us.map(|us| month_start_us(utc_month(us))),
+            until_us: query
+                .until_us
+                .map(|us| month_start_us(utc_month(us - 1) + 1)),
+            ..query.clone()
+        };
+        let mut conditions = self.measured(&query)?;
+        let is_kept = query.line.is_none() && query.train.is_none();
+        let sql = match self.base() {
+            Base::File(_) if is_kept => {
+                conditions = Conditions::default();
+                conditions.add("m.name = ?", Some(query.measurement.clone()));
+                conditions.add("u.serial = ?", query.unit.clone());
+                conditions.add("m.procedure = ?", query.procedure.clone());
+                conditions.add("m.month >= ?", query.since_us.map(utc_month));
+                conditions.add("m.month < ?", query.until_us.map(utc_month));
+                format!(
+                    "SELECT u.serial, CAST(sum(m.n) AS BIGINT), sum(m.x), sum(m.t), sum(m.tt), sum(m.tx)
+                     FROM measured_month m JOIN unit u ON u.seq = m.unit {}
+                     GROUP BY u.serial ORDER BY u.serial",
+                    conditions.sql()
+                )
+            }
+            _ => {
+                conditions.require("u.seq = r.unit");
+                conditions.require("m.value IS NOT NULL");
+                // Days since the beginning of 2020, as the schema counts them.
+                let t = "(CAST(r.started_at_us - 1577836800000000 AS DOUBLE PRECISION) / 86400e6)";
+                format!(
+                    "SELECT u.serial, count(*), sum(m.value), sum({t}), sum({t} * {t}),
+                        sum({t} * m.value)
+                     FROM run r CROSS JOIN unit u CROSS JOIN measurement m
+                     {} GROUP BY u.serial ORDER BY u.serial",
+                    conditions.sql()
+                )
+            }
+        };
+        self.select(DOING, &sql, conditions.values(), |row| {
+            let count: u32 = row.get(1)?;
+            let n = f64::from(count);
+            let [x, t, tt, tx] = [row.get(2)?, row.get(3)?, row.get(4)?, row.get::<f64>(5)?];
+            let spread: f64 = tt - t * t / n;
+            Ok(TrendUnit {
+                unit_serial: row.get(0)?,
+                n: count,
+                mean: x / n,
+                slope_per_day: (spread > 1e-6 * n).then(|| (tx - t * x / n) / spread),
+            })
+        })
+    }
+
+    /// Unit and limits of the latest value.
+    ///
+    /// # Errors
+    /// As [`trend`](Self::trend).
+    pub fn trend_limits(&self, query: &TrendQuery) -> Result<Option<TrendLimits>, StoreError> {
+        let conditions = self.measured(query)?;
+        let sql = format!(
+            "SELECT m.unit, m.low, m.high FROM run r CROSS JOIN measurement m {}
+             ORDER BY r.started_at_us DESC, m.step_index DESC LIMIT 1",
+            conditions.sql()
+        );
+        self.first("reading limits", &sql, conditions.values(), |row| {
+            Ok(TrendLimits {
+                unit: row.get(0)?,
+                low: row.get(1)?,
+                high: row.get(2)?,
+            })
+        })
+    }
+
+    /// The names of all measurements ever taken.
+    ///
+    /// # Errors
+    /// Of the file or server.
+    pub fn measurement_names(&self) -> Result<Vec<String>, StoreError> {
+        // From one name to the next by index: all values need not be looked at.
+        let sql = "WITH RECURSIVE c(name) AS (
+                SELECT min(name) FROM measurement
+                UNION ALL SELECT (SELECT min(m.name) FROM measurement m WHERE m.name > c.name)
+                FROM c WHERE c.name IS NOT NULL)
+            SELECT name FROM c WHERE name IS NOT NULL ORDER BY name";
+        self.select("listing measurements", sql, &[], |row| row.get(0))
+    }
+
+    /// The procedures that ever measured it.
+    ///
+    /// # Errors
+    /// Of the file or server.
+    pub fn measuring_procedures(&self, measurement: &str) -> Result<Vec<String>, StoreError> {
+        let sql = match self.base() {
+            Base::File(_) => {
+                "SELECT DISTINCT procedure FROM measured_day WHERE name = ?1 ORDER BY 1"
+            }
+            Base::Server(_) => {
+                "SELECT DISTINCT s.procedure FROM measurement m JOIN step s ON s.run = m.run
+                    AND s.step_index = m.step_index WHERE m.name = ?1 ORDER BY 1"
+            }
+        };
+        self.select("listing procedures", sql, &values![measurement], |row| {
+            row.get(0)
+        })
+    }
+
+    /// When a part of this unit was repaired last, if ever.
+    ///
+    /// # Errors
+    /// No such unit; or of the file or server.
+    pub fn last_repair(&self, unit: &str, part: &str) -> Result<Option<i64>, StoreError> {
+        let unit = self.unit_seq(unit)?;
+        let found = self.first(
+            "looking for a repair",
+            "SELECT max(at_us) FROM repair WHERE part = ?1 AND unit = ?2",
+            &values![part_name(part), unit],
+            |row| row.get::<Option<i64>>(0),
+        )?;
+        Ok(found.flatten())
+    }
+
+    /// What a question asks of a measurement `m` in a run `r`.
+    fn measured(&self, query: &TrendQuery) -> Result<Conditions, StoreError> {
+        let unit = query.unit.as_deref().map(|serial| self.unit_seq(serial));
+        let mut conditions = Conditions::default();
+        // Runs first, by unit or time, then their values: a file follows the order of CROSS JOIN.
+        conditions.require("m.run = r.seq");
+        conditions.add("m.name = ?", Some(query.measurement.clone()));
+        conditions.add("r.unit = ?", unit.transpose()?);
+        conditions.add("r.line = ?", query.line.clone());
+        conditions.add("r.train = ? AND r.train <> ''", query.train.clone());
+        conditions.add(
+            "EXISTS (SELECT 1 FROM step s WHERE s.run = m.run AND s.step_index = m.step_index
+                AND s.procedure = ?)",
+            query.procedure.clone(),
+        );
+        conditions.add("r.started_at_us >= ?", query.since_us);
+        conditions.add("r.started_at_us < ?", query.until_us);
+        if !self.has_measurement(&query.measurement)? {
+            return Err(StoreError::NotFound {
+                what: "measurement",
+                asked: query.measurement.clone(),
+            });
+        }
+        Ok(conditions)
+    }
+
+    fn has_measurement(&self, name: &str) -> Result<bool, StoreError> {
+        let found = self.first(
+            "looking for a measurement",
+            "SELECT 1 FROM measurement WHERE name = ?1 LIMIT 1",
+            &values![name],
+            |_| Ok(()),
+        )?;
+        Ok(found.is_some())
+    }
+}
+
+fn trend_day(row: crate::base::Row<'_>) -> crate::base::SqlResult<TrendDay> {
+    let n: u32 = row.get(1)?;
+    Ok(TrendDay {
+        day_us: row.get::<i64>(0)? * DAY_US,
+        n,
+        mean: row.get::<f64>(2)? / f64::from(n),
+        sum_of_squares: row.get(3)?,
+        least: row.get(4)?,
+        most: row.get(5)?,
+        not_passed: row.get(6)?,
+    })
+}

@@ -1,0 +1,173 @@
+//! Opening a server's history.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::time::Duration;
+
+use postgres::config::SslMode;
+use postgres::{Client, Config, NoTls};
+
+use super::address::{Address, Guard};
+use super::password::{self, Password};
+use super::{schema, tls, trouble};
+use crate::base::{Base, Server};
+use crate::error::StoreError;
+use crate::id::IdSource;
+use crate::store::Store;
+
+const DOING: &str = "connecting";
+
+/// Data that is on its way and not acknowledged for so long is lost.
+const NETWORK_PATIENCE: Duration = Duration::from_secs(30);
+
+/// What a session agrees on: that a laptop whose cable was pulled lets go of the writers' lock soon, rather
+/// than in two hours; and that no question is compiled, which takes longer than to answer it.
+const MANNERS: &str = "
+    SET statement_timeout = '300s';
+    SET lock_timeout = '60s';
+    SET idle_in_transaction_session_timeout = '60s';
+    SET tcp_keepalives_idle = 20;
+    SET tcp_keepalives_interval = 10;
+    SET tcp_keepalives_count = 3;
+    SET tcp_user_timeout = '60s';
+    SET standard_conforming_strings = on;
+    SET jit = off";
+
+impl Store {
+    /// Connects to a server for reading, and for writing what people say about faults and runs. Its
+    /// tables are made, or brought up to date, if need be.
+    pub fn connect(address: &Address, mut ids: IdSource) -> Result<Self, StoreError> {
+        let (base, path) = open(address)?;
+        schema::bring_up_to_date(&base, &path, ids.mint())?;
+        Self::of(base, &path, Some(ids))
+    }
+
+    /// Connects to a server for reading only.
+    pub fn connect_read_only(address: &Address) -> Result<Self, StoreError> {
+        let (base, path) = open(address)?;
+        schema::check(&base, &path)?;
+        let guarded = base.execute("SET default_transaction_read_only = on", &[]);
+        guarded.map_err(|error| StoreError::from_sql(&path, DOING, error))?;
+        Self::of(base, &path, None)
+    }
+}
+
+fn open(address: &Address) -> Result<(Base, PathBuf), StoreError> {
+    let path = PathBuf::from(address.to_string());
+    let environment = |name: &str| std::env::var_os(name);
+    let user = address.user.clone().or_else(|| {
+        let named = environment("PGUSER").or_else(|| environment("USER"));
+        named.and_then(|name| name.into_string().ok())
+    });
+    let user = user.ok_or_else(|| StoreError::BadAddress {
+        reason: "it names no user, and nobody is logged in; write postgres://USER@…".to_owned(),
+    })?;
+    let database = address.database.clone().unwrap_or_else(|| user.clone());
+    let password = password::find(address, &user, &database, &environment);
+    let mut config = config(address, &user, &database);
+    if let Some(secret) = &password.secret {
+        config.password(secret);
+    }
+    let mut client = reach(config, address, &path, password)?;
+    let agreed = client.batch_execute(MANNERS);
+    agreed.map_err(|error| trouble::sorted(&path, DOING, error))?;
+    check_text(&mut client, &path)?;
+    Ok((Base::Server(Server::new(client)), path))
+}
+
+/// Text of any language has to come back as it went.
+fn check_text(client: &mut Client, path: &Path) -> Result<(), StoreError> {
+    let row = client.query_one("SHOW server_encoding", &[]);
+    let encoding: String = row
+        .and_then(|row| row.try_get(0))
+        .map_err(|error| trouble::sorted(path, DOING, error))?;
+    if encoding == "UTF8" {
+        return Ok(());
+    }
+    Err(StoreError::ServerRefuses {
+        path: path.to_path_buf(),
+        reason: format!(
+            "its text is {encoding}; make the database with `createdb -E UTF8 -T template0`"
+        ),
+    })
+}
+
+fn config(address: &Address, user: &str, database: &str) -> Config {
+    let mut config = Config::new();
+    config
+        .user(user)
+        .dbname(database)
+        .port(address.port)
+        .application_name("ptu")
+        .connect_timeout(Duration::from_secs(address.connect_timeout_s))
+        .tcp_user_timeout(NETWORK_PATIENCE)
+        .keepalives_idle(Duration::from_secs(20))
+        .keepalives_interval(Duration::from_secs(10))
+        .keepalives_retries(3)
+        .ssl_mode(match address.guard() {
+            Guard::Disable => SslMode::Disable,
+            Guard::Prefer => SslMode::Prefer,
+            Guard::Verify => SslMode::Require,
+        });
+    if address.is_socket() {
+        config.host_path(&address.host);
+    } else {
+        config.host(&address.host);
+    }
+    config
+}
+
+/// Connects on a thread of its own, because a name that is being looked up and a server that takes a
+/// connection and then falls silent both keep it waiting longer than anybody wants to.
+fn reach(
+    config: Config,
+    address: &Address,
+    path: &Path,
+    password: Password,
+) -> Result<Client, StoreError> {
+    let guard = address.guard();
+    let connector = match guard {
+        Guard::Disable => None,
+        Guard::Prefer | Guard::Verify => {
+            Some(
+                tls::connector(address).map_err(|reason| StoreError::ServerNotTrusted {
+                    path: path.to_path_buf(),
+                    reason,
+                })?,
+            )
+        }
+    };
+    let (done, waiting) = mpsc::channel();
+    let connecting = std::thread::Builder::new()
+        .name("connecting".into())
+        .spawn(move || {
+            let connected = match connector {
+                Some(tls) => config.connect(tls),
+                None => config.connect(NoTls),
+            };
+            // Nobody waits any more if it took too long.
+            let _ = done.send(connected);
+        });
+    let away = |reason: String| StoreError::ServerAway {
+        path: path.to_path_buf(),
+        doing: DOING,
+        reason,
+    };
+    connecting.map_err(|error| away(error.to_string()))?;
+    let patience = Duration::from_secs(address.connect_timeout_s + 1);
+    let connected = waiting
+        .recv_timeout(patience)
+        .map_err(|_| away("no answer in time".to_owned()))?;
+    connected.map_err(|error| match trouble::sorted(path, DOING, error) {
+        StoreError::ServerRefuses { path, reason } => StoreError::ServerRefuses {
+            path,
+            reason: match &password.passed_over {
+                Some(why) => format!("{reason}; {why}"),
+                None => reason,
+            },
+        },
+        // Whatever else keeps a connection from being made, there is none.
+        StoreError::Server { source, .. } => away(source.to_string()),
+        other => other,
+    })
+}

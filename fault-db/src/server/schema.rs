@@ -1,0 +1,145 @@
+//! The server's tables: whether they are ours, how old they are, and how they are made.
+
+use std::path::Path;
+
+use crate::base::{Base, Server, SqlError, SqlResult, values};
+use crate::error::StoreError;
+use crate::id::Id;
+
+/// The schema's versions, one text each; `meta` counts them.
+const STEPS: &[&str] = &[concat!(
+    include_str!("schema.sql"),
+    include_str!("views.sql")
+)];
+
+/// The schema this crate reads and writes on a server.
+pub const SERVER_SCHEMA_VERSION: i32 = STEPS.len() as i32;
+
+/// What `meta` says of a database of ours.
+const APPLICATION: &str = "ptu fault history";
+
+const DOING: &str = "looking at the server's tables";
+
+/// What was found in a database.
+enum Found {
+    Nothing,
+    Ours { schema: i32 },
+    Others,
+}
+
+/// Refuses a server this crate cannot read.
+pub(super) fn check(base: &Base, path: &Path) -> Result<(), StoreError> {
+    let path = path.to_path_buf();
+    match look(base).map_err(|error| StoreError::from_sql(&path, DOING, error))? {
+        Found::Nothing => Err(StoreError::ServerEmpty { path }),
+        Found::Others => Err(StoreError::ServerForeign { path }),
+        Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
+            Err(StoreError::ServerOlderSchema {
+                path,
+                found: schema,
+                known: SERVER_SCHEMA_VERSION,
+            })
+        }
+        Found::Ours { schema } if schema > SERVER_SCHEMA_VERSION => {
+            Err(StoreError::ServerNewerSchema {
+                path,
+                found: schema,
+                known: SERVER_SCHEMA_VERSION,
+            })
+        }
+        Found::Ours { .. } => Ok(()),
+    }
+}
+
+/// Makes the tables of a new database, or brings those of an earlier version up to date. Two programs
+/// that do so at the same time wait for each other; what fails leaves nothing behind.
+pub(super) fn bring_up_to_date(base: &Base, path: &Path, new_id: Id) -> Result<(), StoreError> {
+    match check(base, path) {
+        Err(StoreError::ServerEmpty { .. } | StoreError::ServerOlderSchema { .. }) => {}
+        other => return other,
+    }
+    let Base::Server(server) = base else {
+        return Ok(());
+    };
+    let failed = |error: SqlError| StoreError::from_sql(path, "making the server's tables", error);
+    server.begin().map_err(failed)?;
+    let made = || {
+        // Another program may have been first.
+        match look(base)? {
+            Found::Nothing => steps(server, 0)?,
+            Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
+                steps(server, usize::try_from(schema).unwrap_or_default())?;
+            }
+            Found::Ours { .. } | Found::Others => {}
+        }
+        base.execute(
+            "INSERT INTO meta(key, value) VALUES ('application', ?1), ('server_id', ?2)
+             ON CONFLICT DO NOTHING",
+            &values![APPLICATION, new_id.to_string()],
+        )?;
+        server.batch("COMMIT")
+    };
+    made().map_err(|error| {
+        // The error says more than a failed rollback would.
+        let _ = server.batch("ROLLBACK");
+        failed(error)
+    })?;
+    check(base, path)
+}
+
+fn steps(server: &Server, from: usize) -> SqlResult<()> {
+    STEPS[from..]
+        .iter()
+        .try_for_each(|step| server.batch(step))?;
+    server.batch(&format!(
+        "INSERT INTO meta(key, value) VALUES ('schema', '{SERVER_SCHEMA_VERSION}')
+         ON CONFLICT (key) DO UPDATE SET value = excluded.value"
+    ))
+}
+
+/// The server's own name, given to it once.
+pub(crate) fn server_id(base: &Base) -> SqlResult<Option<Id>> {
+    let text = base.first(
+        "SELECT value FROM meta WHERE key = 'server_id'",
+        &[],
+        |row| row.get::<String>(0),
+    )?;
+    Ok(text.and_then(|text| text.parse().ok()))
+}
+
+fn look(base: &Base) -> SqlResult<Found> {
+    // What an extension brought along is nobody's history.
+    let tables: i64 = one(
+        base,
+        "SELECT count(*) FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace
+         WHERE n.nspname = current_schema() AND c.relkind IN ('r', 'p', 'v', 'm', 'f')
+            AND NOT EXISTS (SELECT 1 FROM pg_depend d WHERE d.classid = 'pg_class'::regclass
+                AND d.objid = c.oid AND d.deptype = 'e')",
+    )?;
+    if tables == 0 {
+        return Ok(Found::Nothing);
+    }
+    let has_meta: i64 = one(
+        base,
+        "SELECT count(*) FROM information_schema.columns
+         WHERE table_schema = current_schema() AND table_name = 'meta'
+            AND column_name IN ('key', 'value') AND data_type = 'text'",
+    )?;
+    if has_meta != 2 {
+        return Ok(Found::Others);
+    }
+    let said = |key: &str| {
+        let value = "SELECT value FROM meta WHERE key = ?1";
+        base.first(value, &values![key], |row| row.get::<String>(0))
+    };
+    let schema = said("schema")?.and_then(|text| text.parse().ok());
+    Ok(match (said("application")?.as_deref(), schema) {
+        (Some(APPLICATION), Some(schema)) => Found::Ours { schema },
+        _ => Found::Others,
+    })
+}
+
+fn one(base: &Base, sql: &str) -> SqlResult<i64> {
+    let found = base.first(sql, &[], |row| row.get(0))?;
+    Ok(found.unwrap_or_default())
+}

@@ -1,0 +1,329 @@
+//! One batch: so many entries of the outbox with all that belongs to them, gathered from the file and
+//! added to the server in one transaction.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::doubles;
+use super::ledger::Laptop;
+use super::outcome::{Different, SyncOutcome};
+use super::recurred;
+use super::rows::Rows;
+use super::tables;
+use crate::base::{Base, Field, Server, SqlResult, values};
+use crate::id::Id;
+use crate::server::said;
+use crate::settle::settle_all;
+
+/// Entries of a batch at most.
+pub(super) const MOST_ENTRIES: i64 = 500;
+
+/// A batch is closed when it is as large as this, in bytes on the wire.
+pub(super) const ENOUGH_BYTES: usize = 4 << 20;
+
+/// An entry of the outbox, and of a run its id and its seal's digest.
+pub(super) struct Entry {
+    pub seq: i64,
+    pub what: What,
+    pub row: i64,
+    run: Option<(Id, Option<Vec<u8>>)>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum What {
+    Run,
+    Event,
+    Note,
+}
+
+/// The next entries of the outbox, but for traces.
+pub(super) fn entries(file: &Base, after: i64) -> SqlResult<Vec<Entry>> {
+    file.select(
+        "SELECT o.seq, o.what, o.row, r.id, s.digest FROM outbox o
+            LEFT JOIN run r ON o.what = 'run' AND r.seq = o.row
+            LEFT JOIN seal s ON s.run = r.seq
+         WHERE o.seq > ?1 AND o.what <> 'trace' ORDER BY o.seq LIMIT ?2",
+        &values![after, MOST_ENTRIES],
+        |row| {
+            let what = match row.get::<&str>(1)? {
+                "run" => What::Run,
+                "event" => What::Event,
+                _ => What::Note,
+            };
+            let run = match row.get(3)? {
+                Some(id) => Some((id, row.get(4)?)),
+                None => None,
+            };
+            Ok(Entry {
+                seq: row.get(0)?,
+                what,
+                row: row.get(2)?,
+                run,
+            })
+        },
+    )
+}
+
+/// The last entry of the outbox.
+pub(super) fn last(file: &Base) -> SqlResult<i64> {
+    let last = "SELECT coalesce(max(seq), 0) FROM outbox";
+    Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())
+}
+
+/// What the server has of a run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// All of it, the same.
+    Whole,
+    /// Some of it, or there is no telling.
+    Perhaps,
+    /// Something else under its id.
+    Different,
+}
+
+/// Rows of one batch.
+pub(super) struct Batch<'a> {
+    file: &'a Base,
+    runs: Rows,
+    of_runs: [Rows; 5],
+    events: Rows,
+    notes: Rows,
+    seals: Rows,
+    unit_numbers: BTreeSet<i64>,
+    fault_numbers: BTreeSet<i64>,
+    /// Up to which entry it goes.
+    pub through: i64,
+    pub entries: u64,
+    already_there: u64,
+    different: Vec<Different>,
+}
+
+impl<'a> Batch<'a> {
+    /// Gathers what these entries stand for, as far as one batch goes.
+    pub fn gather(file: &'a Base, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
+        let known = known_runs(server, entries)?;
+        let mut batch = Self {
+            file,
+            runs: Rows::of(&tables::RUNS),
+            of_runs: [
+                Rows::of(&tables::SCRIPTS),
+                Rows::of(&tables::STEPS),
+                Rows::of(&tables::MEASUREMENTS),
+                Rows::of(&tables::RECORDINGS),
+                Rows::of(&tables::OCCURRENCES),
+            ],
+            events: Rows::of(&tables::EVENTS),
+            notes: Rows::of(&tables::NOTES),
+            seals: Rows::of(&tables::SEALS),
+            unit_numbers: BTreeSet::new(),
+            fault_numbers: BTreeSet::new(),
+            through: 0,
+            entries: 0,
+            already_there: 0,
+            different: Vec::new(),
+        };
+        for entry in entries {
+            batch.take(entry, &known)?;
+            batch.through = entry.seq;
+            batch.entries += 1;
+            if batch.bytes() >= ENOUGH_BYTES {
+                break;
+            }
+        }
+        Ok(batch)
+    }
+
+    fn take(&mut self, entry: &Entry, known: &BTreeMap<Id, Known>) -> SqlResult<()> {
+        match (entry.what, &entry.run) {
+            (What::Run, None) => Ok(()),
+            (What::Run, Some((id, _))) => match known.get(id) {
+                Some(Known::Whole) => {
+                    self.already_there += 1;
+                    Ok(())
+                }
+                Some(Known::Different) => {
+                    self.different.push(Different {
+                        what: "run",
+                        id: *id,
+                    });
+                    Ok(())
+                }
+                Some(Known::Perhaps) | None => self.run(entry.row),
+            },
+            (What::Event, _) => self.event(entry.row),
+            (What::Note, _) => self.note(entry.row),
+        }
+    }
+
+    fn run(&mut self, run: i64) -> SqlResult<()> {
+        self.runs.read(self.file, run)?;
+        for rows in &mut self.of_runs {
+            rows.read(self.file, run)?;
+        }
+        self.seals.read(self.file, run)?;
+        let of_run = |sql| {
+            self.file
+                .select(sql, &values![run], |row| row.get::<i64>(0))
+        };
+        let units = of_run("SELECT unit FROM run WHERE seq = ?1")?;
+        let faults = of_run("SELECT DISTINCT fault FROM fault_occurrence WHERE run = ?1")?;
+        let notes = of_run("SELECT seq FROM run_note WHERE run = ?1 ORDER BY seq")?;
+        self.unit_numbers.extend(units);
+        self.fault_numbers.extend(faults);
+        notes.into_iter().try_for_each(|note| self.note(note))
+    }
+
+    fn event(&mut self, event: i64) -> SqlResult<()> {
+        let events = &mut self.events;
+        self.file
+            .each(tables::EVENTS.read, &values![event], |row| {
+                let (kind, body) = (row.get(2)?, row.get(5)?);
+                let part = said::part(kind, body);
+                let words = said::event_words(kind, body);
+                events.take(row, &[made(&part), made(&words)])
+            })?;
+        let of = "SELECT fault FROM fault_event WHERE seq = ?1";
+        let fault = self
+            .file
+            .select(of, &values![event], |row| row.get::<i64>(0))?;
+        self.fault_numbers.extend(fault);
+        Ok(())
+    }
+
+    fn note(&mut self, note: i64) -> SqlResult<()> {
+        let notes = &mut self.notes;
+        self.file.each(tables::NOTES.read, &values![note], |row| {
+            let words = said::note_words(row.get(4)?);
+            notes.take(row, &[Field::Text(&words)])
+        })
+    }
+
+    fn bytes(&self) -> usize {
+        let of_runs: usize = self.of_runs.iter().map(|rows| rows.bytes).sum();
+        let rest = [&self.runs, &self.events, &self.notes, &self.seals];
+        of_runs + rest.iter().map(|rows| rows.bytes).sum::<usize>()
+    }
+
+    /// Adds all of it to the server, parents before children; runs in the caller's transaction.
+    pub fn send(mut self, base: &Base, server: &Server, known: &Laptop) -> SqlResult<SyncOutcome> {
+        let laptop = known.seq;
+        let (units, faults, other_ids) = self.identities()?;
+        units.send(server, laptop)?;
+        let runs = self.runs.send(server, laptop)?;
+        other_ids.send(server, laptop)?;
+        faults.send(server, laptop)?;
+        other_ids.send_by(server, laptop, tables::OTHER_IDS_TOO)?;
+        let mut occurrences = 0;
+        for rows in &self.of_runs {
+            // Occurrences are the last.
+            occurrences = rows.send(server, laptop)?;
+        }
+        let events = self.events.send(server, laptop)?;
+        let notes = self.notes.send(server, laptop)?;
+        if self.seals.send(server, laptop)? < self.seals.count as u64 {
+            self.different.extend(other_seals(&self.seals, server)?);
+        }
+        let settled = faults.ask(server, laptop, SERVER_FAULTS)?;
+        let settled = settled.iter().map(|row| row.try_get(0));
+        let settled = settled.collect::<Result<Vec<i64>, _>>()?;
+        settle_all(server, &settled)?;
+        let [.., seen] = &self.of_runs;
+        let again = recurred::open_again(base, server, known, seen)?;
+        if !again.is_empty() {
+            settle_all(server, &again)?;
+        }
+        doubles::join(server, &settled)?;
+        let there = |rows: &Rows, new: u64| rows.count as u64 - new.min(rows.count as u64);
+        Ok(SyncOutcome {
+            runs,
+            occurrences,
+            events,
+            notes,
+            already_there: self.already_there
+                + there(&self.runs, runs)
+                + there(&self.events, events),
+            bytes: (self.bytes() + units.bytes + faults.bytes) as u64,
+            different: self.different,
+            ..SyncOutcome::default()
+        })
+    }
+
+    /// The units and faults that the rows speak of.
+    fn identities(&mut self) -> SqlResult<(Rows, Rows, Rows)> {
+        let mut faults = Rows::of(&tables::FAULTS);
+        let mut other_ids = Rows::of(&tables::OTHER_IDS);
+        for fault in &self.fault_numbers {
+            faults.read(self.file, *fault)?;
+            other_ids.read(self.file, *fault)?;
+            let of = "SELECT unit FROM fault WHERE seq = ?1";
+            let unit = self
+                .file
+                .select(of, &values![*fault], |row| row.get::<i64>(0))?;
+            self.unit_numbers.extend(unit);
+        }
+        let mut units = Rows::of(&tables::UNITS);
+        for unit in &self.unit_numbers {
+            units.read(self.file, *unit)?;
+        }
+        Ok((units, faults, other_ids))
+    }
+}
+
+fn made(text: &Option<String>) -> Field<'_> {
+    text.as_deref().map_or(Field::Null, Field::Text)
+}
+
+/// The server's numbers of the faults sent.
+const SERVER_FAULTS: &str = "SELECT DISTINCT k.fault FROM {rows}
+    JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id ORDER BY k.fault";
+
+/// What the server has of the runs among the entries. A run that is sealed came as a whole.
+fn known_runs(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Id, Known>> {
+    let ours: BTreeMap<Id, Option<&Vec<u8>>> = (entries.iter())
+        .filter_map(|entry| entry.run.as_ref())
+        .map(|(id, digest)| (*id, digest.as_ref()))
+        .collect();
+    if ours.is_empty() {
+        return Ok(BTreeMap::new());
+    }
+    let ids: Vec<&[u8]> = ours.keys().map(|id| &id.as_bytes()[..]).collect();
+    let found = server.select_columns(
+        "SELECT r.id, s.digest FROM unnest($1::bytea[]) AS x(id)
+         JOIN run r ON r.id = x.id LEFT JOIN seal s ON s.run = r.seq",
+        &[&ids],
+    )?;
+    let mut known = BTreeMap::new();
+    for row in found {
+        let (id, theirs): (&[u8], Option<Vec<u8>>) = (row.try_get(0)?, row.try_get(1)?);
+        let Ok(id) = id.try_into().map(Id::from_bytes) else {
+            continue;
+        };
+        let state = match (ours.get(&id).copied().flatten(), theirs) {
+            (Some(ours), Some(theirs)) if *ours == theirs => Known::Whole,
+            (Some(_), Some(_)) => Known::Different,
+            _ => Known::Perhaps,
+        };
+        known.insert(id, state);
+    }
+    Ok(known)
+}
+
+/// Runs whose place in their chain another run has on the server: recorded in a copy of the file.
+fn other_seals(seals: &Rows, server: &Server) -> SqlResult<Vec<Different>> {
+    let found = seals.ask(
+        server,
+        0,
+        "SELECT x.run FROM {rows} JOIN seal s ON s.origin = x.origin AND s.ordinal = x.ordinal
+         WHERE s.hash <> x.hash ORDER BY x.place",
+    )?;
+    let mut different = Vec::new();
+    for row in found {
+        let run: &[u8] = row.try_get(0)?;
+        if let Ok(id) = run.try_into() {
+            different.push(Different {
+                what: "seal",
+                id: Id::from_bytes(id),
+            });
+        }
+    }
+    Ok(different)
+}

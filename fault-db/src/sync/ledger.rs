@@ -1,0 +1,120 @@
+//! How far a file and a server know each other. Both keep it: the server's in the transaction that
+//! adds the rows, the file's right after. Of the two the smaller holds, so that a program that was
+//! killed in between, and a file or a server that came back from a backup, send again what may be missing;
+//! what is there already changes nothing.
+
+use super::outcome::SyncOptions;
+use crate::base::{Base, SqlResult, values};
+use crate::id::Id;
+
+/// Positions in a file's outbox, and among a server's events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cursors {
+    pub sent: i64,
+    pub sent_traces: i64,
+    pub received: i64,
+}
+
+/// A file as its server knows it.
+pub(super) struct Laptop {
+    /// The server's number of it.
+    pub seq: i64,
+    pub cursors: Cursors,
+    pub clock_offset_us: i64,
+}
+
+/// Makes the file known to the server, and measures the clocks.
+pub(super) fn introduce(base: &Base, file_id: Id, options: &SyncOptions<'_>) -> SqlResult<Laptop> {
+    let clock = "SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000000 AS bigint)";
+    let asked_us = (options.now_us)();
+    let theirs_us = base.first(clock, &[], |row| row.get::<i64>(0))?;
+    let answered_us = (options.now_us)();
+    let theirs_us = theirs_us.unwrap_or(answered_us);
+    let clock_offset_us = asked_us + (answered_us - asked_us) / 2 - theirs_us;
+    let found = base.first(
+        "INSERT INTO laptop(file_id, name, first_at_us, last_at_us, clock_offset_us, sent,
+            sent_traces, received) VALUES (?1, ?2, ?3, ?3, ?4, 0, 0, 0)
+         ON CONFLICT (file_id) DO UPDATE SET name = excluded.name,
+            last_at_us = excluded.last_at_us, clock_offset_us = excluded.clock_offset_us
+         RETURNING seq, sent, sent_traces, received",
+        &values![file_id, options.laptop, theirs_us, clock_offset_us],
+        |row| Ok((row.get(0)?, cursors(row.get(1)?, row.get(2)?, row.get(3)?))),
+    )?;
+    let (seq, cursors) = found.unwrap_or((0, cursors(0, 0, 0)));
+    Ok(Laptop {
+        seq,
+        cursors,
+        clock_offset_us,
+    })
+}
+
+/// What the file knows of this server; nothing of one it has never met.
+pub(super) fn remembered(file: &Base, server_id: Id) -> SqlResult<Cursors> {
+    let found = file.first(
+        "SELECT sent, sent_traces, received FROM sync_server WHERE id = ?1",
+        &values![server_id],
+        |row| Ok(cursors(row.get(0)?, row.get(1)?, row.get(2)?)),
+    )?;
+    Ok(found.unwrap_or(cursors(0, 0, 0)))
+}
+
+/// Whether the file has ever been synced with any server.
+pub(super) fn has_met_a_server(file: &Base) -> SqlResult<bool> {
+    let found = file.first("SELECT 1 FROM sync_server LIMIT 1", &[], |_| Ok(()))?;
+    Ok(found.is_some())
+}
+
+/// Keeps the cursors in the file.
+pub(super) fn remember(
+    file: &Base,
+    server_id: Id,
+    address: &str,
+    cursors: Cursors,
+    now_us: i64,
+) -> SqlResult<()> {
+    file.execute(
+        "INSERT INTO sync_server(id, address, sent, sent_traces, received, last_at_us)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6)
+         ON CONFLICT (id) DO UPDATE SET address = excluded.address, sent = excluded.sent,
+            sent_traces = excluded.sent_traces, received = excluded.received,
+            last_at_us = excluded.last_at_us",
+        &values![
+            server_id,
+            address,
+            cursors.sent,
+            cursors.sent_traces,
+            cursors.received,
+            now_us
+        ],
+    )?;
+    Ok(())
+}
+
+/// Keeps on the server what was sent, with the rows it speaks of. What was received stays until all of it
+/// was: who breaks off before that has to be told again.
+pub(super) fn note(base: &Base, laptop: i64, cursors: Cursors) -> SqlResult<()> {
+    base.execute(
+        "UPDATE laptop SET sent = ?2, sent_traces = ?3 WHERE seq = ?1",
+        &values![laptop, cursors.sent, cursors.sent_traces],
+    )?;
+    Ok(())
+}
+
+impl Cursors {
+    /// What both are sure of.
+    pub fn common(self, other: Self) -> Self {
+        cursors(
+            self.sent.min(other.sent),
+            self.sent_traces.min(other.sent_traces),
+            self.received.min(other.received),
+        )
+    }
+}
+
+fn cursors(sent: i64, sent_traces: i64, received: i64) -> Cursors {
+    Cursors {
+        sent,
+        sent_traces,
+        received,
+    }
+}

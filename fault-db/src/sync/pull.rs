@@ -1,0 +1,154 @@
+//! What other laptops, and people at the server itself, said about the faults of a file.
+
+use std::collections::BTreeSet;
+
+use super::outcome::SyncOutcome;
+use crate::base::{Base, SqlResult, values};
+use crate::id::Id;
+use crate::settle::{join, open_doubles, settle};
+
+/// Events of a batch at most.
+const MOST_EVENTS: usize = 500;
+
+/// An event of the server, with the fault's id as the file knows it.
+pub(super) struct Event {
+    seq: i64,
+    id: Id,
+    fault: Id,
+    kind: String,
+    at_us: i64,
+    who: String,
+    body: String,
+    state: Option<String>,
+    turn: i64,
+}
+
+/// Which events are asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Asked {
+    /// The server's number of the laptop.
+    pub laptop: i64,
+    /// Up to this event, which was the last when the pull began. Events are added one transaction after
+    /// the other, so that none comes later with a smaller number.
+    pub until: i64,
+    /// Only of faults that the laptop has not been told of before, however old the event.
+    pub fresh: bool,
+    /// The laptop's own, too: its file came back from a backup.
+    pub own: bool,
+}
+
+/// The last event there is.
+pub(super) fn last(base: &Base) -> SqlResult<i64> {
+    let last = "SELECT coalesce(max(seq), 0) FROM fault_event";
+    Ok(base.first(last, &[], |row| row.get(0))?.unwrap_or_default())
+}
+
+/// The next events after this one.
+pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Event>> {
+    let fresh = if asked.fresh { "AND k.fresh" } else { "" };
+    let own = if asked.own {
+        ""
+    } else {
+        "AND e.laptop IS DISTINCT FROM ?1"
+    };
+    // Two faults of the file may have become one on the server: the later one is told.
+    let sql = format!(
+        "SELECT DISTINCT ON (e.seq) e.seq, e.id, k.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn
+         FROM fault_event e JOIN laptop_fault k ON k.fault = e.fault AND k.laptop = ?1 {fresh}
+         WHERE e.seq > ?2 AND e.seq <= ?3 {own} ORDER BY e.seq, k.id DESC LIMIT {MOST_EVENTS}"
+    );
+    base.select(&sql, &values![asked.laptop, after, asked.until], |row| {
+        Ok(Event {
+            seq: row.get(0)?,
+            id: row.get(1)?,
+            fault: row.get(2)?,
+            kind: row.get(3)?,
+            at_us: row.get(4)?,
+            who: row.get(5)?,
+            body: row.get(6)?,
+            state: row.get(7)?,
+            turn: row.get(8)?,
+        })
+    })
+}
+
+/// Where the next question goes on; none if these were the last.
+pub(super) fn next(events: &[Event]) -> Option<i64> {
+    let full = events.len() == MOST_EVENTS;
+    events.last().filter(|_| full).map(|event| event.seq)
+}
+
+/// Adds events to the file and brings their faults in line; runs in the caller's transaction.
+pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
+    let mut outcome = SyncOutcome::default();
+    let before: i64 = file
+        .first("SELECT coalesce(max(seq), 0) FROM outbox", &[], |row| {
+            row.get(0)
+        })?
+        .unwrap_or_default();
+    let mut faults = BTreeSet::new();
+    for event in events {
+        let known = "SELECT seq FROM fault WHERE id = ?1
+             UNION ALL SELECT fault FROM fault_alias WHERE id = ?1";
+        let fault: Option<i64> = file.first(known, &values![event.fault], |row| row.get(0))?;
+        // The file came back from a backup older than the fault.
+        let Some(fault) = fault else { continue };
+        let added = file.execute(
+            "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (id) DO NOTHING",
+            &values![
+                event.id,
+                fault,
+                &event.kind,
+                event.at_us,
+                &event.who,
+                &event.body,
+                event.state.as_deref(),
+                event.turn
+            ],
+        )?;
+        if added > 0 {
+            outcome.events_received += 1;
+            outcome.bytes += (event.body.len() + event.who.len() + 80) as u64;
+            faults.insert(fault);
+        }
+    }
+    // What came from the server need not go back to it.
+    file.execute("DELETE FROM outbox WHERE seq > ?1", &values![before])?;
+    outcome.faults_changed = faults.len() as u64;
+    for fault in faults {
+        settle(file, fault)?;
+        join_doubles(file, fault)?;
+    }
+    Ok(outcome)
+}
+
+/// What came may have opened a fault again that the file has a second one of by now.
+fn join_doubles(file: &Base, fault: i64) -> SqlResult<()> {
+    let mut doubles = open_doubles(file, fault)?.into_iter();
+    let Some(oldest) = doubles.next() else {
+        return Ok(());
+    };
+    doubles.try_for_each(|double| join(file, oldest, double))
+}
+
+/// The faults that are new to a laptop.
+pub(super) fn fresh(base: &Base, laptop: i64) -> SqlResult<Vec<i64>> {
+    let fresh = "SELECT fault FROM laptop_fault WHERE laptop = ?1 AND fresh ORDER BY fault";
+    base.select(fresh, &values![laptop], |row| row.get(0))
+}
+
+/// The laptop has been told all of these faults, which were new to it, and of the others up to `received`.
+pub(super) fn told(base: &Base, laptop: i64, fresh: &[i64], received: i64) -> SqlResult<()> {
+    base.execute(
+        "UPDATE laptop SET received = ?2 WHERE seq = ?1",
+        &values![laptop, received],
+    )?;
+    for fault in fresh {
+        base.execute(
+            "UPDATE laptop_fault SET fresh = false WHERE laptop = ?1 AND fault = ?2",
+            &values![laptop, *fault],
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,196 @@
+//! Rows on their way to the server: gathered column by column, sent in one statement.
+
+use postgres::types::ToSql;
+
+use crate::base::{Base, Field, Row, Server, SqlError, SqlResult, values};
+
+/// What a column holds.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    Integer,
+    Real,
+    Text,
+    Bytes,
+}
+
+/// How rows of one kind are read from a file and added to a server.
+pub(super) struct Table {
+    /// What is sent of each row.
+    pub columns: &'static [(&'static str, Kind)],
+    /// Reads rows of a file in that order; `?1` is the row they belong to.
+    pub read: &'static str,
+    /// Add them to the server, one after the other: `{rows}` are the rows sent, `x`, with their place
+    /// in it; `{laptop}` is the laptop. The first says how many were new.
+    pub insert: &'static [&'static str],
+}
+
+/// Rows of one kind.
+pub(super) struct Rows {
+    table: &'static Table,
+    columns: Vec<Column>,
+    pub count: usize,
+    /// About as many bytes as they take on the wire.
+    pub bytes: usize,
+}
+
+enum Column {
+    Integer(Vec<Option<i64>>),
+    Real(Vec<Option<f64>>),
+    Text(Vec<Option<String>>),
+    Bytes(Vec<Option<Vec<u8>>>),
+}
+
+impl Rows {
+    pub fn of(table: &'static Table) -> Self {
+        let column = |(_, kind): &(_, Kind)| match kind {
+            Kind::Integer => Column::Integer(Vec::new()),
+            Kind::Real => Column::Real(Vec::new()),
+            Kind::Text => Column::Text(Vec::new()),
+            Kind::Bytes => Column::Bytes(Vec::new()),
+        };
+        Self {
+            table,
+            columns: table.columns.iter().map(column).collect(),
+            count: 0,
+            bytes: 0,
+        }
+    }
+
+    /// Takes the rows that belong to this row of a file.
+    pub fn read(&mut self, file: &Base, of: i64) -> SqlResult<()> {
+        let sql = self.table.read;
+        file.each(sql, &values![of], |row| self.take(row, &[]))
+    }
+
+    /// Takes a row of a file, and what was made of it.
+    pub fn take(&mut self, row: Row<'_>, made: &[Field<'_>]) -> SqlResult<()> {
+        let read = self.columns.len() - made.len();
+        for column in 0..read {
+            self.push(column, row.field(column)?)?;
+        }
+        for (column, field) in (read..).zip(made) {
+            self.push(column, *field)?;
+        }
+        self.count += 1;
+        Ok(())
+    }
+
+    fn push(&mut self, column: usize, field: Field<'_>) -> SqlResult<()> {
+        self.bytes += match &field {
+            Field::Text(text) => 4 + text.len(),
+            Field::Bytes(bytes) => 4 + bytes.len(),
+            _ => 12,
+        };
+        self.columns[column]
+            .push(field)
+            .map_err(|reason| SqlError::Value { column, reason })
+    }
+
+    /// Adds all of them; how many were new.
+    pub fn send(&self, server: &Server, laptop: i64) -> SqlResult<u64> {
+        if self.count == 0 {
+            return Ok(0);
+        }
+        let mut new = None;
+        for insert in self.table.insert {
+            let changed = self.send_by(server, laptop, insert)?;
+            new.get_or_insert(changed);
+        }
+        Ok(new.unwrap_or_default())
+    }
+
+    /// Hands all of them to one statement; how many rows of the server it changed.
+    pub fn send_by(&self, server: &Server, laptop: i64, sql: &str) -> SqlResult<u64> {
+        if self.count == 0 {
+            return Ok(0);
+        }
+        let columns: Vec<_> = self.columns.iter().map(|column| column as _).collect();
+        server.execute_columns(&self.filled(sql, laptop), &columns)
+    }
+
+    /// What the server answers about them.
+    pub fn ask(&self, server: &Server, laptop: i64, sql: &str) -> SqlResult<Vec<postgres::Row>> {
+        if self.count == 0 {
+            return Ok(Vec::new());
+        }
+        let columns: Vec<_> = self.columns.iter().map(|column| column as _).collect();
+        server.select_columns(&self.filled(sql, laptop), &columns)
+    }
+
+    fn filled(&self, sql: &str, laptop: i64) -> String {
+        let arrays: Vec<_> = (self.columns.iter().enumerate())
+            .map(|(place, column)| format!("${}::{}[]", place + 1, column.server_type()))
+            .collect();
+        let names: Vec<_> = self.table.columns.iter().map(|(name, _)| *name).collect();
+        let rows = format!(
+            "unnest({}) WITH ORDINALITY AS x({}, place)",
+            arrays.join(", "),
+            names.join(", ")
+        );
+        sql.replace("{rows}", &rows)
+            .replace("{laptop}", &laptop.to_string())
+    }
+}
+
+impl Column {
+    fn server_type(&self) -> &'static str {
+        match self {
+            Self::Integer(_) => "bigint",
+            Self::Real(_) => "float8",
+            Self::Text(_) => "text",
+            Self::Bytes(_) => "bytea",
+        }
+    }
+
+    fn push(&mut self, field: Field<'_>) -> Result<(), String> {
+        match (self, field) {
+            (Self::Integer(all), Field::Integer(value)) => all.push(Some(value)),
+            (Self::Real(all), Field::Real(value)) => all.push(Some(value)),
+            (Self::Text(all), Field::Text(text)) => all.push(Some(plain(text))),
+            (Self::Bytes(all), Field::Bytes(bytes)) => all.push(Some(bytes.to_vec())),
+            (Self::Integer(all), Field::Null) => all.push(None),
+            (Self::Real(all), Field::Null) => all.push(None),
+            (Self::Text(all), Field::Null) => all.push(None),
+            (Self::Bytes(all), Field::Null) => all.push(None),
+            (column, field) => {
+                return Err(format!(
+                    "{field:?} where a {} should be",
+                    column.server_type()
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// PostgreSQL keeps no zero letter in a text.
+fn plain(text: &str) -> String {
+    text.replace('\0', "\u{fffd}")
+}
+
+impl ToSql for Column {
+    fn to_sql(
+        &self,
+        of_type: &postgres::types::Type,
+        out: &mut bytes::BytesMut,
+    ) -> Result<postgres::types::IsNull, Box<dyn std::error::Error + Sync + Send>> {
+        match self {
+            Self::Integer(all) => all.to_sql(of_type, out),
+            Self::Real(all) => all.to_sql(of_type, out),
+            Self::Text(all) => all.to_sql(of_type, out),
+            Self::Bytes(all) => all.to_sql(of_type, out),
+        }
+    }
+
+    fn accepts(_: &postgres::types::Type) -> bool {
+        true
+    }
+
+    postgres::types::to_sql_checked!();
+}
+
+impl std::fmt::Debug for Column {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.server_type())
+    }
+}

@@ -1,0 +1,342 @@
+//! What a run, a fault, an event and a note are made of, table by table.
+//!
+//! Rows name their parents by id; the server joins them by its own numbers. What is there already stays
+//! as it is, so that sending twice is sending once.
+
+use super::rows::Kind::{Bytes, Integer, Real, Text};
+use super::rows::Table;
+
+pub(super) const UNITS: Table = Table {
+    columns: &[
+        ("serial", Text),
+        ("kind", Text),
+        ("config_name", Text),
+        ("sw_versions", Text),
+        ("seen_at_us", Integer),
+    ],
+    read: "SELECT serial, kind, config_name, sw_versions,
+            coalesce((SELECT max(started_at_us) FROM run WHERE run.unit = unit.seq), 0)
+         FROM unit WHERE seq = ?1",
+    insert: &[
+        "INSERT INTO unit(serial, kind, config_name, sw_versions)
+         SELECT x.serial, x.kind, x.config_name, x.sw_versions FROM {rows}
+         WHERE NOT EXISTS (SELECT 1 FROM unit u WHERE u.serial = x.serial)
+         ORDER BY x.place ON CONFLICT DO NOTHING",
+        // Who has seen it last knows it best.
+        "UPDATE unit u SET kind = x.kind, config_name = x.config_name, sw_versions = x.sw_versions
+         FROM {rows} WHERE u.serial = x.serial
+            AND (u.kind, u.config_name, u.sw_versions) <> (x.kind, x.config_name, x.sw_versions)
+            AND x.seen_at_us >= coalesce(
+                (SELECT max(r.started_at_us) FROM run r WHERE r.unit = u.seq), 0)",
+    ],
+};
+
+pub(super) const RUNS: Table = Table {
+    columns: &[
+        ("id", Bytes),
+        ("serial", Text),
+        ("line", Text),
+        ("seed", Integer),
+        ("operator", Text),
+        ("source", Text),
+        ("started_at_us", Integer),
+        ("finished_at_us", Integer),
+        ("verdict", Text),
+        ("bench_time_us", Integer),
+        ("wall_time_us", Integer),
+        ("app_version", Text),
+        ("scripts_sha256", Text),
+        ("unit_config_sha256", Text),
+        ("injected", Text),
+        ("owner", Text),
+        ("train", Text),
+    ],
+    read: "SELECT r.id, u.serial, r.line, r.seed, r.operator, r.source, r.started_at_us,
+            r.finished_at_us, r.verdict, r.bench_time_us, r.wall_time_us, r.app_version,
+            r.scripts_sha256, r.unit_config_sha256, r.injected, r.owner, r.train
+         FROM run r JOIN unit u ON u.seq = r.unit WHERE r.seq = ?1",
+    insert: &[
+        "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, finished_at_us,
+            verdict, bench_time_us, wall_time_us, app_version, scripts_sha256, unit_config_sha256,
+            injected, owner, train, laptop)
+         SELECT x.id, u.seq, x.line, x.seed, x.operator, x.source, x.started_at_us, x.finished_at_us,
+            x.verdict, x.bench_time_us, x.wall_time_us, x.app_version, x.scripts_sha256,
+            x.unit_config_sha256, x.injected, x.owner, x.train, {laptop}
+         FROM {rows} JOIN unit u ON u.serial = x.serial
+         ORDER BY x.place ON CONFLICT (id) DO NOTHING",
+        // It was thought dead, and was not.
+        "UPDATE run r SET verdict = x.verdict, finished_at_us = x.finished_at_us,
+            bench_time_us = x.bench_time_us, wall_time_us = x.wall_time_us
+         FROM {rows} WHERE r.id = x.id AND r.verdict IS NULL AND x.verdict IS NOT NULL",
+    ],
+};
+
+pub(super) const SCRIPTS: Table = Table {
+    columns: &[("run", Bytes), ("path", Text), ("sha256", Text)],
+    read: "SELECT r.id, s.path, s.sha256 FROM run r JOIN run_script s ON s.run = r.seq
+         WHERE r.seq = ?1 ORDER BY s.path",
+    insert: &[
+        "INSERT INTO run_script(run, path, sha256) SELECT r.seq, x.path, x.sha256
+         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT DO NOTHING",
+    ],
+};
+
+pub(super) const STEPS: Table = Table {
+    columns: &[
+        ("run", Bytes),
+        ("step_index", Integer),
+        ("procedure", Text),
+        ("name", Text),
+        ("verdict", Text),
+        ("started_bench_us", Integer),
+        ("bench_time_us", Integer),
+        ("message", Text),
+        ("script_line", Integer),
+    ],
+    read: "SELECT r.id, s.step_index, s.procedure, s.name, s.verdict, s.started_bench_us,
+            s.bench_time_us, s.message, s.script_line
+         FROM run r JOIN step s ON s.run = r.seq WHERE r.seq = ?1 ORDER BY s.step_index",
+    insert: &[
+        "INSERT INTO step(run, step_index, procedure, name, verdict, started_bench_us,
+            bench_time_us, message, script_line)
+         SELECT r.seq, x.step_index, x.procedure, x.name, x.verdict, x.started_bench_us,
+            x.bench_time_us, x.message, x.script_line
+         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT DO NOTHING",
+    ],
+};
+
+pub(super) const MEASUREMENTS: Table = Table {
+    columns: &[
+        ("run", Bytes),
+        ("step_index", Integer),
+        ("ordinal", Integer),
+        ("name", Text),
+        ("value", Real),
+        ("unit", Text),
+        ("low", Real),
+        ("high", Real),
+        ("verdict", Text),
+    ],
+    read: "SELECT r.id, m.step_index, m.ordinal, m.name, m.value, m.unit, m.low, m.high, m.verdict
+         FROM run r JOIN measurement m ON m.run = r.seq WHERE r.seq = ?1
+         ORDER BY m.step_index, m.ordinal",
+    insert: &[
+        "INSERT INTO measurement(run, step_index, ordinal, name, value, unit, low, high, verdict)
+         SELECT r.seq, x.step_index, x.ordinal, x.name, x.value, x.unit, x.low, x.high, x.verdict
+         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT DO NOTHING",
+    ],
+};
+
+pub(super) const RECORDINGS: Table = Table {
+    columns: &[
+        ("run", Bytes),
+        ("ordinal", Integer),
+        ("procedure", Text),
+        ("t0_bench_us", Integer),
+        ("bench_json", Text),
+        ("stimuli", Bytes),
+    ],
+    read: "SELECT r.id, c.ordinal, c.procedure, c.t0_bench_us, c.bench_json, c.stimuli
+         FROM run r JOIN recording c ON c.run = r.seq WHERE r.seq = ?1 ORDER BY c.ordinal",
+    insert: &[
+        "INSERT INTO recording(run, ordinal, procedure, t0_bench_us, bench_json, stimuli)
+         SELECT r.seq, x.ordinal, x.procedure, x.t0_bench_us, x.bench_json, x.stimuli
+         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT DO NOTHING",
+    ],
+};
+
+/// Ids that a fault of the file has elsewhere. Sent before the faults themselves.
+pub(super) const OTHER_IDS: Table = Table {
+    columns: &[("id", Bytes), ("other", Bytes)],
+    read: "SELECT f.id, a.id FROM fault f JOIN fault_alias a ON a.fault = f.seq WHERE f.seq = ?1
+         ORDER BY a.id",
+    insert: &["INSERT INTO fault_alias(id, fault)
+         SELECT DISTINCT ON (x.id) x.id, coalesce(f.seq, a.fault)
+         FROM {rows} LEFT JOIN fault f ON f.id = x.other LEFT JOIN fault_alias a ON a.id = x.other
+         WHERE coalesce(f.seq, a.fault) IS NOT NULL
+            AND NOT EXISTS (SELECT 1 FROM fault g WHERE g.id = x.id)
+         ORDER BY x.id, x.place ON CONFLICT DO NOTHING"],
+};
+
+/// Makes the other ids known that the server had never heard of. Sent after the faults.
+pub(super) const OTHER_IDS_TOO: &str = "
+    INSERT INTO fault_alias(id, fault)
+    SELECT x.other, k.fault FROM {rows} JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id
+    WHERE NOT EXISTS (SELECT 1 FROM fault g WHERE g.id = x.other)
+    ORDER BY x.place ON CONFLICT DO NOTHING";
+
+/// A fault of the file is one of the server's if it has the same id there. Whether it is one under another
+/// id, too, is known when the batch's events are there: one of them may have closed the other.
+pub(super) const FAULTS: Table = Table {
+    columns: &[
+        ("id", Bytes),
+        ("serial", Text),
+        ("code", Integer),
+        ("code_name", Text),
+        ("lru", Text),
+        ("severity", Text),
+        ("state", Text),
+        ("first_at_us", Integer),
+        ("last_at_us", Integer),
+        ("line", Text),
+    ],
+    read: "SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.severity, f.state, f.first_at_us,
+            f.last_at_us, f.line
+         FROM fault f JOIN unit u ON u.seq = f.unit WHERE f.seq = ?1",
+    insert: &[
+        "INSERT INTO fault(id, unit, code, code_name, lru, severity, state, first_at_us, last_at_us,
+            occurrences, line, repairs)
+         SELECT x.id, u.seq, x.code, x.code_name, x.lru, x.severity, x.state, x.first_at_us,
+            x.last_at_us, 0, x.line, 0
+         FROM {rows} JOIN unit u ON u.serial = x.serial
+         WHERE NOT EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = x.id)
+         ORDER BY x.place ON CONFLICT (id) DO NOTHING",
+        "INSERT INTO laptop_fault(laptop, id, fault, fresh)
+         SELECT {laptop}, x.id, coalesce(f.seq, a.fault), true
+         FROM {rows} LEFT JOIN fault f ON f.id = x.id LEFT JOIN fault_alias a ON a.id = x.id
+         ON CONFLICT DO NOTHING",
+        // As it was called when it was seen last.
+        "UPDATE fault f SET code_name = x.code_name, severity = x.severity
+         FROM {rows} JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id
+         WHERE f.seq = k.fault AND (f.code_name, f.severity) <> (x.code_name, x.severity)
+            AND x.last_at_us >= f.last_at_us",
+    ],
+};
+
+pub(super) const OCCURRENCES: Table = Table {
+    columns: &[
+        ("id", Bytes),
+        ("fault", Bytes),
+        ("run", Bytes),
+        ("step_index", Integer),
+        ("at_us", Integer),
+        ("bench_us", Integer),
+        ("message", Text),
+        ("freeze_json", Text),
+        ("code", Integer),
+        ("lru", Text),
+        ("line", Text),
+    ],
+    read: "SELECT o.id, f.id, r.id, o.step_index, o.at_us, o.bench_us, o.message, o.freeze_json,
+            o.code, o.lru, o.line
+         FROM run r JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
+         WHERE r.seq = ?1 ORDER BY o.seq",
+    insert: &[
+        "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us, message,
+            freeze_json, unit, code, lru, line)
+         SELECT x.id, k.fault, r.seq, x.step_index, x.at_us, x.bench_us, x.message, x.freeze_json,
+            r.unit, x.code, x.lru, x.line
+         FROM {rows} JOIN run r ON r.id = x.run
+            JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.fault
+         ORDER BY x.place ON CONFLICT (id) DO NOTHING",
+    ],
+};
+
+/// The last two columns are made of what was said.
+pub(super) const EVENTS: Table = Table {
+    columns: &[
+        ("id", Bytes),
+        ("fault", Bytes),
+        ("kind", Text),
+        ("at_us", Integer),
+        ("who", Text),
+        ("body", Text),
+        ("state", Text),
+        ("turn", Integer),
+        ("part", Text),
+        ("words", Text),
+    ],
+    read: "SELECT e.id, f.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn
+         FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.seq = ?1",
+    insert: &[
+        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, laptop, part, words)
+         SELECT x.id, k.fault, x.kind, x.at_us, x.who, x.body, x.state, x.turn, {laptop}, x.part,
+            CAST(x.words AS tsvector)
+         FROM {rows} JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.fault
+         ORDER BY x.place ON CONFLICT (id) DO NOTHING",
+    ],
+};
+
+/// The last column is made of what was said.
+pub(super) const NOTES: Table = Table {
+    columns: &[
+        ("id", Bytes),
+        ("run", Bytes),
+        ("at_us", Integer),
+        ("who", Text),
+        ("text", Text),
+        ("words", Text),
+    ],
+    read: "SELECT n.id, r.id, n.at_us, n.who, n.text
+         FROM run_note n JOIN run r ON r.seq = n.run WHERE n.seq = ?1",
+    // A note on a run that is still under way comes again with the run.
+    insert: &["INSERT INTO run_note(id, run, at_us, who, text, words)
+         SELECT x.id, r.seq, x.at_us, x.who, x.text, CAST(x.words AS tsvector)
+         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT (id) DO NOTHING"],
+};
+
+pub(super) const SEALS: Table = Table {
+    columns: &[
+        ("origin", Bytes),
+        ("ordinal", Integer),
+        ("run", Bytes),
+        ("digest", Bytes),
+        ("hash", Bytes),
+    ],
+    read: "SELECT s.origin, s.ordinal, r.id, s.digest, s.hash
+         FROM run r JOIN seal s ON s.run = r.seq WHERE r.seq = ?1",
+    insert: &["INSERT INTO seal(origin, ordinal, run, digest, hash)
+         SELECT x.origin, x.ordinal, r.seq, x.digest, x.hash
+         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT DO NOTHING"],
+};
+
+pub(super) const CHANNEL_SETS: Table = Table {
+    columns: &[("sha256", Bytes), ("json", Text)],
+    read: "SELECT sha256, json FROM channel_set WHERE seq = ?1",
+    insert: &[
+        "INSERT INTO channel_set(sha256, json) SELECT x.sha256, x.json FROM {rows}
+         WHERE NOT EXISTS (SELECT 1 FROM channel_set c WHERE c.sha256 = x.sha256)
+         ORDER BY x.place ON CONFLICT DO NOTHING",
+    ],
+};
+
+pub(super) const TRACES: Table = Table {
+    columns: &[
+        ("id", Bytes),
+        ("run", Bytes),
+        ("t0_bench_us", Integer),
+        ("t0_us", Integer),
+        ("period_us", Integer),
+        ("row_count", Integer),
+        ("trigger_row", Integer),
+        ("flags", Integer),
+        ("channel_set", Bytes),
+        ("encoding", Integer),
+        ("sha256", Bytes),
+        ("data", Bytes),
+        ("recording", Integer),
+    ],
+    read: "SELECT t.id, r.id, t.t0_bench_us, t.t0_us, t.period_us, t.row_count, t.trigger_row, t.flags,
+            c.sha256, t.encoding, t.sha256, t.data, t.recording
+         FROM trace t JOIN run r ON r.seq = t.run JOIN channel_set c ON c.seq = t.channel_set
+         WHERE t.seq = ?1",
+    insert: &[
+        "INSERT INTO trace(id, run, t0_bench_us, t0_us, period_us, row_count, trigger_row, flags,
+            channel_set, encoding, sha256, data, recording)
+         SELECT x.id, r.seq, x.t0_bench_us, x.t0_us, x.period_us, x.row_count, x.trigger_row, x.flags,
+            c.seq, x.encoding, x.sha256, x.data, x.recording
+         FROM {rows} JOIN run r ON r.id = x.run JOIN channel_set c ON c.sha256 = x.channel_set
+         ORDER BY x.place ON CONFLICT (id) DO NOTHING",
+    ],
+};
+
+/// Which occurrences a trace shows. Sent after the traces.
+pub(super) const SHOWN: Table = Table {
+    columns: &[("occurrence", Bytes), ("trace", Bytes)],
+    read:
+        "SELECT o.id, t.id FROM trace t JOIN fault_occurrence o ON o.trace = t.seq WHERE t.seq = ?1
+         ORDER BY o.seq",
+    insert: &["UPDATE fault_occurrence o SET trace = t.seq
+         FROM {rows} JOIN trace t ON t.id = x.trace
+         WHERE o.id = x.occurrence AND o.trace IS NULL"],
+};

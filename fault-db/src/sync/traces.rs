@@ -1,0 +1,140 @@
+//! Traces, after all that is small: each with its channel list, checked before it goes and by the server
+//! when it comes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use sha2::{Digest as _, Sha256};
+
+use super::batch::{ENOUGH_BYTES, MOST_ENTRIES};
+use super::outcome::{Different, SyncOutcome};
+use super::rows::Rows;
+use super::tables;
+use crate::base::{Base, Server, SqlResult, values};
+use crate::id::Id;
+
+/// An entry of the outbox: a trace, if it was not pruned since.
+pub(super) struct Entry {
+    pub seq: i64,
+    trace: i64,
+    id: Option<Id>,
+    sha256: Vec<u8>,
+}
+
+/// The next traces of the outbox, up to an entry.
+pub(super) fn entries(file: &Base, after: i64, until: i64) -> SqlResult<Vec<Entry>> {
+    file.select(
+        "SELECT o.seq, o.row, t.id, t.sha256 FROM outbox o LEFT JOIN trace t ON t.seq = o.row
+         WHERE o.seq > ?1 AND o.seq <= ?2 AND o.what = 'trace' ORDER BY o.seq LIMIT ?3",
+        &values![after, until, MOST_ENTRIES],
+        |row| {
+            Ok(Entry {
+                seq: row.get(0)?,
+                trace: row.get(1)?,
+                id: row.get(2)?,
+                sha256: row.get::<Option<Vec<u8>>>(3)?.unwrap_or_default(),
+            })
+        },
+    )
+}
+
+/// Traces of one batch.
+pub(super) struct Batch {
+    traces: Rows,
+    shown: Rows,
+    channel_sets: Rows,
+    pub through: i64,
+    pub entries: u64,
+    outcome: SyncOutcome,
+}
+
+impl Batch {
+    /// Reads what the server has not, as far as one batch goes.
+    pub fn gather(file: &Base, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
+        let known = known(server, entries)?;
+        let mut batch = Self {
+            traces: Rows::of(&tables::TRACES),
+            shown: Rows::of(&tables::SHOWN),
+            channel_sets: Rows::of(&tables::CHANNEL_SETS),
+            through: 0,
+            entries: 0,
+            outcome: SyncOutcome::default(),
+        };
+        let mut lists = BTreeSet::new();
+        for entry in entries {
+            batch.through = entry.seq;
+            batch.entries += 1;
+            let Some(id) = entry.id else { continue };
+            match known.get(&id) {
+                Some(theirs) if *theirs != entry.sha256 => {
+                    batch
+                        .outcome
+                        .different
+                        .push(Different { what: "trace", id });
+                    continue;
+                }
+                Some(_) => batch.outcome.already_there += 1,
+                None => batch.read(file, entry, id, &mut lists)?,
+            }
+            // An occurrence may have come after its trace.
+            batch.shown.read(file, entry.trace)?;
+            if batch.traces.bytes >= ENOUGH_BYTES {
+                break;
+            }
+        }
+        for list in lists {
+            batch.channel_sets.read(file, list)?;
+        }
+        Ok(batch)
+    }
+
+    fn read(
+        &mut self,
+        file: &Base,
+        entry: &Entry,
+        id: Id,
+        lists: &mut BTreeSet<i64>,
+    ) -> SqlResult<()> {
+        let is_whole = "SELECT data, channel_set FROM trace WHERE seq = ?1";
+        let list = file.first(is_whole, &values![entry.trace], |row| {
+            let data: &[u8] = row.get(0)?;
+            let list: i64 = row.get(1)?;
+            Ok((Sha256::digest(data)[..] == entry.sha256).then_some(list))
+        })?;
+        let Some(list) = list.flatten() else {
+            self.outcome.damaged_traces.push(id);
+            return Ok(());
+        };
+        lists.insert(list);
+        self.traces.read(file, entry.trace)
+    }
+
+    /// Adds all of it to the server; runs in the caller's transaction.
+    pub fn send(mut self, server: &Server, laptop: i64) -> SqlResult<SyncOutcome> {
+        self.channel_sets.send(server, laptop)?;
+        self.outcome.traces = self.traces.send(server, laptop)?;
+        self.shown.send(server, laptop)?;
+        let bytes = self.traces.bytes + self.shown.bytes + self.channel_sets.bytes;
+        self.outcome.bytes = bytes as u64;
+        Ok(self.outcome)
+    }
+}
+
+/// Checksums of those traces that the server has.
+fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Id, Vec<u8>>> {
+    let ids: Vec<&[u8]> = (entries.iter())
+        .filter_map(|entry| entry.id.as_ref())
+        .map(|id| &id.as_bytes()[..])
+        .collect();
+    let found = server.select_columns(
+        "SELECT t.id, t.sha256 FROM unnest($1::bytea[]) AS x(id) JOIN trace t ON t.id = x.id",
+        &[&ids],
+    )?;
+    let mut known = BTreeMap::new();
+    for row in found {
+        let (id, sha256): (&[u8], Vec<u8>) = (row.try_get(0)?, row.try_get(1)?);
+        if let Ok(id) = id.try_into() {
+            known.insert(Id::from_bytes(id), sha256);
+        }
+    }
+    Ok(known)
+}

@@ -1,0 +1,244 @@
+//! Where in a trace's blob each piece of a channel lies.
+//!
+//! Encoding 2, the one written now:
+//!
+//! ```text
+//! varint rows, varint columns, varint bytes of the directory
+//! directory, per column and block of 4096 rows:  tag byte, varint length of its body, CRC-32 of it
+//! CRC-32 of all so far
+//! bodies, channel by channel, block by block
+//! ```
+//! Every piece has a checksum of its own, so a channel, or a part of one, is read and known to be what
+//! was written without touching any other. Encoding 1 had one block, neither checksums nor the length of
+//! the directory; there only the checksum of the whole blob tells.
+
+use std::ops::Range;
+
+use super::column::Tag;
+use super::varint::{put, take};
+use super::{Channel, TraceError};
+
+/// The number of the encoding that is written, in the trace table.
+pub const ENCODING: i64 = 2;
+/// Traces of earlier versions.
+const WITHOUT_CHECKSUMS: i64 = 1;
+
+/// 3.4 minutes at 50 ms: a fault's trace is one block, an hour is eighteen.
+const BLOCK_ROWS: usize = 4096;
+const CRC_BYTES: usize = 4;
+
+/// What a trace's row in the table says of its blob.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<'a> {
+    /// Number of the encoding.
+    pub encoding: i64,
+    /// Rows of the trace.
+    pub rows: usize,
+    /// Its channels, all of them.
+    pub channels: &'a [Channel],
+}
+
+impl Shape<'_> {
+    /// Whether pieces have checksums of their own. Without them the whole blob is needed to know.
+    pub(crate) fn has_checksums(&self) -> bool {
+        self.encoding == ENCODING
+    }
+
+    fn blocks(&self) -> usize {
+        self.rows.div_ceil(self.block_rows())
+    }
+
+    fn block_rows(&self) -> usize {
+        if self.has_checksums() {
+            BLOCK_ROWS
+        } else {
+            self.rows.max(1)
+        }
+    }
+}
+
+/// Rows of each block that is written.
+pub(super) fn blocks(column: &[f64]) -> impl Iterator<Item = &[f64]> {
+    column.chunks(BLOCK_ROWS)
+}
+
+/// Writes the head of a blob, around its directory.
+pub(super) fn put_head(out: &mut Vec<u8>, rows: usize, columns: usize, directory: &[u8]) {
+    put(out, rows as u64);
+    put(out, columns as u64);
+    put(out, directory.len() as u64);
+    out.extend_from_slice(directory);
+    let crc = crc32fast::hash(out);
+    out.extend_from_slice(&crc.to_le_bytes());
+}
+
+/// Writes a piece's place in the directory.
+pub(super) fn put_piece(directory: &mut Vec<u8>, tag: Tag, body: &[u8]) {
+    directory.push(tag.byte());
+    put(directory, body.len() as u64);
+    directory.extend_from_slice(&crc32fast::hash(body).to_le_bytes());
+}
+
+/// One block of one channel.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub tag: Tag,
+    /// Rows of the trace.
+    pub rows: Range<usize>,
+    /// Bytes of the blob.
+    pub bytes: Range<usize>,
+    crc: Option<u32>,
+}
+
+impl Piece {
+    /// Refuses a body that is not the one written.
+    pub fn check(&self, body: &[u8]) -> Result<(), &'static str> {
+        match self.crc {
+            Some(crc) if crc != crc32fast::hash(body) => {
+                Err("it does not match its checksum: it was changed after it was written")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// All pieces of a blob.
+pub(crate) struct Layout {
+    pieces: Vec<Piece>,
+    blocks: usize,
+}
+
+impl Layout {
+    /// Bytes at the front of a blob that `read` needs; `start` is its first bytes, 32 or all.
+    pub fn head_length(
+        start: &[u8],
+        length: usize,
+        shape: &Shape<'_>,
+    ) -> Result<usize, TraceError> {
+        let mut rest = start;
+        let damaged = |rest: &[u8], what| TraceError::Blob {
+            offset: start.len() - rest.len(),
+            what,
+        };
+        if take(&mut rest) != Some(shape.rows as u64) {
+            let what = "its row count is another than its row in the table says";
+            return Err(damaged(rest, what));
+        }
+        if take(&mut rest) != Some(shape.channels.len() as u64) {
+            let what = "its column count is another than its channel list has";
+            return Err(damaged(rest, what));
+        }
+        match shape.encoding {
+            WITHOUT_CHECKSUMS => Ok(length),
+            ENCODING => {
+                let directory = take(&mut rest).and_then(|bytes| usize::try_from(bytes).ok());
+                let end = directory
+                    .and_then(|bytes| bytes.checked_add(start.len() - rest.len() + CRC_BYTES));
+                end.filter(|end| *end <= length)
+                    .ok_or_else(|| damaged(rest, "the directory is cut off"))
+            }
+            found => Err(TraceError::Encoding { found }),
+        }
+    }
+
+    /// Reads the directory; `head` is as much of the blob as `head_length` says, `length` that of all
+    /// of it.
+    pub fn read(head: &[u8], length: usize, shape: &Shape<'_>) -> Result<Self, TraceError> {
+        let mut rest = head;
+        // What `head_length` has looked at.
+        let (_, _) = (take(&mut rest), take(&mut rest));
+        let damaged = |rest: &[u8], what| TraceError::Blob {
+            offset: head.len() - rest.len(),
+            what,
+        };
+        if shape.has_checksums() {
+            let (before, crc) = head
+                .split_last_chunk::<CRC_BYTES>()
+                .ok_or_else(|| damaged(head, "the directory is cut off"))?;
+            if crc32fast::hash(before) != u32::from_le_bytes(*crc) {
+                return Err(damaged(rest, "the directory does not match its checksum"));
+            }
+            take(&mut rest);
+            rest = &rest[..rest.len().saturating_sub(CRC_BYTES)];
+        }
+        let blocks = shape.blocks();
+        let count = blocks.saturating_mul(shape.channels.len());
+        // A piece takes two bytes at least, so this allocates no more than the blob did.
+        if rest.len() / 2 < count {
+            return Err(damaged(rest, "the directory is cut off"));
+        }
+        let mut pieces = Vec::with_capacity(count);
+        // Lengths until all are known, for where the bodies begin without a directory's length.
+        let mut at = 0usize;
+        for place in 0..count {
+            let (&byte, after) = rest.split_first().ok_or_else(|| damaged(rest, "cut off"))?;
+            let tag = Tag::from_byte(byte).ok_or_else(|| damaged(rest, "unknown column form"))?;
+            rest = after;
+            let bytes = take(&mut rest).and_then(|bytes| usize::try_from(bytes).ok());
+            let end = bytes.and_then(|bytes| at.checked_add(bytes));
+            let end = end.ok_or_else(|| damaged(rest, "bad column length"))?;
+            let crc = if shape.has_checksums() {
+                let crc = rest.split_first_chunk::<CRC_BYTES>();
+                let (crc, after) = crc.ok_or_else(|| damaged(rest, "cut off"))?;
+                rest = after;
+                Some(u32::from_le_bytes(*crc))
+            } else {
+                None
+            };
+            let first = place % blocks * shape.block_rows();
+            pieces.push(Piece {
+                tag,
+                rows: first..shape.rows.min(first + shape.block_rows()),
+                bytes: at..end,
+                crc,
+            });
+            at = end;
+        }
+        let begin = if shape.has_checksums() {
+            if !rest.is_empty() {
+                return Err(damaged(rest, "bytes after the directory"));
+            }
+            head.len()
+        } else {
+            head.len() - rest.len()
+        };
+        match at.checked_add(begin) {
+            Some(end) if end == length => {}
+            Some(end) if end < length => {
+                let what = "bytes after the last column";
+                return Err(TraceError::Blob { offset: end, what });
+            }
+            _ => {
+                let what = "a column is cut off";
+                return Err(TraceError::Blob {
+                    offset: length,
+                    what,
+                });
+            }
+        }
+        for piece in &mut pieces {
+            piece.bytes = piece.bytes.start + begin..piece.bytes.end + begin;
+        }
+        Ok(Self { pieces, blocks })
+    }
+
+    /// The pieces of the channel at `place` that have any of `rows`, in order; they lie side by side.
+    pub(super) fn pieces(&self, place: usize, rows: &Range<usize>) -> &[Piece] {
+        if rows.is_empty() {
+            return &[];
+        }
+        let column = &self.pieces[place * self.blocks..(place + 1) * self.blocks];
+        let first = column.partition_point(|piece| piece.rows.end <= rows.start);
+        let end = column.partition_point(|piece| piece.rows.start < rows.end);
+        column.get(first..end).unwrap_or_default()
+    }
+
+    /// The bytes of those pieces.
+    pub fn span(&self, place: usize, rows: &Range<usize>) -> Range<usize> {
+        match self.pieces(place, rows) {
+            [] => 0..0,
+            [first, .., last] => first.bytes.start..last.bytes.end,
+            [only] => only.bytes.clone(),
+        }
+    }
+}

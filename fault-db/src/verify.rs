@@ -1,0 +1,79 @@
+//! Repairs that a run has proven.
+//!
+//! A fault that is thought repaired is verified by a run that passed, began when the repair was already
+//! known here, and passed the very step that saw the fault last. A fault that no step saw, read from a
+//! unit's log perhaps, is for people to verify.
+
+use crate::base::{SqlError, values};
+use crate::error::StoreError;
+use crate::fault_log::{NewEvent, insert_event};
+use crate::fault_state::{FaultAction, FaultState};
+use crate::id::Id;
+use crate::record::{RunEnd, Verdict};
+use crate::store::Store;
+
+/// Repaired faults of a unit whose last step passed in a run.
+const PROVEN: &str = "
+    SELECT f.seq, f.id FROM fault f
+    WHERE f.unit = ?1 AND f.state = 'repaired'
+        AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = f.seq AND e.state = 'repaired') <= ?3
+        AND EXISTS (
+            SELECT 1 FROM step seen JOIN step again
+                ON again.procedure = seen.procedure AND again.name = seen.name
+            WHERE again.run = ?2 AND again.verdict = 'passed'
+                AND (seen.run, seen.step_index) = (
+                    SELECT o.run, o.step_index FROM fault_occurrence o
+                    WHERE o.fault = f.seq ORDER BY o.at_us DESC, o.seq DESC LIMIT 1))
+    ORDER BY f.seq";
+
+impl Store {
+    /// The number of the last event this file knows.
+    pub(crate) fn last_event(&self) -> Result<i64, StoreError> {
+        let found = self.first(
+            "beginning a run",
+            "SELECT coalesce(max(seq), 0) FROM fault_event",
+            &[],
+            |row| row.get(0),
+        )?;
+        Ok(found.unwrap_or_default())
+    }
+
+    /// Verifies what a run that ended so has proven, in the caller's transaction: of its unit, and
+    /// repaired no later than the event of this number.
+    pub(crate) fn verify_proven(
+        &self,
+        (unit, run, id): (i64, i64, Id),
+        known_events: i64,
+        end: &RunEnd,
+    ) -> Result<Vec<Id>, StoreError> {
+        if end.verdict != Verdict::Passed {
+            return Ok(Vec::new());
+        }
+        let proven = self.select(
+            "verifying repairs",
+            PROVEN,
+            &values![unit, run, known_events],
+            |row| Ok((row.get::<i64>(0)?, row.get::<Id>(1)?)),
+        )?;
+        let note = format!("passed in run {}", id.short());
+        for (fault, _) in &proven {
+            let event = NewEvent {
+                id: self.mint()?,
+                kind: FaultAction::Verify.event_kind(),
+                at_us: end.finished_at_us,
+                who: "",
+                body: &note,
+                state: Some(FaultState::Verified),
+            };
+            let work = || -> Result<(), SqlError> {
+                insert_event(self.base(), *fault, &event)?;
+                let sql = "UPDATE fault SET state = ?2 WHERE seq = ?1";
+                self.base()
+                    .execute(sql, &values![*fault, FaultState::Verified])?;
+                Ok(())
+            };
+            work().map_err(|error| self.failed("verifying repairs", error))?;
+        }
+        Ok(proven.into_iter().map(|(_, id)| id).collect())
+    }
+}

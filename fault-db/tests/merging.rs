@@ -1,0 +1,335 @@
+//! Laptops that meet in any order: the same faults, states and counts everywhere, and nothing hidden of
+//! what people did without knowing of each other.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{Random, T0_US, end, fault, ids, measurement, run_record, step};
+use fault_db::{
+    FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter, Store, StoreError,
+    Synchronous, Verdict,
+};
+use rusqlite::Connection;
+use tempfile::{TempDir, tempdir};
+
+const HOUR_US: i64 = 3_600_000_000;
+
+fn opened(path: &Path, seed: u64) -> Store {
+    let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
+    Store::open(path, options).expect("opens")
+}
+
+/// A laptop with a name.
+fn laptop(dir: &TempDir, name: &str, seed: u64) -> Store {
+    opened(&dir.path().join(name), seed)
+}
+
+/// What a file says, without what differs between files: row numbers, and which of its ids a fault goes by.
+fn said(store: &Store) -> Vec<String> {
+    let conn = Connection::open(store.path()).expect("opens");
+    let questions = [
+        "SELECT u.serial || ' ' || f.code || f.lru || ' ' || f.state || ' ' || f.first_at_us || ' '
+            || f.last_at_us || ' ' || f.occurrences || ' ' || f.repairs || ' ' || f.line || ' '
+            || ifnull(f.closed_at_us, '-') || ' seen '
+            || (SELECT group_concat(hex(id)) FROM (SELECT id FROM fault_occurrence o
+                WHERE o.fault = f.seq ORDER BY id)) || ' done '
+            || (SELECT group_concat(hex(id) || turn) FROM (SELECT id, turn FROM fault_event e
+                WHERE e.fault = f.seq ORDER BY id))
+            || ' ids ' || (SELECT group_concat(hex(id)) FROM (SELECT id FROM fault WHERE seq = f.seq
+                UNION SELECT id FROM fault_alias a WHERE a.fault = f.seq ORDER BY id))
+         FROM fault f JOIN unit u ON u.seq = f.unit",
+        "SELECT dim || ' ' || grain || ' ' || at || ' '
+            || CASE dim WHEN 3 THEN (SELECT serial FROM unit WHERE seq = key) ELSE key END || ' '
+            || seen || ' ' || opened || ' ' || closed || ' ' || bare
+         FROM tally WHERE seen <> 0 OR opened <> 0 OR closed <> 0",
+        "SELECT hex(e.id) || ' ' || r.part || ' ' || r.line || ' ' || r.opened_at_us || ' '
+            || ifnull(r.back_at_us, '-') FROM repair r JOIN fault_event e ON e.seq = r.event",
+        "SELECT hex(origin) || ordinal || hex(hash) FROM seal",
+        "SELECT hex(id) || ifnull(verdict, '-') || train FROM run",
+        "SELECT name || procedure || day || ' ' || n || ' ' || least || ' ' || most FROM measured_day",
+    ];
+    let mut said = Vec::new();
+    for question in questions {
+        let mut select = conn.prepare(question).expect("a question");
+        let lines = select.query_map([], |row| row.get::<_, String>(0));
+        let mut lines: Vec<_> = lines
+            .expect("asked")
+            .collect::<Result<_, _>>()
+            .expect("answers");
+        lines.sort();
+        said.extend(lines);
+    }
+    said
+}
+
+fn whole(store: &Store, what: &str) {
+    assert_eq!(store.check().expect("checked").problems, [], "{what}");
+}
+
+/// Runs, faults out of order, and people who do what they may, with a clock of their own.
+fn live(store: &Store, random: &mut Random, clock_us: i64) {
+    let mut at_us = clock_us;
+    let mut known: Vec<Id> = faults(store);
+    for _ in 0..8 {
+        at_us += (random.next() % 50) as i64 * HOUR_US;
+        let mut record = run_record(["ATC-1", "ATC-2"][(random.next() % 2) as usize]);
+        record.line = format!("line-{}", random.next() % 2);
+        record.train = format!("T{}", random.next() % 3);
+        record.started_at_us = at_us;
+        let mut writer = RunWriter::begin(store, &record).expect("begun");
+        let mut measured = step(0);
+        measured.measurements = vec![measurement("eb_reaction", 0.42 + random.noise() / 10.0)];
+        writer.step(measured).expect("kept");
+        for _ in 0..random.next() % 4 {
+            let code = (random.next() % 2) as i64;
+            // Out of the unit's log: some are older than what is known.
+            let back_us = (random.next() % 2_000_000_000) as i64 * 100;
+            let stored = writer.fault(&fault(code, at_us - back_us)).expect("stored");
+            known.push(stored.fault);
+        }
+        if !random.one_in(6) {
+            writer.finish(&end(Verdict::Failed)).expect("finished");
+        }
+        for _ in 0..6 {
+            if known.is_empty() {
+                break;
+            }
+            let fault = known[(random.next() % known.len() as u64) as usize];
+            let when_us = at_us + (random.next() % 1_000) as i64 * 60_000_000;
+            match act(store, fault, random.next() % 6, when_us) {
+                Ok(()) | Err(StoreError::Transition { .. }) => {}
+                Err(error) => panic!("{error}"),
+            }
+        }
+    }
+}
+
+fn act(store: &Store, fault: Id, act: u64, at_us: i64) -> Result<(), StoreError> {
+    let repair = RepairRecord {
+        part: "EB_relay".to_owned(),
+        serial_old: None,
+        serial_new: Some("SN-7".to_owned()),
+        note: "교체함".to_owned(),
+    };
+    match act {
+        0 => store.acknowledge(fault, "kim", "", at_us).map(drop),
+        1 => store.record_repair(fault, &repair, "lee", at_us).map(drop),
+        2 => store
+            .set_state(fault, FaultState::Verified, "kim", "", at_us)
+            .map(drop),
+        3 => store
+            .set_state(fault, FaultState::Open, "kim", "again", at_us)
+            .map(drop),
+        4 => store.add_note(fault, "park", "seen before", at_us),
+        _ => store
+            .set_state(fault, FaultState::Closed, "lee", "이상 없음", at_us)
+            .map(drop),
+    }
+}
+
+fn faults(store: &Store) -> Vec<Id> {
+    let all = store.faults(&fault_db::FaultFilter::default());
+    all.expect("listed")
+        .into_iter()
+        .map(|fault| fault.id)
+        .collect()
+}
+
+/// Goal: whatever laptops did, knowing of each other's work in part, all files that have seen both say the
+/// same, in whichever order that was, and their counts are those of their rows.
+/// Method: lives drawn from a seed; two laptops share a beginning, one has met the other half-way, and
+/// their clocks are days apart.
+#[test]
+fn in_whatever_order_files_are_merged_they_say_the_same() {
+    for seed in 1..=12 {
+        let dir = tempdir().expect("a directory");
+        let mut random = Random::new(seed);
+        let a = laptop(&dir, "a.db", 1000 + seed);
+        let b = laptop(&dir, "b.db", 2000 + seed);
+        let done = a.together(|| {
+            live(&a, &mut random, T0_US);
+            Ok(())
+        });
+        done.expect("lived");
+        if seed % 3 != 0 {
+            b.merge_from(&a).expect("a shared beginning");
+        }
+        live(&b, &mut random, T0_US - 200 * HOUR_US);
+        if seed % 2 == 0 {
+            a.merge_from(&b).expect("met half-way");
+            live(&b, &mut random, T0_US + 100 * HOUR_US);
+        }
+        live(&a, &mut random, T0_US + 300 * HOUR_US);
+        for (store, name) in [(&a, "a"), (&b, "b")] {
+            whole(store, &format!("seed {seed}: {name} before"));
+        }
+
+        let (ab, ba) = (laptop(&dir, "ab.db", 3), laptop(&dir, "ba.db", 4));
+        for (store, order) in [(&ab, [&a, &b]), (&ba, [&b, &a])] {
+            for from in order {
+                store.merge_from(from).expect("merged");
+            }
+            whole(store, &format!("seed {seed}: merged"));
+            for from in order {
+                let again = store.merge_from(from).expect("merged again");
+                assert_eq!(again, MergeCounts::default(), "seed {seed}: nothing is new");
+            }
+        }
+        let expected = said(&ab);
+        assert_eq!(said(&ba), expected, "seed {seed}: in the other order");
+        a.merge_from(&b).expect("merged");
+        b.merge_from(&a).expect("and back");
+        for store in [&a, &b] {
+            whole(store, &format!("seed {seed}: into each other"));
+            assert_eq!(said(store), expected, "seed {seed}: into each other");
+        }
+        assert_eq!(
+            ab.conflicts().expect("looked").len(),
+            b.conflicts().expect("looked").len()
+        );
+    }
+}
+
+/// A file with one fault, and a copy of it on another laptop.
+fn shared_fault(dir: &TempDir) -> (Store, Store, Id) {
+    let (a, b) = (laptop(dir, "a.db", 1), laptop(dir, "b.db", 2));
+    let stored = one_fault(&a, T0_US);
+    b.merge_from(&a).expect("merged");
+    (a, b, stored)
+}
+
+fn one_fault(store: &Store, at_us: i64) -> Id {
+    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
+    let stored = writer.fault(&fault(1, at_us)).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    stored.fault
+}
+
+fn state(store: &Store, fault: Id) -> FaultState {
+    store.fault(fault).expect("there").fault.state
+}
+
+/// Goal: what two people did to a fault without knowing of each other is shown, with the state that leaves
+/// the most to do standing, whatever their clocks say, until one of them has looked again.
+#[test]
+fn rivals_are_kept_and_shown_until_somebody_looks_again() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    a.acknowledge(fault, "kim", "mine", T0_US + 10)
+        .expect("his clock is slow");
+    b.set_state(fault, FaultState::Closed, "lee", "not a fault", T0_US + 900)
+        .expect("her clock is fast");
+    assert_eq!(a.conflicts().expect("looked"), [], "nobody knows yet");
+    a.merge_from(&b).expect("merged");
+    b.merge_from(&a).expect("merged");
+    for store in [&a, &b] {
+        let [conflict] = &store.conflicts().expect("looked")[..] else {
+            panic!("one conflict");
+        };
+        assert_eq!((conflict.fault, &conflict.unit[..]), (fault, "ATC-7"));
+        assert_eq!(conflict.stands, FaultState::Acknowledged);
+        let rivals: Vec<_> = conflict
+            .rivals
+            .iter()
+            .map(|rival| (&rival.who[..], rival.state, rival.at_us))
+            .collect();
+        let expected = [
+            ("kim", FaultState::Acknowledged, T0_US + 10),
+            ("lee", FaultState::Closed, T0_US + 900),
+        ];
+        assert_eq!(rivals, expected);
+        assert_eq!(state(store, fault), FaultState::Acknowledged);
+        whole(store, "with a conflict");
+    }
+    // Later by turn, whatever the clock says.
+    b.set_state(
+        fault,
+        FaultState::Closed,
+        "lee",
+        "we have talked",
+        T0_US + 5,
+    )
+    .expect("acknowledged may be closed");
+    a.merge_from(&b).expect("merged");
+    for store in [&a, &b] {
+        assert_eq!(store.conflicts().expect("looked"), []);
+        assert_eq!(state(store, fault), FaultState::Closed);
+    }
+}
+
+/// Two who did the same are no conflict.
+#[test]
+fn two_who_agree_are_no_conflict() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    for store in [&a, &b] {
+        store
+            .acknowledge(fault, "kim", "", T0_US + 10)
+            .expect("taken");
+    }
+    a.merge_from(&b).expect("merged");
+    assert_eq!(a.conflicts().expect("looked"), []);
+    assert_eq!(state(&a, fault), FaultState::Acknowledged);
+}
+
+/// Goal: a fault two laptops saw has one history here, and both its names lead to it: what the other
+/// laptop does later under its name is done to it, and a person finds it by either.
+#[test]
+fn both_names_of_one_fault_lead_to_it() {
+    let dir = tempdir().expect("a directory");
+    let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+    let (ours, theirs) = (one_fault(&a, T0_US), one_fault(&b, T0_US + 5));
+    a.merge_from(&b).expect("merged");
+    for asked in [
+        theirs.to_string(),
+        theirs.short(),
+        theirs.to_string()[..25].to_owned(),
+    ] {
+        assert_eq!(a.resolve_fault(&asked).ok(), Some(ours), "{asked}");
+    }
+    a.add_note(theirs, "kim", "by its other name", T0_US + 20)
+        .expect("found");
+    // There nobody knows of the join, and the fault comes to its end.
+    b.set_state(theirs, FaultState::Closed, "lee", "", T0_US + 30)
+        .expect("closed");
+    a.merge_from(&b).expect("merged");
+    assert_eq!(faults(&a), [ours]);
+    assert_eq!(state(&a, ours), FaultState::Closed);
+    whole(&a, "joined");
+}
+
+/// Goal: a laptop that has not heard that a fault was closed does not pull the next one into it.
+#[test]
+fn a_stale_copy_does_not_swallow_the_next_fault() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, first) = shared_fault(&dir);
+    b.set_state(first, FaultState::Closed, "lee", "", T0_US + 10)
+        .expect("closed");
+    let next = one_fault(&b, T0_US + HOUR_US);
+    assert_ne!(first, next);
+    a.merge_from(&b).expect("merged");
+    assert_eq!(
+        (state(&a, first), state(&a, next)),
+        (FaultState::Closed, FaultState::Open)
+    );
+    whole(&a, "two faults");
+}
+
+/// Goal: a copy that went on by itself, under the same name, has runs in the same places of the chain; all
+/// of them are kept, and each is sealed.
+#[test]
+fn a_copy_that_went_on_by_itself_comes_home() {
+    let dir = tempdir().expect("a directory");
+    let a = laptop(&dir, "a.db", 1);
+    one_fault(&a, T0_US);
+    let copy: PathBuf = dir.path().join("copy.db");
+    a.backup(&copy).expect("copied");
+    let b = opened(&copy, 2);
+    one_fault(&a, T0_US + 1);
+    one_fault(&b, T0_US + 2);
+    one_fault(&b, T0_US + 3);
+    assert_eq!(a.merge_from(&b).expect("merged").runs, 2);
+    whole(&a, "with the copy's runs");
+    assert_eq!(a.merge_from(&b).expect("merged"), MergeCounts::default());
+}

@@ -1,0 +1,171 @@
+//! TLS and passwords: who is let in, and whom a laptop trusts.
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use fault_db::StoreError;
+use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
+
+use crate::laptop::connect;
+use crate::private::{Cluster, NO_HURRY, give_away};
+
+/// A server with a certificate for `localhost`, of an issuer nobody knows, that wants passwords of kim.
+struct Guarded {
+    cluster: Cluster,
+    folder: tempfile::TempDir,
+}
+
+impl Guarded {
+    fn address(&self, host: &str, options: &str) -> String {
+        format!(
+            "postgres://kim:s%40cret@{host}:{}/postgres?{options}",
+            self.cluster.port()
+        )
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.folder.path().join(name).to_string_lossy().into_owned()
+    }
+}
+
+fn issuer(folder: &Path, name: &str) -> Issuer<'static, KeyPair> {
+    let key = KeyPair::generate().expect("a key");
+    let mut about = CertificateParams::default();
+    about.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
+    let certificate = about.self_signed(&key).expect("a certificate");
+    std::fs::write(folder.join(name), certificate.pem()).expect("a file");
+    Issuer::new(about, key)
+}
+
+fn guarded() -> &'static Guarded {
+    static GUARDED: OnceLock<Guarded> = OnceLock::new();
+    GUARDED.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a folder");
+        give_away(folder.path());
+        let trusted = issuer(folder.path(), "issuer.pem");
+        issuer(folder.path(), "other.pem");
+        std::fs::write(folder.path().join("empty.pem"), "nothing\n").expect("a file");
+        let key = KeyPair::generate().expect("a key");
+        let about = CertificateParams::new(["localhost".to_owned()]).expect("a name");
+        let certificate = about.signed_by(&key, &trusted).expect("a certificate");
+        let (cert_file, key_file) = (
+            folder.path().join("server.pem"),
+            folder.path().join("key.pem"),
+        );
+        std::fs::write(&cert_file, certificate.pem()).expect("a file");
+        std::fs::write(&key_file, key.serialize_pem()).expect("a file");
+        give_away(&key_file);
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o600);
+        std::fs::set_permissions(&key_file, mode).expect("permissions");
+        let hba = folder.path().join("hba.conf");
+        let rules = "host all ptu 127.0.0.1/32 trust\nhostssl all kim all scram-sha-256\n";
+        std::fs::write(&hba, rules).expect("a file");
+        let cluster = Cluster::start(&[
+            NO_HURRY,
+            "ssl = on",
+            &format!("ssl_cert_file = '{}'", cert_file.display()),
+            &format!("ssl_key_file = '{}'", key_file.display()),
+            &format!("hba_file = '{}'", hba.display()),
+        ]);
+        let mut client = cluster.client("postgres");
+        client
+            .batch_execute("CREATE ROLE kim LOGIN SUPERUSER PASSWORD 's@cret'")
+            .expect("kim");
+        Guarded { cluster, folder }
+    })
+}
+
+#[test]
+fn a_server_is_trusted_by_its_issuer_and_its_name() {
+    let server = guarded();
+    let issuer = format!("sslrootcert={}", server.file("issuer.pem"));
+    for accepted in [
+        server.address("localhost", &issuer),
+        server.address("localhost", &format!("{issuer}&sslmode=require")),
+        server.address("localhost", "sslmode=prefer"),
+        // On this machine nobody has to prove anything.
+        server.address("localhost", ""),
+    ] {
+        connect(&accepted).unwrap_or_else(|error| panic!("{accepted}: {error}"));
+    }
+    for (refused, words) in [
+        (
+            server.address("localhost", "sslmode=verify-full"),
+            "sslrootcert",
+        ),
+        (
+            server.address(
+                "localhost",
+                &format!("sslrootcert={}", server.file("other.pem")),
+            ),
+            "nobody known here issued its certificate",
+        ),
+        (server.address("127.0.0.1", &issuer), "for another host"),
+        (
+            server.address(
+                "localhost",
+                &format!("sslrootcert={}", server.file("empty.pem")),
+            ),
+            "no certificate in it",
+        ),
+        (
+            server.address(
+                "localhost",
+                &format!("sslrootcert={}", server.file("gone.pem")),
+            ),
+            "gone.pem",
+        ),
+    ] {
+        let error = connect(&refused).expect_err(&refused);
+        assert!(
+            matches!(error, StoreError::ServerNotTrusted { .. }),
+            "{refused}: {error:?}"
+        );
+        assert!(error.to_string().contains(words), "{error}");
+        assert!(!error.to_string().contains("cret@"), "{error}");
+    }
+    // In the clear the server does not want kim.
+    let clear = connect(&server.address("localhost", "sslmode=disable")).expect_err("in the clear");
+    assert!(matches!(clear, StoreError::ServerRefuses { .. }), "{clear}");
+}
+
+#[test]
+fn a_server_without_tls_is_refused_unless_told_otherwise() {
+    let plain = crate::private::shared().database();
+    let insisting = plain.replace("disable", "require");
+    let refused = connect(&insisting).expect_err("no TLS");
+    assert!(refused.to_string().contains("it has no TLS"), "{refused}");
+    connect(&plain.replace("disable", "prefer")).expect("a server");
+}
+
+#[test]
+fn passwords_come_from_a_file_and_are_never_shown() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let server = guarded();
+    let file = server.folder.path().join("pass");
+    std::fs::write(&file, "localhost:*:*:kim:s@cret\n").expect("a file");
+    let allow = |mode| {
+        let mode = std::fs::Permissions::from_mode(mode);
+        std::fs::set_permissions(&file, mode).expect("permissions");
+    };
+    let port = server.cluster.port();
+    let address = format!(
+        "postgres://kim@localhost:{port}/postgres?passfile={}",
+        file.display()
+    );
+    allow(0o600);
+    let store = connect(&address).expect("a server");
+    assert!(!format!("{store:?} {}", store.path().display()).contains("cret"));
+    allow(0o644);
+    let refused = connect(&address).expect_err("a file that others can read");
+    assert!(refused.to_string().contains("chmod 600"), "{refused}");
+
+    let wrong = server.address("localhost", "").replace("s%40cret", "wrong");
+    let refused = connect(&wrong).expect_err("a wrong password");
+    assert!(
+        matches!(refused, StoreError::ServerRefuses { .. }),
+        "{refused}"
+    );
+    assert!(refused.to_string().contains("password"), "{refused}");
+    assert!(!refused.to_string().contains("wrong@"), "{refused}");
+}

@@ -1,0 +1,138 @@
+//! Laptops for the tests: a file each, with runs, faults and people who say something about them.
+
+use std::path::PathBuf;
+
+use fault_db::{
+    Address, Id, OpenOptions, RunWriter, Store, StoreError, SyncOptions, SyncOutcome, Synchronous,
+    Verdict,
+};
+use tempfile::TempDir;
+
+use crate::common::{self, T0_US};
+
+/// A laptop with its file.
+pub struct Laptop {
+    pub name: &'static str,
+    folder: TempDir,
+    seed: std::cell::Cell<u64>,
+    /// Its clock, µs.
+    pub now_us: std::cell::Cell<i64>,
+}
+
+impl Laptop {
+    pub fn new(name: &'static str) -> Self {
+        let letters = name
+            .bytes()
+            .fold(7, |sum: u64, byte| sum * 31 + u64::from(byte));
+        Self {
+            name,
+            folder: tempfile::tempdir().expect("a folder"),
+            // Each opening of the file takes one more: names next to each other stay apart.
+            seed: (letters * 100_003).into(),
+            now_us: system_now_us().into(),
+        }
+    }
+
+    pub fn path(&self) -> PathBuf {
+        self.folder.path().join("history.db")
+    }
+
+    pub fn open(&self) -> Store {
+        self.seed.set(self.seed.get() + 1);
+        let options = OpenOptions::new(common::ids(self.seed.get()));
+        let options = options.synchronous(Synchronous::Normal);
+        Store::open(&self.path(), options).expect("its file opens")
+    }
+
+    /// Syncs with a server, samples and all.
+    pub fn sync(&self, address: &str) -> SyncOutcome {
+        self.try_sync(address, &mut |_| true).expect("a sync")
+    }
+
+    pub fn try_sync(
+        &self,
+        address: &str,
+        go_on: &mut dyn FnMut(fault_db::SyncProgress) -> bool,
+    ) -> Result<SyncOutcome, StoreError> {
+        let server = connect(address)?;
+        self.open().sync(
+            &server,
+            &mut SyncOptions {
+                laptop: self.name,
+                traces: true,
+                is_alive: &|owner| owner == "alive",
+                now_us: &|| self.now_us.get(),
+                go_on,
+            },
+        )
+    }
+
+    /// Holds the file to its own checks: checksums, seals, and counts that fit the rows.
+    pub fn is_whole(&self) {
+        let report = self.open().check().expect("a check");
+        assert!(
+            report.problems.is_empty(),
+            "{}: {:#?}",
+            self.name,
+            report.problems
+        );
+    }
+
+    /// A run of three steps that sees these faults of a unit, one trace each if wanted.
+    pub fn run(&self, serial: &str, at_us: i64, codes: &[i64], traces: bool) -> Id {
+        record(&self.open(), serial, at_us, codes, traces)
+    }
+}
+
+/// Records a run of three steps that sees these faults of a unit.
+pub fn record(store: &Store, serial: &str, at_us: i64, codes: &[i64], traces: bool) -> Id {
+    let mut record = common::run_record(serial);
+    record.started_at_us = at_us;
+    record.train = "T7".to_owned();
+    let mut writer = RunWriter::begin(store, &record).expect("a run");
+    for index in 0..3 {
+        let mut step = common::step(index);
+        let value = 0.42 + 0.01 * f64::from(index) + (at_us % 97) as f64 * 1e-4;
+        step.measurements
+            .push(common::measurement("eb_reaction", value));
+        writer.step(step).expect("a step");
+    }
+    for (number, code) in (0..).zip(codes) {
+        let fault = common::fault(*code, at_us + 1_000_000 * (number + 1));
+        let stored = writer.fault(&fault).expect("a fault");
+        if traces {
+            let mut trace = common::realistic_trace(60, code.unsigned_abs());
+            trace.t0_us = at_us;
+            writer.trace(&[stored.occurrence], &trace).expect("a trace");
+        }
+    }
+    let id = writer.id();
+    let verdict = if codes.is_empty() {
+        Verdict::Passed
+    } else {
+        Verdict::Failed
+    };
+    let mut end = common::end(verdict);
+    end.finished_at_us = at_us + 60_000_000;
+    writer.finish(&end).expect("an end");
+    id
+}
+
+pub fn connect(address: &str) -> Result<Store, StoreError> {
+    let address: Address = address.parse()?;
+    Store::connect(&address, common::ids(system_now_us().unsigned_abs()))
+}
+
+pub fn read_only(address: &str) -> Result<Store, StoreError> {
+    Store::connect_read_only(&address.parse()?)
+}
+
+pub fn system_now_us() -> i64 {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    since.expect("a clock after 1970").as_micros() as i64
+}
+
+/// The `n`th day of the tests, µs.
+pub fn day(n: i64) -> i64 {
+    T0_US + n * 86_400_000_000
+}

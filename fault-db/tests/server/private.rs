@@ -1,0 +1,298 @@
+//! A private PostgreSQL: its own cluster in a temporary folder on a free loopback port, gone with the
+//! program that started it, however that ends.
+
+use std::fs;
+use std::net::TcpListener;
+use std::os::unix::fs::chown;
+use std::os::unix::process::CommandExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+use postgres::{Client, NoTls};
+use tempfile::TempDir;
+
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A setting: data reaches the disk some time, since no test turns the power off.
+pub const NO_HURRY: &str = "fsync = off";
+
+/// A cluster. Dropping it, or the program's end, stops the server.
+pub struct Cluster {
+    folder: TempDir,
+    port: u16,
+    server: std::sync::Mutex<Child>,
+    /// Its input is closed when this program ends; it then stops the server.
+    _watchdog: Child,
+}
+
+/// The cluster all tests share that do not stop it.
+pub fn shared() -> &'static Cluster {
+    static SHARED: OnceLock<Cluster> = OnceLock::new();
+    SHARED.get_or_init(|| Cluster::start(&[NO_HURRY]))
+}
+
+impl Cluster {
+    /// Makes a cluster and starts its server with these settings.
+    pub fn start(settings: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        give_away(folder.path());
+        let data = folder.path().join("data");
+        let made = program("initdb")
+            .args([
+                "-A",
+                "trust",
+                "-U",
+                "ptu",
+                "-E",
+                "UTF8",
+                "--locale=C.UTF-8",
+                "--no-sync",
+                "-D",
+            ])
+            .arg(&data)
+            .output()
+            .expect("initdb runs");
+        let said = String::from_utf8_lossy(&made.stderr);
+        assert!(made.status.success(), "initdb: {said}");
+        for setting in settings {
+            let configuration = data.join("postgresql.conf");
+            let text = fs::read_to_string(&configuration).expect("a configuration");
+            fs::write(&configuration, format!("{text}\n{setting}\n")).expect("a setting");
+        }
+        let port = free_port();
+        let server = serve(&data, port);
+        let watchdog = watch(server.id(), folder.path());
+        let cluster = Self {
+            folder,
+            port,
+            server: server.into(),
+            _watchdog: watchdog,
+        };
+        cluster.wait();
+        cluster
+    }
+
+    /// A new, empty database and its address.
+    pub fn database(&self) -> String {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        let name = format!("history_{}", NUMBER.fetch_add(1, Ordering::Relaxed));
+        let mut client = self.client("postgres");
+        client
+            .batch_execute(&format!("CREATE DATABASE {name}"))
+            .expect("a new database");
+        self.address(&name)
+    }
+
+    pub fn address(&self, database: &str) -> String {
+        format!(
+            "postgres://ptu@127.0.0.1:{}/{database}?sslmode=disable",
+            self.port
+        )
+    }
+
+    pub fn port(&self) -> u16 {
+        self.port
+    }
+
+    pub fn data(&self) -> PathBuf {
+        self.folder.path().join("data")
+    }
+
+    /// A plain connection, past all that is ours.
+    pub fn client(&self, database: &str) -> Client {
+        let address = format!(
+            "host=127.0.0.1 port={} user=ptu dbname={database}",
+            self.port
+        );
+        Client::connect(&address, NoTls).expect("the private server takes connections")
+    }
+
+    /// Kills the server and all that works for it, as a power cut would.
+    pub fn kill(&self) {
+        let mut server = self.server.lock().expect("nobody else panicked here");
+        // All of it at once, as by a power cut: none has time to tell the others.
+        let all = [vec![server.id()], children(server.id())].concat();
+        let all: Vec<_> = all.iter().map(u32::to_string).collect();
+        let kill = format!("kill -KILL {}", all.join(" "));
+        let _ = Command::new("sh").args(["-c", &kill]).status();
+        server.wait().expect("a server that was killed ends");
+    }
+
+    /// Starts the server again where it was.
+    pub fn restart(&self) {
+        let _ = fs::remove_file(self.data().join("postmaster.pid"));
+        let started = serve(&self.data(), self.port);
+        *self.server.lock().expect("nobody else panicked here") = started;
+        self.wait();
+    }
+
+    fn wait(&self) {
+        let begun = Instant::now();
+        let address = format!("host=127.0.0.1 port={} user=ptu dbname=postgres", self.port);
+        while Client::connect(&address, NoTls).is_err() {
+            let mut server = self.server.lock().expect("nobody else panicked here");
+            // One that was killed may have left somebody behind who is about to find out; until then no other
+            // starts.
+            if matches!(server.try_wait(), Ok(Some(_))) {
+                let _ = fs::remove_file(self.data().join("postmaster.pid"));
+                *server = serve(&self.data(), self.port);
+            }
+            drop(server);
+            let waited = begun.elapsed();
+            assert!(
+                waited < PATIENCE,
+                "the private server does not start: {}",
+                self.log()
+            );
+            std::thread::sleep(Duration::from_millis(30));
+        }
+    }
+
+    fn log(&self) -> String {
+        fs::read_to_string(self.folder.path().join("log")).unwrap_or_default()
+    }
+}
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        let mut server = self
+            .server
+            .lock()
+            .unwrap_or_else(|broken| broken.into_inner());
+        stop(server.id());
+        let _ = server.wait();
+    }
+}
+
+/// The database's name in an address.
+pub fn name_of(address: &str) -> &str {
+    let name = address
+        .rsplit('/')
+        .next()
+        .expect("an address has a database");
+    name.split('?').next().expect("a name")
+}
+
+fn serve(data: &Path, port: u16) -> Child {
+    let log = data.with_file_name("log");
+    let out = fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(log)
+        .expect("a log");
+    program("postgres")
+        .arg("-D")
+        .arg(data)
+        .args(["-p", &port.to_string(), "-h", "127.0.0.1"])
+        .args(["-c", "unix_socket_directories=", "-c", "max_connections=60"])
+        .args(["-c", "shared_buffers=64MB"])
+        .stdin(Stdio::null())
+        .stdout(out.try_clone().expect("a log"))
+        .stderr(out)
+        .process_group(0)
+        .spawn()
+        .expect("postgres runs")
+}
+
+/// Immediate shutdown: the sessions are told to end at once, nothing is written back.
+fn stop(server: u32) {
+    signal("QUIT", server);
+}
+
+/// The processes a process has started.
+fn children(parent: u32) -> Vec<u32> {
+    let of_parent = |process: &u32| {
+        let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+        // The name before them may hold anything, also brackets.
+        let after_name = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
+        after_name.split_whitespace().nth(1) == Some(&parent.to_string())
+    };
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let numbers = processes.filter_map(|process| process.file_name().to_str()?.parse().ok());
+    numbers.filter(of_parent).collect()
+}
+
+/// Sends a signal to a process.
+pub fn signal(name: &str, process: u32) {
+    let kill = format!("kill -{name} {process}");
+    let _ = Command::new("sh").args(["-c", &kill]).status();
+}
+
+/// A shell that waits for this program to end, killed or not, and then stops the server.
+fn watch(server: u32, folder: &Path) -> Child {
+    let script = "cat >/dev/null; kill -QUIT $1 2>/dev/null; sleep 1; rm -rf \"$2\"";
+    Command::new("sh")
+        .args(["-c", script, "watchdog", &server.to_string()])
+        .arg(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .process_group(0)
+        .spawn()
+        .expect("a shell")
+}
+
+/// A program of PostgreSQL, run by somebody who may: it refuses to serve root.
+fn program(name: &str) -> Command {
+    let mut command = Command::new(find(name));
+    if let Some((user, group)) = somebody() {
+        command.uid(user).gid(group).current_dir("/");
+    }
+    command
+}
+
+fn find(name: &str) -> PathBuf {
+    let mut versions: Vec<_> = fs::read_dir("/usr/lib/postgresql")
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|version| version.path().join("bin"))
+        .collect();
+    versions.sort();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let folders = versions
+        .into_iter()
+        .rev()
+        .chain(std::env::split_paths(&path));
+    let mut found = folders
+        .map(|folder| folder.join(name))
+        .filter(|file| file.is_file());
+    found
+        .next()
+        .expect("there is no PostgreSQL here: run scripts/test, which installs it")
+}
+
+/// Number and group of the user `postgres`, or of `nobody`, if this program is root's.
+fn somebody() -> Option<(u32, u32)> {
+    let owner = fs::metadata("/proc/self").expect("a process of our own");
+    if std::os::unix::fs::MetadataExt::uid(&owner) != 0 {
+        return None;
+    }
+    let users = fs::read_to_string("/etc/passwd").expect("users");
+    let of = |name: &str| {
+        let line = users
+            .lines()
+            .find(|line| line.starts_with(&format!("{name}:")))?;
+        let mut fields = line.split(':').skip(2).map(|field| field.parse().ok());
+        Some((fields.next()??, fields.next()??))
+    };
+    Some(
+        of("postgres")
+            .or_else(|| of("nobody"))
+            .expect("a user other than root"),
+    )
+}
+
+pub fn give_away(path: &Path) {
+    if let Some((user, group)) = somebody() {
+        chown(path, Some(user), Some(group)).expect("root may give a folder away");
+    }
+}
+
+pub fn free_port() -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+    listener.local_addr().expect("its number").port()
+}

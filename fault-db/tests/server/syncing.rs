@@ -1,0 +1,543 @@
+//! What a sync brings to the server, and back.
+
+use fault_db::{FaultFilter, FaultState, Id, RepairRecord, RunFilter, RunWriter, Store};
+
+use crate::common;
+use crate::counts;
+use crate::laptop::{Laptop, connect, day, read_only};
+use crate::private::{name_of, shared};
+
+fn open_faults(store: &Store) -> Vec<Id> {
+    let all = store.faults(&FaultFilter::default()).expect("faults");
+    all.iter().map(|fault| fault.id).collect()
+}
+
+fn only_fault(store: &Store) -> fault_db::FaultDetail {
+    let all = open_faults(store);
+    assert_eq!(all.len(), 1, "{all:?}");
+    store.fault(all[0]).expect("the fault")
+}
+
+#[test]
+fn everything_recorded_reaches_the_server_and_a_second_sync_changes_nothing() {
+    let address = shared().database();
+    let laptop = Laptop::new("one");
+    for n in 0..5 {
+        laptop.run("U-1", day(n), &[101, 102 + n % 2], true);
+    }
+    let first = laptop.sync(&address);
+    assert_eq!((first.runs, first.traces, first.waiting), (5, 10, 0));
+    let mut client = shared().client(name_of(&address));
+    let on_server = counts::of_server(&mut client);
+    assert_eq!(on_server, counts::of_file(&laptop.path()));
+    let content = counts::content(&mut client);
+
+    let second = laptop.sync(&address);
+    assert_eq!((second.runs, second.events, second.traces), (0, 0, 0));
+    assert_eq!((second.events_received, second.already_there), (0, 0));
+    assert_eq!(counts::of_server(&mut client), on_server);
+    assert_eq!(counts::content(&mut client), content);
+}
+
+/// A server that came back from a backup, and a file that did: what is missing is sent again, and what
+/// is there stays.
+#[test]
+fn a_cursor_that_is_too_far_on_one_side_loses_nothing() {
+    let address = shared().database();
+    let laptop = Laptop::new("restored");
+    laptop.run("U-1", day(0), &[101], true);
+    laptop.sync(&address);
+    let mut client = shared().client(name_of(&address));
+    let content = counts::content(&mut client);
+
+    client
+        .batch_execute("UPDATE laptop SET sent = 0, sent_traces = 0, received = 0")
+        .expect("an older server");
+    let again = laptop.sync(&address);
+    assert_eq!((again.runs, again.events, again.traces), (0, 0, 0));
+    assert!(again.already_there > 0);
+    assert_eq!(counts::content(&mut client), content);
+
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch(
+        "DELETE FROM sync_server; DELETE FROM fault_event; UPDATE fault SET state = 'open'",
+    )
+    .expect("an older file");
+    laptop.sync(&address);
+    let events = only_fault(&laptop.open()).events;
+    assert_eq!(events.len(), 1, "what the file had lost came back");
+    assert_eq!(counts::content(&mut client), content);
+}
+
+#[test]
+fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
+    one.run("U-1", day(0), &[101], false);
+    two.run("U-1", day(1), &[101], false);
+    one.sync(&address);
+    two.sync(&address);
+
+    let server = read_only(&address).expect("a server");
+    let shared_fault = only_fault(&server);
+    assert_eq!(shared_fault.fault.occurrences, 2);
+    assert_eq!(shared_fault.fault.first_at_us, day(0) + 1_000_000);
+
+    let repair = RepairRecord {
+        part: "EB_relay".to_owned(),
+        serial_old: Some("SN-1".to_owned()),
+        serial_new: Some("SN-2".to_owned()),
+        note: "교체함".to_owned(),
+    };
+    let store = two.open();
+    let local = only_fault(&store).fault.id;
+    store
+        .record_repair(local, &repair, "lee", day(2))
+        .expect("a repair");
+    drop(store);
+    assert_eq!(two.sync(&address).events, 1);
+    let came = one.sync(&address);
+    assert_eq!((came.events_received, came.faults_changed), (2, 1));
+
+    let told = only_fault(&one.open());
+    assert_eq!(told.fault.state, FaultState::Repaired);
+    let repaired = told.events.iter().find_map(|event| event.repair.clone());
+    assert_eq!(repaired, Some(repair));
+    // What came is not sent back, and nothing comes twice.
+    let still = one.sync(&address);
+    assert_eq!(
+        (still.events, still.already_there, still.events_received),
+        (0, 0, 0)
+    );
+    // What is said at the server reaches both.
+    let desk = connect(&address).expect("a server");
+    desk.set_state(
+        only_fault(&desk).fault.id,
+        FaultState::Verified,
+        "park",
+        "ran well",
+        day(3),
+    )
+    .expect("a state");
+    for laptop in [&one, &two] {
+        assert!(laptop.sync(&address).events_received >= 1);
+        assert_eq!(only_fault(&laptop.open()).fault.state, FaultState::Verified);
+        laptop.is_whole();
+    }
+}
+
+/// A fault that a laptop comes to know late brings all that was ever said about it.
+#[test]
+fn a_laptop_is_told_of_what_was_said_before_it_knew_the_fault() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("late"));
+    one.run("U-1", day(0), &[101], false);
+    let store = one.open();
+    let fault = only_fault(&store).fault.id;
+    store
+        .acknowledge(fault, "kim", "on it", day(0))
+        .expect("a note");
+    drop(store);
+    one.sync(&address);
+    two.run("U-9", day(0), &[], false);
+    two.sync(&address);
+    two.run("U-1", day(1), &[101], false);
+    let came = two.sync(&address);
+    assert_eq!(came.events_received, 2);
+    assert_eq!(
+        only_fault(&two.open()).fault.state,
+        FaultState::Acknowledged
+    );
+}
+
+#[test]
+fn two_people_who_decide_at_once_are_both_kept_and_the_rest_of_the_work_stands() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
+    for laptop in [&one, &two] {
+        laptop.run("U-1", day(0), &[101], false);
+        laptop.sync(&address);
+    }
+    one.sync(&address);
+    for (laptop, state) in [(&one, FaultState::Closed), (&two, FaultState::Acknowledged)] {
+        let store = laptop.open();
+        let fault = only_fault(&store).fault.id;
+        store
+            .set_state(fault, state, "", "", day(1))
+            .expect("a state");
+    }
+    one.sync(&address);
+    let second = two.sync(&address);
+    assert_eq!(second.conflicts.len(), 1);
+    assert_eq!(one.sync(&address).conflicts.len(), 1);
+    let server = read_only(&address).expect("a server");
+    for store in [&server, &one.open(), &two.open()] {
+        let fault = only_fault(store);
+        assert_eq!(fault.fault.state, FaultState::Acknowledged);
+        assert!(
+            fault
+                .events
+                .iter()
+                .any(|event| event.state == Some(FaultState::Closed))
+        );
+    }
+    // One of them looks again, knowing of the other.
+    let store = one.open();
+    let fault = only_fault(&store).fault.id;
+    store
+        .set_state(fault, FaultState::Closed, "", "talked", day(2))
+        .expect("a state");
+    drop(store);
+    assert!(one.sync(&address).conflicts.is_empty());
+    assert!(two.sync(&address).conflicts.is_empty());
+    assert_eq!(only_fault(&two.open()).fault.state, FaultState::Closed);
+}
+
+/// The laptop that is a year behind says its word last: it stands, whatever the clocks say.
+#[test]
+fn wrong_clocks_do_not_decide_what_stands() {
+    const YEAR: i64 = 365;
+    let address = shared().database();
+    let (right, behind) = (Laptop::new("right"), Laptop::new("behind"));
+    right.run("U-1", day(YEAR), &[101], false);
+    right.sync(&address);
+    behind.run("U-1", day(0), &[101], false);
+    behind
+        .now_us
+        .set(behind.now_us.get() - YEAR * 86_400_000_000);
+    behind.sync(&address);
+
+    let say = |laptop: &Laptop, state, at_us| {
+        let store = laptop.open();
+        let fault = only_fault(&store).fault.id;
+        store
+            .set_state(fault, state, "", "", at_us)
+            .expect("a state");
+        drop(store);
+        laptop.sync(&address)
+    };
+    say(&right, FaultState::Acknowledged, day(YEAR + 1));
+    assert_eq!(behind.sync(&address).faults_changed, 1);
+    let told = say(&behind, FaultState::Closed, day(1));
+    assert!(told.clocks_differ());
+    let years = -told.clock_offset_us / 86_400_000_000;
+    assert!((364..=365).contains(&years), "{years} days behind");
+    right.now_us.set(crate::laptop::system_now_us());
+    assert!(!right.sync(&address).clocks_differ());
+    for store in [
+        &right.open(),
+        &behind.open(),
+        &read_only(&address).expect("a server"),
+    ] {
+        assert_eq!(only_fault(store).fault.state, FaultState::Closed);
+    }
+}
+
+/// One laptop closes a fault that the other one saw again without having heard of it. Before it was closed:
+/// that was meant, too. After it: it is open again for both, although the other's clock is a year behind.
+#[test]
+fn a_fault_that_was_seen_again_after_it_was_closed_elsewhere_is_open() {
+    const YEAR: i64 = 365;
+    let seen_again_on = |seen: i64| {
+        let address = shared().database();
+        let (one, behind) = (Laptop::new("one"), Laptop::new("behind"));
+        behind
+            .now_us
+            .set(behind.now_us.get() - YEAR * 86_400_000_000);
+        one.run("U-1", day(0), &[101], false);
+        one.sync(&address);
+        behind.run("U-1", day(1 - YEAR), &[101], false);
+        behind.sync(&address);
+        let store = one.open();
+        let fault = only_fault(&store).fault.id;
+        store
+            .set_state(fault, FaultState::Closed, "kim", "nothing found", day(5))
+            .expect("a state");
+        drop(store);
+        one.sync(&address);
+        behind.run("U-1", day(seen - YEAR), &[101], false);
+        behind.sync(&address);
+        one.sync(&address);
+        behind.sync(&address);
+        one.is_whole();
+        behind.is_whole();
+        let server = read_only(&address).expect("a server");
+        [&server, &one.open(), &behind.open()].map(|store| {
+            let fault = only_fault(store);
+            let recurred = fault.events.iter().filter(|event| event.kind == "recurred");
+            (fault.fault.state, recurred.count())
+        })
+    };
+    assert_eq!(seen_again_on(4), [(FaultState::Closed, 0); 3]);
+    assert_eq!(seen_again_on(6), [(FaultState::Open, 1); 3]);
+}
+
+/// What one closed, two sees again without knowing, and three, who never heard of it, takes for a new one:
+/// in the end it is one fault, open, wherever one looks.
+#[test]
+fn faults_that_turn_out_to_be_one_become_one_everywhere() {
+    let address = shared().database();
+    let all @ [one, two, three] = &["one", "two", "three"].map(Laptop::new);
+    for laptop in [one, two] {
+        laptop.run("U-1", day(0), &[101], false);
+        laptop.sync(&address);
+    }
+    let store = one.open();
+    let fault = only_fault(&store).fault.id;
+    store
+        .set_state(fault, FaultState::Closed, "kim", "", day(1))
+        .expect("a state");
+    drop(store);
+    one.sync(&address);
+    three.run("U-1", day(2), &[101], false);
+    three.sync(&address);
+    let server = read_only(&address).expect("a server");
+    assert_eq!(open_faults(&server).len(), 2);
+
+    two.run("U-1", day(3), &[101], false);
+    two.sync(&address);
+    let joined = only_fault(&server);
+    assert_eq!(
+        (joined.fault.state, joined.fault.occurrences),
+        (FaultState::Open, 4)
+    );
+    for laptop in all {
+        laptop.sync(&address);
+        let told = only_fault(&laptop.open());
+        assert_eq!(told.fault.state, FaultState::Open, "{}", laptop.name);
+        assert!(told.events.iter().any(|event| event.kind == "recurred"));
+    }
+    // The name that three gave it still means it, there and here.
+    let name = only_fault(&three.open()).fault.id.to_string();
+    assert_eq!(
+        server.resolve_fault(&name).expect("a fault"),
+        joined.fault.id
+    );
+    let store = three.open();
+    let fault = only_fault(&store).fault.id;
+    store
+        .set_state(fault, FaultState::Acknowledged, "lee", "", day(4))
+        .expect("a state");
+    drop(store);
+    for laptop in [three, two, one] {
+        laptop.sync(&address);
+        let told = only_fault(&laptop.open());
+        assert_eq!(
+            told.fault.state,
+            FaultState::Acknowledged,
+            "{}",
+            laptop.name
+        );
+        laptop.is_whole();
+    }
+}
+
+#[test]
+fn a_run_whose_program_died_is_sent_as_far_as_it_came() {
+    let address = shared().database();
+    let laptop = Laptop::new("dead");
+    for owner in ["dead", "alive"] {
+        let store = laptop.open();
+        let mut record = common::run_record("U-1");
+        record.owner = owner.to_owned();
+        let mut writer = RunWriter::begin(&store, &record).expect("a run");
+        writer.step(common::step(0)).expect("a step");
+        let stored = writer.fault(&common::fault(101, day(0))).expect("a fault");
+        let trace = common::realistic_trace(40, 1);
+        writer.trace(&[stored.occurrence], &trace).expect("a trace");
+    }
+    let first = laptop.sync(&address);
+    assert_eq!((first.runs, first.traces), (1, 1));
+    let server = read_only(&address).expect("a server");
+    let runs = server
+        .runs(&RunFilter::default(), &|_| false)
+        .expect("runs");
+    assert_eq!((runs.len(), runs[0].verdict, runs[0].steps), (1, None, 1));
+    assert_eq!(laptop.sync(&address).runs, 0);
+
+    // It was not dead after all.
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch("UPDATE run SET owner = 'dead'")
+        .expect("both are dead");
+    drop(file);
+    let store = laptop.open();
+    let run = runs[0].id;
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute(
+        "UPDATE run SET verdict = 'passed', finished_at_us = 5, bench_time_us = 5, wall_time_us = 5
+         WHERE id = ?1",
+        [&run.as_bytes()[..]],
+    )
+    .expect("an end");
+    drop(store);
+    let second = laptop.sync(&address);
+    assert_eq!(second.runs, 1, "the other one");
+    let ended = server.run(run, &|_| false).expect("the run");
+    assert_eq!(ended.run.verdict, Some(fault_db::Verdict::Passed));
+}
+
+#[test]
+fn a_run_that_says_something_else_on_the_server_is_named_and_left_as_it_is() {
+    let address = shared().database();
+    let laptop = Laptop::new("altered");
+    let altered = laptop.run("U-1", day(0), &[], false);
+    laptop.sync(&address);
+    let mut client = shared().client(name_of(&address));
+    let content = counts::content(&mut client);
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch(
+        "UPDATE seal SET digest = zeroblob(32); DELETE FROM sync_server;
+         UPDATE run SET operator = 'somebody'",
+    )
+    .expect("an altered file");
+    drop(file);
+    laptop.run("U-1", day(1), &[], false);
+    let told = laptop.sync(&address);
+    let different: Vec<_> = told.different.iter().map(|d| (d.what, d.id)).collect();
+    assert_eq!(different, [("run", altered)]);
+    assert_eq!(told.runs, 1, "the rest goes on");
+    assert_ne!(counts::content(&mut client), content);
+    let server = read_only(&address).expect("a server");
+    assert_eq!(
+        server
+            .run(altered, &|_| false)
+            .expect("the run")
+            .run
+            .operator,
+        "kim"
+    );
+}
+
+/// Two laptops record into copies of one file: both runs arrive, and the fork in the chain is named.
+#[test]
+fn a_copied_file_that_went_on_by_itself_is_noticed() {
+    let address = shared().database();
+    let (one, copy) = (Laptop::new("one"), Laptop::new("copy"));
+    one.run("U-1", day(0), &[], false);
+    std::fs::copy(one.path(), copy.path()).expect("a copy");
+    one.run("U-1", day(1), &[], false);
+    let forked = copy.run("U-1", day(2), &[], false);
+    one.sync(&address);
+    let told = copy.sync(&address);
+    assert_eq!(told.runs, 1);
+    let different: Vec<_> = told.different.iter().map(|d| (d.what, d.id)).collect();
+    assert_eq!(different, [("seal", forked)]);
+}
+
+#[test]
+fn a_damaged_trace_stays_behind_and_is_named() {
+    let address = shared().database();
+    let laptop = Laptop::new("damaged");
+    laptop.run("U-1", day(0), &[101, 102], true);
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch("UPDATE trace SET data = zeroblob(length(data)) WHERE seq = 1")
+        .expect("a flipped bit, or more");
+    drop(file);
+    let told = laptop.sync(&address);
+    assert_eq!((told.traces, told.damaged_traces.len()), (1, 1));
+}
+
+/// A version without an outbox recorded it: the first sync sends it all the same.
+#[test]
+fn what_was_recorded_before_there_was_an_outbox_is_sent_too() {
+    let address = shared().database();
+    let laptop = Laptop::new("old");
+    laptop.run("U-1", day(0), &[101], true);
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch("DELETE FROM outbox").expect("no outbox");
+    drop(file);
+    let told = laptop.sync(&address);
+    assert_eq!((told.runs, told.traces, told.events), (1, 1, 1));
+}
+
+#[test]
+fn samples_can_wait_and_a_stop_between_batches_is_taken_up_again() {
+    let address = shared().database();
+    let laptop = Laptop::new("stopped");
+    for n in 0..3 {
+        laptop.run("U-1", day(n), &[101], true);
+    }
+    let stopped = laptop
+        .try_sync(&address, &mut |_| false)
+        .expect("a sync that is stopped");
+    assert!(stopped.stopped);
+    assert_eq!((stopped.runs, stopped.traces, stopped.waiting), (3, 0, 3));
+    let rest = laptop.sync(&address);
+    assert_eq!((rest.runs, rest.traces, rest.waiting), (0, 3, 0));
+}
+
+/// Laptops that come back to the depot in the evening sync at once: no fault is made twice.
+#[test]
+fn laptops_that_sync_at_the_same_moment_wait_for_each_other() {
+    let address = shared().database();
+    let names = ["a", "b", "c", "d", "e"];
+    let threads = names.map(|name| {
+        let address = address.clone();
+        std::thread::spawn(move || {
+            let laptop = Laptop::new(name);
+            for n in 0..4 {
+                laptop.run(&format!("U-{}", n % 2), day(n), &[101, 102], true);
+                laptop.sync(&address);
+            }
+            laptop
+        })
+    });
+    let laptops = threads.map(|thread| thread.join().expect("no panic"));
+    let server = read_only(&address).expect("a server");
+    let faults = server.faults(&FaultFilter::default()).expect("faults");
+    let seen: Vec<_> = faults.iter().map(|fault| fault.occurrences).collect();
+    assert_eq!(
+        seen, [10; 4],
+        "two codes on two units, seen by five laptops"
+    );
+    for laptop in &laptops {
+        laptop.sync(&address);
+        laptop.is_whole();
+    }
+    let mut client = shared().client(name_of(&address));
+    let content = counts::content(&mut client);
+    for laptop in &laptops {
+        let again = laptop.sync(&address);
+        assert_eq!((again.events, again.events_received), (0, 0));
+    }
+    assert_eq!(counts::content(&mut client), content);
+}
+
+/// PostgreSQL keeps no zero letter in a text; everything else goes as it is.
+#[test]
+fn texts_of_any_language_arrive() {
+    let address = shared().database();
+    let laptop = Laptop::new("words");
+    let run = laptop.run("부품-1", day(0), &[], false);
+    let store = laptop.open();
+    let text = "K3 릴레이 교체 🚆 'quoted' \\ \"double\" \u{0}zero";
+    store.add_run_note(run, "김", text, day(0)).expect("a note");
+    drop(store);
+    assert_eq!(laptop.sync(&address).notes, 1);
+    let server = read_only(&address).expect("a server");
+    let notes = server.run(run, &|_| false).expect("the run").notes;
+    assert_eq!(notes[0].text, text.replace('\0', "\u{fffd}"));
+    assert_eq!(notes[0].who, "김");
+}
+
+/// A fault that was closed and one that was opened after it stay two, also when the server hears of the
+/// closing and of the new one at once.
+#[test]
+fn a_fault_after_a_closed_one_is_another_on_the_server_too() {
+    let address = shared().database();
+    let laptop = Laptop::new("one");
+    laptop.run("U-1", day(0), &[101], false);
+    laptop.sync(&address);
+    let store = laptop.open();
+    let first = only_fault(&store).fault.id;
+    store
+        .set_state(first, FaultState::Closed, "kim", "nothing found", day(1))
+        .expect("a state");
+    drop(store);
+    laptop.run("U-1", day(2), &[101], false);
+    laptop.sync(&address);
+    let of = |store: &Store| store.faults(&FaultFilter::default()).expect("faults");
+    let there = of(&read_only(&address).expect("a server"));
+    assert_eq!(there.len(), 2);
+    assert_eq!(there, of(&laptop.open()));
+}

@@ -1,0 +1,168 @@
+//! Servers that are away, refuse, or hold something else.
+
+use std::net::TcpListener;
+use std::time::Instant;
+
+use fault_db::{Id, StoreError};
+
+use crate::laptop::{Laptop, connect, day, read_only};
+use crate::private::{free_port, name_of, shared};
+
+#[test]
+fn a_server_that_is_away_is_named_with_what_is_wrong() {
+    let nobody = format!(
+        "postgres://ptu:secret@127.0.0.1:{}/h?sslmode=disable",
+        free_port()
+    );
+    let silent = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = silent.local_addr().expect("its number").port();
+    let silent =
+        format!("postgres://ptu:secret@127.0.0.1:{port}/h?sslmode=disable&connect_timeout=1");
+    let unknown = "postgres://ptu:secret@no-such-host.invalid/h?sslmode=disable&connect_timeout=5";
+    for (address, words) in [
+        (nobody.as_str(), "nothing listens"),
+        (silent.as_str(), "no answer in time"),
+        (unknown, "connecting"),
+    ] {
+        let begun = Instant::now();
+        let away = connect(address).expect_err(address);
+        assert!(matches!(away, StoreError::ServerAway { .. }), "{away:?}");
+        let said = format!("{away} {away:?}");
+        assert!(said.contains(words), "{said}");
+        assert!(said.contains("postgres://ptu@"), "{said}");
+        assert!(!said.contains("secret"), "{said}");
+        assert!(begun.elapsed().as_secs() < 8, "{address}");
+    }
+}
+
+#[test]
+fn a_database_that_is_missing_foreign_or_empty_is_named_and_left_alone() {
+    let missing = shared().address("no_such_database");
+    let refused = connect(&missing).expect_err("no database");
+    assert!(
+        matches!(refused, StoreError::ServerRefuses { .. }),
+        "{refused}"
+    );
+    assert!(refused.to_string().contains("does not exist"), "{refused}");
+
+    let foreign = shared().database();
+    let mut client = shared().client(name_of(&foreign));
+    client
+        .batch_execute("CREATE TABLE meta(key text, value text); CREATE TABLE song(title text)")
+        .expect("tables");
+    for refused in [connect(&foreign), read_only(&foreign)] {
+        let refused = refused.expect_err("a foreign database");
+        assert!(
+            matches!(refused, StoreError::ServerForeign { .. }),
+            "{refused}"
+        );
+    }
+    let tables = "SELECT count(*) FROM pg_class WHERE relname IN ('run', 'fault')";
+    let made: i64 = client.query_one(tables, &[]).expect("a count").get(0);
+    assert_eq!(made, 0);
+
+    let empty = shared().database();
+    let refused = read_only(&empty).expect_err("an empty database");
+    assert!(
+        matches!(refused, StoreError::ServerEmpty { .. }),
+        "{refused}"
+    );
+    let latin = shared().database().replace("history_", "latin_");
+    let create = format!(
+        "CREATE DATABASE {} ENCODING 'LATIN1' LC_COLLATE 'C' LC_CTYPE 'C' TEMPLATE template0",
+        name_of(&latin)
+    );
+    shared()
+        .client("postgres")
+        .batch_execute(&create)
+        .expect("a database");
+    let refused = connect(&latin).expect_err("a database of Latin letters");
+    assert!(
+        refused.to_string().contains("createdb -E UTF8"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn an_older_and_a_newer_schema_are_named() {
+    let address = shared().database();
+    drop(connect(&address).expect("tables"));
+    let mut client = shared().client(name_of(&address));
+    client
+        .batch_execute("UPDATE meta SET value = '0' WHERE key = 'schema'")
+        .expect("an older schema");
+    let older = read_only(&address).expect_err("an older schema");
+    assert!(matches!(
+        older,
+        StoreError::ServerOlderSchema { found: 0, .. }
+    ));
+    assert!(
+        older.to_string().contains("`ptu db sync` of this program"),
+        "{older}"
+    );
+    client
+        .batch_execute("UPDATE meta SET value = '99' WHERE key = 'schema'")
+        .expect("a newer schema");
+    for newer in [connect(&address), read_only(&address)] {
+        let newer = newer.expect_err("a newer schema").to_string();
+        assert!(newer.contains("has schema 99; update ptu"), "{newer}");
+    }
+}
+
+#[test]
+fn laptops_that_begin_together_make_one_set_of_tables() {
+    let address = shared().database();
+    let threads: Vec<_> = (0..6)
+        .map(|_| {
+            let address = address.clone();
+            std::thread::spawn(move || connect(&address).map(drop))
+        })
+        .collect();
+    for thread in threads {
+        thread.join().expect("no panic").expect("a server");
+    }
+    let mut client = shared().client(name_of(&address));
+    let names = "SELECT value FROM meta WHERE key = 'server_id'";
+    let name: String = client.query_one(names, &[]).expect("one name").get(0);
+    name.parse::<Id>().expect("an id");
+}
+
+/// An account that may only read can ask, and is told so when it wants to say something.
+#[test]
+fn a_reader_can_ask_and_not_write() {
+    let address = shared().database();
+    let laptop = Laptop::new("reader");
+    let run = laptop.run("U-1", day(0), &[101], false);
+    laptop.sync(&address);
+    shared()
+        .client(name_of(&address))
+        .batch_execute(
+            "DROP ROLE IF EXISTS reader; CREATE ROLE reader LOGIN;
+             GRANT SELECT ON ALL TABLES IN SCHEMA public TO reader",
+        )
+        .expect("a reader");
+    let address = address.replace("ptu@", "reader@");
+    let store = read_only(&address).expect("a server");
+    assert_eq!(store.run(run, &|_| false).expect("the run").steps.len(), 3);
+    let refused = store
+        .add_run_note(run, "kim", "x", 0)
+        .expect_err("read-only");
+    assert!(matches!(refused, StoreError::ReadOnly { .. }), "{refused}");
+    let store = connect(&address).expect("a server");
+    let refused = store
+        .add_run_note(run, "kim", "x", 0)
+        .expect_err("no right");
+    assert!(
+        matches!(refused, StoreError::ServerRefuses { .. }),
+        "{refused}"
+    );
+    assert!(
+        refused.to_string().contains("permission denied"),
+        "{refused}"
+    );
+    let needs_file = store.check().expect_err("a server");
+    assert!(
+        needs_file.to_string().contains("needs a database file"),
+        "{needs_file}"
+    );
+}

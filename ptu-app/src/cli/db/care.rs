@@ -1,0 +1,166 @@
+//! `ptu db backup`, `import`, `export`, `prune` and `rebuild`.
+
+use std::path::Path;
+
+use clap::Args;
+use fault_db::{MergeCounts, PruneCounts, PruneRule, StateConflict};
+
+use crate::cli::{Database, print_out, since_argument};
+use crate::clock;
+use crate::failure::{Exit, Failure};
+
+/// Which traces may go; those of faults that are not closed never do.
+#[derive(Debug, Args)]
+pub(super) struct PruneArguments {
+    /// Older than: 90d, 2026-03, 2026-03-21
+    #[arg(long, value_name = "TIME", value_parser = since_argument,
+        required_unless_present_any = ["passed_only", "max_size"])]
+    older_than: Option<i64>,
+    /// Of runs that passed only
+    #[arg(long)]
+    passed_only: bool,
+    /// The oldest, until the file is no larger than: 2GB, 500MB
+    #[arg(long, value_name = "SIZE", value_parser = size_argument)]
+    max_size: Option<u64>,
+    /// Also those that wait for `db sync`
+    #[arg(long)]
+    unsent_too: bool,
+    /// Count only
+    #[arg(long)]
+    dry_run: bool,
+}
+
+impl Database {
+    pub(super) fn backup(&self, to: &Path) -> Result<Exit, Failure> {
+        self.open_read_only()?.backup(to)?;
+        print_out(&format!("copied to {}", to.display()))
+    }
+
+    pub(super) fn import(&self, from: &Path) -> Result<Exit, Failure> {
+        let store = self.open()?;
+        let counts = store.import(from)?;
+        let mut text = merged(&counts);
+        // What was known before needs no telling again; what came just now may be a rival of it.
+        if counts.events > 0 {
+            text.extend(store.conflicts()?.iter().map(rivals));
+        }
+        print_out(&text)
+    }
+
+    pub(super) fn export(&self, to: &Path) -> Result<Exit, Failure> {
+        let store = self.open_read_only()?;
+        print_out(&merged(&store.export(to, clock::open_options())?))
+    }
+
+    pub(super) fn prune(&self, arguments: &PruneArguments) -> Result<Exit, Failure> {
+        let rule = PruneRule {
+            older_than_us: arguments.older_than,
+            passed_only: arguments.passed_only,
+            max_file_bytes: arguments.max_size,
+            keep_unsent: !arguments.unsent_too,
+            dry_run: arguments.dry_run,
+        };
+        print_out(&pruned(&self.open()?.prune(&rule)?, arguments.dry_run))
+    }
+
+    pub(super) fn rebuild(&self) -> Result<Exit, Failure> {
+        self.open()?.rebuild()?;
+        print_out(
+            "counts by day and month, repairs, sums of measured values and search words made anew; \
+             runs, faults and traces are as they were",
+        )
+    }
+}
+
+fn merged(counts: &MergeCounts) -> String {
+    format!(
+        "added {} runs, {} steps, {} faults, {} occurrences, {} traces",
+        counts.runs, counts.steps, counts.faults, counts.occurrences, counts.traces
+    )
+}
+
+/// One line of a fault about which two people disagree.
+pub(super) fn rivals(conflict: &StateConflict) -> String {
+    let said: Vec<_> = conflict
+        .rivals
+        .iter()
+        .map(|rival| match &rival.who[..] {
+            "" => rival.state.to_string(),
+            who => format!("{who} says {}", rival.state),
+        })
+        .collect();
+    format!(
+        "\nfault {} ({}, {}): {}; it stays {} until somebody looks again",
+        conflict.fault.short(),
+        conflict.unit,
+        conflict.code_name,
+        said.join(", "),
+        conflict.stands
+    )
+}
+
+fn pruned(counts: &PruneCounts, dry_run: bool) -> String {
+    let mut text = format!(
+        "{} traces ({} bytes){}, {} kept for faults that are not closed",
+        counts.traces,
+        counts.trace_bytes,
+        if dry_run { " would go" } else { " deleted" },
+        counts.kept_for_faults,
+    );
+    if counts.kept_unsent > 0 {
+        text += &format!(
+            ", {} kept until `db sync` has sent them",
+            counts.kept_unsent
+        );
+    }
+    text += &format!(", file {} bytes smaller", counts.freed_bytes);
+    if counts.over_bytes > 0 {
+        text += &format!(
+            "\nit {} {} bytes larger than it may be: the rest is runs, faults and traces that are kept",
+            if dry_run {
+                "would still be"
+            } else {
+                "is still"
+            },
+            counts.over_bytes
+        );
+    }
+    text
+}
+
+/// A size such as `2GB`, `500MB`, `64kB` or a number of bytes.
+fn size_argument(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
+    let unit = match text[digits.len()..].to_ascii_lowercase().as_str() {
+        "" | "b" => Some(1),
+        "kb" => Some(1_000),
+        "mb" => Some(1_000_000),
+        "gb" => Some(1_000_000_000),
+        _ => None,
+    };
+    let size = unit.and_then(|unit| digits.trim_end().parse::<u64>().ok()?.checked_mul(unit));
+    size.ok_or_else(|| format!("\"{text}\" is no size (2GB, 500MB)"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_with_their_unit() {
+        assert_eq!(size_argument("2GB"), Ok(2_000_000_000));
+        assert_eq!(size_argument("500 mb"), Ok(500_000_000));
+        assert_eq!(size_argument("4096"), Ok(4096));
+        for bad in [
+            "",
+            "GB",
+            "2TB",
+            "-1",
+            "1.5GB",
+            "99999999999999999999",
+            "20000000000GB",
+        ] {
+            assert!(size_argument(bad).is_err(), "{bad}");
+        }
+    }
+}

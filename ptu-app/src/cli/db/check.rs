@@ -1,0 +1,46 @@
+//! `ptu db check`: is the file whole, and does it say what was recorded?
+
+use fault_db::CheckReport;
+
+use crate::cli::{Database, print_json, print_out};
+use crate::failure::{Exit, Failure};
+use crate::table::Table;
+
+impl Database {
+    pub(super) fn check(&self, json: bool) -> Result<Exit, Failure> {
+        let report = self.open_read_only()?.check()?;
+        if json {
+            print_json(&report)?;
+        } else if report.problems.is_empty() {
+            print_out(&format!(
+                "no damage; {} traces read, {} runs fit their seals",
+                report.traces, report.runs
+            ))?;
+        } else {
+            print_out(&told(&report))?;
+        }
+        Ok(if report.problems.is_empty() {
+            Exit::Passed
+        } else {
+            Exit::Bench
+        })
+    }
+}
+
+/// All problems, and once for each kind what to do about it.
+fn told(report: &CheckReport) -> String {
+    let mut table = Table::new(&["KIND", "WHAT"]);
+    let mut advice: Vec<(&str, &str)> = Vec::new();
+    for problem in &report.problems {
+        table.row([problem.kind.into(), problem.detail.clone()]);
+        let next = (problem.kind, problem.advice);
+        if !advice.contains(&next) {
+            advice.push(next);
+        }
+    }
+    let lines: String = advice
+        .iter()
+        .map(|(kind, next)| format!("\n{kind}: {next}"))
+        .collect();
+    format!("{}\n{lines}", table.render())
+}

@@ -1,0 +1,72 @@
+//! `ptu db`: care of the database.
+
+mod care;
+mod check;
+mod query;
+mod sync;
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::{Database, print_out};
+use crate::failure::{Exit, Failure};
+
+/// Check, back up, prune, merge, sync or query the database
+#[derive(Debug, Args)]
+pub struct DbArguments {
+    #[command(subcommand)]
+    verb: Verb,
+    #[command(flatten)]
+    database: Database,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Look for damage and for what was changed by hand; writes nothing
+    Check {
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Make counts and search words anew from the rows they follow from
+    Rebuild,
+    /// Copy the database while it is in use
+    Backup {
+        /// The new file
+        to: PathBuf,
+    },
+    /// Add everything of another database that is not here yet
+    Import {
+        /// The other file
+        from: PathBuf,
+    },
+    /// Add everything that is here to another database
+    Export {
+        /// The other file, made if need be
+        to: PathBuf,
+    },
+    /// Delete old traces that no open fault needs; runs and faults stay
+    Prune(care::PruneArguments),
+    Sync(sync::SyncArguments),
+    Query(query::QueryArguments),
+    /// Print what `ptu db query` can be asked about
+    Schema,
+}
+
+impl DbArguments {
+    /// Does it.
+    pub fn run(self) -> Result<Exit, Failure> {
+        match self.verb {
+            Verb::Check { json } => self.database.check(json),
+            Verb::Rebuild => self.database.rebuild(),
+            Verb::Backup { to } => self.database.backup(&to),
+            Verb::Import { from } => self.database.import(&from),
+            Verb::Export { to } => self.database.export(&to),
+            Verb::Prune(arguments) => self.database.prune(&arguments),
+            Verb::Sync(arguments) => arguments.run(&self.database),
+            Verb::Query(arguments) => arguments.query(&self.database),
+            Verb::Schema => print_out(fault_db::VIEWS_PAGE.trim_end()),
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! `ptu db query`: a question in SQL.
+
+use clap::Args;
+use fault_db::{QueryResult, SqlValue};
+use serde_json::{Map, Value, json};
+
+use crate::cli::output::Output;
+use crate::cli::{Database, print_json};
+use crate::failure::{Exit, Failure};
+use crate::table::Table;
+
+/// Rows a query prints at most.
+const MAX_ROWS: usize = 10_000;
+
+/// Ask the database in SQL, reading only; `ptu db schema` says about what
+///
+/// Examples:
+///   ptu db query "SELECT unit, count(*) AS n FROM faults WHERE state = 'open' GROUP BY unit ORDER BY n DESC"
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct QueryArguments {
+    /// The question
+    #[arg(value_name = "SELECT …")]
+    sql: String,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl QueryArguments {
+    pub fn query(&self, database: &Database) -> Result<Exit, Failure> {
+        let answer = database
+            .open_read_only()?
+            .query_read_only(&self.sql, MAX_ROWS)?;
+        self.output.save()?;
+        if self.output.is_json() {
+            return print_json(&answer);
+        }
+        if answer.truncated && !self.output.is_table() {
+            eprintln!("only the first {MAX_ROWS} rows; add LIMIT, or ask for less");
+        }
+        self.output.print(&rows(&answer), || table(&answer))
+    }
+}
+
+/// Each row by the names of its columns; of two with one name the last has another.
+fn rows(answer: &QueryResult) -> Vec<Value> {
+    let row = |row: &Vec<SqlValue>| {
+        let mut cells = Map::new();
+        for (column, value) in answer.columns.iter().zip(row) {
+            let mut name = column.clone();
+            while cells.contains_key(&name) {
+                name.push('_');
+            }
+            cells.insert(name, json!(value));
+        }
+        Value::Object(cells)
+    };
+    answer.rows.iter().map(row).collect()
+}
+
+fn table(answer: &QueryResult) -> String {
+    let headings: Vec<_> = answer.columns.iter().map(String::as_str).collect();
+    let is_number =
+        |value: Option<&SqlValue>| matches!(value, Some(SqlValue::Integer(_) | SqlValue::Real(_)));
+    let numbers = (0..headings.len()).filter(|column| {
+        answer
+            .rows
+            .first()
+            .is_some_and(|row| is_number(row.get(*column)))
+    });
+    let mut table = Table::new(&headings).right(numbers);
+    for row in &answer.rows {
+        table.row(row.iter().map(|value| match value {
+            SqlValue::Null => String::new(),
+            SqlValue::Integer(number) => number.to_string(),
+            SqlValue::Real(number) => number.to_string(),
+            SqlValue::Text(text) => text.clone(),
+        }));
+    }
+    let more = match answer.truncated {
+        true => "\n… more rows; add LIMIT",
+        false => "",
+    };
+    format!("{}{more}", table.render())
+}

@@ -1,0 +1,279 @@
+//! `ptu db sync`: this laptop's history and a server's.
+
+use std::io::IsTerminal as _;
+use std::time::Instant;
+
+use clap::Args;
+use fault_db::{Address, Store, StoreError, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+
+use super::care::rivals;
+use crate::cli::{Database, print_json, print_out};
+use crate::failure::{Exit, Failure};
+use crate::stop::Stop;
+use crate::{clock, owner};
+
+/// Bring this laptop's history to a server, and what others said about its faults back
+///
+/// The laptop's file has everything at all times, so a sync that breaks off is taken up by the next.
+///
+/// Exit codes: 0 done, 2 wrong address, 3 no server, or something is damaged or differs, 130 stopped.
+#[derive(Debug, Args)]
+pub struct SyncArguments {
+    /// The server, as postgres://USER@HOST/DATABASE; a password belongs into ~/.pgpass
+    #[arg(value_name = "ADDRESS")]
+    server: String,
+    /// Leave samples for a later sync
+    #[arg(long)]
+    no_traces: bool,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl SyncArguments {
+    pub(super) fn run(&self, database: &Database) -> Result<Exit, Failure> {
+        let begun = Instant::now();
+        // Not while the command line is read: what is wrong there is shown as it stands, password and all.
+        let address: Address = self.server.parse()?;
+        // A name that was mistyped would be synced as a new, empty history.
+        let path = database.file()?;
+        if !path.exists() {
+            return Err(StoreError::Missing { path }.into());
+        }
+        let file = database.open_file()?;
+        let server = Store::connect(&address, clock::ids())?;
+        let stop = Stop::default();
+        let asked = stop.clone();
+        // A server that has fallen silent ends no batch: a second press does not wait for it.
+        stop.listen_and(move || {
+            if asked.presses() > 1 {
+                std::process::exit(Exit::Aborted.code().into());
+            }
+        });
+        let mut shown = Shown::default();
+        let outcome = file.sync(
+            &server,
+            &mut SyncOptions {
+                laptop: &laptop(),
+                traces: !self.no_traces,
+                is_alive: &owner::is_alive,
+                now_us: &clock::now_us,
+                go_on: &mut |progress| {
+                    shown.tell(progress);
+                    stop.presses() == 0
+                },
+            },
+        );
+        drop(shown);
+        let outcome = outcome?;
+        file.close()?;
+        let took_s = begun.elapsed().as_secs_f64();
+        if self.json {
+            print_json(&as_json(&outcome, &server, took_s))?;
+        } else {
+            print_out(&text(&outcome, &server, took_s))?;
+        }
+        for warning in warnings(&outcome) {
+            eprintln!("{warning}");
+        }
+        Ok(if outcome.stopped {
+            Exit::Aborted
+        } else if outcome.different.is_empty() && outcome.damaged_traces.is_empty() {
+            Exit::Passed
+        } else {
+            Exit::Bench
+        })
+    }
+}
+
+/// This computer's name.
+fn laptop() -> String {
+    rustix::system::uname()
+        .nodename()
+        .to_string_lossy()
+        .into_owned()
+}
+
+fn text(outcome: &SyncOutcome, server: &Store, took_s: f64) -> String {
+    let mut text = format!(
+        "{}\nsent      {} runs, {} occurrences, {} events, {} notes, {} traces\nreceived  {} events on {} faults",
+        server.path().display(),
+        outcome.runs,
+        outcome.occurrences,
+        outcome.events,
+        outcome.notes,
+        outcome.traces,
+        outcome.events_received,
+        outcome.faults_changed,
+    );
+    if outcome.already_there > 0 {
+        text += &format!(
+            "\nknown     {} entries were there already",
+            outcome.already_there
+        );
+    }
+    if outcome.waiting > 0 {
+        text += &format!("\nwaiting   {} entries for the next sync", outcome.waiting);
+    }
+    text + &format!("\n{:.1} MB in {took_s:.1} s", outcome.bytes as f64 / 1e6)
+}
+
+/// What a person should know, with the next move.
+fn warnings(outcome: &SyncOutcome) -> Vec<String> {
+    let mut all = Vec::new();
+    if outcome.stopped {
+        all.push("stopped; the next sync goes on from here".to_owned());
+    }
+    if outcome.clocks_differ() {
+        let way = if outcome.clock_offset_us > 0 {
+            "ahead of"
+        } else {
+            "behind"
+        };
+        all.push(format!(
+            "this computer's clock is {} {way} the server's; set it, or its times will puzzle people (what stands does not depend on them)",
+            span(outcome.clock_offset_us.unsigned_abs())
+        ));
+    }
+    for different in &outcome.different {
+        all.push(match different.what {
+            "seal" => format!(
+                "run {} follows another run than on the server: somebody recorded in a copy of this file; it was sent, but outside the chain",
+                different.id
+            ),
+            what => format!(
+                "{what} {} does not say the same here and on the server; both were left as they are: look with `ptu db check`",
+                different.id
+            ),
+        });
+    }
+    for trace in &outcome.damaged_traces {
+        all.push(format!(
+            "trace {trace} is damaged and was not sent; look with `ptu db check`"
+        ));
+    }
+    all.extend(
+        outcome
+            .conflicts
+            .iter()
+            .map(|conflict| rivals(conflict).trim().to_owned()),
+    );
+    all
+}
+
+/// A length of time in the words of a person.
+fn span(us: u64) -> String {
+    let s = us / 1_000_000;
+    match s {
+        0..120 => format!("{s} s"),
+        120..7_200 => format!("{} min", s / 60),
+        7_200..172_800 => format!("{} h", s / 3_600),
+        _ => format!("{} days", s / 86_400),
+    }
+}
+
+fn as_json(outcome: &SyncOutcome, server: &Store, took_s: f64) -> serde_json::Value {
+    json!({
+        "server": server.path().to_string_lossy(),
+        "sent": {
+            "runs": outcome.runs,
+            "occurrences": outcome.occurrences,
+            "events": outcome.events,
+            "notes": outcome.notes,
+            "traces": outcome.traces,
+        },
+        "received": {
+            "events": outcome.events_received,
+            "faults": outcome.faults_changed,
+        },
+        "already_there": outcome.already_there,
+        "waiting": outcome.waiting,
+        "bytes": outcome.bytes,
+        "took_s": took_s,
+        "clock_offset_s": outcome.clock_offset_us as f64 / 1e6,
+        "conflicts": outcome.conflicts,
+        "different": outcome.different,
+        "damaged_traces": outcome.damaged_traces,
+        "stopped": outcome.stopped,
+    })
+}
+
+/// Progress on stderr: a bar on a terminal, a line for each phase elsewhere.
+#[derive(Default)]
+struct Shown {
+    phase: Option<SyncPhase>,
+    bar: Option<ProgressBar>,
+}
+
+impl Shown {
+    fn tell(&mut self, progress: SyncProgress) {
+        if self.phase != Some(progress.phase) {
+            self.phase = Some(progress.phase);
+            self.begin(progress);
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(progress.done);
+        }
+    }
+
+    fn begin(&mut self, progress: SyncProgress) {
+        let what = match progress.phase {
+            SyncPhase::Sending => "sending runs and events",
+            SyncPhase::SendingTraces => "sending traces",
+            SyncPhase::Receiving => "receiving events",
+        };
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+        if !std::io::stderr().is_terminal() {
+            eprintln!("{what}");
+            return;
+        }
+        let style = match progress.total {
+            0 => "{pos}  {elapsed}  {msg}",
+            _ => "{bar:30} {pos}/{len}  {elapsed} (left {eta})  {msg}",
+        };
+        let style =
+            ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(progress.total)
+            .with_style(style)
+            .with_message(what);
+        self.bar = Some(bar);
+    }
+}
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_that_is_off_is_told_in_words() {
+        let off_by = |clock_offset_us| {
+            let outcome = SyncOutcome {
+                clock_offset_us,
+                ..SyncOutcome::default()
+            };
+            warnings(&outcome).concat()
+        };
+        assert_eq!(off_by(-2_900_000), "");
+        for (us, words) in [
+            (4_000_000, "4 s ahead of"),
+            (-600_000_000, "10 min behind"),
+            (10_800_000_000, "3 h ahead of"),
+            (-31_536_000_000_000, "365 days behind"),
+        ] {
+            let said = off_by(us);
+            assert!(said.contains(words), "{said}");
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! `ptu faults list`.
+
+use clap::Args;
+use fault_db::{FaultFilter, FaultSummary, Store};
+
+use super::filter::FilterArguments;
+use crate::cli::output::Output;
+use crate::cli::print_out;
+use crate::clock::local;
+use crate::failure::{Exit, Failure};
+use crate::report::fault_json;
+use crate::table::Table;
+
+/// List faults, last seen first
+///
+/// Examples:
+///   ptu faults list --state open
+///   ptu faults list --unit SG-0142 --when 2026-03..2026-05
+///   ptu faults list --note 교체 --lru eb_relay
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct ListArguments {
+    #[command(flatten)]
+    filter: FilterArguments,
+    /// At most so many
+    #[arg(long, value_name = "N", default_value_t = 50)]
+    limit: u32,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl ListArguments {
+    pub fn list(&self, store: &Store) -> Result<Exit, Failure> {
+        let filter = FaultFilter {
+            // One more tells whether there are more.
+            limit: Some(self.limit.saturating_add(1)),
+            ..self.filter.filter(store)?
+        };
+        let mut faults = store.faults(&filter)?;
+        let more = faults.len() > self.limit as usize;
+        faults.truncate(self.limit as usize);
+        self.output.save()?;
+        if faults.is_empty() && self.output.is_table() {
+            return print_out(&self.filter.nothing(store)?);
+        }
+        let rows: Vec<_> = faults.iter().map(fault_json).collect();
+        self.output.print(&rows, || {
+            let more = if more {
+                "\n… and more; see --limit"
+            } else {
+                ""
+            };
+            format!("{}{more}", table(&faults))
+        })
+    }
+}
+
+fn table(faults: &[FaultSummary]) -> String {
+    let headings = [
+        "FAULT",
+        "LAST SEEN",
+        "UNIT",
+        "CODE",
+        "PART",
+        "SEVERITY",
+        "STATE",
+        "SEEN",
+        "TRACE",
+    ];
+    let mut table = Table::new(&headings).right([7]);
+    for fault in faults {
+        table.row([
+            fault.id.short(),
+            local(fault.last_at_us),
+            fault.unit_serial.clone(),
+            format!("{} {}", fault.code, fault.code_name),
+            fault.lru.clone(),
+            fault.severity.clone(),
+            fault.state.as_str().into(),
+            fault.occurrences.to_string(),
+            fault.trace_id.map_or_else(String::new, |id| id.short()),
+        ]);
+    }
+    table.render()
+}

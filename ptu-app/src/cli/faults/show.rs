@@ -1,0 +1,118 @@
+//! `ptu faults show`: one fault with all that belongs to it.
+
+use fault_db::{FaultDetail, FreezeSample, Store};
+use serde_json::{Value, json};
+
+use crate::cli::{print_json, print_out};
+use crate::clock::{local, rfc3339};
+use crate::failure::{Exit, Failure};
+use crate::report::fault_json;
+use crate::table::Table;
+
+/// Shows the fault an id stands for.
+pub fn show(store: &Store, id: &str, json: bool) -> Result<Exit, Failure> {
+    let fault = store.fault(store.resolve_fault(id)?)?;
+    if json {
+        print_json(&detail_json(&fault))
+    } else {
+        print_out(&detail(&fault))
+    }
+}
+
+fn detail_json(detail: &FaultDetail) -> Value {
+    let mut value = fault_json(&detail.fault);
+    value["occurrence_list"] = detail
+        .occurrences
+        .iter()
+        .map(|seen| {
+            json!({
+                "id": seen.id.to_string(), "run_id": seen.run_id.to_string(),
+                "step_index": seen.step_index, "at": rfc3339(seen.at_us),
+                "bench_time_s": seen.bench_us as f64 / 1e6, "message": seen.message,
+                "trace_id": seen.trace_id.map(|id| id.to_string()), "freeze_frame": seen.freeze,
+            })
+        })
+        .collect();
+    value["events"] = detail
+        .events
+        .iter()
+        .map(|event| {
+            json!({
+                "kind": event.kind, "at": rfc3339(event.at_us), "who": event.who,
+                "note": event.note, "state": event.state.map(|state| state.as_str()),
+                "repair": event.repair,
+            })
+        })
+        .collect();
+    value
+}
+
+fn detail(detail: &FaultDetail) -> String {
+    let fault = &detail.fault;
+    let mut text = format!(
+        "fault {}  {} {}  {}\nunit {}  part {}  {}  seen {} times, {} .. {}\n",
+        fault.id,
+        fault.code,
+        fault.code_name,
+        fault.severity,
+        fault.unit_serial,
+        fault.lru,
+        fault.state.as_str(),
+        fault.occurrences,
+        local(fault.first_at_us),
+        local(fault.last_at_us),
+    );
+    let mut table = Table::new(&["SEEN AT", "RUN", "TRACE", "WHAT"]);
+    for seen in &detail.occurrences {
+        table.row([
+            local(seen.at_us),
+            seen.run_id.short(),
+            seen.trace_id.map_or_else(String::new, |id| id.short()),
+            seen.message.clone(),
+        ]);
+    }
+    let earlier =
+        fault.occurrences as usize - detail.occurrences.len().min(fault.occurrences as usize);
+    let more = match earlier {
+        0 => String::new(),
+        n => format!("… and {n} earlier\n"),
+    };
+    text.push_str(&format!("\n{}\n{more}", table.render()));
+    if let Some(last) = detail.occurrences.first() {
+        text.push_str(&format!("\nfreeze frame\n{}\n", freeze_frame(&last.freeze)));
+    }
+    let mut table = Table::new(&["AT", "EVENT", "WHO", "NOTE"]);
+    for event in &detail.events {
+        let repair = event.repair.as_ref().map_or_else(String::new, |repair| {
+            format!(
+                "{} {} → {} {}",
+                repair.part,
+                repair.serial_old.as_deref().unwrap_or("?"),
+                repair.serial_new.as_deref().unwrap_or("?"),
+                repair.note
+            )
+        });
+        let note = format!("{}{repair}", event.note);
+        table.row([
+            local(event.at_us),
+            event.kind.clone(),
+            event.who.clone(),
+            note,
+        ]);
+    }
+    text.push_str(&format!("\n{}", table.render()));
+    text
+}
+
+fn freeze_frame(samples: &[FreezeSample]) -> String {
+    let mut table = Table::new(&["SIGNAL", "VALUE"]);
+    for sample in samples {
+        let value = match (&sample.label, sample.value) {
+            (Some(label), _) => label.clone(),
+            (None, Some(value)) => format!("{value:.2} {}", sample.unit),
+            (None, None) => "not known".into(),
+        };
+        table.row([sample.name.clone(), value]);
+    }
+    table.render()
+}

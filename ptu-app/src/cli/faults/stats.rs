@@ -1,0 +1,269 @@
+//! `ptu faults stats`: how many faults of each kind, and what repairs were worth.
+
+use clap::{Args, ValueEnum};
+use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
+use serde_json::{Value, json};
+
+use super::filter::FilterArguments;
+use crate::cli::output::Output;
+use crate::cli::print_out;
+use crate::clock::{self, local_day, local_minute, rfc3339};
+use crate::failure::{Exit, Failure};
+use crate::sparkline::sparkline;
+use crate::table::Table;
+
+/// A course over time is shown in so many bars at most: the last ones.
+const BARS: usize = 24;
+
+/// Count faults, the most frequent first: which make up most of them, how long units go without one, how
+/// long repairs take and whether they hold
+///
+/// SEEN counts occurrences, SHARE and CUM their share and that of all rows so far. FAULTS counts faults
+/// first seen in the span, OPEN those that are not closed now. MTBF is calendar days of all units, since
+/// the first run of each, by faults. MTTR is from a fault's opening to its repair. BACK are repairs
+/// after which the unit had the same fault again in time, of all that are old enough to tell. NFF are
+/// faults closed without a repair, of all closed.
+///
+/// Examples:
+///   ptu faults stats --by lru --when 2026
+///   ptu faults stats --by unit --lru eb_relay --back-within 14
+///   ptu faults stats --by month --line line8 --csv
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct StatsArguments {
+    /// What to count by
+    #[arg(long, value_enum, default_value = "code")]
+    by: By,
+    /// A fault that is seen again within so many days of its repair is back
+    #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
+    back_within: u32,
+    /// At most so many rows in a table
+    #[arg(long, value_name = "N", default_value_t = 50)]
+    limit: u32,
+    #[command(flatten)]
+    filter: FilterArguments,
+    #[command(flatten)]
+    output: Output,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum By {
+    /// By fault code
+    Code,
+    /// By replaceable part
+    Lru,
+    /// By unit
+    Unit,
+    /// By line
+    Line,
+    /// By month
+    Month,
+}
+
+impl StatsArguments {
+    pub fn stats(&self, store: &Store) -> Result<Exit, Failure> {
+        let by = match self.by {
+            By::Code => StatKey::Code,
+            By::Lru => StatKey::Lru,
+            By::Unit => StatKey::Unit,
+            By::Line => StatKey::Line,
+            By::Month => StatKey::All,
+        };
+        let query = StatQuery {
+            by,
+            filter: self.filter.filter(store)?,
+            now_us: clock::now_us(),
+            back_within_days: self.back_within,
+        };
+        let stats = match self.by {
+            By::Month => by_month(store, &query)?,
+            _ => store.stats(&query)?,
+        };
+        self.output.save()?;
+        if stats.is_empty() && self.output.is_table() {
+            return print_out(&self.filter.nothing(store)?);
+        }
+        let together = match self.output.is_table() && self.by != By::Month {
+            true => store.stats(&StatQuery {
+                by: StatKey::All,
+                ..query
+            })?,
+            false => Vec::new(),
+        };
+        let all: u64 = stats.iter().map(|stat| stat.occurrences).sum();
+        let rows: Vec<_> = stats.iter().map(|stat| entry(stat, all)).collect();
+        self.output
+            .print(&rows, || self.table(&stats, together.first(), all))
+    }
+
+    fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
+        let heading = match self.by {
+            By::Code => "CODE",
+            By::Lru => "PART",
+            By::Unit => "UNIT",
+            By::Line => "LINE",
+            By::Month => "MONTH",
+        };
+        let is_course = self.by != By::Month;
+        let mut headings = vec![heading, "SEEN"];
+        if is_course {
+            headings.extend(["SHARE", "CUM"]);
+        }
+        headings.extend([
+            "FAULTS",
+            "OPEN",
+            "UNITS",
+            "MTBF",
+            "MTTR",
+            "BACK",
+            "NFF",
+            "LAST SEEN",
+        ]);
+        if is_course {
+            headings.push("COURSE");
+        }
+        let numbers = 1..headings.len() - 1 - usize::from(is_course);
+        let mut table = Table::new(&headings).right(numbers);
+        let mut so_far = 0;
+        let shown = stats
+            .iter()
+            .take(self.limit as usize)
+            .map(|stat| (stat, true));
+        for (stat, is_row) in shown.chain(together.map(|all| (all, false))) {
+            so_far += if is_row { stat.occurrences } else { 0 };
+            let name = match is_row {
+                true => format!("{} {}", stat.key, stat.name),
+                false => "all".to_owned(),
+            };
+            let mut row = vec![name.trim_end().to_owned(), stat.occurrences.to_string()];
+            if is_course {
+                row.push(share(stat.occurrences, all));
+                row.push(match is_row {
+                    true => share(so_far, all),
+                    false => String::new(),
+                });
+            }
+            row.extend([
+                stat.faults.to_string(),
+                stat.not_closed.to_string(),
+                stat.units.to_string(),
+                stat.mtbf_days.map_or_else(dash, days),
+                stat.mttr_hours
+                    .map_or_else(dash, |hours| days(hours / 24.0)),
+                of(stat.repairs_back, stat.repairs_judged),
+                of(stat.no_fault_found, stat.closed),
+                stat.last_at_us.map_or_else(dash, local_minute),
+            ]);
+            if is_course {
+                let first = stat.course.len().saturating_sub(BARS);
+                row.push(sparkline(&stat.course[first..]));
+            }
+            table.row(row);
+        }
+        let more = match stats.len().checked_sub(self.limit as usize) {
+            Some(more) if more > 0 => format!("\n… and {more} more; see --limit"),
+            _ => String::new(),
+        };
+        format!("{}{more}\n\n{}", table.render(), self.caption(stats))
+    }
+
+    /// What the numbers are of.
+    fn caption(&self, stats: &[FaultStat]) -> String {
+        let span = self.filter.span();
+        let span = match (span.since_us, span.until_us) {
+            (None, None) => "all of history".to_owned(),
+            (since, until) => format!(
+                "{} .. {}",
+                since.map_or_else(String::new, local_day),
+                until.map_or_else(|| "now".to_owned(), |until| local_day(until - 1)),
+            ),
+        };
+        let by_day = stats
+            .iter()
+            .map(|stat| stat.course.len())
+            .max()
+            .unwrap_or(0);
+        let course = match (self.by, by_day) {
+            (By::Month, _) => "",
+            (_, 0..=1) => "",
+            _ => "; course by day or month, the last 24",
+        };
+        format!(
+            "{span}; BACK: within {} days of the repair{course}",
+            self.back_within
+        )
+    }
+}
+
+/// Each local month of the span for itself, the oldest first.
+fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure> {
+    let Some((first_us, last_us)) = store.history_span()? else {
+        return Ok(Vec::new());
+    };
+    let since_us = query
+        .filter
+        .since_us
+        .map_or(first_us, |since| since.max(first_us));
+    let until_us = query
+        .filter
+        .until_us
+        .map_or(last_us + 1, |until| until.min(last_us + 1));
+    let mut stats = Vec::new();
+    for (name, since_us, until_us) in clock::months(since_us, until_us) {
+        let query = StatQuery {
+            filter: FaultFilter {
+                since_us: Some(since_us),
+                until_us: Some(until_us),
+                ..query.filter.clone()
+            },
+            ..query.clone()
+        };
+        // A quiet month has a row, too.
+        let stat = store.stats(&query)?.into_iter().next();
+        stats.push(FaultStat {
+            key: name,
+            ..stat.unwrap_or_default()
+        });
+    }
+    Ok(stats)
+}
+
+fn entry(stat: &FaultStat, all: u64) -> Value {
+    let rate = |part: u32, all: u32| (all > 0).then(|| f64::from(part) / f64::from(all));
+    json!({
+        "key": stat.key, "name": stat.name, "faults": stat.faults,
+        "not_closed": stat.not_closed, "occurrences": stat.occurrences,
+        "share": (all > 0).then(|| stat.occurrences as f64 / all as f64),
+        "units": stat.units, "last_at": stat.last_at_us.map(rfc3339),
+        "mtbf_days": stat.mtbf_days, "mttr_hours": stat.mttr_hours,
+        "repairs": stat.repairs, "repairs_judged": stat.repairs_judged,
+        "repairs_back": stat.repairs_back, "back_rate": rate(stat.repairs_back, stat.repairs_judged),
+        "closed": stat.closed, "no_fault_found": stat.no_fault_found,
+        "no_fault_found_rate": rate(stat.no_fault_found, stat.closed),
+        "course": stat.course,
+    })
+}
+
+fn dash() -> String {
+    "-".to_owned()
+}
+
+fn share(part: u64, all: u64) -> String {
+    format!("{:.1} %", 100.0 * part as f64 / all.max(1) as f64)
+}
+
+fn of(part: u32, all: u32) -> String {
+    match all {
+        0 => dash(),
+        _ => format!("{:.0} % of {all}", 100.0 * f64::from(part) / f64::from(all)),
+    }
+}
+
+/// A length of time in the unit that fits.
+fn days(days: f64) -> String {
+    match days {
+        hours if hours < 2.0 => format!("{:.1} h", 24.0 * days),
+        days if days < 100.0 => format!("{days:.1} d"),
+        days => format!("{days:.0} d"),
+    }
+}

@@ -1,0 +1,257 @@
+//! `ptu faults trend`: a measurement over time, and what it is coming to.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fault_db::process::{Process, Sample};
+use fault_db::{Store, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit};
+use serde_json::{Value, json};
+
+use super::{trend_plot, trend_text};
+use crate::cli::output::Output;
+use crate::clock::{Span, rfc3339};
+use crate::data;
+use crate::failure::{Exit, Failure, did_you_mean};
+
+/// Show a measurement over time: of one unit value by value, of all units month by month
+///
+/// With its drift, control limits (3 sigma), capability (Cp, Cpk), and when it will cross the limit it
+/// drifts towards. Sigma is that from one value to the next (moving range) of a unit, and that within days
+/// of a fleet.
+///
+/// Examples:
+///   ptu faults trend eb_reaction --procedure atp/overspeed
+///   ptu faults trend eb_reaction --unit SG-0142 --when 180d --plot creep.html
+///   ptu faults trend eb_reaction --unit SG-0142 --since-repair eb_relay
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct TrendArguments {
+    /// The measurement's name
+    measurement: String,
+    /// Only of this unit (serial number)
+    #[arg(long, value_name = "SERIAL")]
+    unit: Option<String>,
+    /// Only as measured by this procedure; another may have other limits
+    #[arg(long, value_name = "PROCEDURE")]
+    procedure: Option<String>,
+    /// Only on this line
+    #[arg(long, value_name = "LINE")]
+    line: Option<String>,
+    /// Only of units in this train
+    #[arg(long, value_name = "TRAIN")]
+    train: Option<String>,
+    /// Only then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
+    #[arg(long, value_name = "SPAN")]
+    when: Option<Span>,
+    /// Only since this part of the unit was repaired last
+    #[arg(long, value_name = "PART", requires = "unit", conflicts_with = "when")]
+    since_repair: Option<String>,
+    /// At most so many values, months or units in a table: the last, and those farthest off
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    limit: u32,
+    /// Draw it, too, on a page
+    #[arg(long, value_name = "FILE.html")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// What is known of a measurement over time.
+pub struct Trend {
+    /// What was asked.
+    pub query: TrendQuery,
+    /// Limits and their unit, as they were last.
+    pub limits: TrendLimits,
+    /// Value by value, or day by day.
+    pub course: Course,
+    /// All together.
+    pub process: Option<Process>,
+    /// Procedures that measure it.
+    pub procedures: Vec<String>,
+}
+
+/// Values over time.
+pub enum Course {
+    /// Of one unit.
+    Points(Vec<TrendPoint>),
+    /// Of all.
+    Days(Vec<TrendDay>, Vec<TrendUnit>),
+}
+
+impl TrendArguments {
+    pub fn trend(&self, store: &Store) -> Result<Exit, Failure> {
+        let trend = self.read(store)?;
+        self.output.save()?;
+        if let Some(file) = &self.plot {
+            data::write(file, trend_plot::page(&trend))?;
+        }
+        if self.output.is_json() {
+            return crate::cli::print_json(&trend.json());
+        }
+        self.output.print(&trend.rows(), || {
+            trend_text::text(&trend, self.limit as usize)
+        })
+    }
+
+    fn read(&self, store: &Store) -> Result<Trend, Failure> {
+        let names = store.measurement_names()?;
+        if !names.contains(&self.measurement) {
+            let hint = did_you_mean(&self.measurement, names.iter().map(String::as_str));
+            return Err(Failure::usage(format!(
+                "no measurement \"{}\" recorded{hint}; `ptu run --list` shows what is measured",
+                self.measurement
+            )));
+        }
+        let span = self.when.unwrap_or_default();
+        let mut query = TrendQuery {
+            measurement: self.measurement.clone(),
+            unit: self.unit.clone(),
+            line: self.line.clone(),
+            train: self.train.clone(),
+            procedure: self.procedure.clone(),
+            since_us: span.since_us,
+            until_us: span.until_us,
+        };
+        if let (Some(unit), Some(part)) = (&self.unit, &self.since_repair) {
+            let repaired = store
+                .last_repair(unit, part)
+                .map_err(|error| self.unknown(error))?;
+            query.since_us = Some(repaired.ok_or_else(|| {
+                Failure::usage(format!("no repair of {part} on unit {unit} recorded"))
+            })?);
+        }
+        let limits = store
+            .trend_limits(&query)
+            .map_err(|error| self.unknown(error))?;
+        let Some(limits) = limits else {
+            let of = self
+                .unit
+                .as_ref()
+                .map_or_else(String::new, |unit| format!(" of unit {unit}"));
+            return Err(Failure::usage(format!(
+                "no measurement \"{}\"{of} recorded so; `ptu runs list` shows the units",
+                self.measurement
+            )));
+        };
+        let course = match query.unit {
+            Some(_) => Course::Points(store.trend(&query)?),
+            None => Course::Days(store.trend_by_day(&query)?, store.trend_by_unit(&query)?),
+        };
+        Ok(Trend {
+            process: Process::of(&course.samples()),
+            limits,
+            course,
+            procedures: store.measuring_procedures(&self.measurement)?,
+            query,
+        })
+    }
+
+    /// A unit that is not known, in the words of this question.
+    fn unknown(&self, error: fault_db::StoreError) -> Failure {
+        match (&error, &self.unit) {
+            (fault_db::StoreError::NotFound { what: "unit", .. }, Some(unit)) => {
+                Failure::usage(format!(
+                    "no measurement \"{}\" of unit {unit} recorded; `ptu runs list` shows the units",
+                    self.measurement
+                ))
+            }
+            _ => error.into(),
+        }
+    }
+}
+
+impl Course {
+    /// For its analysis.
+    pub fn samples(&self) -> Vec<Sample> {
+        match self {
+            Self::Points(points) => points
+                .iter()
+                .filter_map(|point| {
+                    Some(Sample {
+                        at_us: point.at_us,
+                        value: point.value?,
+                        n: 1,
+                        scatter: 0.0,
+                    })
+                })
+                .collect(),
+            Self::Days(days, _) => days
+                .iter()
+                .map(|day| Sample {
+                    at_us: day.day_us,
+                    value: day.mean,
+                    n: day.n,
+                    scatter: (day.sum_of_squares - f64::from(day.n) * day.mean * day.mean).max(0.0),
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Trend {
+    /// The values, or the days.
+    fn rows(&self) -> Vec<Value> {
+        match &self.course {
+            Course::Points(points) => points
+                .iter()
+                .map(|point| {
+                    json!({
+                        "at": rfc3339(point.at_us), "run_id": point.run_id.to_string(),
+                        "unit_serial": point.unit_serial, "value": point.value, "unit": point.unit,
+                        "low": point.low, "high": point.high, "verdict": point.verdict.as_str(),
+                    })
+                })
+                .collect(),
+            Course::Days(days, _) => days
+                .iter()
+                .map(|day| {
+                    json!({
+                        "day": rfc3339(day.day_us), "n": day.n, "mean": day.mean,
+                        "least": day.least, "most": day.most, "not_passed": day.not_passed,
+                    })
+                })
+                .collect(),
+        }
+    }
+
+    fn json(&self) -> Value {
+        let mut value = json!({
+            "measurement": self.query.measurement, "unit": self.limits.unit,
+            "low": self.limits.low, "high": self.limits.high, "procedures": self.procedures,
+        });
+        match &self.course {
+            Course::Points(_) => value["points"] = self.rows().into(),
+            Course::Days(_, units) => {
+                value["days"] = self.rows().into();
+                value["units"] = json!(units);
+            }
+        }
+        let (low, high) = (self.limits.low, self.limits.high);
+        let process = self.process.as_ref();
+        value["capability"] = json!(process.and_then(|process| process.capability(low, high)));
+        value["forecast"] = process
+            .and_then(|process| process.forecast(low, high))
+            .map_or(Value::Null, |forecast| {
+                json!({
+                    "limit": forecast.limit, "at": rfc3339(forecast.at_us),
+                    "earliest": rfc3339(forecast.earliest_us),
+                    "latest": forecast.latest_us.map(rfc3339),
+                })
+            });
+        value["process"] = process.map_or(Value::Null, |process| {
+            let mut value = json!(process);
+            value["signs"] = process
+                .signs
+                .iter()
+                .map(|sign| {
+                    json!({
+                        "kind": sign.kind, "times": sign.times,
+                        "first_at": rfc3339(sign.first_at_us), "last_at": rfc3339(sign.last_at_us),
+                    })
+                })
+                .collect();
+            value
+        });
+        value
+    }
+}

@@ -1,0 +1,266 @@
+//! A trend as text: the last values or months, what they say together, and units that stand out.
+
+use fault_db::process::{Process, Sign};
+use fault_db::{TrendDay, TrendPoint, TrendUnit};
+
+use super::trend::{Course, Trend};
+use crate::clock::{local, local_day, local_month};
+use crate::limits::short;
+use crate::sparkline::sparkline_of;
+use crate::table::Table;
+
+/// Days of a month, for slopes.
+const MONTH_DAYS: f64 = 30.0;
+
+/// A course is shown in so many bars.
+const BARS: usize = 60;
+
+/// A unit so many standard deviations off the fleet's middle is worth a look.
+const STANDS_OUT: f64 = 3.0;
+
+/// All of it.
+pub fn text(trend: &Trend, limit: usize) -> String {
+    let unit = &trend.limits.unit;
+    let mut text = match &trend.course {
+        Course::Points(points) => points_table(points, unit, limit),
+        Course::Days(days, _) => months_table(days, limit),
+    };
+    let Some(process) = &trend.process else {
+        return text + "\nno value could be measured";
+    };
+    text += &format!("\n\n{}", process_text(trend, process));
+    if let Course::Days(_, units) = &trend.course {
+        text += &outstanding(units, limit);
+    }
+    if trend.procedures.len() > 1 && trend.query.procedure.is_none() {
+        text += &format!(
+            "\nmeasured by {}, each with limits of its own: choose one with --procedure",
+            trend.procedures.join(", ")
+        );
+    }
+    text
+}
+
+fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
+    let last = &points[points.len().saturating_sub(limit)..];
+    let mut table = Table::new(&["AT", "VALUE", "LOW", "HIGH", "VERDICT", "RUN"]).right([1, 2, 3]);
+    let number = |value: Option<f64>| value.map_or_else(|| "-".into(), short);
+    for point in last {
+        table.row([
+            local(point.at_us),
+            format!("{} {unit}", number(point.value)),
+            number(point.low),
+            number(point.high),
+            point.verdict.as_str().into(),
+            point.run_id.short(),
+        ]);
+    }
+    let values: Vec<_> = points.iter().map(|point| point.value).collect();
+    let earlier = points.len() - last.len();
+    let more = match earlier {
+        0 => String::new(),
+        n => format!("… {n} earlier values; see --limit\n"),
+    };
+    format!("{more}{}\n\n{}", table.render(), bars(&values))
+}
+
+fn months_table(days: &[TrendDay], limit: usize) -> String {
+    let month = |day: &TrendDay| local_month(day.day_us);
+    let months: Vec<_> = days.chunk_by(|a, b| month(a) == month(b)).collect();
+    let last = &months[months.len().saturating_sub(limit)..];
+    let mut table =
+        Table::new(&["MONTH", "VALUES", "MEAN", "LEAST", "MOST", "NOT PASSED"]).right(1..6);
+    for days in last {
+        let n: u32 = days.iter().map(|day| day.n).sum();
+        table.row([
+            month(&days[0]),
+            n.to_string(),
+            short(mean(days)),
+            short(
+                days.iter()
+                    .map(|day| day.least)
+                    .fold(f64::INFINITY, f64::min),
+            ),
+            short(
+                days.iter()
+                    .map(|day| day.most)
+                    .fold(f64::NEG_INFINITY, f64::max),
+            ),
+            days.iter()
+                .map(|day| day.not_passed)
+                .sum::<u32>()
+                .to_string(),
+        ]);
+    }
+    let means: Vec<_> = days.iter().map(|day| Some(day.mean)).collect();
+    format!("{}\n\n{}", table.render(), bars(&means))
+}
+
+fn mean(days: &[TrendDay]) -> f64 {
+    let n: f64 = days.iter().map(|day| f64::from(day.n)).sum();
+    days.iter()
+        .map(|day| f64::from(day.n) * day.mean)
+        .sum::<f64>()
+        / n
+}
+
+/// As many bars as fit, each the mean of its share.
+fn bars(values: &[Option<f64>]) -> String {
+    let share = values.len().div_ceil(BARS).max(1);
+    let mean = |values: &[Option<f64>]| {
+        let known: Vec<f64> = values.iter().flatten().copied().collect();
+        (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    };
+    sparkline_of(&values.chunks(share).map(mean).collect::<Vec<_>>())
+}
+
+fn process_text(trend: &Trend, process: &Process) -> String {
+    let (limits, unit) = (&trend.limits, &trend.limits.unit);
+    let value = |value: f64| format!("{} {unit}", short(value));
+    let mut lines = vec![format!(
+        "{} values, mean {}{}",
+        process.n,
+        value(process.mean),
+        process
+            .sigma
+            .map_or_else(String::new, |sigma| format!(", sigma {}", value(sigma))),
+    )];
+    if let Some((low, high)) = process.control {
+        lines.push(format!("control limits {} .. {}", short(low), value(high)));
+    }
+    let allowed = match (limits.low, limits.high) {
+        (Some(low), Some(high)) => format!("allowed {} .. {}", short(low), value(high)),
+        (Some(low), None) => format!("allowed from {}", value(low)),
+        (None, Some(high)) => format!("allowed up to {}", value(high)),
+        (None, None) => "no limits".to_owned(),
+    };
+    let fit = process.capability(limits.low, limits.high).map(|fit| {
+        let cp = fit
+            .cp
+            .map_or_else(String::new, |cp| format!("  Cp {cp:.2}"));
+        format!("{cp}  Cpk {:.2}", fit.cpk)
+    });
+    lines.push(allowed + &fit.unwrap_or_default());
+    if let Some(line) = &process.line {
+        let certain = match line.is_certain() {
+            true => "",
+            false => ": no drift for certain",
+        };
+        lines.push(format!(
+            "slope {} ± {} {unit} in 30 days{certain}",
+            signed(line.slope_per_day * MONTH_DAYS),
+            two_digits(1.96 * line.slope_error * MONTH_DAYS),
+        ));
+    }
+    if let Some(forecast) = process.forecast(limits.low, limits.high) {
+        let latest = forecast
+            .latest_us
+            .map_or_else(|| "never".to_owned(), local_day);
+        lines.push(format!(
+            "reaches {} about {} (95 %: {} .. {latest})",
+            value(forecast.limit),
+            local_day(forecast.at_us),
+            local_day(forecast.earliest_us),
+        ));
+    }
+    lines.extend(process.signs.iter().map(sign));
+    lines.join("\n")
+}
+
+fn sign(sign: &Sign) -> String {
+    let what = match sign.kind {
+        "beyond_control" => "beyond a control limit",
+        "nine_on_one_side" => "nine in a row on one side of the mean",
+        _ => "six in a row each beyond the one before",
+    };
+    let times = match sign.times {
+        1 => "once".to_owned(),
+        n => format!("{n} times, first {}", local_day(sign.first_at_us)),
+    };
+    format!(
+        "more than chance: {what}, {times}, last {}",
+        local_day(sign.last_at_us)
+    )
+}
+
+/// Units that lie, or drift, otherwise than the fleet, the farthest first.
+fn outstanding(units: &[TrendUnit], limit: usize) -> String {
+    let means = units.iter().map(|unit| unit.mean).collect();
+    let Some(mean) = Spread::of(means) else {
+        return String::new();
+    };
+    let slope = Spread::of(units.iter().filter_map(|unit| unit.slope_per_day).collect());
+    let drift = |unit: &TrendUnit| match (&slope, unit.slope_per_day) {
+        (Some(slope), Some(drift)) => slope.off(drift),
+        _ => 0.0,
+    };
+    let off = |unit: &TrendUnit| mean.off(unit.mean).abs().max(drift(unit).abs());
+    let mut far: Vec<_> = units
+        .iter()
+        .filter(|unit| off(unit) >= STANDS_OUT)
+        .collect();
+    far.sort_by(|a, b| off(b).total_cmp(&off(a)));
+    if far.is_empty() {
+        return format!("\nno unit of {} stands out", units.len());
+    }
+    let headings = ["UNIT", "VALUES", "MEAN", "OFF", "IN 30 DAYS", "OFF"];
+    let mut table = Table::new(&headings).right(1..6);
+    for unit in far.iter().take(limit) {
+        let slope = unit.slope_per_day.map(|slope| signed(slope * MONTH_DAYS));
+        table.row([
+            unit.unit_serial.clone(),
+            unit.n.to_string(),
+            short(unit.mean),
+            format!("{:+.1}", mean.off(unit.mean)),
+            slope.unwrap_or_else(|| "-".to_owned()),
+            format!("{:+.1}", drift(unit)),
+        ]);
+    }
+    format!(
+        "\n\n{} of {} units stand out (OFF: standard deviations from the middle of the fleet)\n{}",
+        far.len(),
+        units.len(),
+        table.render()
+    )
+}
+
+/// How units scatter: from their middle half, so that a few bad ones do not hide themselves.
+struct Spread {
+    middle: f64,
+    sigma: f64,
+}
+
+impl Spread {
+    fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        let quarter = values.len() / 4;
+        let upper = values.get(values.len().checked_sub(1 + quarter)?)?;
+        let width = upper - values.get(quarter)?;
+        // The middle half of a normal distribution is 1.349 standard deviations wide.
+        (values.len() >= 4 && width > 0.0).then(|| Self {
+            middle: values[values.len() / 2],
+            sigma: width / 1.349,
+        })
+    }
+
+    /// Standard deviations from the middle.
+    fn off(&self, value: f64) -> f64 {
+        (value - self.middle) / self.sigma
+    }
+}
+
+/// A number in two significant digits, however small.
+fn two_digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return short(value);
+    }
+    let decimals = (1 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{value:.decimals$}")
+}
+
+fn signed(value: f64) -> String {
+    match value {
+        rise if rise > 0.0 => format!("+{}", two_digits(rise)),
+        value => two_digits(value),
+    }
+}

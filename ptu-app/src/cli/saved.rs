@@ -1,0 +1,187 @@
+//! `ptu saved`: questions that were given a name, to be asked again.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Parser};
+
+use super::{Cli, print_out};
+use crate::data;
+use crate::failure::{Exit, Failure, did_you_mean};
+use crate::table::Table;
+
+/// Ask a saved question again, or list them all
+///
+/// Questions of `ptu faults list|stats|trend` and `ptu db query` are saved with --save NAME. Each is asked
+/// of the database in use; options after its name are added to it.
+///
+/// Examples:
+///   ptu faults stats --by lru --when 90d --save worst
+///   ptu saved worst
+///   ptu saved worst --csv
+///   ptu saved --forget worst
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct SavedArguments {
+    /// The question's name; none = list all
+    name: Option<String>,
+    /// Forget it
+    #[arg(long, value_name = "NAME", conflicts_with = "name")]
+    forget: Option<String>,
+    /// Options to add
+    #[arg(
+        trailing_var_arg = true,
+        allow_hyphen_values = true,
+        value_name = "OPTIONS"
+    )]
+    more: Vec<String>,
+}
+
+/// Questions by name: the words after `ptu`.
+type Questions = BTreeMap<String, Vec<String>>;
+
+impl SavedArguments {
+    /// Asks, lists or forgets.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let file = usual_file()?;
+        let mut questions = load(&file)?;
+        if let Some(name) = self.forget {
+            let known = question(&questions, &name)?.0.to_owned();
+            questions.remove(&known);
+            store(&file, &questions)?;
+            return print_out(&format!("\"{name}\" is forgotten"));
+        }
+        let Some(name) = self.name else {
+            return print_out(&list(&questions));
+        };
+        if self
+            .more
+            .iter()
+            .any(|word| word == "--save" || word.starts_with("--save="))
+        {
+            return Err(Failure::usage(format!(
+                "\"{name}\" is saved already; ask it in full to save it under another name"
+            )));
+        }
+        let (_, words) = question(&questions, &name)?;
+        let words = ["ptu".to_owned()]
+            .into_iter()
+            .chain(words.iter().cloned())
+            .chain(self.more);
+        match Cli::try_parse_from(words) {
+            Ok(cli) => cli.run(),
+            Err(error) => Err(Failure::usage(format!(
+                "the saved question \"{name}\" cannot be asked so: {error}"
+            ))),
+        }
+    }
+}
+
+/// Keeps the question of this command line under a name.
+///
+/// # Errors
+/// The file of questions cannot be read or written.
+pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Failure> {
+    if name.trim().is_empty() || name.starts_with('-') {
+        return Err(Failure::usage(format!(
+            "\"{name}\" is no name for a question"
+        )));
+    }
+    let readable = words
+        .map(OsString::into_string)
+        .collect::<Result<Vec<_>, _>>();
+    let words = readable
+        .map_err(|word| Failure::usage(format!("{} is no text to save", word.display())))?;
+    let file = usual_file()?;
+    let mut questions = load(&file)?;
+    questions.insert(name.to_owned(), asked(words.into_iter()));
+    store(&file, &questions)
+}
+
+/// The words without those that say under which name to save it, and of which database it is asked.
+fn asked(words: impl Iterator<Item = String>) -> Vec<String> {
+    let mut kept = Vec::new();
+    let mut words = words.skip(1);
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--save" | "--db" => drop(words.next()),
+            word if word.starts_with("--save=") || word.starts_with("--db=") => {}
+            _ => kept.push(word),
+        }
+    }
+    kept
+}
+
+fn question<'a>(
+    questions: &'a Questions,
+    name: &str,
+) -> Result<(&'a str, &'a Vec<String>), Failure> {
+    let known = questions
+        .get_key_value(name)
+        .map(|(name, words)| (name.as_str(), words));
+    known.ok_or_else(|| {
+        let hint = did_you_mean(name, questions.keys().map(String::as_str));
+        Failure::usage(format!(
+            "no question \"{name}\" was saved{hint}; `ptu saved` lists them"
+        ))
+    })
+}
+
+fn list(questions: &Questions) -> String {
+    if questions.is_empty() {
+        return "no question was saved; add --save NAME to one".to_owned();
+    }
+    let mut table = Table::new(&["NAME", "QUESTION"]);
+    for (name, words) in questions {
+        let quoted = words
+            .iter()
+            .map(|word| match word.contains([' ', '*', ';', '(']) {
+                true => format!("'{word}'"),
+                false => word.clone(),
+            });
+        table.row([
+            name.clone(),
+            format!("ptu {}", quoted.collect::<Vec<_>>().join(" ")),
+        ]);
+    }
+    table.render()
+}
+
+fn usual_file() -> Result<PathBuf, Failure> {
+    directories::ProjectDirs::from("", "", "ptu")
+        .map(|directories| directories.config_dir().join("questions.json"))
+        .ok_or_else(|| Failure::usage("no user configuration directory to save questions in"))
+}
+
+fn load(file: &Path) -> Result<Questions, Failure> {
+    let text = match std::fs::read_to_string(file) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Questions::new()),
+        other => other
+            .map_err(|error| Failure::bench(format!("cannot read {}: {error}", file.display())))?,
+    };
+    serde_json::from_str(&text).map_err(|error| {
+        Failure::bench(format!(
+            "{} is damaged ({error}); mend or delete it",
+            file.display()
+        ))
+    })
+}
+
+fn store(file: &Path, questions: &Questions) -> Result<(), Failure> {
+    data::keep(file, questions)
+        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_question_is_kept_without_its_name_and_database() {
+        let words =
+            "ptu faults --db a.db stats --save worst --by lru --db=b.db --save=x --when 90d";
+        let kept = asked(words.split(' ').map(str::to_owned));
+        assert_eq!(kept.join(" "), "faults stats --by lru --when 90d");
+    }
+}

@@ -1,0 +1,55 @@
+//! `ptu trace export`: a trace, or a part of it, for other programs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fault_db::Store;
+
+use super::PartArguments;
+use crate::cli::print_out;
+use crate::failure::{Exit, Failure};
+use crate::trace_io::{Chosen, Format, export};
+
+/// Write a trace to a .csv, .parquet or .mcap file
+///
+/// .csv      a line a row; FILE-metadata.json beside it says what the signals are (CSV on the Web)
+/// .parquet  for DuckDB, pandas, Polars: doubles, booleans, words
+/// .mcap     for Foxglove and PlotJuggler: a JSON message a row, under the topic `trace`
+///
+/// In each, times are seconds from the trigger and UTC, a sample that is not known is empty, and trace, run,
+/// unit, period, trigger and each signal's unit and words are kept.
+///
+/// Examples:
+///   ptu trace export latest --to trace.parquet
+///   ptu trace export 59c2ce97 --to brake.csv --signals speed,limit,eb --window -2..5
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct ExportArguments {
+    /// The trace: an id, its beginning or end (at least 4 digits), or `latest`
+    id: String,
+    /// The file; its ending says the format
+    #[arg(long, value_name = "FILE")]
+    to: PathBuf,
+    #[command(flatten)]
+    part: PartArguments,
+    /// Replace a file that is there
+    #[arg(long)]
+    force: bool,
+}
+
+impl ExportArguments {
+    pub fn run(self, store: &Store) -> Result<Exit, Failure> {
+        // Before anything is looked for.
+        Format::of(&self.to)?;
+        let id = store.resolve_trace(&self.id)?;
+        let chosen = Chosen::new(store, id, &self.part.signals, self.part.window)?;
+        export(&chosen, &self.to, self.force)?;
+        print_out(&format!(
+            "trace {}: {} rows of {} signals to {}",
+            id.short(),
+            chosen.about.rows,
+            chosen.about.channels.len(),
+            self.to.display()
+        ))
+    }
+}

@@ -1,0 +1,163 @@
+//! Reaching a unit on a port: contact, who it is, whether it and the tester go by the same clock, and a known
+//! state.
+
+use std::ops::RangeInclusive;
+
+use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::rig::Bench;
+use btu_rig::stimulus::Stimulus;
+use protocol::event::Event;
+use protocol::message::Identity;
+use protocol::signal::Sample;
+use protocol::{CYCLE, Duration, Instant};
+
+use super::benches::{BenchSetup, READY_WITHIN, started, text};
+use super::fault_watch::{self, FaultSeen};
+use super::recorder::BEFORE;
+use super::session::Session;
+use crate::failure::{Exit, Failure};
+use crate::link::{Pace, WireLink};
+use crate::stop::Stop;
+
+/// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
+/// goes at another pace on purpose.
+const CLOCKS_AGREE: RangeInclusive<f64> = 0.55..=1.8;
+
+/// A unit on a port, ready.
+pub(super) struct Reached {
+    pub session: Session<WireLink>,
+    pub identity: Identity,
+    /// What TCMS found meanwhile.
+    pub found: Vec<FaultSeen>,
+}
+
+impl BenchSetup {
+    /// Reaches the unit on its port, identifies it and brings it to a known state.
+    ///
+    /// # Errors
+    /// It cannot be reached, is another one, or has another configuration.
+    pub(super) fn reach(&self, stop: &Stop) -> Result<Reached, Failure> {
+        let link = WireLink::open(&self.endpoint)?.slower(self.slower);
+        let bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
+        let mut session = Session::new(bench, Pace::slower(self.slower), stop.clone(), false)
+            .attended_by(self.attendant.clone())
+            .keeping_up(self.bears());
+        let mut found = Vec::new();
+        let identity = self.bring_up(&mut session, &mut found);
+        if session.was_held_up() {
+            found.retain(|fault| Event::from_code(fault.code).is_some_and(Event::about_train));
+        }
+        if stop.presses() > 0 {
+            return Err(Failure {
+                exit: Exit::Aborted,
+                message: format!("{}: stopped before the unit was reached", self.endpoint),
+            });
+        }
+        let identity = identity?;
+        self.check_identity(&identity)?;
+        Ok(Reached {
+            session,
+            identity,
+            found,
+        })
+    }
+
+    /// How far the bench may be behind: the unit misses its inputs after a silence, of which what it heard
+    /// last may be a cycle old already.
+    fn bears(&self) -> Duration {
+        let silence_us = u64::from(self.config.content.link.io_timeout_ms) * 1000;
+        Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))
+    }
+
+    /// Contact, identity, the old log read, and a brake left from before acknowledged. The unit's log has
+    /// a history; the train is this bench's, and what TCMS finds goes to `found`.
+    fn bring_up(
+        &self,
+        session: &mut Session<WireLink>,
+        found: &mut Vec<FaultSeen>,
+    ) -> Result<Identity, Failure> {
+        let mut seen = |entry: &UnitEvent, at, sample: &Sample| {
+            if entry.source == EventSource::Tcms && fault_watch::is_fault(entry) {
+                found.push(fault_watch::of_event(entry, at, sample));
+            }
+        };
+        let ready = session.idle(READY_WITHIN, &mut seen, |bench| {
+            bench.rig().identity().is_some() && started(bench)
+        });
+        if let Some(error) = session.link_failure() {
+            return Err(Failure::bench(format!(
+                "{error}; check the cable and that the unit is served there"
+            )));
+        }
+        if let Some(error) = session.link_error() {
+            return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
+        }
+        let Some(identity) = session.bench().rig().identity().copied().filter(|_| ready) else {
+            return Err(Failure::bench(format!(
+                "{}: the unit answers but does not become ready within {READY_WITHIN}; power it \
+                 off and on",
+                self.endpoint
+            )));
+        };
+        let now = session.now();
+        // A brake latched since the last tester left needs its acknowledgement.
+        let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
+        let mut told = vec![(now, identity.uptime_ms)];
+        session.idle(BEFORE, &mut seen, |bench| {
+            let uptime = bench.rig().identity().map(|identity| identity.uptime_ms);
+            let news = uptime.filter(|ms| told.last().is_none_or(|(_, before)| before != ms));
+            told.extend(news.map(|ms| (bench.now(), ms)));
+            bench.now().since(Instant::ZERO) > BEFORE
+        });
+        self.check_clock(&told[1..])?;
+        Ok(identity)
+    }
+
+    /// The unit's clock beside the bench's, from what it told of its uptime.
+    fn check_clock(&self, told: &[(Instant, u32)]) -> Result<(), Failure> {
+        let [(first_at, first_ms), .., (at, ms)] = told else {
+            return Ok(());
+        };
+        // A unit that started again meanwhile is for the procedures to find.
+        let Some(passed_ms) = ms.checked_sub(*first_ms) else {
+            return Ok(());
+        };
+        let times_faster = f64::from(passed_ms) / 1000.0 / at.since(*first_at).as_secs();
+        if CLOCKS_AGREE.contains(&times_faster) {
+            return Ok(());
+        }
+        Err(Failure::bench(format!(
+            "{}: the unit's clock goes {times_faster:.1} times as fast as the tester's; give --slower at both \
+             ends or at neither",
+            self.endpoint
+        )))
+    }
+
+    fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
+        let serial = text(&identity.serial);
+        if let Some(expected) = self.serial.as_ref().filter(|expected| **expected != serial) {
+            return Err(Failure::bench(format!(
+                "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
+                self.endpoint
+            )));
+        }
+        let checks = [
+            (
+                "unit configuration",
+                identity.config_crc,
+                self.config.crc,
+                "--unit-config",
+            ),
+            ("track database", identity.tdb_crc, self.line.crc, "--line"),
+        ];
+        for (what, unit, ours, option) in checks {
+            if unit != ours {
+                return Err(Failure::bench(format!(
+                    "the {what} of unit {serial} has checksum {unit:08x}, the tests were loaded \
+                     for {ours:08x}; choose the unit's with {option}"
+                )));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,23 @@
+//! Traces to and from other programs' files.
+//!
+//! * [`export`]: a stored trace, or a part of it, as CSV, Parquet or MCAP, a piece at a time, so that an
+//!   hour of all signals takes no more memory than a second of one;
+//! * [`About`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
+//! * [`import`]: signals of a CSV or MCAP file, ours or another program's;
+//! * [`lay`]: these signals at the times of a stored trace's rows, to be compared with it.
+
+mod about;
+mod align;
+pub mod csv;
+mod csv_read;
+mod export;
+mod mcap_read;
+mod mcap_write;
+mod new_file;
+mod parquet;
+mod series;
+
+pub use about::About;
+pub use align::{Laid, lay};
+pub use export::{Chosen, Format, Seconds, export};
+pub use series::{Import, import, is_importable};
