@@ -174,6 +174,16 @@ impl Board {
         (self.wake)();
     }
 
+    /// A unit is there to be worked with, and it is known which one: whoever sees the one sees the other.
+    pub(super) fn enter_idle(&self, identity: Option<Identity>) {
+        {
+            let mut live = held(&self.live);
+            live.phase = Phase::Idle;
+            live.identity = identity;
+        }
+        (self.wake)();
+    }
+
     /// What was given by hand is gone: the bench is another one, or was made safe.
     pub(super) fn begin_anew(&self) {
         held(&self.live).generation += 1;

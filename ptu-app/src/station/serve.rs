@@ -97,7 +97,6 @@ impl Server {
         });
         loop {
             self.board.begin_anew();
-            self.board.enter(Phase::Idle);
             let (leave, safe) = self.watch(&mut connected, connection, orders);
             match leave {
                 Leave::Run(order, stop) => {
@@ -161,6 +160,8 @@ impl Server {
         connection: Connection,
         orders: &Receiver<Order>,
     ) -> Leave {
+        self.board
+            .enter_idle(session.bench().rig().identity().copied());
         let mut restarts = session.bench().rig().unit_restarts();
         let mut asked = None;
         let mut arm_at = None;
@@ -282,5 +283,51 @@ impl Listener for Ear<'_> {
             procedure: procedure.id.clone(),
             what,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::{Arc, OnceLock};
+    use std::time::{Duration, Instant};
+
+    use btu_rig::procedure::plan::Connection;
+
+    use crate::data::ScriptsDirectory;
+    use crate::gui::UnitChoice;
+    use crate::station::{Board, Phase, Station};
+
+    /// Goal: whoever sees that a unit can be worked with sees which one it is. Method: looked at each
+    /// time the station says that there is something new.
+    #[test]
+    fn a_unit_that_can_be_worked_with_is_known() {
+        let board: Arc<OnceLock<Arc<Board>>> = Arc::default();
+        let [known, unknown]: [Arc<AtomicUsize>; 2] = Default::default();
+        let wake = {
+            let (board, known, unknown) = (board.clone(), known.clone(), unknown.clone());
+            move || {
+                let Some(live) = board.get().map(|board| board.read()) else {
+                    return;
+                };
+                if live.phase == Phase::Idle {
+                    let looked = live.identity.map_or(&unknown, |_| &known);
+                    looked.fetch_add(1, Ordering::Relaxed);
+                }
+            }
+        };
+        let mut station = Station::new(Arc::new(wake)).expect("a thread");
+        assert!(board.set(station.board().clone()).is_ok());
+        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts");
+        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
+        let choice = UnitChoice::default().named().expect("the embedded unit");
+        let setup = choice.setup(&scripts).expect("its configuration");
+        station.connect(setup, Connection::Btu);
+        let began = Instant::now();
+        while known.load(Ordering::Relaxed) == 0 {
+            assert!(began.elapsed() < Duration::from_secs(60), "no unit");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(unknown.load(Ordering::Relaxed), 0);
     }
 }
