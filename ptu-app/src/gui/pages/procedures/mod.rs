@@ -16,7 +16,6 @@ use crate::gui::library::Asked;
 use crate::gui::parts::RunNoteForm;
 use crate::gui::{Desk, Palette, UnitChoice};
 use crate::run::Suite;
-use crate::station::Phase;
 use crate::words::fill;
 use prepare::{How, Prepared};
 use results::Shown;
@@ -97,7 +96,7 @@ impl ProceduresPage {
     pub fn run_step(&mut self, procedure: String, step: String, unit: &str, desk: &mut Desk<'_>) {
         let words = &desk.words.procedures;
         let chosen = desk.units.chosen();
-        if chosen.phase() != Phase::Idle {
+        if !chosen.may_run() {
             desk.messages.trouble(words.connect_first, "");
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
