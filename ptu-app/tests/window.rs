@@ -71,6 +71,41 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     assert_eq!(run["run"]["injected"], "eb_relay.slow");
 }
 
+/// Goal: a note that is being written when the diagnosis comes is not lost to it. Method: a diagnosis that
+/// waits for a file of its settings, which is a pipe; it comes when half of the note is written, and the
+/// other half is typed without another look at where the field is.
+#[test]
+fn a_note_is_written_on_while_the_conclusion_comes() {
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Alarm\", suspect = \"tra\")\n\
+         step(\"sounds\", expect = [becomes(alarm, True, within = ms(200))])\n",
+    );
+    let pipe = scripts.join("diagnosis.toml");
+    let diagnosis = std::fs::read_to_string(&pipe).expect("settings");
+    std::fs::remove_file(&pipe).expect("a link");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("mkfifo starts").success());
+    let mut settings = settings(Page::Procedures);
+    settings.operator = "Lee".into();
+    let mut window = Window::with(Place::new(), &scripts, settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for_part("Run over: failed");
+    window.write("note on this run", "relay K3 ");
+    // Writing into a pipe waits for who reads it.
+    let written = std::thread::spawn(move || std::fs::write(&pipe, diagnosis));
+    window.wait_for_part("cannot tell: ");
+    written.join().expect("no panic").expect("written");
+    window.harness().event(Event::Text("clicks late".into()));
+    window.step();
+    window.click("Save note");
+    window.wait_for("Note saved");
+    assert_eq!(latest(&window)["notes"][0]["text"], "relay K3 clicks late");
+}
+
 #[test]
 fn the_least_of_steps_finds_the_part_too() {
     let mut settings = settings(Page::Procedures);
