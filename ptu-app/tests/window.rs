@@ -209,33 +209,36 @@ fn letting_go_in_a_run_closes_its_record_first() {
 
 #[test]
 fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
-    let place = Place::new();
-    let scripts = own_scripts(
-        &place,
-        "procedure(title = \"Lamp\", suspect = \"-\")\n\
-         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(60))])\n",
-    );
-    let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
-    window.click("Connect");
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for("Does the lamp light?");
-    window.key(Page::Faults.key());
-    window.wait_for("a script asks");
-    let now = |window: &Window| window.app().units().chosen().station.live().now;
-    let (before, began) = (now(&window), std::time::Instant::now());
-    for _ in 0..100 {
-        window.step();
-    }
-    let bench_s = now(&window).since(before).as_secs();
-    let clock_s = began.elapsed().as_secs_f64();
-    assert!(
-        bench_s < clock_s + 0.5,
-        "{bench_s} s on the bench in {clock_s} s"
-    );
-    window.click("a script asks");
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
+    steadily(|| {
+        let place = Place::new();
+        let scripts = own_scripts(
+            &place,
+            "procedure(title = \"Lamp\", suspect = \"-\")\n\
+             step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
+        );
+        let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
+        window.click("Connect");
+        window.wait_for("SIM-0001");
+        window.click("Run");
+        window.wait_for("Does the lamp light?");
+        window.key(Page::Faults.key());
+        window.wait_for("a script asks");
+        let now = |window: &Window| window.app().units().chosen().station.live().now;
+        let (began, before) = (std::time::Instant::now(), now(&window));
+        for _ in 0..100 {
+            window.step();
+        }
+        let bench_s = now(&window).since(before).as_secs();
+        let clock_s = began.elapsed().as_secs_f64();
+        // Scans that are late after the bench was held up are made up for.
+        assert!(
+            bench_s < clock_s + 0.5,
+            "{bench_s} s on the bench in {clock_s} s"
+        );
+        window.click("a script asks");
+        window.click("Yes");
+        window.wait_for_part("Run over: passed");
+    });
 }
 
 #[test]
@@ -260,7 +263,7 @@ fn a_script_asks_and_the_answer_decides() {
     let scripts = own_scripts(
         &place,
         "procedure(title = \"Lamp\", suspect = \"-\")\n\
-         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(30))])\n",
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
     );
     for (answer, verdict) in [("Yes", "passed"), ("No", "failed")] {
         let mut window = Window::with(Place::new(), &scripts, settings(Page::Procedures));
