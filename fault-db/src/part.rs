@@ -130,3 +130,31 @@ fn is_given_up(entry: &std::fs::DirEntry) -> bool {
     let since = written.ok().and_then(|at| at.elapsed().ok());
     since.is_some_and(|since| since > GIVEN_UP)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a disk without hard links, too, a name that is taken stays with the file that has it.
+    #[test]
+    fn without_hard_links_nothing_is_replaced_either() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let part = |to: &str| {
+            let part = Part {
+                beside: dir.path().join(format!("{to}.part")),
+                to: dir.path().join(to),
+            };
+            std::fs::write(&part.beside, "new").expect("written");
+            part
+        };
+        let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).expect("there");
+        std::fs::write(dir.path().join("taken"), "old").expect("written");
+        let refused = part("taken").rename().expect_err("taken");
+        assert_eq!(refused.kind(), ErrorKind::AlreadyExists);
+        assert_eq!(read("taken"), "old");
+        part("free").rename().expect("renamed");
+        assert_eq!(read("free"), "new");
+        let names = std::fs::read_dir(dir.path()).expect("read").count();
+        assert_eq!(names, 2, "nothing is left beside them");
+    }
+}
