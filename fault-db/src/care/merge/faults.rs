@@ -140,6 +140,12 @@ impl Merge<'_> {
                 occurrence[8] = renumber(traces, trace);
             }
             let find = "SELECT seq FROM fault_occurrence WHERE id = ?1";
+            let is_sealed = runs
+                .get(&row.get(2)?)
+                .is_some_and(|run| self.sealed_runs.contains(run));
+            if is_sealed && !self.ours.prepare_cached(find)?.exists([&occurrence[0]])? {
+                continue;
+            }
             let insert = "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us,
                     message, freeze_json, trace, code, lru, line, unit)
                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12,
