@@ -416,10 +416,12 @@ fn a_copy_that_went_on_by_itself_comes_home() {
 }
 
 /// Whoever changes a file by another program has to get rid of what is counted by functions of this one.
-const UNCOUNTED: &str = "DROP TRIGGER value_measured; DROP TRIGGER occurrence_seen";
+const UNCOUNTED: &str = "
+    DROP TRIGGER value_measured; DROP TRIGGER occurrence_seen; DROP TRIGGER fault_opened;
+    DROP TRIGGER event_opened; DROP TRIGGER fault_closed_new; DROP TRIGGER event_repair; DROP TRIGGER event_said";
 
 /// Ways in which a copy of a file was changed by hand.
-const TAMPERED: [(&str, &str); 7] = [
+const TAMPERED: [(&str, &str); 8] = [
     ("a verdict", "UPDATE run SET verdict = 'passed'"),
     ("a verdict taken away", "UPDATE run SET verdict = NULL"),
     (
@@ -438,6 +440,15 @@ const TAMPERED: [(&str, &str); 7] = [
         "an occurrence",
         "INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
          SELECT randomblob(16), fault, run, at_us, bench_us, '', '[]', unit, code, lru FROM fault_occurrence",
+    ),
+    (
+        "a fault",
+        "INSERT INTO fault(seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, occurrences)
+         SELECT 99, randomblob(16), unit, 77, lru, 'made_up', severity, 'open', 5, 5, 1 FROM fault;
+         INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
+         VALUES (randomblob(16), 99, 'opened', 5, '', '', 'open');
+         INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
+         SELECT randomblob(16), 99, run, 5, 5, '', '[]', unit, 77, lru FROM fault_occurrence",
     ),
     (
         "all of it, sealed again",
@@ -467,6 +478,7 @@ fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
         assert_eq!(named, [("run", altered)], "{what}");
         assert_eq!((added.runs, added.steps), (1, 0), "{what}");
         assert_eq!(a.run(altered, &|_| false).expect("there"), before, "{what}");
+        assert_eq!(faults(&a).len(), 1, "{what}");
         whole(&a, what);
         // The other way round nothing is added to theirs either, but for a verdict that is missing there.
         let back = b.merge_from(&a).expect("and back");
