@@ -195,11 +195,15 @@ impl StatsArguments {
     }
 }
 
-/// Each local month of the span for itself, the oldest first.
+/// Each local month of the span for itself, the oldest first. None if there is nothing to count in any of
+/// them.
 fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure> {
     let Some((first_us, last_us)) = store.history_span()? else {
         return Ok(Vec::new());
     };
+    // Before the history there is nothing, and after now only what a computer with a fast clock recorded:
+    // a span that reaches farther has no months there, and no count is another for it.
+    let end_us = query.now_us.max(last_us.saturating_add(1));
     let since_us = query
         .filter
         .since_us
@@ -207,8 +211,9 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
     let until_us = query
         .filter
         .until_us
-        .map_or(last_us + 1, |until| until.min(last_us + 1));
+        .map_or(end_us, |until| until.min(end_us));
     let mut stats = Vec::new();
+    let mut is_quiet = true;
     for (name, since_us, until_us) in clock::months(since_us, until_us) {
         let query = StatQuery {
             filter: FaultFilter {
@@ -220,10 +225,14 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
         };
         // A quiet month has a row, too.
         let stat = store.stats(&query)?.into_iter().next();
+        is_quiet &= stat.is_none();
         stats.push(FaultStat {
             key: name,
             ..stat.unwrap_or_default()
         });
+    }
+    if is_quiet {
+        stats.clear();
     }
     Ok(stats)
 }
