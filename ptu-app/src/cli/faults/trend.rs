@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
-use crate::clock::{Span, rfc3339};
+use crate::clock::{Span, local_day, rfc3339, utc_day};
 use crate::data;
 use crate::failure::{Exit, Failure, did_you_mean};
 
@@ -161,6 +161,14 @@ impl TrendArguments {
 }
 
 impl Course {
+    /// How its days are called: those of a fleet are counted in UTC, and begin the evening before in its west.
+    pub fn day_name(&self) -> fn(i64) -> String {
+        match self {
+            Self::Points(_) => local_day,
+            Self::Days(..) => utc_day,
+        }
+    }
+
     /// For its analysis.
     pub fn samples(&self) -> Vec<Sample> {
         match self {
