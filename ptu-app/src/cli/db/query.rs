@@ -38,22 +38,35 @@ impl QueryArguments {
         if answer.truncated && !self.output.is_table() {
             eprintln!("only the first {MAX_ROWS} rows; add LIMIT, or ask for less");
         }
-        self.output.print(&rows(&answer), || table(&answer))
+        let columns = columns(&answer);
+        let columns: Vec<_> = columns.iter().map(String::as_str).collect();
+        self.output
+            .print(&columns, &rows(&answer, &columns), || table(&answer))
     }
 }
 
-/// Each row by the names of its columns; of two with one name the last has another.
-fn rows(answer: &QueryResult) -> Vec<Value> {
-    let row = |row: &Vec<SqlValue>| {
-        let mut cells = Map::new();
-        for (column, value) in answer.columns.iter().zip(row) {
-            let mut name = column.clone();
-            while cells.contains_key(&name) {
-                name.push('_');
-            }
-            cells.insert(name, json!(value));
+/// The names of the columns; of two with one name the last has another.
+fn columns(answer: &QueryResult) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for column in &answer.columns {
+        let mut name = column.clone();
+        while names.contains(&name) {
+            name.push('_');
         }
-        Value::Object(cells)
+        names.push(name);
+    }
+    names
+}
+
+/// Each row by the names of its columns.
+fn rows(answer: &QueryResult, columns: &[&str]) -> Vec<Value> {
+    let row = |row: &Vec<SqlValue>| {
+        let cells = columns.iter().zip(row);
+        Value::Object(
+            cells
+                .map(|(name, value)| ((*name).to_owned(), json!(value)))
+                .collect::<Map<_, _>>(),
+        )
     };
     answer.rows.iter().map(row).collect()
 }

@@ -8,7 +8,7 @@ use crate::cli::output::Output;
 use crate::cli::print_out;
 use crate::clock::local;
 use crate::failure::{Exit, Failure};
-use crate::report::fault_json;
+use crate::report::{FAULT_KEYS, fault_json};
 use crate::table::Table;
 
 /// List faults, last seen first
@@ -44,7 +44,7 @@ impl ListArguments {
             return print_out(&self.filter.nothing(store)?);
         }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
-        self.output.print(&rows, || {
+        self.output.print(&FAULT_KEYS, &rows, || {
             let more = if more {
                 "\n… and more; see --limit"
             } else {

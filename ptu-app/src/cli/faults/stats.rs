@@ -12,6 +12,28 @@ use crate::failure::{Exit, Failure};
 use crate::sparkline::sparkline;
 use crate::table::Table;
 
+/// Keys of a row, in their order.
+const KEYS: [&str; 18] = [
+    "key",
+    "name",
+    "faults",
+    "not_closed",
+    "occurrences",
+    "share",
+    "units",
+    "last_at",
+    "mtbf_days",
+    "mttr_hours",
+    "repairs",
+    "repairs_judged",
+    "repairs_back",
+    "back_rate",
+    "closed",
+    "no_fault_found",
+    "no_fault_found_rate",
+    "course",
+];
+
 /// A course over time is shown in so many bars at most: the last ones.
 const BARS: usize = 24;
 
@@ -93,7 +115,7 @@ impl StatsArguments {
         let all: u64 = stats.iter().map(|stat| stat.occurrences).sum();
         let rows: Vec<_> = stats.iter().map(|stat| entry(stat, all)).collect();
         self.output
-            .print(&rows, || self.table(&stats, together.first(), all))
+            .print(&KEYS, &rows, || self.table(&stats, together.first(), all))
     }
 
     fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {

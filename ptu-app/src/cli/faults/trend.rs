@@ -88,7 +88,7 @@ impl TrendArguments {
         if self.output.is_json() {
             return crate::cli::print_json(&trend.json());
         }
-        self.output.print(&trend.rows(), || {
+        self.output.print(trend.keys(), &trend.rows(), || {
             trend_text::text(&trend, self.limit as usize)
         })
     }
@@ -197,6 +197,23 @@ impl Course {
 }
 
 impl Trend {
+    /// Keys of the values, or of the days, in their order.
+    fn keys(&self) -> &'static [&'static str] {
+        match self.course {
+            Course::Points(_) => &[
+                "at",
+                "run_id",
+                "unit_serial",
+                "value",
+                "unit",
+                "low",
+                "high",
+                "verdict",
+            ],
+            Course::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
+        }
+    }
+
     /// The values, or the days.
     fn rows(&self) -> Vec<Value> {
         match &self.course {
