@@ -4,7 +4,7 @@ mod common;
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use chrono::{Local, NaiveDate};
+use chrono::{Local, NaiveDate, Utc};
 use common::{Place, Said, list, number, relay_fault, text};
 use fault_db::{
     FaultRecord, FaultState, Id, MeasurementRecord, RepairRecord, RunEnd, RunRecord, RunWriter,
@@ -101,11 +101,12 @@ fn a_repair_is_verified_by_the_run_that_passes_and_then_closed() {
 
 /// Makes a test that speaks of today; again if it fails while another day, or month, began.
 fn within_a_day(test: impl Fn()) {
+    let today = || (Local::now().date_naive(), Utc::now().date_naive());
     loop {
-        let day = Local::now().date_naive();
+        let day = today();
         match catch_unwind(AssertUnwindSafe(&test)) {
             Ok(()) => return,
-            Err(panic) if day == Local::now().date_naive() => resume_unwind(panic),
+            Err(panic) if day == today() => resume_unwind(panic),
             Err(_) => eprintln!("another day began"),
         }
     }
@@ -185,8 +186,16 @@ fn come_as_table_json_and_csv() {
         let all = place.json(&["db", "query", "SELECT count(*) FROM occurrences", "--json"]);
         assert_eq!(seen, number(&all["rows"][0][0]), "{by}");
     }
-    let csv = place.ptu(&["faults", "list", "--csv"]).exits(0).out;
-    assert!(csv.starts_with("id,"), "{csv}");
+    let csv = place.ptu(&["faults", "list", "--csv"]).exits(0);
+    assert!(
+        csv.out.starts_with("id,") && csv.err.is_empty(),
+        "{}",
+        csv.all()
+    );
+    for form in ["--csv", "--json"] {
+        let first = place.ptu(&["faults", "list", "--limit", "1", form]);
+        first.exits(0).explains(&["only the first 1; see --limit"]);
+    }
 }
 
 #[test]
@@ -312,6 +321,10 @@ fn in_zone(place: &Place, zone: &str, arguments: &[&str]) -> Said {
 /// closed on 2 April.
 #[test]
 fn months_count_all_that_was_done_in_them() {
+    within_a_day(count_all_that_was_done_in_them);
+}
+
+fn count_all_that_was_done_in_them() {
     let place = Place::new();
     let history = store(&place);
     record(&history, noon_us(2, 15), None);
@@ -359,6 +372,15 @@ fn months_count_all_that_was_done_in_them() {
         ]
     );
     let march = &months[1];
+    let last = in_zone(
+        &place,
+        "UTC0",
+        &["faults", "stats", "--by", "month", "--limit", "1"],
+    );
+    let earlier = format!("… {} earlier months; see --limit\n", months.len() - 1);
+    assert!(last.out.starts_with(&earlier), "{}", last.out);
+    let this = text(&months.last().expect("months")["key"]);
+    assert!(last.out.contains(&format!("\n{this} ")), "{}", last.out);
     assert_eq!(number(&march["mtbf_days"]), 31.0, "the whole of March");
     assert_eq!(number(&march["mttr_hours"]), 5.0 * 24.0);
     let all = &stats("lru", &[])[0];
@@ -382,12 +404,7 @@ fn months_count_all_that_was_done_in_them() {
     for span in ["2999-01", "1990-01", "2999-01..", "..1990"] {
         assert!(stats("month", &["--when", span]).is_empty(), "{span}");
     }
-    within_a_day(|| {
-        assert_eq!(
-            stats("month", &["--when", "1800..2999"]),
-            stats("month", &[])
-        )
-    });
+    assert_eq!(stats("month", &["--when", "1800..2999"]), months);
 }
 
 #[test]

@@ -43,6 +43,9 @@ impl ListArguments {
         if faults.is_empty() && self.output.is_table() {
             return print_out(&self.filter.nothing(store)?);
         }
+        if more && !self.output.is_table() {
+            eprintln!("only the first {}; see --limit", self.limit);
+        }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
         self.output.print(&FAULT_KEYS, &rows, || {
             let more = if more {

@@ -59,7 +59,7 @@ pub struct StatsArguments {
     /// A fault that is seen again within so many days of its repair is back
     #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
     back_within: u32,
-    /// At most so many rows in a table
+    /// At most so many rows in a table; of months the last
     #[arg(long, value_name = "N", default_value_t = 50)]
     limit: u32,
     #[command(flatten)]
@@ -147,10 +147,12 @@ impl StatsArguments {
         let numbers = 1..headings.len() - 1 - usize::from(is_course);
         let mut table = Table::new(&headings).right(numbers);
         let mut so_far = 0;
-        let shown = stats
-            .iter()
-            .take(self.limit as usize)
-            .map(|stat| (stat, true));
+        let more = stats.len().saturating_sub(self.limit as usize);
+        let shown = match self.by {
+            By::Month => &stats[more..],
+            _ => &stats[..stats.len() - more],
+        };
+        let shown = shown.iter().map(|stat| (stat, true));
         for (stat, is_row) in shown.chain(together.map(|all| (all, false))) {
             so_far += if is_row { stat.occurrences } else { 0 };
             let name = match is_row {
@@ -182,11 +184,19 @@ impl StatsArguments {
             }
             table.row(row);
         }
-        let more = match stats.len().checked_sub(self.limit as usize) {
-            Some(more) if more > 0 => format!("\n… and {more} more; see --limit"),
-            _ => String::new(),
+        let (earlier, more) = match (more, self.by) {
+            (0, _) => Default::default(),
+            (_, By::Month) => (
+                format!("… {more} earlier months; see --limit\n"),
+                String::new(),
+            ),
+            _ => (String::new(), format!("\n… and {more} more; see --limit")),
         };
-        format!("{}{more}\n\n{}", table.render(), self.caption(stats))
+        format!(
+            "{earlier}{}{more}\n\n{}",
+            table.render(),
+            self.caption(stats)
+        )
     }
 
     /// What the numbers are of.
