@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::id::Id;
+use crate::settle::last_words;
 use crate::store::Store;
 
 /// A fault about whose state places disagree. It is settled by whatever is done about the fault next.
@@ -44,19 +45,13 @@ pub struct RivalEvent {
     pub state: FaultState,
 }
 
-/// Events of the greatest turn that are not all of one state.
-const RIVALS: &str = "
-    SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.state, e.id, e.kind, e.at_us, e.who, e.body, e.state
-    FROM (
-        SELECT said.fault, said.turn FROM fault_event said WHERE said.state IS NOT NULL
-        GROUP BY said.fault, said.turn HAVING min(said.state) <> max(said.state)
-    ) AS rival
-    JOIN fault f ON f.seq = rival.fault
-    JOIN unit u ON u.seq = f.unit
-    JOIN fault_event e ON e.fault = rival.fault AND e.turn = rival.turn AND e.state IS NOT NULL
-    WHERE NOT EXISTS (SELECT 1 FROM fault_event later
-        WHERE later.fault = rival.fault AND later.turn > rival.turn AND later.state IS NOT NULL)
-    ORDER BY f.id, e.at_us, e.id";
+/// The last words on faults about which there is more than one.
+const RIVALS: &str = concat!(
+    "SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.state, e.id, e.kind, e.at_us, e.who, e.body, e.state
+     FROM fault f JOIN unit u ON u.seq = f.unit, ",
+    last_words!("f.seq"),
+    " AND e.kind <> 'opened' AND f.disputed = 1 ORDER BY f.id, e.at_us, e.id"
+);
 
 impl Store {
     /// Faults about whose state two places disagree, in the order of their ids.

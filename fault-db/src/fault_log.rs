@@ -6,6 +6,7 @@ use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::record::RepairRecord;
 use crate::server::said;
+use crate::settle::last_words;
 use crate::store::Store;
 
 /// An event about to be added.
@@ -126,14 +127,24 @@ impl Store {
     }
 }
 
+/// Adds an event that was made in knowledge of all that is here.
 pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
+    let mut follows = Vec::new();
+    if event.state.is_some() {
+        let last_words = concat!("SELECT e.id FROM ", last_words!("?1"), " ORDER BY e.id");
+        let known = base.select(last_words, &values![fault], |row| row.get::<Id>(0))?;
+        follows = known.iter().flat_map(Id::as_bytes).copied().collect();
+        let agreed = "UPDATE fault SET disputed = 0 WHERE seq = ?1 AND disputed = 1";
+        base.execute(agreed, &values![fault])?;
+    }
     if let Base::Server(_) = base {
-        return said::insert_event(base, fault, event);
+        return said::insert_event(base, fault, event, &follows);
     }
     base.execute(
-        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn)
+        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7,
-            (SELECT coalesce(max(turn), 0) + 1 FROM fault_event WHERE fault = ?2))",
+            (SELECT coalesce(max(turn), 0) + 1 FROM fault_event WHERE fault = ?2), ?8,
+            (SELECT occurrences FROM fault WHERE seq = ?2))",
         &values![
             event.id,
             fault,
@@ -141,7 +152,8 @@ pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> Sql
             event.at_us,
             event.who,
             event.body,
-            event.state
+            event.state,
+            &follows[..]
         ],
     )?;
     Ok(())

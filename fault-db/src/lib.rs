@@ -38,6 +38,7 @@ mod run_notes;
 mod run_writer;
 mod schema;
 mod seal;
+mod seen_again;
 mod server;
 mod settle;
 mod store;

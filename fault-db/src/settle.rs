@@ -1,8 +1,9 @@
 //! What follows from a fault's occurrences and events, when they came from more than one place.
 //!
-//! The event of the greatest turn decides about the state. Two of the same turn were made by people who
-//! did not know of each other: then the state that leaves the most to do stands, until one of them has
-//! looked again.
+//! An event that changes the state names those it was made in knowledge of: what no other one follows is a
+//! last word, and it decides. Two last words were said by people who did not know of each other, however
+//! much each of them did: then the state that leaves the most to do stands, until one of them has looked
+//! again. That a fault was seen is no decision: it yields to who is at it, and that it was opened to all.
 
 use crate::base::{Base, Server, SqlResult, values};
 
@@ -78,8 +79,31 @@ const REPAIRS: &str = "
             (SELECT first_at_us FROM fault WHERE seq = ?1)))
     WHERE fault = ?1 AND unit = (SELECT unit FROM fault WHERE seq = ?1)";
 
-const SETTLE: &str = "
-    UPDATE fault SET
+/// The last words on a fault, as `e`: what follows `FROM`.
+macro_rules! last_words {
+    ($fault:literal) => {
+        concat!(
+            "fault_event e WHERE e.fault = ",
+            $fault,
+            " AND e.state IS NOT NULL AND NOT EXISTS (SELECT 1 FROM fault_event later
+                WHERE later.fault = e.fault AND later.state IS NOT NULL
+                    AND instr(later.follows, e.id) > 0)"
+        )
+    };
+}
+pub(crate) use last_words;
+
+/// Of two last words the one of the lesser rank stands.
+macro_rules! rank {
+    () => {
+        "CASE e.kind WHEN 'opened' THEN 9 WHEN 'recurred' THEN 3 ELSE
+            CASE e.state WHEN 'open' THEN 1 WHEN 'acknowledged' THEN 2 WHEN 'repaired' THEN 4
+                WHEN 'verified' THEN 5 ELSE 6 END END"
+    };
+}
+
+const SETTLE: &str = concat!(
+    "UPDATE fault SET
         occurrences = (SELECT count(*) FROM fault_occurrence o WHERE o.fault = fault.seq),
         first_at_us = coalesce(
             (SELECT min(o.at_us) FROM fault_occurrence o WHERE o.fault = fault.seq), first_at_us),
@@ -89,15 +113,22 @@ const SETTLE: &str = "
             ORDER BY o.at_us, o.id LIMIT 1), line),
         repairs = (SELECT count(*) FROM fault_event e
             WHERE e.fault = fault.seq AND e.kind = 'repair'),
-        state = coalesce((SELECT state FROM (
-            SELECT e.state, e.turn,
-                CASE e.state WHEN 'open' THEN 1 WHEN 'acknowledged' THEN 2 WHEN 'repaired' THEN 3
-                    WHEN 'verified' THEN 4 ELSE 5 END AS done
-            FROM fault_event e WHERE e.fault = fault.seq AND e.state IS NOT NULL) AS said
-            ORDER BY turn DESC, done LIMIT 1), state),
-        closed_at_us = (SELECT CASE WHEN state = 'closed' THEN at_us END FROM (
-            SELECT e.state, e.turn, e.at_us,
-                CASE e.state WHEN 'open' THEN 1 WHEN 'acknowledged' THEN 2 WHEN 'repaired' THEN 3
-                    WHEN 'verified' THEN 4 ELSE 5 END AS done
-            FROM fault_event e WHERE e.fault = fault.seq AND e.state IS NOT NULL) AS said
-            ORDER BY turn DESC, done, at_us LIMIT 1)";
+        state = coalesce((SELECT e.state FROM ",
+    last_words!("fault.seq"),
+    " ORDER BY ",
+    rank!(),
+    " LIMIT 1), state),
+        closed_at_us = (SELECT CASE WHEN e.state = 'closed' THEN e.at_us END FROM ",
+    last_words!("fault.seq"),
+    " ORDER BY ",
+    rank!(),
+    ", e.at_us LIMIT 1),
+        disputed = coalesce((SELECT CAST(
+                max(CASE WHEN e.kind <> 'recurred' THEN ",
+    rank!(),
+    " END) > min(",
+    rank!(),
+    ") AS integer) FROM ",
+    last_words!("fault.seq"),
+    " AND e.kind <> 'opened'), 0)"
+);

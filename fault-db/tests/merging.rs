@@ -258,6 +258,87 @@ fn rivals_are_kept_and_shown_until_somebody_looks_again() {
     }
 }
 
+/// Goal: who did more does not win over who knew nothing of it. Method: on one laptop a fault is repaired; on
+/// another it is taken and closed, and both meet in either order.
+#[test]
+fn who_did_more_does_not_win() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    act(&b, fault, 1, T0_US + 10).expect("repaired");
+    a.acknowledge(fault, "kim", "", T0_US + 20).expect("taken");
+    a.set_state(fault, FaultState::Closed, "kim", "not found", T0_US + 30)
+        .expect("closed");
+    a.merge_from(&b).expect("merged");
+    b.merge_from(&a).expect("merged");
+    for store in [&a, &b] {
+        let [conflict] = &store.conflicts().expect("looked")[..] else {
+            panic!("one conflict");
+        };
+        assert_eq!(conflict.stands, FaultState::Repaired);
+        let rivals: Vec<_> = conflict.rivals.iter().map(|rival| rival.state).collect();
+        assert_eq!(rivals, [FaultState::Repaired, FaultState::Closed]);
+        assert_eq!(state(store, fault), FaultState::Repaired);
+        whole(store, "with a conflict");
+    }
+}
+
+/// What one is at needs no word with those who only saw it once more.
+#[test]
+fn seeing_a_fault_again_disputes_nothing_but_that_it_is_gone() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    act(&a, fault, 1, T0_US + 10).expect("repaired");
+    b.merge_from(&a).expect("merged");
+    for store in [&a, &b] {
+        assert_eq!(one_fault(store, T0_US + HOUR_US), fault, "it is open again");
+    }
+    a.acknowledge(fault, "kim", "mine", T0_US + 2 * HOUR_US)
+        .expect("taken");
+    a.merge_from(&b).expect("merged");
+    assert_eq!(a.conflicts().expect("looked"), []);
+    assert_eq!(state(&a, fault), FaultState::Acknowledged);
+    whole(&a, "taken");
+}
+
+/// Goal: a fault that was seen after somebody was done with it is open, also when the two did not know of each
+/// other, and whether or not they knew that it was the same fault. Method: two laptops, with and without a
+/// shared beginning; one is done on the fifth day, the other sees it before or after that; either takes in the
+/// other first.
+#[test]
+fn a_fault_that_was_seen_after_somebody_was_done_with_it_is_open() {
+    const DAY_US: i64 = 24 * HOUR_US;
+    for (shared, done, seen_on, expected) in [
+        (true, FaultState::Repaired, 4, FaultState::Repaired),
+        (true, FaultState::Repaired, 6, FaultState::Open),
+        (true, FaultState::Closed, 4, FaultState::Closed),
+        (true, FaultState::Closed, 6, FaultState::Open),
+        (false, FaultState::Repaired, 4, FaultState::Repaired),
+        (false, FaultState::Repaired, 6, FaultState::Open),
+    ] {
+        let case = format!("shared: {shared}, {done} on day 5, seen on day {seen_on}");
+        let dir = tempdir().expect("a directory");
+        let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+        let fault = one_fault(&a, T0_US);
+        if shared {
+            b.merge_from(&a).expect("merged");
+        }
+        let how = if done == FaultState::Repaired { 1 } else { 5 };
+        act(&a, fault, how, T0_US + 5 * DAY_US).expect("done");
+        one_fault(&b, T0_US + seen_on * DAY_US);
+        a.merge_from(&b).expect("merged");
+        b.merge_from(&a).expect("merged");
+        assert_eq!(said(&a), said(&b), "{case}");
+        for store in [&a, &b] {
+            let [fault] = faults(store)[..] else {
+                panic!("{case}: one fault");
+            };
+            assert_eq!(state(store, fault), expected, "{case}");
+            assert_eq!(store.conflicts().expect("looked"), [], "{case}");
+            whole(store, &case);
+        }
+    }
+}
+
 /// Two who did the same are no conflict.
 #[test]
 fn two_who_agree_are_no_conflict() {

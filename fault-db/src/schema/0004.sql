@@ -19,6 +19,12 @@ ALTER TABLE fault ADD COLUMN repairs INTEGER NOT NULL DEFAULT 0;
 -- An event's turn is one more than the greatest it was made in knowledge of: their order whatever the
 -- clocks of different laptops say.
 ALTER TABLE fault_event ADD COLUMN turn INTEGER NOT NULL DEFAULT 0;
+-- Of an event that changed the state: the ids of the last ones of that kind it was made in knowledge of, 16
+-- bytes each, mostly one; and how many occurrences were known.
+ALTER TABLE fault_event ADD COLUMN follows BLOB NOT NULL DEFAULT x'';
+ALTER TABLE fault_event ADD COLUMN seen INTEGER NOT NULL DEFAULT 0;
+-- People who did not know of each other brought it to different states.
+ALTER TABLE fault ADD COLUMN disputed INTEGER NOT NULL DEFAULT 0;
 
 -- Of the fault and the run, so that one index answers.
 ALTER TABLE fault_occurrence ADD COLUMN unit INTEGER NOT NULL DEFAULT 0;
@@ -157,10 +163,16 @@ UPDATE fault_occurrence SET (unit, code, lru, line) =
 UPDATE fault_event SET turn = n FROM
   (SELECT seq AS of, row_number() OVER (PARTITION BY fault ORDER BY at_us, seq) AS n FROM fault_event)
   WHERE seq = of;
+UPDATE fault_event SET
+  follows = coalesce((SELECT id FROM fault_event before WHERE before.fault = fault_event.fault
+    AND before.state IS NOT NULL AND before.turn < fault_event.turn ORDER BY before.turn DESC LIMIT 1), x''),
+  seen = (SELECT occurrences FROM fault WHERE fault.seq = fault_event.fault)
+  WHERE state IS NOT NULL;
 
--- Whose turn it is, and who disagrees about it, is asked of all faults; in time a fault has few events.
+-- In time a fault has few events.
 DROP INDEX fault_event_by_fault;
 CREATE INDEX fault_event_by_fault ON fault_event(fault, turn, state);
+CREATE INDEX fault_disputed ON fault(id) WHERE disputed = 1;
 
 CREATE TRIGGER fault_opened AFTER INSERT ON fault BEGIN
   INSERT INTO tally(dim, grain, at, key, opened)

@@ -33,13 +33,18 @@ pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
     Some(part_name(&part))
 }
 
-/// Adds an event that was said to the server itself.
-pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
+/// Adds an event that was said to the server itself, in knowledge of those it follows.
+pub(crate) fn insert_event(
+    base: &Base,
+    fault: i64,
+    event: &NewEvent<'_>,
+    follows: &[u8],
+) -> SqlResult<()> {
     base.execute(
-        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, part, words)
+        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen, part, words)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7,
             (SELECT coalesce(max(turn), 0) + 1 FROM fault_event WHERE fault = ?2),
-            ?8, CAST(?9 AS tsvector))",
+            ?10, (SELECT occurrences FROM fault WHERE seq = ?2), ?8, CAST(?9 AS tsvector))",
         &values![
             event.id,
             fault,
@@ -49,7 +54,8 @@ pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> Sql
             event.body,
             event.state,
             part(event.kind, event.body),
-            event_words(event.kind, event.body)
+            event_words(event.kind, event.body),
+            follows
         ],
     )?;
     Ok(())

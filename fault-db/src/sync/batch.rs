@@ -6,11 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::doubles;
 use super::ledger::Laptop;
 use super::outcome::{Different, SyncOutcome};
-use super::recurred;
 use super::rows::Rows;
 use super::tables;
 use crate::base::{Base, Field, Server, SqlResult, values};
 use crate::id::Id;
+use crate::seen_again::open_again_of;
 use crate::server::said;
 use crate::settle::settle_all;
 
@@ -222,16 +222,14 @@ impl<'a> Batch<'a> {
         if self.seals.send(server, laptop)? < self.seals.count as u64 {
             self.different.extend(other_seals(&self.seals, server)?);
         }
-        let settled = faults.ask(server, laptop, SERVER_FAULTS)?;
-        let settled = settled.iter().map(|row| row.try_get(0));
-        let settled = settled.collect::<Result<Vec<i64>, _>>()?;
-        settle_all(server, &settled)?;
-        let [.., seen] = &self.of_runs;
-        let again = recurred::open_again(base, server, known, seen)?;
+        settle_all(server, &spoken_of(&faults, server, laptop)?)?;
+        doubles::join(server, &spoken_of(&faults, server, laptop)?)?;
+        // Joined or not: what was seen elsewhere counts for both.
+        let again = open_again_of(base, server, &spoken_of(&faults, server, laptop)?)?;
         if !again.is_empty() {
             settle_all(server, &again)?;
+            doubles::join(server, &again)?;
         }
-        doubles::join(server, &settled)?;
         let there = |rows: &Rows, new: u64| rows.count as u64 - new.min(rows.count as u64);
         Ok(SyncOutcome {
             runs,
@@ -272,7 +270,13 @@ fn made(text: &Option<String>) -> Field<'_> {
     text.as_deref().map_or(Field::Null, Field::Text)
 }
 
-/// The server's numbers of the faults sent.
+/// The server's numbers of the faults sent, as they are now: two may have become one.
+fn spoken_of(faults: &Rows, server: &Server, laptop: i64) -> SqlResult<Vec<i64>> {
+    let found = faults.ask(server, laptop, SERVER_FAULTS)?;
+    let numbers: Result<_, _> = found.iter().map(|row| row.try_get(0)).collect();
+    Ok(numbers?)
+}
+
 const SERVER_FAULTS: &str = "SELECT DISTINCT k.fault FROM {rows}
     JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id ORDER BY k.fault";
 

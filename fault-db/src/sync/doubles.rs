@@ -22,7 +22,7 @@ const JOIN: [&str; 6] = [
      FROM unnest($1::bigint[], $2::bigint[]) AS x(stays, goes) WHERE fault = x.goes",
     "UPDATE fault_alias SET fault = x.stays
      FROM unnest($1::bigint[], $2::bigint[]) AS x(stays, goes) WHERE fault = x.goes",
-    "UPDATE laptop_fault SET fault = x.stays, fresh = true
+    "UPDATE laptop_fault SET fault = x.stays, fresh = fresh + 1
      FROM unnest($1::bigint[], $2::bigint[]) AS x(stays, goes) WHERE fault IN (x.stays, x.goes)",
     "INSERT INTO fault_alias(id, fault) SELECT f.id, x.stays
      FROM unnest($1::bigint[], $2::bigint[]) AS x(stays, goes) JOIN fault f ON f.seq = x.goes

@@ -11,7 +11,6 @@ mod doubles;
 mod ledger;
 mod outcome;
 mod pull;
-mod recurred;
 mod rows;
 mod tables;
 mod traces;

@@ -21,6 +21,8 @@ pub(super) struct Event {
     body: String,
     state: Option<String>,
     turn: i64,
+    follows: Vec<u8>,
+    seen: i64,
 }
 
 /// Which events are asked for.
@@ -45,7 +47,7 @@ pub(super) fn last(base: &Base) -> SqlResult<i64> {
 
 /// The next events after this one.
 pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Event>> {
-    let fresh = if asked.fresh { "AND k.fresh" } else { "" };
+    let fresh = if asked.fresh { "AND k.fresh > 0" } else { "" };
     let own = if asked.own {
         ""
     } else {
@@ -53,7 +55,8 @@ pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Eve
     };
     // Two faults of the file may have become one on the server: the later one is told.
     let sql = format!(
-        "SELECT DISTINCT ON (e.seq) e.seq, e.id, k.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn
+        "SELECT DISTINCT ON (e.seq) e.seq, e.id, k.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn,
+            e.follows, e.seen
          FROM fault_event e JOIN laptop_fault k ON k.fault = e.fault AND k.laptop = ?1 {fresh}
          WHERE e.seq > ?2 AND e.seq <= ?3 {own} ORDER BY e.seq, k.id DESC LIMIT {MOST_EVENTS}"
     );
@@ -68,6 +71,8 @@ pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Eve
             body: row.get(6)?,
             state: row.get(7)?,
             turn: row.get(8)?,
+            follows: row.get(9)?,
+            seen: row.get(10)?,
         })
     })
 }
@@ -94,8 +99,8 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
         // The file came back from a backup older than the fault.
         let Some(fault) = fault else { continue };
         let added = file.execute(
-            "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn)
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (id) DO NOTHING",
+            "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT (id) DO NOTHING",
             &values![
                 event.id,
                 fault,
@@ -104,7 +109,9 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
                 &event.who,
                 &event.body,
                 event.state.as_deref(),
-                event.turn
+                event.turn,
+                &event.follows[..],
+                event.seen
             ],
         )?;
         if added > 0 {
@@ -132,22 +139,35 @@ fn join_doubles(file: &Base, fault: i64) -> SqlResult<()> {
     doubles.try_for_each(|double| join(file, oldest, double))
 }
 
+/// A fault that is new to a laptop, and how often it became so.
+pub(super) struct Fresh {
+    fault: i64,
+    times: i64,
+}
+
 /// The faults that are new to a laptop.
-pub(super) fn fresh(base: &Base, laptop: i64) -> SqlResult<Vec<i64>> {
-    let fresh = "SELECT fault FROM laptop_fault WHERE laptop = ?1 AND fresh ORDER BY fault";
-    base.select(fresh, &values![laptop], |row| row.get(0))
+pub(super) fn fresh(base: &Base, laptop: i64) -> SqlResult<Vec<Fresh>> {
+    let fresh =
+        "SELECT fault, fresh FROM laptop_fault WHERE laptop = ?1 AND fresh > 0 ORDER BY fault";
+    base.select(fresh, &values![laptop], |row| {
+        Ok(Fresh {
+            fault: row.get(0)?,
+            times: row.get(1)?,
+        })
+    })
 }
 
 /// The laptop has been told all of these faults, which were new to it, and of the others up to `received`.
-pub(super) fn told(base: &Base, laptop: i64, fresh: &[i64], received: i64) -> SqlResult<()> {
+/// What became new once more meanwhile, since another laptop's sync joined it with a fault, stays new.
+pub(super) fn told(base: &Base, laptop: i64, fresh: &[Fresh], received: i64) -> SqlResult<()> {
     base.execute(
         "UPDATE laptop SET received = ?2 WHERE seq = ?1",
         &values![laptop, received],
     )?;
-    for fault in fresh {
+    for Fresh { fault, times } in fresh {
         base.execute(
-            "UPDATE laptop_fault SET fresh = false WHERE laptop = ?1 AND fault = ?2",
-            &values![laptop, *fault],
+            "UPDATE laptop_fault SET fresh = 0 WHERE laptop = ?1 AND fault = ?2 AND fresh = ?3",
+            &values![laptop, *fault, *times],
         )?;
     }
     Ok(())

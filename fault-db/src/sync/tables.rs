@@ -192,7 +192,7 @@ pub(super) const FAULTS: Table = Table {
          WHERE NOT EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = x.id)
          ORDER BY x.place ON CONFLICT (id) DO NOTHING",
         "INSERT INTO laptop_fault(laptop, id, fault, fresh)
-         SELECT {laptop}, x.id, coalesce(f.seq, a.fault), true
+         SELECT {laptop}, x.id, coalesce(f.seq, a.fault), 1
          FROM {rows} LEFT JOIN fault f ON f.id = x.id LEFT JOIN fault_alias a ON a.id = x.id
          ON CONFLICT DO NOTHING",
         // As it was called when it was seen last.
@@ -243,14 +243,17 @@ pub(super) const EVENTS: Table = Table {
         ("body", Text),
         ("state", Text),
         ("turn", Integer),
+        ("follows", Bytes),
+        ("seen", Integer),
         ("part", Text),
         ("words", Text),
     ],
-    read: "SELECT e.id, f.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn
+    read: "SELECT e.id, f.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn, e.follows, e.seen
          FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.seq = ?1",
     insert: &[
-        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, laptop, part, words)
-         SELECT x.id, k.fault, x.kind, x.at_us, x.who, x.body, x.state, x.turn, {laptop}, x.part,
+        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen, laptop,
+            part, words)
+         SELECT x.id, k.fault, x.kind, x.at_us, x.who, x.body, x.state, x.turn, x.follows, x.seen, {laptop}, x.part,
             CAST(x.words AS tsvector)
          FROM {rows} JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.fault
          ORDER BY x.place ON CONFLICT (id) DO NOTHING",

@@ -1,7 +1,7 @@
 //! Traces, after all that is small: each with its channel list, checked before it goes and by the server
 //! when it comes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use sha2::{Digest as _, Sha256};
 
@@ -37,6 +37,20 @@ pub(super) fn entries(file: &Base, after: i64, until: i64) -> SqlResult<Vec<Entr
     )
 }
 
+/// Channel lists of a file, and whether each is what was stored.
+type Lists = BTreeMap<i64, bool>;
+
+/// Looked at as bytes: what is damaged may be no text any more. The server would refuse it, and all that goes
+/// with it.
+fn is_list_whole(file: &Base, list: i64) -> SqlResult<bool> {
+    let sql = "SELECT CAST(json AS BLOB), sha256 FROM channel_set WHERE seq = ?1";
+    let whole = file.first(sql, &values![list], |row| {
+        let (json, sha256): (&[u8], &[u8]) = (row.get(0)?, row.get(1)?);
+        Ok(Sha256::digest(json)[..] == *sha256 && std::str::from_utf8(json).is_ok())
+    })?;
+    Ok(whole.unwrap_or(false))
+}
+
 /// Traces of one batch.
 pub(super) struct Batch {
     traces: Rows,
@@ -59,7 +73,7 @@ impl Batch {
             entries: 0,
             outcome: SyncOutcome::default(),
         };
-        let mut lists = BTreeSet::new();
+        let mut lists = Lists::new();
         for entry in entries {
             batch.through = entry.seq;
             batch.entries += 1;
@@ -81,30 +95,36 @@ impl Batch {
                 break;
             }
         }
-        for list in lists {
-            batch.channel_sets.read(file, list)?;
+        for (list, is_whole) in lists {
+            if is_whole {
+                batch.channel_sets.read(file, list)?;
+            }
         }
         Ok(batch)
     }
 
-    fn read(
-        &mut self,
-        file: &Base,
-        entry: &Entry,
-        id: Id,
-        lists: &mut BTreeSet<i64>,
-    ) -> SqlResult<()> {
+    fn read(&mut self, file: &Base, entry: &Entry, id: Id, lists: &mut Lists) -> SqlResult<()> {
         let is_whole = "SELECT data, channel_set FROM trace WHERE seq = ?1";
         let list = file.first(is_whole, &values![entry.trace], |row| {
             let data: &[u8] = row.get(0)?;
             let list: i64 = row.get(1)?;
             Ok((Sha256::digest(data)[..] == entry.sha256).then_some(list))
         })?;
-        let Some(list) = list.flatten() else {
+        let is_whole = match list.flatten() {
+            Some(list) => match lists.get(&list) {
+                Some(known) => *known,
+                None => {
+                    let is_whole = is_list_whole(file, list)?;
+                    lists.insert(list, is_whole);
+                    is_whole
+                }
+            },
+            None => false,
+        };
+        if !is_whole {
             self.outcome.damaged_traces.push(id);
             return Ok(());
-        };
-        lists.insert(list);
+        }
         self.traces.read(file, entry.trace)
     }
 

@@ -233,12 +233,14 @@ fn wrong_clocks_do_not_decide_what_stands() {
     }
 }
 
-/// One laptop closes a fault that the other one saw again without having heard of it. Before it was closed:
-/// that was meant, too. After it: it is open again for both, although the other's clock is a year behind.
+/// Goal: a fault that one laptop was done with and another saw again without having heard of it is open for
+/// both if it was seen after that, and what was seen before is covered; whoever syncs first, and although the
+/// other's clock is a year behind. Method: done on the fifth day, seen on the fourth or sixth; the other one
+/// knows the fault from before, or takes it for a new one.
 #[test]
-fn a_fault_that_was_seen_again_after_it_was_closed_elsewhere_is_open() {
+fn a_fault_that_was_seen_again_after_it_was_done_with_elsewhere_is_open() {
     const YEAR: i64 = 365;
-    let seen_again_on = |seen: i64| {
+    let seen_again_on = |seen: i64, done: FaultState, known: bool, seen_first: bool| {
         let address = shared().database();
         let (one, behind) = (Laptop::new("one"), Laptop::new("behind"));
         behind
@@ -246,30 +248,145 @@ fn a_fault_that_was_seen_again_after_it_was_closed_elsewhere_is_open() {
             .set(behind.now_us.get() - YEAR * 86_400_000_000);
         one.run("U-1", day(0), &[101], false);
         one.sync(&address);
-        behind.run("U-1", day(1 - YEAR), &[101], false);
+        if known {
+            behind.run("U-1", day(1 - YEAR), &[101], false);
+        }
         behind.sync(&address);
         let store = one.open();
         let fault = only_fault(&store).fault.id;
-        store
-            .set_state(fault, FaultState::Closed, "kim", "nothing found", day(5))
-            .expect("a state");
+        let set = store.set_state(fault, done, "kim", "nothing found", day(5));
+        set.expect("a state");
         drop(store);
-        one.sync(&address);
         behind.run("U-1", day(seen - YEAR), &[101], false);
-        behind.sync(&address);
-        one.sync(&address);
-        behind.sync(&address);
+        let mut order = [&one, &behind];
+        if seen_first {
+            order.reverse();
+        }
+        for laptop in order.iter().chain(&order) {
+            laptop.sync(&address);
+        }
         one.is_whole();
         behind.is_whole();
         let server = read_only(&address).expect("a server");
-        [&server, &one.open(), &behind.open()].map(|store| {
+        let told = [&server, &one.open(), &behind.open()].map(|store| {
             let fault = only_fault(store);
             let recurred = fault.events.iter().filter(|event| event.kind == "recurred");
             (fault.fault.state, recurred.count())
-        })
+        });
+        let case = format!("{done}, seen on day {seen}, known: {known}, {seen_first}");
+        (told, case)
     };
-    assert_eq!(seen_again_on(4), [(FaultState::Closed, 0); 3]);
-    assert_eq!(seen_again_on(6), [(FaultState::Open, 1); 3]);
+    for seen_first in [false, true] {
+        for (done, known) in [
+            (FaultState::Closed, true),
+            (FaultState::Repaired, true),
+            (FaultState::Repaired, false),
+        ] {
+            let (told, case) = seen_again_on(4, done, known, seen_first);
+            assert_eq!(told, [(done, 0); 3], "{case}");
+            let (told, case) = seen_again_on(6, done, known, seen_first);
+            assert_eq!(told, [(FaultState::Open, 1); 3], "{case}");
+        }
+    }
+}
+
+/// Who did more does not win over who knew nothing of it: both are kept, and shown everywhere.
+#[test]
+fn who_did_more_does_not_win() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
+    for laptop in [&one, &two, &one] {
+        if open_faults(&laptop.open()).is_empty() {
+            laptop.run("U-1", day(0), &[101], false);
+        }
+        laptop.sync(&address);
+    }
+    for (laptop, states) in [
+        (&one, &[FaultState::Acknowledged, FaultState::Closed][..]),
+        (&two, &[FaultState::Repaired]),
+    ] {
+        let store = laptop.open();
+        let fault = only_fault(&store).fault.id;
+        for state in states {
+            let set = store.set_state(fault, *state, "", "", day(1));
+            set.expect("a state");
+        }
+    }
+    for laptop in [&one, &two, &one] {
+        laptop.sync(&address);
+    }
+    for store in [
+        read_only(&address).expect("a server"),
+        one.open(),
+        two.open(),
+    ] {
+        assert_eq!(only_fault(&store).fault.state, FaultState::Repaired);
+        let conflicts = store.conflicts().expect("looked");
+        assert_eq!(conflicts.len(), 1);
+        let rivals: Vec<_> = conflicts[0]
+            .rivals
+            .iter()
+            .map(|rival| rival.state)
+            .collect();
+        assert!(rivals.contains(&FaultState::Closed), "{rivals:?}");
+    }
+}
+
+/// Goal: a laptop hears all that was ever said about its fault, also if that becomes one with an older one
+/// while it is listening. Method: the other laptop syncs when the first news has come.
+#[test]
+fn a_fault_that_becomes_one_with_an_older_one_while_its_laptop_listens_brings_all_of_it() {
+    let address = shared().database();
+    let (one, two, three) = (Laptop::new("one"), Laptop::new("two"), Laptop::new("three"));
+    // A fault that both others know is closed at the one, and seen again at the other.
+    two.run("U-1", day(0), &[101], false);
+    two.sync(&address);
+    three.run("U-1", day(0), &[101], false);
+    three.sync(&address);
+    let store = two.open();
+    let fault = only_fault(&store).fault.id;
+    store
+        .add_note(fault, "kim", "contacts burnt", day(0))
+        .expect("a note");
+    store
+        .set_state(fault, FaultState::Closed, "kim", "", day(1))
+        .expect("a state");
+    drop(store);
+    two.sync(&address);
+    three.run("U-1", day(3), &[101], false);
+    // The first laptop has the same fault under a name of its own, and another one there is news about.
+    one.run("U-1", day(2), &[101], false);
+    one.run("U-2", day(2), &[102], false);
+    one.sync(&address);
+    let desk = connect(&address).expect("a server");
+    let other = desk.faults(&FaultFilter::default()).expect("faults");
+    let other = other.iter().find(|fault| fault.code == 102);
+    desk.add_note(other.expect("there").id, "park", "look here", day(4))
+        .expect("a note");
+    one.run("U-1", day(4), &[103], false);
+    let mut listening = 0;
+    one.try_sync(&address, &mut |progress| {
+        if progress.phase == fault_db::SyncPhase::Receiving {
+            listening += 1;
+            three.sync(&address);
+        }
+        true
+    })
+    .expect("a sync");
+    assert!(listening > 0);
+    for laptop in [&one, &three, &two] {
+        laptop.sync(&address);
+    }
+    for laptop in [&one, &two, &three] {
+        let store = laptop.open();
+        let all = store.faults(&FaultFilter::default()).expect("faults");
+        let joined = all.iter().find(|fault| fault.code == 101).expect("there");
+        let told = store.fault(joined.id).expect("the fault");
+        let burnt = |event: &fault_db::FaultEvent| event.note == "contacts burnt";
+        assert!(told.events.iter().any(burnt), "{}", laptop.name);
+        assert_eq!(told.fault.state, FaultState::Open, "{}", laptop.name);
+        laptop.is_whole();
+    }
 }
 
 /// What one closed, two sees again without knowing, and three, who never heard of it, takes for a new one:
@@ -435,6 +552,23 @@ fn a_damaged_trace_stays_behind_and_is_named() {
     drop(file);
     let told = laptop.sync(&address);
     assert_eq!((told.traces, told.damaged_traces.len()), (1, 1));
+}
+
+/// A list of channels that is not what was stored: its traces stay behind, all else goes both ways.
+#[test]
+fn traces_whose_channels_are_damaged_stay_behind_and_stop_nothing() {
+    let address = shared().database();
+    let (laptop, other) = (Laptop::new("damaged"), Laptop::new("other"));
+    laptop.run("U-1", day(0), &[101, 102], true);
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch("UPDATE channel_set SET json = replace(json, 'a', 'b')")
+        .expect("a flipped bit, or more");
+    drop(file);
+    other.run("U-1", day(1), &[101], false);
+    other.sync(&address);
+    let told = laptop.sync(&address);
+    assert_eq!((told.traces, told.damaged_traces.len()), (0, 2));
+    assert_eq!((told.runs, told.events_received, told.waiting), (1, 1, 0));
 }
 
 /// A version without an outbox recorded it: the first sync sends it all the same.

@@ -9,6 +9,7 @@ use super::Merge;
 use super::rows::{Numbers, renumber, values};
 use crate::base::SqlResult;
 use crate::id::Id;
+use crate::seen_again::open_again;
 use crate::settle::{join, open_doubles, settle};
 
 impl Merge<'_> {
@@ -27,7 +28,15 @@ impl Merge<'_> {
         for fault in &known.touched {
             settle(self.base, *fault)?;
         }
-        self.join_doubles(&mut known)?;
+        self.join_doubles(known.touched.clone(), &mut known)?;
+        let mut again = BTreeSet::new();
+        for fault in known.touched.clone() {
+            if open_again(self.base, fault)? {
+                settle(self.base, fault)?;
+                again.insert(fault);
+            }
+        }
+        self.join_doubles(again, &mut known)?;
         self.counts.faults = known.added.len();
         Ok(())
     }
@@ -153,16 +162,16 @@ impl Merge<'_> {
 
     fn events(&mut self, known: &mut Known) -> rusqlite::Result<()> {
         let mut select = self.theirs.prepare(
-            "SELECT id, fault, kind, at_us, who, body, state, turn FROM fault_event ORDER BY seq",
+            "SELECT id, fault, kind, at_us, who, body, state, turn, follows, seen FROM fault_event ORDER BY seq",
         )?;
         let mut rows = select.query([])?;
         while let Some(row) = rows.next()? {
-            let mut event = values(row, 0..8)?;
+            let mut event = values(row, 0..10)?;
             let fault = known.number(row.get(1)?);
             event[1] = fault.map_or(Value::Null, Value::Integer);
             let find = "SELECT seq FROM fault_event WHERE id = ?1";
-            let insert = "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn)
-                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)";
+            let insert = "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
+                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)";
             let (_, is_new) = self.find_or_insert(find, insert, &event)?;
             if is_new {
                 self.counts.events += 1;
@@ -173,8 +182,8 @@ impl Merge<'_> {
     }
 
     /// Faults of the same unit, code and part, none of them closed: two laptops saw one fault.
-    fn join_doubles(&self, known: &mut Known) -> SqlResult<()> {
-        for fault in known.touched.clone() {
+    fn join_doubles(&self, of: BTreeSet<i64>, known: &mut Known) -> SqlResult<()> {
+        for fault in of {
             let mut doubles = open_doubles(self.base, fault)?.into_iter();
             if let Some(oldest) = doubles.next() {
                 for double in doubles {
