@@ -94,7 +94,7 @@ const QUESTIONS: [Question; 14] = [
         list(
             store,
             FaultFilter {
-                state: Some(FaultState::Open),
+                states: vec![FaultState::Open],
                 ..FaultFilter::default()
             },
         )

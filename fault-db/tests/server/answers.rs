@@ -237,7 +237,7 @@ fn filters() -> Vec<FaultFilter> {
             ..all()
         },
         FaultFilter {
-            state: Some(FaultState::Open),
+            states: vec![FaultState::Open],
             ..all()
         },
         FaultFilter {

@@ -19,13 +19,15 @@ mod trace;
 
 use std::path::PathBuf;
 
+use clap::builder::RangedI64ValueParser;
 use clap::{Args, Parser, Subcommand};
 pub use database::Database;
+use fault_db::Store;
 use serde::Serialize;
 
 use crate::clock;
 use crate::data::ScriptsDirectory;
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, did_you_mean_number};
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///
@@ -106,6 +108,26 @@ impl ScriptsOption {
     }
 }
 
+/// Holds a unit to being known.
+///
+/// # Errors
+/// It is not.
+fn known_unit(store: &Store, serial: &str) -> Result<(), Failure> {
+    unknown_unit(store, serial)?.map_or(Ok(()), |said| Err(Failure::usage(said)))
+}
+
+/// What to say of a unit that is not known: with the serial number near to it, if there is one.
+fn unknown_unit(store: &Store, serial: &str) -> Result<Option<String>, Failure> {
+    let known = store.known_units()?;
+    if known.iter().any(|known| known == serial) {
+        return Ok(None);
+    }
+    let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
+    Ok(Some(format!(
+        "no unit \"{serial}\" was ever tested{hint}; `ptu runs list` shows the units"
+    )))
+}
+
 /// Prints one JSON document.
 fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
     let text = serde_json::to_string_pretty(value)
@@ -123,6 +145,11 @@ fn print_out(text: &str) -> Result<Exit, Failure> {
         }
         _ => Ok(Exit::Passed),
     }
+}
+
+/// How many to show: none is no answer.
+fn at_least_one() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(1..)
 }
 
 /// The beginning of a time such as `30d`, `12h`, `2026-03` or `2026-03-21`.

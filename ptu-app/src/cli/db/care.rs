@@ -13,7 +13,7 @@ use crate::failure::{Exit, Failure};
 #[derive(Debug, Args)]
 pub(super) struct PruneArguments {
     /// Older than: 90d, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument,
+    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true,
         required_unless_present_any = ["passed_only", "max_size"])]
     older_than: Option<i64>,
     /// Of runs that passed only
@@ -113,7 +113,9 @@ fn pruned(counts: &PruneCounts, dry_run: bool) -> String {
             counts.kept_unsent
         );
     }
-    text += &format!(", file {} bytes smaller", counts.freed_bytes);
+    if !dry_run {
+        text += &format!(", file {} bytes smaller", counts.freed_bytes);
+    }
     if counts.over_bytes > 0 {
         text += &format!(
             "\nit {} {} bytes larger than it may be: the rest is runs, faults and traces that are kept",

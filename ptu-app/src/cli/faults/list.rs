@@ -5,7 +5,7 @@ use fault_db::{FaultFilter, FaultSummary, Store};
 
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
-use crate::cli::print_out;
+use crate::cli::{at_least_one, print_out};
 use crate::clock::local;
 use crate::failure::{Exit, Failure};
 use crate::report::{FAULT_KEYS, fault_json};
@@ -23,7 +23,7 @@ pub struct ListArguments {
     #[command(flatten)]
     filter: FilterArguments,
     /// At most so many
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     #[command(flatten)]
     output: Output,

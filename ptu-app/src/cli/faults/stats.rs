@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
-use crate::cli::print_out;
-use crate::clock::{self, local_day, local_minute, rfc3339};
+use crate::cli::{at_least_one, print_out};
+use crate::clock::{self, local_minute, rfc3339};
 use crate::failure::{Exit, Failure};
 use crate::sparkline::sparkline;
 use crate::table::Table;
@@ -60,7 +60,7 @@ pub struct StatsArguments {
     #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
     back_within: u32,
     /// At most so many rows in a table; of months the last
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     #[command(flatten)]
     filter: FilterArguments,
@@ -202,14 +202,6 @@ impl StatsArguments {
     /// What the numbers are of.
     fn caption(&self, stats: &[FaultStat]) -> String {
         let span = self.filter.span();
-        let span = match (span.since_us, span.until_us) {
-            (None, None) => "all of history".to_owned(),
-            (since, until) => format!(
-                "{} .. {}",
-                since.map_or_else(String::new, local_day),
-                until.map_or_else(|| "now".to_owned(), |until| local_day(until - 1)),
-            ),
-        };
         let by_day = stats
             .iter()
             .map(|stat| stat.course.len())
