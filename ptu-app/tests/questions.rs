@@ -124,6 +124,13 @@ fn are_found_by_what_people_know() {
         list(&faults).iter().any(|fault| fault["lru"] == "eb_relay")
     };
     let today = ["--when", "today"];
+    let relay = relay_fault(&place);
+    let all = place.json(&["db", "query", "SELECT DISTINCT code FROM faults", "--json"]);
+    let codes: Vec<_> = list(&all["rows"])
+        .iter()
+        .map(|row| row[0].to_string())
+        .collect();
+    let (codes, severity) = (codes.join(","), text(&relay["severity"]));
     for options in [
         &["--note", "릴레이"][..],
         &["--note", "교체"],
@@ -135,6 +142,9 @@ fn are_found_by_what_people_know() {
         &["--lru", "EB_RELAY"],
         &["--procedure", "atp/overspeed"],
         &["--unit", "BAD-1", "--state", "verified"],
+        &["--state", "open,verified"],
+        &["--code", &codes],
+        &["--severity", &severity.to_uppercase()],
         &["--when", "2026..", "--line", "line8"],
         &today,
     ] {
@@ -147,6 +157,7 @@ fn are_found_by_what_people_know() {
         &["--train", "8204"],
         &["--procedure", "atp/receiver"],
         &["--state", "closed"],
+        &["--state", "open,closed"],
         &["--when", "..2020"],
         &["--line", "line1"],
     ] {
@@ -208,7 +219,7 @@ fn csv_has_its_headings_without_rows_too_and_keeps_the_last_row_as_it_is() {
         &["faults", "stats", "--by", "month"],
     ] {
         let some = csv(arguments);
-        let none = csv(&[arguments, &["--severity", "none"]].concat());
+        let none = csv(&[arguments, &["--train", "none"]].concat());
         assert_eq!(some.lines().next(), none.strip_suffix('\n'), "{some}");
     }
     for (sql, answer) in [
@@ -437,6 +448,17 @@ fn months_of_a_fleet_are_named_as_they_are_counted() {
 }
 
 #[test]
+fn a_fault_is_said_to_be_seen_once_or_so_many_times() {
+    let place = Place::new();
+    let history = store(&place);
+    for (day, said) in [(5, "  seen once, 2025-03-0"), (6, "  seen 2 times, ")] {
+        let fault = record(&history, noon_us(3, day), Some("eb_relay")).expect("a fault");
+        let shown = place.ptu(&["faults", "show", &fault.to_string()]).exits(0);
+        assert!(shown.out.contains(said), "{}", shown.out);
+    }
+}
+
+#[test]
 fn a_trend_says_where_a_measurement_is_going() {
     let place = mended();
     let of_overspeed = [
@@ -510,6 +532,21 @@ fn a_question_is_saved_and_asked_again() {
         "\"worst\"",
         "`ptu saved`",
     ]);
+    let rows = |more: &[&str]| {
+        let csv = place.ptu(&[&["saved", "one"], more].concat()).exits(0).out;
+        csv.lines().count() - 1
+    };
+    let one = "faults list --limit 1 --csv --since 30d --save one";
+    place.ptu(&one.split(' ').collect::<Vec<_>>()).exits(0);
+    assert_eq!(rows(&[]), 1);
+    assert!(rows(&["--limit", "3"]) > 1, "what is given now replaces it");
+    assert_eq!(rows(&["--limit=9", "--when", "..2020"]), 0);
+    let json = place.json(&["saved", "one", "--json"]);
+    assert_eq!(list(&json).len(), 1);
+    place
+        .ptu(&["faults", "list", "--limit", "1", "--limit", "2"])
+        .exits(2)
+        .explains(&["--limit", "multiple times"]);
     place
         .ptu(&["saved", "worst", "--save", "worst"])
         .exits(2)
@@ -563,6 +600,33 @@ fn what_cannot_be_asked_is_named() {
         (&["list", "--note", "\"*"], &["no word to search for"]),
         (&["list", "--state", "broken"], &["broken", "acknowledged"]),
         (&["list", "--unit", "BAD-2"], &["no unit \"BAD-2\""]),
+        (&["list", "--unit", "bad1"], &["did you mean \"BAD-1\"?"]),
+        (&["list", "--limit", "0"], &["0", "1.."]),
+        (&["stats", "--limit", "0"], &["0", "1.."]),
+        (&["trend", "eb_reaction", "--limit", "0"], &["0", "1.."]),
+        (&["list", "--severity", "huge"], &["huge", "critical"]),
+        (&["list", "--when", "-30d"], &["\"-30d\" is no time"]),
+        (&["stats", "--since", "-30d"], &["\"-30d\" is no time"]),
+        (
+            &["list", "--code", "check_failed,foo"],
+            &["no fault \"foo\""],
+        ),
+        (
+            &["trend", "eb_reaction", "--plot", "out.png"],
+            &["out.png", ".html"],
+        ),
+        (
+            &["trend", "eb_reaction", "--unit", "bad-1"],
+            &["did you mean \"BAD-1\"?"],
+        ),
+        (
+            &["trend", "eb_reaction", "--when", "2999-01"],
+            &["in 2999-01-01 .. 2999-01-31", "recorded from 20"],
+        ),
+        (
+            &["trend", "eb_reaction", "--procedure", "tcms/link"],
+            &["measured by atp/overspeed"],
+        ),
         (&["list", "--run", "latest", "--since", "x"], &["\"x\""]),
         (&["list", "--since", "2026-03..2026-05"], &["is a span"]),
         (
@@ -589,9 +653,83 @@ fn what_cannot_be_asked_is_named() {
             .exits(2)
             .explains(words);
     }
-    let hint = place
-        .ptu(&["faults", "list", "--lru", "eb_rely"])
-        .exits(0)
-        .out;
-    assert!(hint.contains("did you mean \"eb_relay\"?"), "{hint}");
+    assert!(!place.path("out.png").exists());
+}
+
+/// Goal: an empty answer does not say that there is nothing when a name was only written otherwise.
+#[test]
+fn a_name_that_nothing_has_is_told_with_the_one_that_is_near() {
+    let place = mended();
+    for (option, asked, said) in [
+        (
+            "--lru",
+            "eb_rely",
+            "part \"eb_rely\" (did you mean \"eb_relay\"?)",
+        ),
+        ("--lru", "EB_RELY", "(did you mean \"eb_relay\"?)"),
+        ("--code", "4711", "no fault \"4711\" was ever recorded\n"),
+        (
+            "--line",
+            "line99",
+            "line \"line99\" (did you mean \"line8\"?)",
+        ),
+        ("--train", "99", "train \"99\" was ever recorded\n"),
+        ("--train", "203", "(did you mean \"8203\"?)"),
+        ("--procedure", "foo", "procedure \"foo\"\n"),
+        (
+            "--procedure",
+            "overspeed",
+            "(did you mean \"atp/overspeed\"?)",
+        ),
+        ("--serial", "S-4", "serial number \"S-4\" was ever"),
+        ("--serial", "r17", "(did you mean \"R-17\"?)"),
+        ("--state", "closed", "no such faults recorded\n"),
+    ] {
+        for verb in ["list", "stats"] {
+            let hint = place.ptu(&["faults", verb, option, asked]).exits(0).out;
+            assert!(hint.contains(said), "{verb} {option} {asked}: {hint}");
+        }
+    }
+    let runs = place.ptu(&["runs", "list", "--unit", "bad-1"]).exits(0).out;
+    assert!(runs.contains("did you mean \"BAD-1\"?"), "{runs}");
+    assert_eq!(
+        place
+            .ptu(&["runs", "list", "--unit", "bad-1", "--json"])
+            .exits(0)
+            .out,
+        "[]\n"
+    );
+}
+
+#[test]
+fn help_is_broken_where_the_terminal_ends() {
+    const COLUMNS: usize = 60;
+    let place = Place::new();
+    let mut command = place.command(&["faults", "stats", "--help"]);
+    let output = command.env("COLUMNS", COLUMNS.to_string()).output();
+    let help = Said::from(output.expect("ptu starts")).exits(0).out;
+    let lines: Vec<_> = help
+        .lines()
+        .take_while(|line| *line != "Examples:")
+        .collect();
+    assert!(lines.len() > 8, "{help}");
+    for two in lines.windows(2).filter(|two| !two.contains(&"")) {
+        let word = two[1].split(' ').next().unwrap_or_default();
+        assert!(two[0].len() + 1 + word.len() > COLUMNS, "{two:?} in {help}");
+    }
+    assert!(
+        help.contains("\n  ptu faults stats --by lru --when 2026\n"),
+        "{help}"
+    );
+}
+
+#[test]
+fn a_database_named_by_a_variable_is_no_option_that_has_to_be_given() {
+    let place = Place::new();
+    let wrong = place.ptu(&["db", "prune"]).exits(2);
+    assert!(!wrong.err.contains("--db"), "{}", wrong.all());
+    let output = place.command(&["runs", "list"]).env("PTU_DB", "").output();
+    Said::from(output.expect("ptu starts"))
+        .exits(2)
+        .explains(&["PTU_DB is empty"]);
 }

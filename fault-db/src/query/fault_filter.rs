@@ -132,7 +132,8 @@ impl Resolved<'_> {
             ..
         } = self.filter;
         let texts = [serial, train, severity, procedure, note];
-        let is_plain = texts.iter().all(|text| text.is_none()) && states.is_empty() && run.is_none();
+        let is_plain =
+            texts.iter().all(|text| text.is_none()) && states.is_empty() && run.is_none();
         let asked = [
             self.unit.is_some(),
             self.codes.is_some(),

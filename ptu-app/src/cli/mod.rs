@@ -9,6 +9,7 @@ mod diagnose_matrix;
 mod drive;
 mod faults;
 mod gui;
+mod help;
 mod output;
 mod ports;
 mod reports;
@@ -20,7 +21,7 @@ mod trace;
 use std::path::PathBuf;
 
 use clap::builder::RangedI64ValueParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use database::Database;
 use fault_db::Store;
 use serde::Serialize;
@@ -69,6 +70,12 @@ enum Verb {
 }
 
 impl Cli {
+    /// What the command line asks; ends the program if that is help, or nothing that can be done.
+    pub fn asked() -> Self {
+        let matches = help::flowing(Self::command()).get_matches();
+        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+
     /// Does what was asked.
     ///
     /// # Errors

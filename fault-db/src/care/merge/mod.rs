@@ -12,6 +12,7 @@ use std::path::Path;
 use rusqlite::{Connection, ErrorCode};
 use serde::Serialize;
 
+use super::backup::target_can_be_made;
 use crate::base::{Base, SqlError, SqlResult};
 use crate::error::StoreError;
 use crate::file::CACHE_KIB;
@@ -60,6 +61,9 @@ impl Store {
 
     /// Adds all that this file has to another one, which is created if need be.
     pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
+        if !to.exists() {
+            target_can_be_made(to)?;
+        }
         let target = Store::open(to, options)?;
         let counts = target.merge_from(self)?;
         target.close()?;

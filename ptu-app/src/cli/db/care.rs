@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use fault_db::{MergeCounts, PruneCounts, PruneRule, StateConflict};
+use fault_db::{MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
 
 use crate::cli::{Database, print_out, since_argument};
 use crate::clock;
@@ -38,7 +38,8 @@ impl Database {
 
     pub(super) fn import(&self, from: &Path) -> Result<Exit, Failure> {
         let store = self.open()?;
-        let counts = store.import(from)?;
+        let counts = store.import(from);
+        let counts = counts.map_err(|error| of_named_file(from, error))?;
         let mut text = merged(&counts);
         // What was known before needs no telling again; what came just now may be a rival of it.
         if counts.events > 0 {
@@ -49,7 +50,8 @@ impl Database {
 
     pub(super) fn export(&self, to: &Path) -> Result<Exit, Failure> {
         let store = self.open_read_only()?;
-        print_out(&merged(&store.export(to, clock::open_options())?))
+        let counts = store.export(to, clock::open_options());
+        print_out(&merged(&counts.map_err(|error| of_named_file(to, error))?))
     }
 
     pub(super) fn prune(&self, arguments: &PruneArguments) -> Result<Exit, Failure> {
@@ -70,6 +72,21 @@ impl Database {
              runs, faults and traces are as they were",
         )
     }
+}
+
+/// An error with the advice for a file that was not named with --db, if it is of that file.
+fn of_named_file(file: &Path, error: StoreError) -> Failure {
+    if matches!(&error, StoreError::Missing { path } if path == file) {
+        let file = file.display();
+        return Failure::bench(format!("there is no database {file}; name another file"));
+    }
+    let mut failure = Failure::from(error);
+    if failure.message.contains(&file.display().to_string()) {
+        failure.message = failure
+            .message
+            .replace("choose another file with --db", "name another file");
+    }
+    failure
 }
 
 fn merged(counts: &MergeCounts) -> String {

@@ -46,7 +46,12 @@ pub struct FilterArguments {
     run: Option<String>,
     /// Only seen then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
     // A hyphen before it is a slip that the span itself answers.
-    #[arg(long, value_name = "SPAN", conflicts_with = "since", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "SPAN",
+        conflicts_with = "since",
+        allow_hyphen_values = true
+    )]
     pub when: Option<Span>,
     /// Only seen since: 30d, 12h, 2026-03, 2026-03-21
     #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
@@ -69,6 +74,12 @@ impl FilterArguments {
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
         if let Some(unit) = &self.unit {
             known_unit(store, unit)?;
+        }
+        // Of several the others would hide it.
+        if self.code.as_ref().is_some_and(|codes| codes.contains(','))
+            && let Some(unknown) = self.unknown_code(store)?
+        {
+            return Err(Failure::usage(unknown));
         }
         let run = self.run.as_deref().map(|run| store.resolve_run(run));
         let span = self.span();
@@ -103,28 +114,36 @@ impl FilterArguments {
         .to_owned())
     }
 
+    /// What to say of the first code that no fault has.
+    fn unknown_code(&self, store: &Store) -> Result<Option<String>, Failure> {
+        let Some(codes) = &self.code else {
+            return Ok(None);
+        };
+        let known = store.known_codes()?;
+        let names = || known.iter().map(|(_, name)| name.as_str());
+        let is_known = |code: &str| match code_number(code) {
+            Some(number) => known.iter().any(|(known, _)| *known == number),
+            None => names().any(|name| name.eq_ignore_ascii_case(code)),
+        };
+        let mut asked = codes.split(',').map(str::trim);
+        Ok(asked.find(|code| !is_known(code)).map(|code| {
+            let hint = did_you_mean(code, names());
+            format!("no fault \"{code}\" was ever recorded{hint}")
+        }))
+    }
+
     /// The first name that nothing here has, and the nearest that something has.
     fn unknown(&self, store: &Store) -> Result<Option<String>, Failure> {
-        if let Some(codes) = &self.code {
-            let known = store.known_codes()?;
-            let names = || known.iter().map(|(_, name)| name.as_str());
-            let is_known = |code: &str| match code_number(code) {
-                Some(number) => known.iter().any(|(known, _)| *known == number),
-                None => names().any(|name| name.eq_ignore_ascii_case(code)),
-            };
-            let asked = codes.split(',').map(str::trim);
-            if let Some(code) = asked.into_iter().find(|code| !is_known(code)) {
-                let hint = did_you_mean(code, names());
-                return Ok(Some(format!(
-                    "no fault \"{code}\" was ever recorded{hint}"
-                )));
-            }
+        if let Some(said) = self.unknown_code(store)? {
+            return Ok(Some(said));
         }
         if let Some(lru) = &self.lru {
             let known = store.known_lrus()?;
             if !known.iter().any(|known| known.eq_ignore_ascii_case(lru)) {
                 let hint = did_you_mean(lru, known.iter().map(String::as_str));
-                return Ok(Some(format!("no fault ever named the part \"{lru}\"{hint}")));
+                return Ok(Some(format!(
+                    "no fault ever named the part \"{lru}\"{hint}"
+                )));
             }
         }
         if let Some(train) = &self.train {
