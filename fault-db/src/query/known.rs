@@ -59,9 +59,9 @@ impl Store {
         self.select("listing trains", sql, &[], |row| row.get(0))
     }
 
-    /// Every line a fault was ever seen on.
+    /// Every line a fault was ever seen on. Looks at all occurrences.
     pub fn known_lines(&self) -> Result<Vec<String>, StoreError> {
-        let sql = "SELECT DISTINCT line FROM fault WHERE line <> '' ORDER BY line";
+        let sql = "SELECT DISTINCT line FROM fault_occurrence WHERE line <> '' ORDER BY line";
         self.select("listing lines", sql, &[], |row| row.get(0))
     }
 

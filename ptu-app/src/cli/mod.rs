@@ -115,23 +115,16 @@ impl ScriptsOption {
     }
 }
 
-/// Holds a unit to being known.
-///
-/// # Errors
-/// It is not.
-fn known_unit(store: &Store, serial: &str) -> Result<(), Failure> {
-    unknown_unit(store, serial)?.map_or(Ok(()), |said| Err(Failure::usage(said)))
-}
-
-/// What to say of a unit that is not known: with the serial number near to it, if there is one.
-fn unknown_unit(store: &Store, serial: &str) -> Result<Option<String>, Failure> {
+/// Goes on with what is `said` of a unit that is not known: with the serial number near to it, if there is
+/// one. Nothing of a unit that is known.
+fn unknown_unit(store: &Store, serial: &str, said: &str) -> Result<Option<String>, Failure> {
     let known = store.known_units()?;
     if known.iter().any(|known| known == serial) {
         return Ok(None);
     }
     let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
     Ok(Some(format!(
-        "no unit \"{serial}\" was ever tested{hint}; `ptu runs list` shows the units"
+        "{said}{hint}; `ptu runs list` shows the units"
     )))
 }
 

@@ -104,7 +104,11 @@ impl RunsArguments {
                     return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
                 }
                 let unit = unit.as_deref().filter(|_| runs.is_empty());
-                let unknown = unit.map(|unit| unknown_unit(&store, unit)).transpose()?;
+                let unknown = unit.map(|unit| {
+                    let said = format!("no unit \"{unit}\" was ever tested");
+                    unknown_unit(&store, unit, &said)
+                });
+                let unknown = unknown.transpose()?;
                 print_out(&unknown.flatten().unwrap_or_else(|| table(&runs)))
             }
             Verb::Show {

@@ -4,7 +4,7 @@ use clap::Args;
 use fault_db::{FaultFilter, FaultState, Store, code_number};
 use protocol::event::Severity;
 
-use crate::cli::{known_unit, since_argument};
+use crate::cli::{since_argument, unknown_unit};
 use crate::clock::Span;
 use crate::failure::{Failure, did_you_mean, did_you_mean_number};
 
@@ -73,7 +73,10 @@ impl FilterArguments {
     /// As the history takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
         if let Some(unit) = &self.unit {
-            known_unit(store, unit)?;
+            let said = format!("no unit \"{unit}\" was ever tested");
+            if let Some(said) = unknown_unit(store, unit, &said)? {
+                return Err(Failure::usage(said));
+            }
         }
         // Of several the others would hide it.
         if self.code.as_ref().is_some_and(|codes| codes.contains(','))

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
-use crate::cli::{at_least_one, known_unit};
+use crate::cli::{at_least_one, unknown_unit};
 use crate::clock::{Span, local_day, rfc3339, utc_day};
 use crate::data;
 use crate::failure::{Exit, Failure, did_you_mean};
@@ -104,7 +104,13 @@ impl TrendArguments {
             )));
         }
         if let Some(unit) = &self.unit {
-            known_unit(store, unit)?;
+            let said = format!(
+                "no measurement \"{}\" of unit {unit} recorded",
+                self.measurement
+            );
+            if let Some(said) = unknown_unit(store, unit, &said)? {
+                return Err(Failure::usage(said));
+            }
         }
         let procedures = store.measuring_procedures(&self.measurement)?;
         let span = self.when.unwrap_or_default();
