@@ -6,6 +6,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 
 use crate::error::StoreError;
 use crate::functions;
+use crate::part::Part;
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
 use crate::store::Synchronous;
 
@@ -115,6 +116,12 @@ pub(crate) fn set_up(
 /// Copies a file of an earlier schema before it is brought up to date. A copy that is there already
 /// is left alone: it may be the better one.
 pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<(), StoreError> {
+    const DOING: &str = "keeping a copy of the older schema";
+    let failed = |error| StoreError::from_sqlite(path, DOING, error);
+    // Another program may be at it: then the copy is made by whoever is first.
+    if schema::user_version(conn).map_err(failed)? != version {
+        return Ok(());
+    }
     let mut copies = (1..=MAX_COPIES).map(|number| {
         let mut name = path.as_os_str().to_owned();
         name.push(format!(".schema{version}"));
@@ -128,35 +135,20 @@ pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<
         first.push(format!(".schema{version}"));
         return Err(StoreError::TargetExists { path: first.into() });
     };
-    copy_to(conn, &copy, "keeping a copy of the older schema")
+    let part = Part::copy(conn, &copy, DOING)?;
+    if part.version()? != version {
+        return Ok(());
+    }
+    match part.publish() {
+        // It was not there a moment ago: another program has kept the same.
+        Err(StoreError::TargetExists { .. }) => Ok(()),
+        done => done,
+    }
 }
 
-/// Copies a whole file, compacted. The copy has its name only when it is complete: one cut short is worse
-/// than none.
+/// Copies a whole file, compacted, to a name that nothing has.
 pub(crate) fn copy_to(conn: &Connection, to: &Path, doing: &'static str) -> Result<(), StoreError> {
-    let mut name = to.as_os_str().to_owned();
-    name.push(".part");
-    let part = PathBuf::from(name);
-    let name = part.to_str().ok_or_else(|| StoreError::CannotOpen {
-        path: to.to_path_buf(),
-        reason: "the name is not UTF-8".to_owned(),
-    })?;
-    // Left by a program that was killed.
-    let _ = std::fs::remove_file(&part);
-    let copied = conn
-        .execute("VACUUM INTO ?1", [name])
-        // What fails here is the target: the source was readable a moment ago.
-        .map_err(|error| StoreError::from_sqlite(to, doing, error))
-        .and_then(|_| {
-            std::fs::rename(&part, to).map_err(|error| StoreError::Io {
-                path: to.to_path_buf(),
-                reason: error.to_string(),
-            })
-        });
-    if copied.is_err() {
-        let _ = std::fs::remove_file(&part);
-    }
-    copied
+    Part::copy(conn, to, doing)?.publish()
 }
 
 /// Turns write-ahead logging on. SQLite does not wait for others while it changes a new file over;

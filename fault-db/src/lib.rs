@@ -30,6 +30,7 @@ mod id;
 mod insert;
 mod lookup;
 mod packed;
+mod part;
 pub mod process;
 mod query;
 mod record;

@@ -18,9 +18,6 @@ const ON_ONE_SIDE: usize = 9;
 /// Values each greater, or each less, than the one before that chance does not explain.
 const IN_A_ROW: usize = 6;
 
-/// 95 % of a normal distribution lie within so many standard deviations.
-const LIKELY: f64 = 1.96;
-
 /// Farther ahead than this nothing is foretold, days.
 const FORESEEN_DAYS: f64 = 3650.0;
 
@@ -49,7 +46,9 @@ pub struct Process {
     pub sigma: Option<f64>,
     /// Standard deviation of all values about their mean, drift included.
     pub sigma_overall: Option<f64>,
-    /// Between these the process keeps as long as only chance moves it.
+    /// Between these the process keeps as long as only chance moves it. Of means of more and fewer values
+    /// together these are the limits for as many as they have on average; signs are looked for with the
+    /// limits of each.
     pub control: Option<(f64, f64)>,
     /// The straight line through the values; none of fewer than three times.
     pub line: Option<Line>,
@@ -70,6 +69,9 @@ pub struct Line {
     middle: (f64, f64),
     #[serde(skip)]
     weight: f64,
+    /// 95 % of all lines through as many samples are within so many standard errors.
+    #[serde(skip)]
+    likely: f64,
     #[serde(skip)]
     last_us: i64,
 }
@@ -77,7 +79,8 @@ pub struct Line {
 /// A sign that more than chance is at work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Sign {
-    /// beyond_control, nine_on_one_side or six_in_a_row.
+    /// beyond_control (three standard deviations of a mean of as many values as it is of), nine_on_one_side or
+    /// six_in_a_row.
     pub kind: &'static str,
     /// How often.
     pub times: u32,
@@ -139,7 +142,7 @@ impl Process {
             sigma_overall,
             control,
             line: Line::through(samples),
-            signs: signs(samples, mean, control),
+            signs: signs(samples, mean, sigma),
         })
     }
 
@@ -189,20 +192,28 @@ impl Line {
         let slope = together / spread;
         let off =
             |sample: &Sample| (sample.value - middle.1 - slope * (day(sample) - middle.0)).powi(2);
-        let variance = weight * mean(&off) / (samples.len() as f64 - 2.0);
+        let free = samples.len() - 2;
+        let variance = weight * mean(&off) / free as f64;
         Some(Self {
             slope_per_day: slope,
             slope_error: (variance / spread).sqrt(),
             now: middle.1 + slope * (day(last) - middle.0),
             middle: (middle.0 - day(last), middle.1),
             weight: variance / weight,
+            likely: student(free),
             last_us: last.at_us,
         })
     }
 
+    /// The slope is 95 % likely within so much of what it is, either way, in a day. The fewer samples, the more
+    /// standard errors that takes.
+    pub fn slope_reach(&self) -> f64 {
+        self.likely * self.slope_error
+    }
+
     /// More than chance makes it rise or fall.
     pub fn is_certain(&self) -> bool {
-        self.slope_per_day.abs() > LIKELY * self.slope_error
+        self.slope_per_day.abs() > self.slope_reach()
     }
 
     /// Where the line, and the 95 % band about it, cross a value.
@@ -216,7 +227,7 @@ impl Line {
             return None;
         }
         // (c - b u)² = k² (v + e² u²): where the band's edge is at the limit, u days from the middle.
-        let k2 = LIKELY * LIKELY;
+        let k2 = self.likely * self.likely;
         let square = b * b - k2 * self.slope_error.powi(2);
         let root = ((c * b).powi(2) - square * (c * c - k2 * self.weight))
             .max(0.0)
@@ -233,6 +244,27 @@ impl Line {
     }
 }
 
+/// The 0.975 quantile of Student's t distribution: so many standard errors hold 95 % when the error itself is
+/// known from so many degrees of freedom only. Of few from a table (Abramowitz and Stegun, Handbook of
+/// Mathematical Functions, table 26.10), of more by the expansion about the normal quantile (there, 26.7.5),
+/// off by less than 0.001.
+fn student(free: usize) -> f64 {
+    const NORMAL: f64 = 1.959_964;
+    const OF_FEW: [f64; 5] = [f64::INFINITY, 12.706, 4.303, 3.182, 2.776];
+    if let Some(quantile) = OF_FEW.get(free) {
+        return *quantile;
+    }
+    let n = free as f64;
+    let x = |power: i32| NORMAL.powi(power);
+    let terms = [
+        (x(3) + x(1)) / 4.0,
+        (5.0 * x(5) + 16.0 * x(3) + 3.0 * x(1)) / 96.0,
+        (3.0 * x(7) + 19.0 * x(5) + 17.0 * x(3) - 15.0 * x(1)) / 384.0,
+        (79.0 * x(9) + 776.0 * x(7) + 1482.0 * x(5) - 1920.0 * x(3) - 945.0 * x(1)) / 92160.0,
+    ];
+    terms.iter().rev().fold(0.0, |sum, term| (sum + term) / n) + NORMAL
+}
+
 fn sigma(samples: &[Sample], n: f64, within: f64) -> Option<f64> {
     let free = n - samples.len() as f64;
     if free > 0.0 {
@@ -245,7 +277,7 @@ fn sigma(samples: &[Sample], n: f64, within: f64) -> Option<f64> {
     (samples.len() > 1).then_some(mean / D2_OF_TWO)
 }
 
-fn signs(samples: &[Sample], mean: f64, control: Option<(f64, f64)>) -> Vec<Sign> {
+fn signs(samples: &[Sample], mean: f64, sigma: Option<f64>) -> Vec<Sign> {
     let mut found: Vec<Sign> = Vec::new();
     let mut note = |kind: &'static str, at_us: i64| {
         match found.iter_mut().find(|sign| sign.kind == kind) {
@@ -269,7 +301,9 @@ fn signs(samples: &[Sample], mean: f64, control: Option<(f64, f64)>) -> Vec<Sign
     };
     let way = |a: f64, b: f64| (a > b) as i8 - (a < b) as i8;
     for (index, sample) in samples.iter().enumerate() {
-        if control.is_some_and(|(low, high)| sample.value < low || sample.value > high) {
+        // The mean of many values scatters less than that of few.
+        let reach = sigma.map(|sigma| CONTROL * sigma / f64::from(sample.n).sqrt());
+        if reach.is_some_and(|reach| (sample.value - mean).abs() > reach) {
             note("beyond_control", sample.at_us);
         }
         if go_on(&mut side, way(sample.value, mean)) == ON_ONE_SIDE {
@@ -380,5 +414,65 @@ mod tests {
         assert_eq!(process.capability(Some(1.0), Some(3.0)), None);
         assert_eq!(process.forecast(Some(1.0), Some(3.0)), None);
         assert!(process.signs.is_empty(), "{:?}", process.signs);
+    }
+
+    /// Against the table of Abramowitz and Stegun, and the normal quantile.
+    #[test]
+    fn the_fewer_values_the_more_standard_errors_are_likely() {
+        for (free, expected) in [
+            (1, 12.706),
+            (2, 4.303),
+            (3, 3.182),
+            (4, 2.776),
+            (5, 2.571),
+            (6, 2.447),
+            (10, 2.228),
+            (30, 2.042),
+            (120, 1.980),
+            (100_000_000, 1.960),
+        ] {
+            let found = student(free);
+            assert!((found - expected).abs() <= 0.001, "{free}: {found}");
+        }
+    }
+
+    /// Goal: three values that rise about evenly foretell nothing: with one degree of freedom their slope may
+    /// be none at all. As many again, and it is certain.
+    /// Method: a slope of three and a half standard errors, more than 1.96 and less than 12.7.
+    #[test]
+    fn three_values_are_too_few_to_be_certain() {
+        let three = Process::of(&single(&[1.0, 2.5, 3.0])).expect("values");
+        let line = three.line.expect("a line");
+        let errors = line.slope_per_day / line.slope_error;
+        assert!((3.0..12.0).contains(&errors), "{errors}");
+        assert!(!line.is_certain());
+        assert!((line.slope_reach() - 12.706 * line.slope_error).abs() < 1e-9);
+        assert_eq!(three.forecast(None, Some(5.0)), None);
+        let six = Process::of(&single(&[1.0, 2.5, 3.0, 4.0, 5.5, 6.0])).expect("values");
+        assert!(six.line.expect("a line").is_certain());
+        assert!(six.forecast(None, Some(8.0)).is_some());
+    }
+
+    /// Goal: a mean is judged by what means of as many values do.
+    /// Method: sigma is 1. A single value may be 2.5 off among days of many values, and a mean of 99 not 0.4 among
+    /// days of few; limits for the average number of values a day would say the reverse of both.
+    #[test]
+    fn each_day_is_judged_by_the_limits_of_as_many_values() {
+        let day = |day: i64, n: u32, value: f64| Sample {
+            at_us: day * DAY,
+            value,
+            n,
+            scatter: f64::from(n - 1),
+        };
+        let beyond = |samples: &[Sample]| -> Vec<i64> {
+            let signs = Process::of(samples).expect("values").signs;
+            let beyond = signs.iter().filter(|sign| sign.kind == "beyond_control");
+            beyond.map(|sign| sign.first_at_us / DAY).collect()
+        };
+        let one_among_many = [day(0, 99, 0.0), day(1, 1, 2.5), day(2, 99, 0.0)];
+        assert_eq!(beyond(&one_among_many), [0; 0]);
+        let mut many_among_few: Vec<_> = (0..200).map(|n| day(n, 2, 0.0)).collect();
+        many_among_few.push(day(200, 99, 0.5));
+        assert_eq!(beyond(&many_among_few), [200]);
     }
 }

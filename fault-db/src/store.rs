@@ -172,6 +172,17 @@ impl Store {
         }
     }
 
+    /// Waits so long for other writers of the file from now on. Opening is answered soon; what is under way
+    /// already, where nobody waits for it, may well be more patient than give up what it has.
+    ///
+    /// # Errors
+    /// Of a server, which has none.
+    pub fn set_busy_timeout_ms(&self, busy_timeout_ms: u32) -> Result<(), StoreError> {
+        let timeout = std::time::Duration::from_millis(busy_timeout_ms.into());
+        let set = self.file()?.busy_timeout(timeout);
+        set.map_err(|error| self.failed("setting how long to wait", error))
+    }
+
     /// The file's path, as it was given; of a server its address without a password.
     pub fn path(&self) -> &Path {
         &self.path

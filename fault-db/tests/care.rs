@@ -81,6 +81,74 @@ fn a_backup_is_whole_and_overwrites_nothing() {
     assert!(matches!(error, StoreError::TargetExists { .. }), "{error}");
 }
 
+/// Goal: of programs that copy to one place at once one does, and the others are told; none spoils its copy.
+#[test]
+fn of_two_backups_to_one_place_one_is_made() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let (_, _, trace) = one_run(&open(&path), "ATC-7", 1);
+    for round in 0..10 {
+        let to = dir.path().join(format!("{round}.db"));
+        let both = std::thread::scope(|scope| {
+            let backup = || Store::open_read_only(&path).expect("ours").backup(&to);
+            let threads = [(); 3].map(|()| scope.spawn(backup));
+            threads.map(|thread| thread.join().expect("no panic"))
+        });
+        let made = both.iter().filter(|made| made.is_ok()).count();
+        assert_eq!(made, 1, "{both:?}");
+        for refused in both.into_iter().filter_map(Result::err) {
+            assert!(
+                matches!(refused, StoreError::TargetExists { .. }),
+                "{refused}"
+            );
+        }
+        let copy = Store::open_read_only(&to).expect("one of ours");
+        assert_eq!(copy.check().expect("checked").problems, []);
+        copy.trace(trace).expect("there");
+    }
+    assert_eq!(parts(dir.path()), [""; 0]);
+}
+
+/// Goal: what a program that was killed has left of a copy goes with the next copy to the same place; what
+/// another one is at, and what only looks like it, stays.
+#[test]
+fn what_is_left_of_a_copy_that_broke_off_goes_with_the_next() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let random = "0123456789abcdef";
+    let alive = std::process::id();
+    // No process has a number of more than 22 bits.
+    let broken_off = format!("b.db.{}-{random}.part", u32::MAX);
+    let old = format!("b.db.{alive}-fedcba9876543210.part");
+    let stay = [
+        format!("b.db.{alive}-{random}.part"),
+        format!("bb.db.{}-{random}.part", u32::MAX),
+        "b.db.mine.part".to_owned(),
+    ];
+    for name in stay.iter().chain([&broken_off, &old]) {
+        std::fs::write(dir.path().join(name), "half").expect("written");
+    }
+    let hours_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(7_200);
+    let file = std::fs::File::options()
+        .write(true)
+        .open(dir.path().join(&old));
+    (file.expect("there").set_modified(hours_ago)).expect("its time is set");
+    store.backup(&dir.path().join("b.db")).expect("copied");
+    let mut expected = stay.to_vec();
+    expected.sort();
+    assert_eq!(parts(dir.path()), expected);
+}
+
+/// Names of copies that are not whole.
+fn parts(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("read");
+    let names = entries.map(|entry| entry.expect("an entry").file_name());
+    let names = names.map(|name| name.to_string_lossy().into_owned());
+    let mut parts: Vec<_> = names.filter(|name| name.ends_with(".part")).collect();
+    parts.sort();
+    parts
+}
+
 /// Goal: a backup made while another program records is whole, and can be gone on with like the file
 /// itself: its schema, its search words, its way of giving back room.
 #[test]
@@ -127,13 +195,7 @@ fn a_backup_made_while_others_write_is_a_file_to_go_on_with() {
         let found = "SELECT count(*) FROM event_words WHERE event_words MATCH '\"체 결\"'";
         assert_eq!(one(found), 1);
     }
-    let parts = std::fs::read_dir(dir.path())
-        .expect("read")
-        .filter(|entry| {
-            let name = entry.as_ref().expect("an entry").file_name();
-            name.to_string_lossy().ends_with(".part")
-        });
-    assert_eq!(parts.count(), 0, "nothing half done is left");
+    assert_eq!(parts(dir.path()), [""; 0], "nothing half done is left");
 }
 
 #[test]

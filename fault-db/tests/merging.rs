@@ -414,3 +414,137 @@ fn a_copy_that_went_on_by_itself_comes_home() {
     whole(&a, "with the copy's runs");
     assert_eq!(a.merge_from(&b).expect("merged"), MergeCounts::default());
 }
+
+/// Whoever changes a file by another program has to get rid of what is counted by functions of this one.
+const UNCOUNTED: &str = "
+    DROP TRIGGER value_measured; DROP TRIGGER occurrence_seen; DROP TRIGGER fault_opened;
+    DROP TRIGGER event_opened; DROP TRIGGER fault_closed_new; DROP TRIGGER event_repair; DROP TRIGGER event_said";
+
+/// Ways in which a copy of a file was changed by hand.
+const TAMPERED: [(&str, &str); 8] = [
+    ("a verdict", "UPDATE run SET verdict = 'passed'"),
+    ("a verdict taken away", "UPDATE run SET verdict = NULL"),
+    (
+        "a step",
+        "INSERT INTO step SELECT run, 7, procedure, name, verdict, 0, 0, '', NULL FROM step",
+    ),
+    (
+        "a measurement",
+        "INSERT INTO measurement SELECT run, 0, 9, name, 0.1, unit, low, high, verdict FROM measurement",
+    ),
+    (
+        "a script",
+        "INSERT INTO run_script SELECT run, 'scripts/other.star', sha256 FROM run_script",
+    ),
+    (
+        "an occurrence",
+        "INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
+         SELECT randomblob(16), fault, run, at_us, bench_us, '', '[]', unit, code, lru FROM fault_occurrence",
+    ),
+    (
+        "a fault",
+        "INSERT INTO fault(seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, occurrences)
+         SELECT 99, randomblob(16), unit, 77, lru, 'made_up', severity, 'open', 5, 5, 1 FROM fault;
+         INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
+         VALUES (randomblob(16), 99, 'opened', 5, '', '', 'open');
+         INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
+         SELECT randomblob(16), 99, run, 5, 5, '', '[]', unit, 77, lru FROM fault_occurrence",
+    ),
+    (
+        "all of it, sealed again",
+        "UPDATE run SET verdict = 'passed'; UPDATE seal SET digest = zeroblob(32)",
+    ),
+];
+
+/// Goal: a run that is over here stays as it was sealed, whatever another file says of it; it is named, and the
+/// rest comes.
+/// Method: a copy is changed by hand in each of several ways, and goes on with a run of its own.
+#[test]
+fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
+    for (what, sql) in TAMPERED {
+        let dir = tempdir().expect("a directory");
+        let a = laptop(&dir, "a.db", 1);
+        let altered = measured_run(&a);
+        let copy = dir.path().join("copy.db");
+        a.backup(&copy).expect("copied");
+        (Connection::open(&copy).expect("opens"))
+            .execute_batch(&format!("{UNCOUNTED}; {sql}"))
+            .expect("changed");
+        let b = opened(&copy, 2);
+        one_fault(&b, T0_US + 1);
+        let before = a.run(altered, &|_| false).expect("there");
+        let added = a.merge_from(&b).expect("merged");
+        let named: Vec<_> = (added.different.iter().map(|run| (run.what, run.id))).collect();
+        assert_eq!(named, [("run", altered)], "{what}");
+        assert_eq!((added.runs, added.steps), (1, 0), "{what}");
+        assert_eq!(a.run(altered, &|_| false).expect("there"), before, "{what}");
+        assert_eq!(faults(&a).len(), 1, "{what}");
+        whole(&a, what);
+        // The other way round nothing is added to theirs either, but for a verdict that is missing there.
+        let back = b.merge_from(&a).expect("and back");
+        assert_eq!((back.runs, back.steps), (0, 0), "{what}");
+        let named: Vec<_> = back.different.iter().map(|run| run.id).collect();
+        if what == "a verdict taken away" {
+            assert_eq!(named, [], "it has it again");
+            let again = b.merge_from(&a).expect("again");
+            assert_eq!(again, MergeCounts::default());
+        } else {
+            assert_eq!(named, [altered], "{what}");
+        }
+    }
+}
+
+/// Goal: a file that was changed and sealed anew, under another name, brings no seal that does not fit the run
+/// here, and its later runs come with seals of this file.
+#[test]
+fn a_changed_run_sealed_under_another_name_brings_no_seal() {
+    let dir = tempdir().expect("a directory");
+    let a = laptop(&dir, "a.db", 1);
+    let altered = measured_run(&a);
+    let copy = dir.path().join("copy.db");
+    a.backup(&copy).expect("copied");
+    (Connection::open(&copy).expect("opens"))
+        .execute_batch(
+            "UPDATE run SET verdict = 'passed'; DELETE FROM seal; DELETE FROM about WHERE key = 'file_id'",
+        )
+        .expect("changed");
+    let b = opened(&copy, 2);
+    one_fault(&b, T0_US + 1);
+    whole(&b, "it looks as if nothing was changed");
+    let added = a.merge_from(&b).expect("merged");
+    let named: Vec<_> = added.different.iter().map(|run| run.id).collect();
+    assert_eq!((named, added.runs), (vec![altered], 1));
+    whole(&a, "with the other run");
+}
+
+/// Goal: what is less is not different: a run copied while it was under way, and its own file meeting that copy
+/// again.
+#[test]
+fn an_earlier_copy_of_a_run_is_not_different() {
+    let dir = tempdir().expect("a directory");
+    let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+    let mut writer = RunWriter::begin(&a, &run_record("ATC-7")).expect("begun");
+    writer.fault(&fault(1, T0_US)).expect("stored");
+    b.merge_from(&a).expect("in the middle");
+    writer.step(step(0)).expect("kept");
+    writer.fault(&fault(1, T0_US + 1)).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let met = a.merge_from(&b).expect("the earlier copy");
+    assert_eq!(met, MergeCounts::default());
+    let rest = b.merge_from(&a).expect("the rest");
+    assert_eq!((rest.steps, rest.occurrences), (1, 1));
+    assert_eq!(b.merge_from(&a).expect("again"), MergeCounts::default());
+    whole(&a, "where it was recorded");
+    whole(&b, "in two parts");
+}
+
+/// A run with a step, a measurement and a fault.
+fn measured_run(store: &Store) -> Id {
+    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
+    let mut measured = step(0);
+    measured.measurements = vec![measurement("eb_reaction", 0.42)];
+    writer.step(measured).expect("kept");
+    writer.fault(&fault(1, T0_US)).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    writer.id()
+}

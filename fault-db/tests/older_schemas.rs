@@ -180,3 +180,35 @@ fn a_file_of_each_older_schema_is_copied_before_it_is_brought_up_to_date() {
         assert_eq!(looked_at(&copy), (version, 1));
     }
 }
+
+/// Goal: programs that open an old file at the same moment all get it, brought up to date once, and what it was
+/// is kept whole under its own version.
+/// Method: many files, since the moment that matters is short.
+#[test]
+fn programs_that_open_an_old_file_together_keep_one_good_copy() {
+    for round in 0..20 {
+        let dir = tempdir().expect("a directory");
+        let path = dir.path().join("a.db");
+        old_file(&path, 3);
+        std::thread::scope(|scope| {
+            for seed in [11, 12, 13] {
+                let path = &path;
+                scope.spawn(move || {
+                    let options = OpenOptions::new(ids(seed)).busy_timeout_ms(30_000);
+                    let store = Store::open(path, options).expect("opens");
+                    assert_eq!(runs(&store).len(), 1);
+                });
+            }
+        });
+        assert_eq!(looked_at(&path), (SCHEMA_VERSION as usize, 1));
+        let entries = std::fs::read_dir(dir.path()).expect("read");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let names = names.map(|name| name.to_string_lossy().into_owned());
+        let copies: Vec<_> = names.filter(|name| name.contains(".schema")).collect();
+        assert!(copies.contains(&"a.db.schema3".to_owned()), "{copies:?}");
+        for copy in copies {
+            let found = looked_at(&dir.path().join(&copy));
+            assert_eq!(found, (3, 1), "round {round}: {copy}");
+        }
+    }
+}

@@ -132,6 +132,27 @@ fn a_file_locked_by_another_is_named_so() {
     writer.finish(&end(Verdict::Passed)).expect("finished");
 }
 
+/// Goal: what is under way may wait longer for another writer than opening did.
+#[test]
+fn a_store_can_become_more_patient() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let options = OpenOptions::new(ids(1)).busy_timeout_ms(1);
+    let store = Store::open(&path, options).expect("opens");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    store.set_busy_timeout_ms(30_000).expect("set");
+    let other = Connection::open(&path).expect("opens");
+    other.execute_batch("BEGIN EXCLUSIVE").expect("locked");
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            std::thread::sleep(std::time::Duration::from_millis(300));
+            other.execute_batch("ROLLBACK").expect("released");
+        });
+        writer.fault(&fault(1, T0_US)).expect("in the end");
+    });
+    writer.finish(&end(Verdict::Passed)).expect("finished");
+}
+
 /// Method: tests may run as root, whom permissions do not stop; an immutable attribute or a
 /// read-only mount is not to be had everywhere. What is left is a reader's own connection.
 #[test]

@@ -10,6 +10,9 @@ use fault_db::{
 };
 use tempfile::tempdir;
 
+/// With other writers: a busy machine may hold one up in the middle of a commit.
+const PATIENCE_MS: u32 = 30_000;
+
 const NOBODY_LIVES: &dyn Fn(&str) -> bool = &|_| false;
 
 #[test]
@@ -98,7 +101,8 @@ fn two_programs_create_one_file_at_the_same_time() {
             for seed in [11, 12, 13] {
                 let path = &path;
                 scope.spawn(move || {
-                    let store = Store::open(path, OpenOptions::new(ids(seed))).expect("opens");
+                    let options = OpenOptions::new(ids(seed)).busy_timeout_ms(PATIENCE_MS);
+                    let store = Store::open(path, options).expect("opens");
                     RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
                 });
             }
@@ -121,6 +125,7 @@ fn two_runs_write_one_file_at_the_same_time() {
             // Both create the file, too.
             scope.spawn(move || {
                 let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
+                let options = options.busy_timeout_ms(PATIENCE_MS);
                 let store = Store::open(path, options).expect("opens");
                 let serial = format!("ATC-{seed}");
                 let mut writer = RunWriter::begin(&store, &run_record(&serial)).expect("begun");

@@ -126,6 +126,37 @@ fn the_database_is_checked_copied_merged_and_asked() {
     );
 }
 
+/// Goal: a run that says something else in another file is left as it is and named, in words and in JSON.
+#[test]
+fn a_run_that_says_something_else_in_another_file_is_named() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let run = place.run_ids()[0].clone();
+    place.ptu(&["db", "backup", "copy.db"]).exits(0);
+    let copy = rusqlite::Connection::open(place.path("copy.db")).expect("the copy");
+    copy.execute_batch("UPDATE run SET verdict = 'passed'")
+        .expect("altered");
+    drop(copy);
+    place.ptu(&["db", "import", "copy.db"]).exits(3).explains(&[
+        &run,
+        "does not say the same",
+        "ptu db check",
+    ]);
+    let said = place.ptu(&["db", "import", "copy.db", "--json"]).exits(3);
+    let told: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    let expected = serde_json::json!([{"what": "run", "id": run}]);
+    assert_eq!(told["different"], expected);
+    assert_eq!(
+        (&told["runs"], &told["conflicts"]),
+        (&0.into(), &serde_json::json!([]))
+    );
+    let shown = place.json(&["runs", "show", "latest", "--json"]);
+    assert_eq!(shown["run"]["verdict"], "failed");
+    let check = place.json(&["db", "check", "--json"]);
+    assert!(list(&check["problems"]).is_empty(), "{check}");
+    place.ptu(&["db", "export", "copy.db"]).exits(3);
+}
+
 #[test]
 fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
     let place = Place::new();

@@ -3,6 +3,7 @@
 mod common;
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::window::Window;
 use common::{Place, scripts};
@@ -23,14 +24,16 @@ fn window(settings: Settings) -> Window {
 
 /// Has the view written as CSV, and reads it: heads and rows.
 fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<String>>) {
-    let name = window.place.text_path("view");
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    // Its own name each time: what was said of the last one is still shown.
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = window.place.text_path(&format!("view-{count}"));
     clear(window, field);
     window.write(field, &name);
     window.click(save);
     let file = PathBuf::from(format!("{name}.csv"));
-    window.until("the table", |_| {
-        std::fs::read_to_string(&file).is_ok_and(|text| text.ends_with('\n'))
-    });
+    // The file is there before all of it is written; that it is saved is said afterwards.
+    window.wait_for(&format!("saved: {}", file.display()));
     let text = std::fs::read_to_string(&file).expect("written");
     std::fs::remove_file(&file).expect("there");
     let mut lines = text

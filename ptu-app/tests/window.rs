@@ -71,6 +71,41 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     assert_eq!(run["run"]["injected"], "eb_relay.slow");
 }
 
+/// Goal: a note that is being written when the diagnosis comes is not lost to it. Method: a diagnosis that
+/// waits for a file of its settings, which is a pipe; it comes when half of the note is written, and the
+/// other half is typed without another look at where the field is.
+#[test]
+fn a_note_is_written_on_while_the_conclusion_comes() {
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Alarm\", suspect = \"tra\")\n\
+         step(\"sounds\", expect = [becomes(alarm, True, within = ms(200))])\n",
+    );
+    let pipe = scripts.join("diagnosis.toml");
+    let diagnosis = std::fs::read_to_string(&pipe).expect("settings");
+    std::fs::remove_file(&pipe).expect("a link");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("mkfifo starts").success());
+    let mut settings = settings(Page::Procedures);
+    settings.operator = "Lee".into();
+    let mut window = Window::with(Place::new(), &scripts, settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for_part("Run over: failed");
+    window.write("note on this run", "relay K3 ");
+    // Writing into a pipe waits for who reads it.
+    let written = std::thread::spawn(move || std::fs::write(&pipe, diagnosis));
+    window.wait_for_part("cannot tell: ");
+    written.join().expect("no panic").expect("written");
+    window.harness().event(Event::Text("clicks late".into()));
+    window.step();
+    window.click("Save note");
+    window.wait_for("Note saved");
+    assert_eq!(latest(&window)["notes"][0]["text"], "relay K3 clicks late");
+}
+
 #[test]
 fn the_least_of_steps_finds_the_part_too() {
     let mut settings = settings(Page::Procedures);
@@ -174,33 +209,36 @@ fn letting_go_in_a_run_closes_its_record_first() {
 
 #[test]
 fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
-    let place = Place::new();
-    let scripts = own_scripts(
-        &place,
-        "procedure(title = \"Lamp\", suspect = \"-\")\n\
-         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(60))])\n",
-    );
-    let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
-    window.click("Connect");
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for("Does the lamp light?");
-    window.key(Page::Faults.key());
-    window.wait_for("a script asks");
-    let now = |window: &Window| window.app().units().chosen().station.live().now;
-    let (before, began) = (now(&window), std::time::Instant::now());
-    for _ in 0..100 {
-        window.step();
-    }
-    let bench_s = now(&window).since(before).as_secs();
-    let clock_s = began.elapsed().as_secs_f64();
-    assert!(
-        bench_s < clock_s + 0.5,
-        "{bench_s} s on the bench in {clock_s} s"
-    );
-    window.click("a script asks");
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
+    steadily(|| {
+        let place = Place::new();
+        let scripts = own_scripts(
+            &place,
+            "procedure(title = \"Lamp\", suspect = \"-\")\n\
+             step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
+        );
+        let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
+        window.click("Connect");
+        window.wait_for("SIM-0001");
+        window.click("Run");
+        window.wait_for("Does the lamp light?");
+        window.key(Page::Faults.key());
+        window.wait_for("a script asks");
+        let now = |window: &Window| window.app().units().chosen().station.live().now;
+        let (began, before) = (std::time::Instant::now(), now(&window));
+        for _ in 0..100 {
+            window.step();
+        }
+        let bench_s = now(&window).since(before).as_secs();
+        let clock_s = began.elapsed().as_secs_f64();
+        // A bench that was held up makes up for the scans it missed, and is faster than the clock then.
+        assert!(
+            bench_s < clock_s + 0.5,
+            "{bench_s} s on the bench in {clock_s} s"
+        );
+        window.click("a script asks");
+        window.click("Yes");
+        window.wait_for_part("Run over: passed");
+    });
 }
 
 #[test]
@@ -225,7 +263,7 @@ fn a_script_asks_and_the_answer_decides() {
     let scripts = own_scripts(
         &place,
         "procedure(title = \"Lamp\", suspect = \"-\")\n\
-         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(30))])\n",
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
     );
     for (answer, verdict) in [("Yes", "passed"), ("No", "failed")] {
         let mut window = Window::with(Place::new(), &scripts, settings(Page::Procedures));

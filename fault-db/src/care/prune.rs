@@ -122,7 +122,9 @@ impl Store {
             let mut vacuum = conn.prepare("PRAGMA incremental_vacuum")?;
             let mut steps = vacuum.query([])?;
             while steps.next()?.is_some() {}
-            Ok((before - pragma(conn, "page_count")?) * pragma(conn, "page_size")?)
+            // Somebody may have recorded more meanwhile than was given back.
+            let freed = before.saturating_sub(pragma(conn, "page_count")?);
+            Ok(freed * pragma(conn, "page_size")?)
         };
         let freed = give().map_err(|error| self.failed("giving room back", error))?;
         self.checkpoint()?;

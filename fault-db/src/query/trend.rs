@@ -269,7 +269,7 @@ impl Store {
         self.select("listing measurements", sql, &[], |row| row.get(0))
     }
 
-    /// The procedures that ever measured it.
+    /// The procedures that ever measured a value of it.
     ///
     /// # Errors
     /// Of the file or server.
@@ -280,7 +280,8 @@ impl Store {
             }
             Base::Server(_) => {
                 "SELECT DISTINCT s.procedure FROM measurement m JOIN step s ON s.run = m.run
-                    AND s.step_index = m.step_index WHERE m.name = ?1 ORDER BY 1"
+                    AND s.step_index = m.step_index
+                 WHERE m.name = ?1 AND m.value IS NOT NULL ORDER BY 1"
             }
         };
         self.select("listing procedures", sql, &values![measurement], |row| {

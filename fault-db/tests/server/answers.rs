@@ -384,10 +384,12 @@ fn a_server_gives_the_answers_its_files_give() {
     }
     questions.push(question("measurements", |store| {
         let procedures = store.measuring_procedures("eb_reaction")?;
+        let of_no_value = store.measuring_procedures("door_time")?;
         let repaired = store.last_repair("U-1", "eb_relay")?;
         Ok((
             store.measurement_names()?,
             procedures,
+            of_no_value,
             repaired,
             store.history_span()?,
         ))

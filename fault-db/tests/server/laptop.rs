@@ -15,8 +15,8 @@ pub struct Laptop {
     pub name: &'static str,
     folder: TempDir,
     seed: std::cell::Cell<u64>,
-    /// Its clock, µs.
-    pub now_us: std::cell::Cell<i64>,
+    /// By how much its clock is ahead of the true time, µs.
+    pub clock_ahead_us: std::cell::Cell<i64>,
 }
 
 impl Laptop {
@@ -29,7 +29,7 @@ impl Laptop {
             folder: tempfile::tempdir().expect("a folder"),
             // Each opening of the file takes one more: names next to each other stay apart.
             seed: (letters * 100_003).into(),
-            now_us: system_now_us().into(),
+            clock_ahead_us: 0.into(),
         }
     }
 
@@ -61,7 +61,7 @@ impl Laptop {
                 laptop: self.name,
                 traces: true,
                 is_alive: &|owner| owner == "alive",
-                now_us: &|| self.now_us.get(),
+                now_us: &|| system_now_us() + self.clock_ahead_us.get(),
                 go_on,
             },
         )

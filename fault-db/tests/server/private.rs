@@ -14,7 +14,11 @@ use std::time::{Duration, Instant};
 use postgres::{Client, NoTls};
 use tempfile::TempDir;
 
-const PATIENCE: Duration = Duration::from_secs(30);
+/// For a server to start, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Between two looks whether it has.
+const LOOK: Duration = Duration::from_millis(30);
 
 /// A setting: data reaches the disk some time, since no test turns the power off.
 pub const NO_HURRY: &str = "fsync = off";
@@ -62,16 +66,20 @@ impl Cluster {
             let text = fs::read_to_string(&configuration).expect("a configuration");
             fs::write(&configuration, format!("{text}\n{setting}\n")).expect("a setting");
         }
+        let watchdog = watch(folder.path());
         let port = free_port();
-        let server = serve(&data, port);
-        let watchdog = watch(server.id(), folder.path());
-        let cluster = Self {
+        let mut cluster = Self {
+            server: serve(&data, port).into(),
             folder,
             port,
-            server: server.into(),
             _watchdog: watchdog,
         };
-        cluster.wait();
+        let begun = Instant::now();
+        while !cluster.is_up(begun) {
+            // Somebody else took the port before the server did.
+            cluster.port = free_port();
+            cluster.server = serve(&data, cluster.port).into();
+        }
         cluster
     }
 
@@ -123,32 +131,43 @@ impl Cluster {
 
     /// Starts the server again where it was.
     pub fn restart(&self) {
-        let _ = fs::remove_file(self.data().join("postmaster.pid"));
-        let started = serve(&self.data(), self.port);
-        *self.server.lock().expect("nobody else panicked here") = started;
-        self.wait();
-    }
-
-    fn wait(&self) {
         let begun = Instant::now();
-        let address = format!("host=127.0.0.1 port={} user=ptu dbname=postgres", self.port);
-        while Client::connect(&address, NoTls).is_err() {
-            let mut server = self.server.lock().expect("nobody else panicked here");
+        loop {
+            let _ = fs::remove_file(self.data().join("postmaster.pid"));
+            let started = serve(&self.data(), self.port);
+            *self.server.lock().expect("nobody else panicked here") = started;
             // One that was killed may have left somebody behind who is about to find out; until then no other
             // starts.
-            if matches!(server.try_wait(), Ok(Some(_))) {
-                let _ = fs::remove_file(self.data().join("postmaster.pid"));
-                *server = serve(&self.data(), self.port);
+            if self.is_up(begun) {
+                break;
             }
-            drop(server);
+        }
+    }
+
+    /// Waits until the server takes connections; no if it ended instead.
+    fn is_up(&self, begun: Instant) -> bool {
+        while !self.answers() {
             let waited = begun.elapsed();
             assert!(
                 waited < PATIENCE,
                 "the private server does not start: {}",
                 self.log()
             );
-            std::thread::sleep(Duration::from_millis(30));
+            std::thread::sleep(LOOK);
+            let mut server = self.server.lock().expect("nobody else panicked here");
+            if matches!(server.try_wait(), Ok(Some(_))) {
+                return false;
+            }
         }
+        true
+    }
+
+    /// Whether it is this server that answers at its port.
+    fn answers(&self) -> bool {
+        let address = format!("host=127.0.0.1 port={} user=ptu dbname=postgres", self.port);
+        let asked = Client::connect(&address, NoTls)
+            .and_then(|mut client| client.query_one("SHOW data_directory", &[]));
+        asked.is_ok_and(|row| self.data() == Path::new(row.get::<_, &str>(0)))
     }
 
     fn log(&self) -> String {
@@ -221,11 +240,12 @@ pub fn signal(name: &str, process: u32) {
     let _ = Command::new("sh").args(["-c", &kill]).status();
 }
 
-/// A shell that waits for this program to end, killed or not, and then stops the server.
-fn watch(server: u32, folder: &Path) -> Child {
-    let script = "cat >/dev/null; kill -QUIT $1 2>/dev/null; sleep 1; rm -rf \"$2\"";
+/// A shell that waits for this program to end, killed or not, and then stops the server of this folder.
+fn watch(folder: &Path) -> Child {
+    let script = "cat >/dev/null; server=$(head -n 1 \"$1/data/postmaster.pid\" 2>/dev/null) \
+        && kill -QUIT $server 2>/dev/null; sleep 1; rm -rf \"$1\"";
     Command::new("sh")
-        .args(["-c", script, "watchdog", &server.to_string()])
+        .args(["-c", script, "watchdog"])
         .arg(folder)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())

@@ -202,9 +202,7 @@ fn wrong_clocks_do_not_decide_what_stands() {
     right.run("U-1", day(YEAR), &[101], false);
     right.sync(&address);
     behind.run("U-1", day(0), &[101], false);
-    behind
-        .now_us
-        .set(behind.now_us.get() - YEAR * 86_400_000_000);
+    behind.clock_ahead_us.set(-YEAR * 86_400_000_000);
     behind.sync(&address);
 
     let say = |laptop: &Laptop, state, at_us| {
@@ -222,7 +220,6 @@ fn wrong_clocks_do_not_decide_what_stands() {
     assert!(told.clocks_differ());
     let years = -told.clock_offset_us / 86_400_000_000;
     assert!((364..=365).contains(&years), "{years} days behind");
-    right.now_us.set(crate::laptop::system_now_us());
     assert!(!right.sync(&address).clocks_differ());
     for store in [
         &right.open(),
@@ -243,9 +240,7 @@ fn a_fault_that_was_seen_again_after_it_was_done_with_elsewhere_is_open() {
     let seen_again_on = |seen: i64, done: FaultState, known: bool, seen_first: bool| {
         let address = shared().database();
         let (one, behind) = (Laptop::new("one"), Laptop::new("behind"));
-        behind
-            .now_us
-            .set(behind.now_us.get() - YEAR * 86_400_000_000);
+        behind.clock_ahead_us.set(-YEAR * 86_400_000_000);
         one.run("U-1", day(0), &[101], false);
         one.sync(&address);
         if known {

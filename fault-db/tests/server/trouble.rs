@@ -31,7 +31,8 @@ fn a_server_that_is_away_is_named_with_what_is_wrong() {
         assert!(said.contains(words), "{said}");
         assert!(said.contains("postgres://ptu@"), "{said}");
         assert!(!said.contains("secret"), "{said}");
-        assert!(begun.elapsed().as_secs() < 8, "{address}");
+        // Not the two minutes of TCP, with room for a busy machine.
+        assert!(begun.elapsed().as_secs() < 30, "{address}");
     }
 }
 

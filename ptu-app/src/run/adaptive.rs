@@ -59,12 +59,16 @@ fn isolate(
     } = adaptive;
     let model = Model::new(dictionary, settings, lru_factors);
     let mut strategy = Strategy::new(&model, Some(may));
-    while let Some(next) = strategy.begin().filter(|_| stop.may_begin()) {
+    while let Some(next) = strategy.begin() {
         let Some(task) = tasks.get(next.check.procedure.as_str()) else {
             return;
         };
         let (sender, events) = stream();
         if procedures.send((task.procedure.clone(), events)).is_err() {
+            return;
+        }
+        if !stop.may_begin() {
+            // Its stream ends without a word: it was due.
             return;
         }
         let mut gatherer = Gatherer::new(&task.procedure.id);

@@ -57,6 +57,8 @@ pub struct Collector<'a> {
     dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
+    /// Procedures that came to their end.
+    finished: u32,
     not_passed: bool,
     step_failed: bool,
     link_lost: bool,
@@ -83,13 +85,14 @@ impl<'a> Collector<'a> {
             dates: Vec::new(),
             faults_before: 0,
             verdict: Verdict::Skipped,
+            finished: 0,
             not_passed: false,
             step_failed: false,
             link_lost: false,
         }
     }
 
-    /// The next stream is of this procedure.
+    /// The next stream is of this procedure, which may be one that was due and not begun: it says nothing.
     pub fn begin(&mut self, procedure: &std::sync::Arc<Procedure>) {
         self.procedure = Some(procedure.clone());
         self.ordinal += 1;
@@ -115,7 +118,10 @@ impl<'a> Collector<'a> {
         self.listener.hear(&procedure, &event);
         match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
-            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => self.note(verdict),
+            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
+                self.finished += 1;
+                self.note(verdict);
+            }
             SessionEvent::Run(_) => {}
             SessionEvent::LinkLost(_) => self.link_lost = true,
             SessionEvent::Fault(fault) => self.fault(fault),
@@ -212,8 +218,14 @@ impl<'a> Collector<'a> {
         });
     }
 
-    /// The end of all streams.
-    pub fn finish(self, id: Id) -> (RunStore, Outcome) {
+    /// The end of all streams; `stopped` = somebody pressed stop.
+    ///
+    /// What was still due is not tested then, so that what came before it is no verdict on the unit. A run
+    /// that was over when stop was pressed, or was to end with a check that failed, is none of that.
+    pub fn finish(mut self, id: Id, stopped: bool) -> (RunStore, Outcome) {
+        if stopped && self.finished < self.ordinal && !self.must_end() {
+            self.verdict = self.verdict.and(Verdict::Aborted);
+        }
         let verdict = self.overall();
         let exit = match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,

@@ -18,6 +18,8 @@ mod reach;
 mod recorder;
 pub mod select;
 mod session;
+#[cfg(test)]
+mod stopped;
 mod store_thread;
 mod suite;
 
@@ -97,7 +99,11 @@ pub fn run(
         Err(failure) => {
             // A run that never started is kept, too.
             let record = run_record(plan, &setup, setup.expected_serial(), began.at_us);
-            RunStore::begin(store, record)?.finish(began.end(Verdict::Error, 0))?;
+            let verdict = match failure.exit {
+                Exit::Aborted => Verdict::Aborted,
+                _ => Verdict::Error,
+            };
+            RunStore::begin(store, record)?.finish(began.end(verdict, 0))?;
             Err(failure)
         }
     }
@@ -134,7 +140,7 @@ pub fn run_on(
             }
         });
     }));
-    let (run_store, mut outcome) = collector.finish(id);
+    let (run_store, mut outcome) = collector.finish(id, stop.presses() > 0);
     let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.

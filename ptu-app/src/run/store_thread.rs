@@ -15,6 +15,9 @@ use crate::failure::Failure;
 
 /// Entries that may wait for the disk; a bench that produces more waits for the writer.
 const QUEUE: usize = 4096;
+/// A run under way waits so long for another writer: it would lose all that is still to come, and its thread
+/// keeps nobody waiting but the bench.
+const PATIENCE_MS: u32 = 30_000;
 /// Steps reach the file at least this often.
 const FLUSH: Duration = Duration::from_millis(250);
 
@@ -122,7 +125,9 @@ fn write(
     begun: &SyncSender<Id>,
     failed: &AtomicBool,
 ) -> Result<(), StoreError> {
+    // Nothing is lost yet: a file that is locked is said as soon as any.
     let mut writer = RunWriter::begin(store, record)?;
+    store.set_busy_timeout_ms(PATIENCE_MS)?;
     let _ = begun.send(writer.id());
     let result = write_entries(&mut writer, entries);
     if result.is_err() {
@@ -160,5 +165,61 @@ fn write_entries(writer: &mut RunWriter<'_>, entries: &Receiver<Entry>) -> Resul
             writer.flush()?;
             flushed = Instant::now();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use fault_db::{OpenOptions, UnitRecord, Verdict};
+
+    use super::*;
+    use crate::clock;
+
+    /// Goal: another program that holds the file for longer than it may when it is opened costs a run nothing.
+    #[test]
+    fn a_run_under_way_waits_for_another_writer() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("history.db");
+        let options = OpenOptions::new(clock::ids()).busy_timeout_ms(1);
+        let store = Store::open(&file, options).expect("a database");
+        let record = RunRecord {
+            unit: UnitRecord {
+                serial: "ATC-7".into(),
+                kind: "ATC".into(),
+                config_name: "sg100".into(),
+                sw_versions: BTreeMap::new(),
+            },
+            line: "line8".into(),
+            train: String::new(),
+            seed: 1,
+            operator: String::new(),
+            source: "sim".into(),
+            started_at_us: 0,
+            app_version: String::new(),
+            scripts_sha256: String::new(),
+            unit_config_sha256: String::new(),
+            injected: None,
+            owner: String::new(),
+            scripts: Vec::new(),
+        };
+        let run = RunStore::begin(store, record).expect("begun");
+        let id = run.id;
+        let other = rusqlite::Connection::open(&file).expect("the database");
+        other.execute_batch("BEGIN IMMEDIATE").expect("a lock");
+        let ends = std::thread::spawn(move || {
+            run.finish(RunEnd {
+                verdict: Verdict::Passed,
+                finished_at_us: 1,
+                bench_time_us: 1,
+                wall_time_us: 1,
+            })
+        });
+        std::thread::sleep(Duration::from_millis(300));
+        other.execute_batch("ROLLBACK").expect("released");
+        let store = ends.join().expect("no panic").expect("recorded");
+        let found = store.run(id, &|_| false).expect("there").run.verdict;
+        assert_eq!(found, Some(Verdict::Passed));
     }
 }

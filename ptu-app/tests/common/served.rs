@@ -18,8 +18,8 @@ use super::{Place, Said, list, scripts};
 
 /// How much more the system should care for who must keep time.
 const URGENT: [&str; 2] = ["-n", "-15"];
-/// Longest time anything here takes to come about.
-const PATIENCE: Duration = Duration::from_secs(90);
+/// Longest time anything here takes to come about, also on a machine that is held up.
+const PATIENCE: Duration = Duration::from_secs(300);
 
 /// A served unit; ends with the value.
 pub struct Unit {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use eframe::egui::{Event, Modifiers, PointerButton, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_app::data::ScriptsDirectory;
@@ -11,8 +12,8 @@ use ptu_app::gui::{App, Options, Page, Settings};
 
 use super::{Place, scripts};
 
-/// Patience with what other threads do; a busy machine may hold them up.
-const PATIENCE: Duration = Duration::from_secs(90);
+/// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
+const PATIENCE: Duration = Duration::from_secs(300);
 const STEP: Duration = Duration::from_millis(15);
 
 /// A window in a place of its own.
@@ -104,28 +105,43 @@ impl Window {
 
     /// Clicks what has this name, once it is there and enabled.
     pub fn click(&mut self, label: &str) {
-        self.until(&format!("{label} (enabled)"), |window| {
-            window.enabled(label)
-        });
-        self.harness
-            .query_all_by_label(label)
-            .find(|node| !node.accesskit_node().is_disabled())
-            .expect("just seen")
-            .click();
-        self.harness.step();
-        self.harness.step();
+        self.click_once_still(label, |places| places.first().copied());
     }
 
     /// Clicks the last of several of this name.
     pub fn click_last(&mut self, label: &str) {
-        self.until(label, |window| window.enabled(label));
-        self.harness
-            .query_all_by_label(label)
-            .rfind(|node| !node.accesskit_node().is_disabled())
-            .expect("just seen")
-            .click();
+        self.click_once_still(label, |places| places.last().copied());
+    }
+
+    /// Clicks what has been in the same place for two frames. The whole click is of the next frame, which
+    /// finds what is clicked by the frame that was looked at: what another thread answers in between would
+    /// move it away from under the pointer.
+    fn click_once_still(&mut self, label: &str, choose: impl Fn(&[Rect]) -> Option<Rect>) {
+        let mut before = None;
+        self.until(&format!("{label} (enabled and still)"), |window| {
+            let now = choose(&window.places(label));
+            now.is_some() && now == std::mem::replace(&mut before, now)
+        });
+        let pos = before.expect("just seen").center();
+        let button = |pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::default(),
+        };
+        let click = [Event::PointerMoved(pos), button(true), button(false)];
+        self.harness.input_mut().events.extend(click);
         self.harness.step();
         self.harness.step();
+    }
+
+    /// Where what has this name and can be clicked is.
+    fn places(&self, label: &str) -> Vec<Rect> {
+        let nodes = self.harness.query_all_by_label(label);
+        nodes
+            .filter(|node| !node.accesskit_node().is_disabled())
+            .map(|node| node.rect())
+            .collect()
     }
 
     /// What has this name can be clicked.

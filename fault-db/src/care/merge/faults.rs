@@ -22,7 +22,7 @@ impl Merge<'_> {
         traces: &Numbers,
     ) -> SqlResult<()> {
         let mut known = Known::default();
-        self.fault_rows(units, &mut known)?;
+        self.fault_rows(units, runs, &mut known)?;
         self.occurrences(runs, traces, &mut known)?;
         self.events(&mut known)?;
         for fault in &known.touched {
@@ -41,7 +41,7 @@ impl Merge<'_> {
         Ok(())
     }
 
-    fn fault_rows(&self, units: &Numbers, known: &mut Known) -> SqlResult<()> {
+    fn fault_rows(&self, units: &Numbers, runs: &Numbers, known: &mut Known) -> SqlResult<()> {
         let aliases = self.their_aliases()?;
         let mut select = self.theirs.prepare(
             "SELECT seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, line
@@ -60,6 +60,10 @@ impl Merge<'_> {
             let mut ours = ours.into_iter();
             let fault = match ours.next() {
                 Some(fault) => fault,
+                None if self.is_of_sealed_runs(theirs, runs)? => {
+                    known.left_out.insert(theirs);
+                    continue;
+                }
                 None => {
                     let mut fault = values(row, 1..11)?;
                     fault[1] = renumber(units, row.get(2)?);
@@ -79,6 +83,24 @@ impl Merge<'_> {
             known.numbers.insert(theirs, fault);
         }
         Ok(())
+    }
+
+    /// A fault we do not know was seen in nothing but runs that are over here: those saw no such fault, and are
+    /// told otherwise there.
+    fn is_of_sealed_runs(&self, theirs: i64, runs: &Numbers) -> rusqlite::Result<bool> {
+        let mut seen = self
+            .theirs
+            .prepare_cached("SELECT DISTINCT run FROM fault_occurrence WHERE fault = ?1")?;
+        let mut rows = seen.query([theirs])?;
+        let mut is_seen = false;
+        while let Some(row) = rows.next()? {
+            is_seen = true;
+            let ours = runs.get(&row.get(0)?);
+            if !ours.is_some_and(|run| self.sealed_runs.contains(run)) {
+                return Ok(false);
+            }
+        }
+        Ok(is_seen)
     }
 
     /// Their other ids, by the number of the fault.
@@ -132,6 +154,9 @@ impl Merge<'_> {
         )?;
         let mut rows = select.query([])?;
         while let Some(row) = rows.next()? {
+            if known.left_out.contains(&row.get(1)?) {
+                continue;
+            }
             let mut occurrence = values(row, 0..12)?;
             let fault = known.number(row.get(1)?);
             occurrence[1] = fault.map_or(Value::Null, Value::Integer);
@@ -140,6 +165,12 @@ impl Merge<'_> {
                 occurrence[8] = renumber(traces, trace);
             }
             let find = "SELECT seq FROM fault_occurrence WHERE id = ?1";
+            let is_sealed = runs
+                .get(&row.get(2)?)
+                .is_some_and(|run| self.sealed_runs.contains(run));
+            if is_sealed && !self.ours.prepare_cached(find)?.exists([&occurrence[0]])? {
+                continue;
+            }
             let insert = "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us,
                     message, freeze_json, trace, code, lru, line, unit)
                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12,
@@ -166,6 +197,9 @@ impl Merge<'_> {
         )?;
         let mut rows = select.query([])?;
         while let Some(row) = rows.next()? {
+            if known.left_out.contains(&row.get(1)?) {
+                continue;
+            }
             let mut event = values(row, 0..10)?;
             let fault = known.number(row.get(1)?);
             event[1] = fault.map_or(Value::Null, Value::Integer);
@@ -201,6 +235,8 @@ struct Known {
     numbers: Numbers,
     /// Faults of ours that something was added to.
     touched: BTreeSet<i64>,
+    /// Faults of theirs that belong to nothing here.
+    left_out: BTreeSet<i64>,
     /// Faults of ours that were theirs alone.
     added: BTreeSet<i64>,
 }

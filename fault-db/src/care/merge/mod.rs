@@ -4,6 +4,7 @@
 mod faults;
 mod rows;
 mod runs;
+mod same;
 mod seals;
 
 use std::collections::BTreeSet;
@@ -12,16 +13,17 @@ use std::path::Path;
 use rusqlite::{Connection, ErrorCode};
 use serde::Serialize;
 
-use super::backup::target_can_be_made;
 use crate::base::{Base, SqlError, SqlResult};
 use crate::error::StoreError;
 use crate::file::CACHE_KIB;
 use crate::id::Id;
+use crate::part::Part;
 use crate::store::{OpenOptions, Store};
+use crate::sync::Different;
 use rows::{MEASUREMENTS, RECORDINGS, SCRIPTS, STEPS};
 
-/// What a merge added.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+/// What a merge added, and what it did not.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MergeCounts {
     /// Units not known before.
     pub units: usize,
@@ -43,10 +45,13 @@ pub struct MergeCounts {
     pub recordings: usize,
     /// Notes on runs not known before.
     pub notes: usize,
+    /// Runs that are over here and there and do not say the same; here they were left as they are.
+    pub different: Vec<Different>,
 }
 
 impl Store {
-    /// Adds all that the other file has and this one has not, in one transaction.
+    /// Adds all that the other file has and this one has not, in one transaction. A run that is over here stays
+    /// as it is: it is sealed. If the other file tells it otherwise, it is named.
     pub fn import(&self, from: &Path) -> Result<MergeCounts, StoreError> {
         let same = |path: &Path| std::fs::canonicalize(path).ok();
         if same(from).is_some() && same(from) == same(self.path()) {
@@ -62,7 +67,7 @@ impl Store {
     /// Adds all that this file has to another one, which is created if need be.
     pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
         if !to.exists() {
-            target_can_be_made(to)?;
+            Part::can_be_made(to)?;
         }
         let target = Store::open(to, options)?;
         let counts = target.merge_from(self)?;
@@ -91,8 +96,11 @@ impl Store {
                     theirs,
                     ours,
                     base: self.base(),
+                    their_base: other.base(),
                     counts: MergeCounts::default(),
                     fresh_runs: BTreeSet::new(),
+                    sealed_runs: BTreeSet::new(),
+                    different_runs: BTreeSet::new(),
                 }
                 .all(file_id)
                 .map_err(|error| self.blame(other, error))
@@ -141,9 +149,15 @@ struct Merge<'a> {
     ours: &'a Connection,
     /// The same as `ours`, for what is asked of a server as well.
     base: &'a Base,
+    /// The same as `theirs`.
+    their_base: &'a Base,
     counts: MergeCounts,
     /// Runs added, or ended meanwhile.
     fresh_runs: BTreeSet<i64>,
+    /// Runs that were over here before: nothing is added to what they say.
+    sealed_runs: BTreeSet<i64>,
+    /// Those of them that are told otherwise there.
+    different_runs: BTreeSet<i64>,
 }
 
 impl Merge<'_> {
@@ -151,10 +165,12 @@ impl Merge<'_> {
     fn all(mut self, file_id: Id) -> SqlResult<MergeCounts> {
         let units = self.units()?;
         let runs = self.runs(&units)?;
+        self.compare(&runs)?;
         self.counts.steps = self.children(&runs, &STEPS)?;
         self.counts.measurements = self.children(&runs, &MEASUREMENTS)?;
         self.children(&runs, &SCRIPTS)?;
-        self.counts.recordings = self.children(&runs, &RECORDINGS)?;
+        // No part of what is sealed: it comes and goes with its traces.
+        self.counts.recordings = self.add(&runs, &RECORDINGS, &BTreeSet::new())?;
         self.notes(&runs)?;
         let channel_sets = self.channel_sets()?;
         let traces = self.traces(&runs, &channel_sets)?;

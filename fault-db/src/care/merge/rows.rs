@@ -1,6 +1,6 @@
 //! Rows carried over: found by what names them, added if they are not there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rusqlite::types::Value;
 use rusqlite::{OptionalExtension, params_from_iter};
@@ -11,8 +11,18 @@ use super::Merge;
 pub(super) type Numbers = BTreeMap<i64, i64>;
 
 impl Merge<'_> {
-    /// Copies a table whose rows are named by their run and their place in it.
+    /// Copies a table whose rows are named by their run and their place in it, but for runs that are sealed.
     pub(super) fn children(&self, runs: &Numbers, child: &Child) -> rusqlite::Result<usize> {
+        self.add(runs, child, &self.sealed_runs)
+    }
+
+    /// The same, but for these of our runs.
+    pub(super) fn add(
+        &self,
+        runs: &Numbers,
+        child: &Child,
+        but_for: &BTreeSet<i64>,
+    ) -> rusqlite::Result<usize> {
         let Child { table, columns } = child;
         let width = columns.split(',').count() + 1;
         let places = (1..=width)
@@ -28,8 +38,12 @@ impl Merge<'_> {
         let mut rows = select.query([])?;
         let mut added = 0;
         while let Some(row) = rows.next()? {
+            let run = renumber(runs, row.get(0)?);
+            if matches!(run, Value::Integer(run) if but_for.contains(&run)) {
+                continue;
+            }
             let mut child = values(row, 0..width)?;
-            child[0] = renumber(runs, row.get(0)?);
+            child[0] = run;
             added += insert.execute(params_from_iter(child))?;
         }
         Ok(added)

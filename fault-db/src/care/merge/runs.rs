@@ -52,10 +52,19 @@ impl Merge<'_> {
                 .execute(params![seq, run[7], run[8], run[9], run[10]])?;
             if is_new || ended > 0 {
                 self.fresh_runs.insert(seq);
+            } else if self.is_over(seq)? {
+                self.sealed_runs.insert(seq);
             }
             numbers.insert(row.get(0)?, seq);
         }
         Ok(numbers)
+    }
+
+    /// Whether a run of ours has its verdict: from then on it is sealed.
+    fn is_over(&self, run: i64) -> rusqlite::Result<bool> {
+        self.ours
+            .prepare_cached("SELECT verdict IS NOT NULL FROM run WHERE seq = ?1")?
+            .query_row([run], |row| row.get(0))
     }
 
     pub(super) fn notes(&mut self, runs: &Numbers) -> rusqlite::Result<()> {

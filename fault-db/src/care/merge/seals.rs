@@ -20,7 +20,8 @@ struct Theirs {
 
 impl Merge<'_> {
     /// Adds their seals. Where a copy of a file went on by itself, two runs have one place in the chain: ours
-    /// stays, and from there on theirs would fit nothing here.
+    /// stays, and from there on theirs would fit nothing here. The same holds from a run on that is sealed there
+    /// as something else than it is here.
     pub(super) fn seals(&self, runs: &Numbers) -> rusqlite::Result<()> {
         let mut select = self.theirs.prepare(
             "SELECT origin, ordinal, run, digest, hash FROM seal ORDER BY origin, ordinal",
@@ -45,6 +46,8 @@ impl Merge<'_> {
             let before = last.filter(|last| last.origin == theirs.origin);
             parted &= before.is_some();
             let place = params![theirs.origin, theirs.ordinal];
+            let run = runs.get(&theirs.run);
+            let is_different = run.is_some_and(|run| self.different_runs.contains(run));
             let ours: Option<Vec<u8>> = known.query_row(place, |row| row.get(0)).optional()?;
             match ours {
                 Some(ours) => {
@@ -52,10 +55,9 @@ impl Merge<'_> {
                     let fits = chained(before, &theirs.digest) == theirs.hash[..];
                     parted = ours != theirs.hash && (fits || parted);
                 }
-                None if parted => {}
+                None if parted || is_different => parted = true,
                 None => {
                     let Theirs { digest, hash, .. } = &theirs;
-                    let run = runs.get(&theirs.run);
                     insert.execute(params![theirs.origin, theirs.ordinal, run, digest, hash])?;
                 }
             }

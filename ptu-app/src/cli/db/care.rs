@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use clap::Args;
-use fault_db::{MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
+use fault_db::{Different, MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
+use serde_json::{json, to_value};
 
-use crate::cli::{Database, print_out, since_argument};
+use crate::cli::{Database, print_json, print_out, since_argument};
 use crate::clock;
 use crate::failure::{Exit, Failure};
 
@@ -36,22 +37,23 @@ impl Database {
         print_out(&format!("copied to {}", to.display()))
     }
 
-    pub(super) fn import(&self, from: &Path) -> Result<Exit, Failure> {
+    pub(super) fn import(&self, from: &Path, json: bool) -> Result<Exit, Failure> {
         let store = self.open()?;
         let counts = store.import(from);
         let counts = counts.map_err(|error| of_named_file(from, error))?;
-        let mut text = merged(&counts);
         // What was known before needs no telling again; what came just now may be a rival of it.
-        if counts.events > 0 {
-            text.extend(store.conflicts()?.iter().map(rivals));
-        }
-        print_out(&text)
+        let conflicts = match counts.events {
+            0 => Vec::new(),
+            _ => store.conflicts()?,
+        };
+        tell_merged(&counts, &conflicts, json)
     }
 
-    pub(super) fn export(&self, to: &Path) -> Result<Exit, Failure> {
+    pub(super) fn export(&self, to: &Path, json: bool) -> Result<Exit, Failure> {
         let store = self.open_read_only()?;
         let counts = store.export(to, clock::open_options());
-        print_out(&merged(&counts.map_err(|error| of_named_file(to, error))?))
+        let counts = counts.map_err(|error| of_named_file(to, error))?;
+        tell_merged(&counts, &[], json)
     }
 
     pub(super) fn prune(&self, arguments: &PruneArguments) -> Result<Exit, Failure> {
@@ -87,6 +89,31 @@ fn of_named_file(file: &Path, error: StoreError) -> Failure {
             .replace("choose another file with --db", "name another file");
     }
     failure
+}
+
+/// What a merge did, and what it left as it was, with the next move.
+fn tell_merged(
+    counts: &MergeCounts,
+    conflicts: &[StateConflict],
+    json: bool,
+) -> Result<Exit, Failure> {
+    if json {
+        let mut all = to_value(counts).map_err(|error| Failure::bench(error.to_string()))?;
+        all["conflicts"] = json!(conflicts);
+        print_json(&all)?;
+    } else {
+        let rivals: String = conflicts.iter().map(rivals).collect();
+        print_out(&(merged(counts) + &rivals))?;
+    }
+    for Different { what, id } in &counts.different {
+        eprintln!(
+            "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
+        );
+    }
+    Ok(match counts.different.is_empty() {
+        true => Exit::Passed,
+        false => Exit::Bench,
+    })
 }
 
 fn merged(counts: &MergeCounts) -> String {

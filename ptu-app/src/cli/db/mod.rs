@@ -37,14 +37,26 @@ enum Verb {
         to: PathBuf,
     },
     /// Add everything of another database that is not here yet
+    ///
+    /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
+    /// code is 3.
     Import {
         /// The other file
         from: PathBuf,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Add everything that is here to another database
+    ///
+    /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
+    /// code is 3.
     Export {
         /// The other file, made if need be
         to: PathBuf,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Delete old traces that no open fault needs; runs and faults stay
     Prune(care::PruneArguments),
@@ -61,8 +73,8 @@ impl DbArguments {
             Verb::Check { json } => self.database.check(json),
             Verb::Rebuild => self.database.rebuild(),
             Verb::Backup { to } => self.database.backup(&to),
-            Verb::Import { from } => self.database.import(&from),
-            Verb::Export { to } => self.database.export(&to),
+            Verb::Import { from, json } => self.database.import(&from, json),
+            Verb::Export { to, json } => self.database.export(&to, json),
             Verb::Prune(arguments) => self.database.prune(&arguments),
             Verb::Sync(arguments) => arguments.run(&self.database),
             Verb::Query(arguments) => arguments.query(&self.database),

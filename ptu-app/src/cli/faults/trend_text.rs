@@ -150,7 +150,7 @@ fn process_text(trend: &Trend, process: &Process) -> String {
         lines.push(format!(
             "slope {} ± {} {unit} in 30 days{certain}",
             signed(line.slope_per_day * MONTH_DAYS),
-            two_digits(1.96 * line.slope_error * MONTH_DAYS),
+            two_digits(line.slope_reach() * MONTH_DAYS),
         ));
     }
     if let Some(forecast) = process.forecast(limits.low, limits.high) {

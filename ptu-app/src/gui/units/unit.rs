@@ -67,6 +67,12 @@ impl Unit {
         matches!(self.phase(), Phase::Idle | Phase::Running)
     }
 
+    /// A unit is there and waits for a run: nothing is run, nor ordered and not begun yet. A bench that is
+    /// held up takes seconds to begin what it was told.
+    pub fn may_run(&self) -> bool {
+        self.phase() == Phase::Idle && !self.run.as_ref().is_some_and(Progress::is_running)
+    }
+
     /// Who it is.
     pub fn identity(&self) -> Option<Identity> {
         self.station.live().identity
@@ -97,7 +103,7 @@ impl Unit {
 
     /// Begins a run, if nothing else has the bench; whether it did.
     pub fn begin(&mut self, order: RunOrder) -> bool {
-        if self.phase() != Phase::Idle {
+        if !self.may_run() {
             return false;
         }
         self.run = Some(Progress::new(&order.plan, self.name()));
@@ -230,5 +236,120 @@ impl Said<'_> {
     fn tell(&mut self, text: impl Into<String>) {
         let text = self.named(text);
         self.messages.tell(text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, OnceLock};
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::data::ScriptsDirectory;
+    use crate::run::{RunPlan, Suite, Task};
+    use crate::station::Board;
+    use crate::words::Language;
+
+    /// Longest time anything here takes to come about.
+    const PATIENCE: Duration = Duration::from_secs(300);
+
+    fn scripts() -> ScriptsDirectory {
+        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts");
+        ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts")
+    }
+
+    /// Whoever looks on holds up the bench's thread, once it shows an idle unit, until it is let go.
+    #[derive(Default)]
+    struct HeldUp(OnceLock<Arc<Board>>, OnceLock<()>);
+
+    impl HeldUp {
+        fn look(&self) {
+            let on_bench = std::thread::current().name() == Some("bench");
+            let idle = |board: &Arc<Board>| board.read().phase == Phase::Idle;
+            if on_bench && self.0.get().is_some_and(idle) {
+                self.1.wait();
+            }
+        }
+    }
+
+    /// Lets it go also when the test fails: a unit waits for its bench's thread.
+    struct LetGo(Arc<HeldUp>);
+
+    impl Drop for LetGo {
+        fn drop(&mut self) {
+            let _ = self.0.1.set(());
+        }
+    }
+
+    fn order(database: &std::path::Path, setup: &BenchSetup) -> RunOrder {
+        let chosen = ["door/interlocks".to_owned()];
+        let suite = Suite::load(&scripts(), &chosen, setup).expect("the suite");
+        let task = |procedure| Task {
+            procedure,
+            options: Default::default(),
+        };
+        RunOrder {
+            plan: RunPlan {
+                tasks: suite.procedures.into_iter().map(task).collect(),
+                jobs: 1,
+                stop_on_fail: false,
+                operator: String::new(),
+                train: String::new(),
+                scripts_sha256: suite.sha256,
+                adaptive: None,
+            },
+            store: fault_db::Store::open(database, crate::clock::open_options())
+                .expect("a database"),
+            realtime: false,
+        }
+    }
+
+    /// Goal: one click is one run. Method: a bench that is held up and takes its orders late; what is
+    /// ordered meanwhile is refused, until the run is over.
+    #[test]
+    fn a_run_that_a_bench_has_not_begun_yet_is_not_ordered_again() {
+        let held_up = Arc::<HeldUp>::default();
+        let wake = {
+            let held_up = held_up.clone();
+            Arc::new(move || held_up.look())
+        };
+        let mut unit = Unit::new(0, UnitChoice::default(), wake).expect("a thread");
+        let let_go = LetGo(held_up.clone());
+        assert!(held_up.0.set(unit.station.board().clone()).is_ok());
+        let choice = unit.choice.named().expect("the embedded unit");
+        let setup = choice.setup(&scripts()).expect("its configuration");
+        let connection = unit.choice.connection();
+        unit.station.connect(setup.clone(), connection);
+        let began = Instant::now();
+        let until = |unit: &mut Unit, holds: &dyn Fn(&Unit) -> bool| {
+            let mut messages = Messages::default();
+            while !holds(unit) {
+                assert!(began.elapsed() < PATIENCE, "waited in vain");
+                let mut said = Said {
+                    unit: None,
+                    messages: &mut messages,
+                };
+                unit.poll(Language::English.words(), &mut said);
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        };
+        until(&mut unit, &|unit| unit.phase() == Phase::Idle);
+        assert!(unit.may_run());
+
+        let folder = tempfile::tempdir().expect("a folder");
+        let database = folder.path().join("history.db");
+        assert!(unit.begin(order(&database, &setup)));
+        // As far as anybody sees, nothing has begun.
+        assert_eq!(unit.phase(), Phase::Idle);
+        assert!(!unit.may_run());
+        assert!(!unit.begin(order(&database, &setup)));
+
+        drop(let_go);
+        until(&mut unit, &|unit| unit.may_run());
+        assert_eq!(unit.runs_ended, 1);
+        assert!(unit.run.as_ref().is_some_and(|run| run.id().is_some()));
+        assert!(unit.begin(order(&database, &setup)), "and then again");
+        until(&mut unit, &|unit| unit.may_run());
+        assert_eq!(unit.runs_ended, 2);
     }
 }

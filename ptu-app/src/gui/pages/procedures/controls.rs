@@ -25,7 +25,7 @@ impl ProceduresPage {
     fn begin(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, phase: Phase) {
         let words = &desk.words.procedures;
         let sound = matches!(&self.suite, Asked::There(suite) if suite.errors.is_empty());
-        let may = phase == Phase::Idle && sound && self.orders.is_empty();
+        let may = desk.units.chosen().may_run() && sound && self.orders.is_empty();
         let run = Button::new(RichText::new(words.run).strong().size(17.0));
         let run = ui.add_enabled(may, run);
         if run.on_disabled_hover_text(words.connect_first).clicked() {
@@ -36,7 +36,7 @@ impl ProceduresPage {
             self.order(desk.units.chosen().id, true, desk);
         }
         if desk.units.count() > 1 {
-            let idle = desk.units.iter().filter(|unit| unit.phase() == Phase::Idle);
+            let idle = desk.units.iter().filter(|unit| unit.may_run());
             let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
             let may = sound && !ready.is_empty() && self.orders.is_empty();
             let all = ui.add_enabled(may, Button::new(words.run_all));

@@ -16,7 +16,6 @@ use crate::gui::library::Asked;
 use crate::gui::parts::RunNoteForm;
 use crate::gui::{Desk, Palette, UnitChoice};
 use crate::run::Suite;
-use crate::station::Phase;
 use crate::words::fill;
 use prepare::{How, Prepared};
 use results::Shown;
@@ -97,7 +96,7 @@ impl ProceduresPage {
     pub fn run_step(&mut self, procedure: String, step: String, unit: &str, desk: &mut Desk<'_>) {
         let words = &desk.words.procedures;
         let chosen = desk.units.chosen();
-        if chosen.phase() != Phase::Idle {
+        if !chosen.may_run() {
             desk.messages.trouble(words.connect_first, "");
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
@@ -276,12 +275,17 @@ impl ProceduresPage {
         let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
         let texts = texts.map(|suite| &suite.texts);
         let answer = present::present(ui, words, run, texts);
-        let conclusion = self.conclusion.value();
+        let note = (&mut self.note, desk.settings.operator.as_str());
+        results::after_run(ui, (words, desk.library), run, note, desk.go);
+        // It comes later: below what is written and clicked meanwhile, and in a place kept for it.
+        let conclusion = match &self.conclusion {
+            Asked::There(conclusion) => Some(conclusion.as_str()),
+            Asked::Pending(_) => Some(words.common.loading),
+            Asked::Not | Asked::Failed(_) => None,
+        };
         if let Some(conclusion) = conclusion.filter(|_| self.concluded == run.id()) {
             ui.label(RichText::new(conclusion).strong().size(17.0));
         }
-        let note = (&mut self.note, desk.settings.operator.as_str());
-        results::after_run(ui, (words, desk.library), run, note, desk.go);
         results::results(ui, words, run, &mut self.shown, texts);
         if let Some(yes) = answer {
             desk.units.chosen_mut().answer(yes);

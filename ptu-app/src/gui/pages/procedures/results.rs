@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
-use eframe::egui::{Button, Grid, RichText, ScrollArea, Ui};
+use eframe::egui::{Button, Grid, Id, RichText, ScrollArea, Ui, UiBuilder};
 
 use crate::gui::library::Library;
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
@@ -33,7 +33,9 @@ pub fn after_run(
     go: &mut Vec<Go>,
 ) {
     let Some(id) = run.id() else { return };
-    ui.horizontal(|ui| {
+    // A name of its own: what comes and goes above takes neither the focus nor a click away.
+    let named = UiBuilder::new().scope_id(Id::unique(("after run", id)));
+    let row = |ui: &mut Ui| {
         let found = !run.faults.is_empty() || run.not_passed > 0;
         let button = Button::new(RichText::new(words.procedures.to_diagnosis).strong());
         if ui.add_enabled(found, button).clicked() {
@@ -43,7 +45,8 @@ pub fn after_run(
             go.push(Go::Report(id));
         }
         note.show(ui, words, library, who, id);
-    });
+    };
+    ui.scope_builder(named, |ui| ui.horizontal(row));
 }
 
 /// Steps that did not pass, or all, and faults.

@@ -1,0 +1,186 @@
+//! A copy of a file being made beside its place. It has its name only when it is complete: one cut short is
+//! worse than none.
+
+use std::hash::{BuildHasher as _, RandomState};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use rusqlite::{Connection, OpenFlags};
+
+use crate::error::StoreError;
+use crate::schema;
+
+/// Nobody works any more at a copy that nothing was written to for so long.
+const GIVEN_UP: Duration = Duration::from_secs(3_600);
+
+/// A whole copy that has not got its name yet. Dropped without being published it is removed.
+pub(crate) struct Part {
+    beside: PathBuf,
+    to: PathBuf,
+}
+
+impl Part {
+    /// Copies a whole file, compacted, beside `to`, under a name that no other program takes. What a program
+    /// that was killed has left of a copy to the same place is removed.
+    pub fn copy(conn: &Connection, to: &Path, doing: &'static str) -> Result<Self, StoreError> {
+        for left in left_of(to) {
+            let _ = std::fs::remove_file(left);
+        }
+        let part = Self::of(to);
+        let name = part.beside.to_str().ok_or_else(|| StoreError::CannotOpen {
+            path: to.to_path_buf(),
+            reason: "the name is not UTF-8".to_owned(),
+        })?;
+        // What fails here is the target: the source was readable a moment ago.
+        conn.execute("VACUUM INTO ?1", [name])
+            .map_err(|error| StoreError::from_sqlite(to, doing, error))?;
+        Ok(part)
+    }
+
+    /// Holds a file that is to be made to a folder that is there and lets files be made in it.
+    ///
+    /// # Errors
+    /// [`StoreError::CannotWrite`], with what the system says, as SQLite does not.
+    pub fn can_be_made(to: &Path) -> Result<(), StoreError> {
+        let cannot = |reason| StoreError::CannotWrite {
+            path: to.to_path_buf(),
+            reason,
+        };
+        let folder = to
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
+        if let Some(folder) = folder {
+            return Err(cannot(format!("there is no folder {}", folder.display())));
+        }
+        // Beside it: its own name may be another program's the next moment.
+        let part = Self::of(to);
+        let made = std::fs::File::create_new(&part.beside);
+        made.map(drop).map_err(|error| cannot(error.to_string()))
+    }
+
+    /// Nothing yet, under a name of its own.
+    fn of(to: &Path) -> Self {
+        let mut name = to.as_os_str().to_owned();
+        let random = RandomState::new().hash_one(to);
+        name.push(format!(".{}-{random:016x}.part", std::process::id()));
+        Self {
+            beside: name.into(),
+            to: to.to_path_buf(),
+        }
+    }
+
+    /// The schema version of what was copied.
+    pub fn version(&self) -> Result<i32, StoreError> {
+        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        Connection::open_with_flags(&self.beside, flags)
+            .and_then(|copy| schema::user_version(&copy))
+            .map_err(|error| StoreError::from_sqlite(&self.to, "reading a copy", error))
+    }
+
+    /// Gives the copy its name, which nothing may have got meanwhile.
+    ///
+    /// # Errors
+    /// Something has; or the disk's.
+    pub fn publish(self) -> Result<(), StoreError> {
+        let linked = match std::fs::hard_link(&self.beside, &self.to) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => self.rename(),
+            done => done,
+        };
+        linked.map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => StoreError::TargetExists {
+                path: self.to.clone(),
+            },
+            _ => StoreError::Io {
+                path: self.to.clone(),
+                reason: error.to_string(),
+            },
+        })
+    }
+
+    /// The same on a disk without hard links, as memory sticks are: an empty file takes the name first.
+    fn rename(&self) -> std::io::Result<()> {
+        std::fs::File::create_new(&self.to)?;
+        let renamed = std::fs::rename(&self.beside, &self.to);
+        if renamed.is_err() {
+            let _ = std::fs::remove_file(&self.to);
+        }
+        renamed
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        // Of a published one this is the other name, if it still has it.
+        let _ = std::fs::remove_file(&self.beside);
+    }
+}
+
+/// Copies to this place that nobody works at any more.
+fn left_of(to: &Path) -> Vec<PathBuf> {
+    let (Some(folder), Some(name)) = (to.parent(), to.file_name()) else {
+        return Vec::new();
+    };
+    let here = Path::new(".");
+    let folder = if folder == Path::new("") {
+        here
+    } else {
+        folder
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let left = entries.filter(|entry| {
+        let entry_name = entry.file_name();
+        let end = (entry_name.as_encoded_bytes()).strip_prefix(name.as_encoded_bytes());
+        let maker = end.and_then(maker);
+        maker.is_some_and(|maker| is_gone(maker) || is_given_up(entry))
+    });
+    left.map(|entry| entry.path()).collect()
+}
+
+/// The number of the process that makes a copy, by what follows the name it is to have.
+fn maker(end: &[u8]) -> Option<u32> {
+    let end = std::str::from_utf8(end).ok()?;
+    let end = end.strip_prefix('.')?.strip_suffix(".part")?;
+    let (process, random) = end.split_once('-')?;
+    let is_ours = random.len() == 16 && random.bytes().all(|digit| digit.is_ascii_hexdigit());
+    process.parse().ok().filter(|_| is_ours)
+}
+
+/// Where processes can be looked up.
+fn is_gone(process: u32) -> bool {
+    Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{process}")).exists()
+}
+
+fn is_given_up(entry: &std::fs::DirEntry) -> bool {
+    let written = entry.metadata().and_then(|file| file.modified());
+    let since = written.ok().and_then(|at| at.elapsed().ok());
+    since.is_some_and(|since| since > GIVEN_UP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a disk without hard links, too, a name that is taken stays with the file that has it.
+    #[test]
+    fn without_hard_links_nothing_is_replaced_either() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let part = |to: &str| {
+            let part = Part {
+                beside: dir.path().join(format!("{to}.part")),
+                to: dir.path().join(to),
+            };
+            std::fs::write(&part.beside, "new").expect("written");
+            part
+        };
+        let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).expect("there");
+        std::fs::write(dir.path().join("taken"), "old").expect("written");
+        let refused = part("taken").rename().expect_err("taken");
+        assert_eq!(refused.kind(), ErrorKind::AlreadyExists);
+        assert_eq!(read("taken"), "old");
+        part("free").rename().expect("renamed");
+        assert_eq!(read("free"), "new");
+        let names = std::fs::read_dir(dir.path()).expect("read").count();
+        assert_eq!(names, 2, "nothing is left beside them");
+    }
+}
