@@ -94,7 +94,7 @@ const QUESTIONS: [Question; 14] = [
         list(
             store,
             FaultFilter {
-                state: Some(FaultState::Open),
+                states: vec![FaultState::Open],
                 ..FaultFilter::default()
             },
         )
@@ -171,7 +171,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let as_json = arguments.iter().any(|argument| argument == "--json");
     let store = Store::open_read_only(Path::new(file))?;
-    let (first_us, last_us) = store.history_span()?.ok_or("a history without faults")?;
+    let (first_us, last_us) = store.history_span()?.ok_or("an empty history")?;
     let units = store.query_read_only("SELECT serial FROM unit ORDER BY serial", 10_000)?;
     let units: Vec<_> = units
         .rows

@@ -174,6 +174,14 @@ pub enum StoreError {
         /// The target asked for.
         path: PathBuf,
     },
+    /// A backup or export cannot be made where it was asked for.
+    #[error("cannot write {}: {reason}; name another target", .path.display())]
+    CannotWrite {
+        /// The target asked for.
+        path: PathBuf,
+        /// What is missing, or what the system said.
+        reason: String,
+    },
     /// The same file was given as source and target.
     #[error("{} cannot be merged into itself; name another file", .path.display())]
     SameFile {

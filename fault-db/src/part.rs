@@ -27,13 +27,7 @@ impl Part {
         for left in left_of(to) {
             let _ = std::fs::remove_file(left);
         }
-        let mut name = to.as_os_str().to_owned();
-        let random = RandomState::new().hash_one(doing);
-        name.push(format!(".{}-{random:016x}.part", std::process::id()));
-        let part = Self {
-            beside: name.into(),
-            to: to.to_path_buf(),
-        };
+        let part = Self::of(to);
         let name = part.beside.to_str().ok_or_else(|| StoreError::CannotOpen {
             path: to.to_path_buf(),
             reason: "the name is not UTF-8".to_owned(),
@@ -42,6 +36,38 @@ impl Part {
         conn.execute("VACUUM INTO ?1", [name])
             .map_err(|error| StoreError::from_sqlite(to, doing, error))?;
         Ok(part)
+    }
+
+    /// Holds a file that is to be made to a folder that is there and lets files be made in it.
+    ///
+    /// # Errors
+    /// [`StoreError::CannotWrite`], with what the system says, as SQLite does not.
+    pub fn can_be_made(to: &Path) -> Result<(), StoreError> {
+        let cannot = |reason| StoreError::CannotWrite {
+            path: to.to_path_buf(),
+            reason,
+        };
+        let folder = to
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
+        if let Some(folder) = folder {
+            return Err(cannot(format!("there is no folder {}", folder.display())));
+        }
+        // Beside it: its own name may be another program's the next moment.
+        let part = Self::of(to);
+        let made = std::fs::File::create_new(&part.beside);
+        made.map(drop).map_err(|error| cannot(error.to_string()))
+    }
+
+    /// Nothing yet, under a name of its own.
+    fn of(to: &Path) -> Self {
+        let mut name = to.as_os_str().to_owned();
+        let random = RandomState::new().hash_one(to);
+        name.push(format!(".{}-{random:016x}.part", std::process::id()));
+        Self {
+            beside: name.into(),
+            to: to.to_path_buf(),
+        }
     }
 
     /// The schema version of what was copied.

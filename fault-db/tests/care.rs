@@ -457,10 +457,9 @@ fn filters_stats_and_trends_answer() {
     );
     let closed = store.faults(&FaultFilter::default()).expect("listed")[0].id;
     close_fault(&store, closed);
-    let state = Some(FaultState::Closed);
     assert_eq!(
         count(FaultFilter {
-            state,
+            states: vec![FaultState::Closed],
             ..Default::default()
         }),
         1

@@ -105,7 +105,7 @@ fn what_happened_is_counted_and_sealed_like_new() {
         assert_eq!(new.merge_from(&store).expect("merged").faults, 2);
         assert_eq!(new.check().expect("checked").problems, []);
         let closed = fault_db::FaultFilter {
-            state: Some(FaultState::Closed),
+            states: vec![FaultState::Closed],
             ..Default::default()
         };
         assert_eq!(new.faults(&closed).expect("listed").len(), 1);

@@ -96,13 +96,75 @@ impl From<StoreError> for Failure {
     }
 }
 
-/// ` (did you mean "x"?)` for the known name nearest to `asked`, or nothing.
+/// ` (did you mean "x"?)` for the known name nearest to `asked`, in capitals or not; or nothing.
 pub fn did_you_mean<'a>(asked: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    known
+    let asked = asked.to_lowercase();
+    let near = known
         .into_iter()
-        .map(|name| (strsim::jaro_winkler(asked, name), name))
+        .map(|name| (strsim::jaro_winkler(&asked, &name.to_lowercase()), name))
         .filter(|(score, _)| *score > 0.75)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, name)| format!(" (did you mean \"{name}\"?)"))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    meant(near.map(|(_, name)| name))
+}
+
+/// The same for serial numbers: those of a fleet are all alike, and one with another digit is another
+/// unit's. What is near differs in capitals or signs, or is a slip of one key.
+pub fn did_you_mean_number<'a>(asked: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let plain = |text: &str| -> String {
+        let letters = text.chars().filter(|letter| letter.is_alphanumeric());
+        letters.flat_map(char::to_lowercase).collect()
+    };
+    let asked = plain(asked);
+    let near = known
+        .into_iter()
+        .map(|name| (slips(&asked, &plain(name)), name))
+        .filter(|(slips, _)| *slips < 2)
+        .min_by_key(|(slips, _)| *slips);
+    meant(near.map(|(_, name)| name))
+}
+
+/// Keys pressed wrong, where another digit is none.
+fn slips(asked: &str, name: &str) -> usize {
+    let both = || asked.chars().zip(name.chars());
+    let other_digits = both().filter(|(a, b)| a != b && a.is_ascii_digit() && b.is_ascii_digit());
+    let same_length = asked.chars().count() == name.chars().count();
+    match other_digits.count() {
+        1 if same_length => usize::MAX,
+        _ => strsim::osa_distance(asked, name),
+    }
+}
+
+fn meant(name: Option<&str>) -> String {
+    name.map(|name| format!(" (did you mean \"{name}\"?)"))
         .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_serial_number_is_near_unless_it_is_another_one() {
+        let known = ["ATC-1001", "ATC-1002", "SG-0142"];
+        for (asked, near) in [
+            ("atc-1001", " (did you mean \"ATC-1001\"?)"),
+            ("ATC 1002", " (did you mean \"ATC-1002\"?)"),
+            ("SG-142", " (did you mean \"SG-0142\"?)"),
+            ("SG-0412", " (did you mean \"SG-0142\"?)"),
+            ("ATV-1001", " (did you mean \"ATC-1001\"?)"),
+            ("ATC-1003", ""),
+            ("BTC-1004", ""),
+            ("99", ""),
+            ("", ""),
+        ] {
+            assert_eq!(did_you_mean_number(asked, known), near, "{asked}");
+        }
+    }
+
+    #[test]
+    fn a_name_is_near_in_capitals_or_not() {
+        let hint = did_you_mean("EB_RELY", ["tacho_a", "eb_relay"]);
+        assert_eq!(hint, " (did you mean \"eb_relay\"?)");
+        assert_eq!(did_you_mean("xyz", ["eb_relay"]), "");
+    }
 }

@@ -2,11 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use ptu_app::cli::Cli;
 
 fn main() -> ExitCode {
-    match Cli::parse().run() {
+    match Cli::asked().run() {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {
             eprintln!("ptu: {failure}");

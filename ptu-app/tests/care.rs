@@ -21,7 +21,8 @@ fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one(
         &repair[..],
         &["--who", "Lee", "--note", "worn"],
     ];
-    place.ptu(&arguments.concat()).exits(0);
+    let said = place.ptu(&arguments.concat()).exits(0);
+    assert_eq!(said.err, "", "a part that a fault named");
     assert_eq!(state(), "repaired");
     for next in ["verified", "closed"] {
         place.ptu(&["faults", "state", id, next]).exits(0);
@@ -44,6 +45,29 @@ fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one(
     assert_ne!(faults[0]["id"], *id);
 }
 
+/// Goal: a slip in a part's name is told, and a part that no fault ever named is not.
+#[test]
+fn a_repair_of_a_part_nothing_knows_is_told_of_the_one_that_is_near() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = relay_fault(&place);
+    let repaired = |part: &str| {
+        let said = place.ptu(&["faults", "repair", text(&fault["id"]), "--part", part]);
+        said.exits(0).err
+    };
+    let near = "did you mean \"eb_relay\"?";
+    let said = repaired("eb_rely");
+    assert!(
+        said.contains(near) && said.contains("recorded as it is"),
+        "{said}"
+    );
+    assert_eq!(repaired("eb_rely"), "", "known by the repair before");
+    assert_eq!(repaired("EB_Relay"), "");
+    assert_eq!(repaired("zinc block"), "", "nothing is near");
+    let shown = place.ptu(&["faults", "show", text(&fault["id"])]).exits(0);
+    assert!(shown.out.contains("eb_rely ?"), "{}", shown.out);
+}
+
 #[test]
 fn the_database_is_checked_copied_merged_and_asked() {
     let place = Place::new();
@@ -60,6 +84,23 @@ fn the_database_is_checked_copied_merged_and_asked() {
         .ptu(&["db", "backup", "copy.db"])
         .exits(2)
         .explains(&["copy.db exists already"]);
+    for verb in ["backup", "export"] {
+        place
+            .ptu(&["db", verb, "/no/such/folder/copy.db"])
+            .exits(3)
+            .explains(&["there is no folder /no/such/folder", "name another target"]);
+        // /proc refuses new files even to root.
+        place
+            .ptu(&["db", verb, "/proc/self/copy.db"])
+            .exits(3)
+            .explains(&["cannot write /proc/self/copy.db", "name another target"]);
+    }
+    place.write("notes.txt", "short\n");
+    for file in ["notes.txt", "missing.db"] {
+        let said = place.ptu(&["db", "import", file]).exits(3);
+        assert!(!said.err.contains("--db"), "{}", said.all());
+        said.explains(&[file, "; name another file"]);
+    }
 
     let said = place.ptu(&["db", "export", "depot.db"]).exits(0);
     assert!(said.out.contains("added 1 runs"), "{}", said.all());
@@ -144,10 +185,12 @@ fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
         .ptu(&["db", "prune", "--older-than", "2999-01", "--dry-run"])
         .exits(0);
     assert!(dry.out.contains("would go"), "{}", dry.all());
+    assert!(!dry.out.contains("smaller"), "{}", dry.all());
     assert_eq!(traces(), all);
-    place
+    let pruned = place
         .ptu(&["db", "prune", "--older-than", "2999-01"])
         .exits(0);
+    assert!(pruned.out.contains("smaller"), "{}", pruned.all());
     assert_eq!(traces(), 0.0);
     assert_eq!(place.run_ids().len(), 1, "runs stay");
     assert!(

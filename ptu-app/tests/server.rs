@@ -32,6 +32,7 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
         &["faults", "list", "--json"],
         &["faults", "show", "latest", "--json"],
         &["faults", "stats", "--by", "lru", "--json"],
+        &["faults", "stats", "--by", "month", "--json"],
         &["faults", "trend", "eb_reaction", "--json"],
         &["trace", "show", "latest", "--json"],
         &["diagnose", "latest", "--json"],

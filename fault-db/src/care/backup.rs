@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::error::StoreError;
 use crate::file::copy_to;
+use crate::part::Part;
 use crate::store::Store;
 
 impl Store {
@@ -14,6 +15,8 @@ impl Store {
                 path: to.to_path_buf(),
             });
         }
-        copy_to(self.file()?, to, "backing up")
+        let conn = self.file()?;
+        Part::can_be_made(to)?;
+        copy_to(conn, to, "backing up")
     }
 }

@@ -17,14 +17,14 @@ pub struct FaultFilter {
     pub serial: Option<String>,
     /// The train its unit was in.
     pub train: Option<String>,
-    /// Number (decimal, or hex after `0x`) or name of the fault.
+    /// Number (decimal, or hex after `0x`) or name of the fault; or several of these, with commas between.
     pub code: Option<String>,
     /// The part it points at.
     pub lru: Option<String>,
     /// How bad it is.
     pub severity: Option<String>,
-    /// Where it stands.
-    pub state: Option<FaultState>,
+    /// Where it stands: in one of these; none does not restrict.
+    pub states: Vec<FaultState>,
     /// Seen in this procedure.
     pub procedure: Option<String>,
     /// Line of the run that saw it.
@@ -125,14 +125,15 @@ impl Resolved<'_> {
             serial,
             train,
             severity,
-            state,
+            states,
             procedure,
             run,
             note,
             ..
         } = self.filter;
         let texts = [serial, train, severity, procedure, note];
-        let is_plain = texts.iter().all(|text| text.is_none()) && state.is_none() && run.is_none();
+        let is_plain =
+            texts.iter().all(|text| text.is_none()) && states.is_empty() && run.is_none();
         let asked = [
             self.unit.is_some(),
             self.codes.is_some(),
@@ -186,7 +187,11 @@ impl Resolved<'_> {
             &of_fault("lower(f.severity) = lower(?)"),
             filter.severity.clone(),
         );
-        all.add(&of_fault("f.state = ?"), filter.state);
+        if !filter.states.is_empty() {
+            let states = filter.states.iter().map(|state| all.place(*state));
+            let states = states.collect::<Vec<_>>().join(", ");
+            all.require(of_fault(&format!("f.state IN ({states})")));
+        }
         self.of_occurrence(of, fault, seen, &mut all);
         if let Some(search) = &self.search {
             let typed = filter.note.clone().unwrap_or_default();
@@ -375,20 +380,33 @@ fn search(note: &str) -> Result<Search, StoreError> {
     })
 }
 
-/// The numbers of a code: itself, or those of the faults of that name.
-fn codes(store: &Store, code: &str) -> Result<Vec<i64>, StoreError> {
-    let number = match code.strip_prefix("0x") {
+/// The numbers of codes: themselves, or those of the faults of that name.
+fn codes(store: &Store, asked: &str) -> Result<Vec<i64>, StoreError> {
+    let mut numbers = Vec::new();
+    let mut known = None;
+    for code in asked.split(',').map(str::trim) {
+        if let Some(number) = code_number(code) {
+            numbers.push(number);
+            continue;
+        }
+        if known.is_none() {
+            known = Some(store.known_codes()?);
+        }
+        let named = known.iter().flatten();
+        let named = named.filter(|(_, name)| name.eq_ignore_ascii_case(code));
+        numbers.extend(named.map(|(number, _)| *number));
+    }
+    numbers.sort_unstable();
+    numbers.dedup();
+    Ok(numbers)
+}
+
+/// A code written as its number: decimal, or hex after `0x`.
+pub fn code_number(code: &str) -> Option<i64> {
+    match code.strip_prefix("0x") {
         Some(hex) => i64::from_str_radix(hex, 16).ok(),
         None => code.parse().ok(),
-    };
-    if let Some(number) = number {
-        return Ok(vec![number]);
     }
-    let known = store.known_codes()?;
-    let named = known
-        .into_iter()
-        .filter(|(_, name)| name.eq_ignore_ascii_case(code));
-    Ok(named.map(|(number, _)| number).collect())
 }
 
 /// A part's name as it was written, in capitals or not.
@@ -399,31 +417,6 @@ fn lrus(store: &Store, lru: &str) -> Result<Vec<String>, StoreError> {
 }
 
 impl Store {
-    /// Every code a fault was ever recorded with, and its latest name.
-    pub fn known_codes(&self) -> Result<Vec<(i64, String)>, StoreError> {
-        // From one code to the next by index: all faults need not be looked at.
-        let sql = "WITH RECURSIVE c(code) AS (
-                SELECT min(code) FROM fault
-                UNION ALL SELECT (SELECT min(f.code) FROM fault f WHERE f.code > c.code)
-                FROM c WHERE c.code IS NOT NULL)
-            SELECT code, (SELECT f.code_name FROM fault f WHERE f.code = c.code
-                ORDER BY f.last_at_us DESC LIMIT 1)
-            FROM c WHERE code IS NOT NULL ORDER BY code";
-        self.select("listing codes", sql, &[], |row| {
-            Ok((row.get(0)?, row.get(1)?))
-        })
-    }
-
-    /// Every part a fault ever pointed at.
-    pub fn known_lrus(&self) -> Result<Vec<String>, StoreError> {
-        let sql = "WITH RECURSIVE c(lru) AS (
-                SELECT min(lru) FROM fault
-                UNION ALL SELECT (SELECT min(f.lru) FROM fault f WHERE f.lru > c.lru)
-                FROM c WHERE c.lru IS NOT NULL)
-            SELECT lru FROM c WHERE lru IS NOT NULL ORDER BY lru";
-        self.select("listing parts", sql, &[], |row| row.get(0))
-    }
-
     pub(super) fn unit_seq(&self, serial: &str) -> Result<i64, StoreError> {
         let found = self.first(
             "looking up a unit",

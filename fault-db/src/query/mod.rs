@@ -5,6 +5,7 @@ mod fault_filter;
 mod faults;
 mod filter;
 mod history;
+mod known;
 mod runs;
 mod signs;
 mod sql;
@@ -14,7 +15,7 @@ mod traces;
 mod trend;
 
 pub use daily::DailyCount;
-pub use fault_filter::FaultFilter;
+pub use fault_filter::{FaultFilter, code_number};
 pub use faults::{FaultDetail, FaultEvent, FaultSummary, Occurrence};
 pub use history::{LOG_SOURCE, PartHistory, PartRepair, SAME_ENTRY_US};
 pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary, StepDetail};

@@ -199,6 +199,18 @@ fn lists() -> Vec<Question> {
         question("codes and parts", |store| {
             Ok((store.known_codes()?, store.known_lrus()?))
         }),
+        question("names", |store| {
+            let names = [
+                store.known_parts()?,
+                store.known_units()?,
+                store.known_trains()?,
+                store.known_lines()?,
+                store.known_procedures()?,
+                store.known_part_serials()?,
+            ];
+            assert!(names.iter().all(|names| !names.is_empty()), "{names:?}");
+            Ok(names)
+        }),
         question("by day", |store| {
             store.daily_occurrences(day(2), 9 * 3_600_000_000)
         }),
@@ -229,6 +241,14 @@ fn filters() -> Vec<FaultFilter> {
             ..all()
         },
         FaultFilter {
+            code: text("102, FAULT_101,101,4711"),
+            ..all()
+        },
+        FaultFilter {
+            states: vec![FaultState::Repaired, FaultState::Closed],
+            ..all()
+        },
+        FaultFilter {
             lru: text("EB_RELAY"),
             ..all()
         },
@@ -237,7 +257,7 @@ fn filters() -> Vec<FaultFilter> {
             ..all()
         },
         FaultFilter {
-            state: Some(FaultState::Open),
+            states: vec![FaultState::Open],
             ..all()
         },
         FaultFilter {

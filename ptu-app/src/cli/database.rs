@@ -8,18 +8,18 @@ use fault_db::{Address, Store, StoreError};
 use crate::clock;
 use crate::failure::Failure;
 
+/// Names a history for all commands that are given none.
+const VARIABLE: &str = "PTU_DB";
+/// Among the options: after all others but `--help`.
+const LAST: usize = 998;
+
 /// Which history.
 #[derive(Debug, Args)]
 pub struct Database {
     /// Database file, or postgres://USER@HOST/DATABASE [default: history.db in the user's data directory]
-    // Hidden in help because an address may hold a password.
-    #[arg(
-        long,
-        value_name = "FILE",
-        env = "PTU_DB",
-        hide_env_values = true,
-        global = true
-    )]
+    /// [env: PTU_DB]
+    // Read by us: clap would show a variable that is set as an option that has to be given.
+    #[arg(long, value_name = "FILE", global = true, display_order = LAST)]
     db: Option<PathBuf>,
 }
 
@@ -31,17 +31,28 @@ enum Place {
 
 impl Database {
     fn place(&self) -> Result<Place, Failure> {
-        let Some(path) = &self.db else {
+        let Some(path) = self.named() else {
             let file = directories::ProjectDirs::from("", "", "ptu")
                 .map(|directories| directories.data_dir().join("history.db"));
             return file.map(Place::File).ok_or_else(|| {
                 Failure::usage("no user data directory; name a database with --db")
             });
         };
+        if path.as_os_str().is_empty() {
+            return Err(Failure::usage(format!(
+                "{VARIABLE} is empty; let it name a database, or unset it"
+            )));
+        }
         Ok(match path.to_str().filter(|text| Address::is_meant(text)) {
             Some(text) => Place::Server(text.parse()?),
-            None => Place::File(path.clone()),
+            None => Place::File(path),
         })
+    }
+
+    /// What the user named, if anything.
+    fn named(&self) -> Option<PathBuf> {
+        let variable = || std::env::var_os(VARIABLE).map(PathBuf::from);
+        self.db.clone().or_else(variable)
     }
 
     /// Its path, of a file; for what a server does not do.
@@ -66,7 +77,7 @@ impl Database {
     /// The same, of a file: for runs.
     pub(in crate::cli) fn open_file(&self) -> Result<Store, Failure> {
         let path = self.file()?;
-        if let Some(folder) = path.parent().filter(|_| self.db.is_none()) {
+        if let Some(folder) = path.parent().filter(|_| self.named().is_none()) {
             std::fs::create_dir_all(folder).map_err(|error| {
                 Failure::bench(format!("cannot make {}: {error}", folder.display()))
             })?;

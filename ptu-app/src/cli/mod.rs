@@ -9,6 +9,7 @@ mod diagnose_matrix;
 mod drive;
 mod faults;
 mod gui;
+mod help;
 mod output;
 mod ports;
 mod reports;
@@ -19,13 +20,15 @@ mod trace;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::builder::RangedI64ValueParser;
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use database::Database;
+use fault_db::Store;
 use serde::Serialize;
 
 use crate::clock;
 use crate::data::ScriptsDirectory;
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, did_you_mean_number};
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///
@@ -67,6 +70,12 @@ enum Verb {
 }
 
 impl Cli {
+    /// What the command line asks; ends the program if that is help, or nothing that can be done.
+    pub fn asked() -> Self {
+        let matches = help::flowing(Self::command()).get_matches();
+        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+
     /// Does what was asked.
     ///
     /// # Errors
@@ -106,6 +115,19 @@ impl ScriptsOption {
     }
 }
 
+/// Goes on with what is `said` of a unit that is not known: with the serial number near to it, if there is
+/// one. Nothing of a unit that is known.
+fn unknown_unit(store: &Store, serial: &str, said: &str) -> Result<Option<String>, Failure> {
+    let known = store.known_units()?;
+    if known.iter().any(|known| known == serial) {
+        return Ok(None);
+    }
+    let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
+    Ok(Some(format!(
+        "{said}{hint}; `ptu runs list` shows the units"
+    )))
+}
+
 /// Prints one JSON document.
 fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
     let text = serde_json::to_string_pretty(value)
@@ -123,6 +145,11 @@ fn print_out(text: &str) -> Result<Exit, Failure> {
         }
         _ => Ok(Exit::Passed),
     }
+}
+
+/// How many to show: none is no answer.
+fn at_least_one() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(1..)
 }
 
 /// The beginning of a time such as `30d`, `12h`, `2026-03` or `2026-03-21`.

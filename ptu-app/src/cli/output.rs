@@ -40,39 +40,51 @@ impl Output {
         }
     }
 
-    /// Prints rows, or the table of them. All rows have the same keys.
-    pub fn print(&self, rows: &[Value], table: impl FnOnce() -> String) -> Result<Exit, Failure> {
+    /// Prints rows, or the table of them. The columns are the keys of each row, in their order.
+    pub fn print(
+        &self,
+        columns: &[&str],
+        rows: &[Value],
+        table: impl FnOnce() -> String,
+    ) -> Result<Exit, Failure> {
         if self.json {
             print_json(&rows)
         } else if self.csv {
-            print_out(csv(rows).trim_end())
+            print_out(&csv(columns, rows))
         } else {
             print_out(&table())
         }
     }
 }
 
-/// Rows as CSV (RFC 4180); what is no single value stands as JSON.
-fn csv(rows: &[Value]) -> String {
-    let Some(first) = rows.first().and_then(Value::as_object) else {
-        return String::new();
-    };
-    let line = |cells: Vec<Cell>| {
-        cells
-            .into_iter()
-            .map(Cell::written)
-            .collect::<Vec<_>>()
-            .join(",")
-    };
-    let mut text = line(first.keys().map(|key| Cell::Text(key.clone())).collect()) + "\n";
-    for row in rows {
-        let cells = first
-            .keys()
-            .map(|key| cell(row.get(key).unwrap_or(&Value::Null)));
-        text += &line(cells.collect());
-        text.push('\n');
+/// Rows under their columns as CSV (RFC 4180), without the end of the last line; what is no single value
+/// stands as JSON.
+fn csv(columns: &[&str], rows: &[Value]) -> String {
+    debug_assert!(rows.iter().all(|row| has_columns(row, columns)));
+    let heading = columns.iter().map(|column| Cell::Text((*column).into()));
+    let mut lines = vec![line(heading)];
+    lines.extend(rows.iter().map(|row| {
+        let cells = columns
+            .iter()
+            .map(|column| cell(row.get(column).unwrap_or(&Value::Null)));
+        line(cells)
+    }));
+    lines.join("\n")
+}
+
+/// Whether these are the keys of a row.
+fn has_columns(row: &Value, columns: &[&str]) -> bool {
+    row.as_object()
+        .is_some_and(|row| row.keys().eq(columns.iter()))
+}
+
+fn line(cells: impl Iterator<Item = Cell>) -> String {
+    let line = cells.map(Cell::written).collect::<Vec<_>>().join(",");
+    match line.is_empty() {
+        // Of one empty cell: many readers pass over a line without anything.
+        true => "\"\"".to_owned(),
+        false => line,
     }
-    text
 }
 
 fn cell(value: &Value) -> Cell {
@@ -96,7 +108,25 @@ mod tests {
             json!({"key": "a,b", "n": 1, "last": null}),
             json!({"key": "=1", "n": -2.5, "last": [1, 2]}),
         ];
-        assert_eq!(csv(&rows), "key,n,last\n\"a,b\",1,\n'=1,-2.5,\"[1,2]\"\n");
-        assert_eq!(csv(&[]), "");
+        assert_eq!(
+            csv(&["key", "n", "last"], &rows),
+            "key,n,last\n\"a,b\",1,\n'=1,-2.5,\"[1,2]\""
+        );
+    }
+
+    #[test]
+    fn without_rows_there_are_headings() {
+        assert_eq!(csv(&["key", "a,b"], &[]), "key,\"a,b\"");
+    }
+
+    #[test]
+    fn the_last_rows_are_kept_however_empty_they_are() {
+        let rows = [
+            json!({"a": "x  ", "b": null}),
+            json!({"a": null, "b": "  "}),
+        ];
+        assert_eq!(csv(&["a", "b"], &rows), "a,b\nx  ,\n,  ");
+        let rows = [json!({"a": null}), json!({"a": ""})];
+        assert_eq!(csv(&["a"], &rows), "a\n\"\"\n\"\"");
     }
 }

@@ -4,7 +4,9 @@ use clap::{Args, Subcommand};
 use fault_db::{RunFilter, RunNote};
 
 use super::reports::ReportOption;
-use super::{Database, ScriptsOption, print_json, print_out, since_argument};
+use super::{
+    Database, ScriptsOption, at_least_one, print_json, print_out, since_argument, unknown_unit,
+};
 use crate::clock;
 use crate::console::verdict_table;
 use crate::failure::{Exit, Failure};
@@ -32,10 +34,10 @@ enum Verb {
         #[arg(long)]
         verdict: Option<fault_db::Verdict>,
         /// Only since: 30d, 12h, 2026-03, 2026-03-21
-        #[arg(long, value_name = "TIME", value_parser = since_argument)]
+        #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
         since: Option<i64>,
         /// At most so many
-        #[arg(long, value_name = "N", default_value_t = 50)]
+        #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
         limit: u32,
         /// Print JSON
         #[arg(long)]
@@ -91,7 +93,7 @@ impl RunsArguments {
                 json,
             } => {
                 let filter = RunFilter {
-                    unit,
+                    unit: unit.clone(),
                     verdict,
                     since_us: since,
                     limit: Some(limit),
@@ -101,7 +103,13 @@ impl RunsArguments {
                 if json {
                     return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
                 }
-                print_out(&table(&runs))
+                let unit = unit.as_deref().filter(|_| runs.is_empty());
+                let unknown = unit.map(|unit| {
+                    let said = format!("no unit \"{unit}\" was ever tested");
+                    unknown_unit(&store, unit, &said)
+                });
+                let unknown = unknown.transpose()?;
+                print_out(&unknown.flatten().unwrap_or_else(|| table(&runs)))
             }
             Verb::Show {
                 id,

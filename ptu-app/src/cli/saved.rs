@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser};
+use clap::{Args, CommandFactory, FromArgMatches};
 
 use super::{Cli, print_out};
 use crate::data;
@@ -14,7 +14,7 @@ use crate::table::Table;
 /// Ask a saved question again, or list them all
 ///
 /// Questions of `ptu faults list|stats|trend` and `ptu db query` are saved with --save NAME. Each is asked
-/// of the database in use; options after its name are added to it.
+/// of the database in use; options after its name are added to it, or replace its own.
 ///
 /// Examples:
 ///   ptu faults stats --by lru --when 90d --save worst
@@ -29,7 +29,7 @@ pub struct SavedArguments {
     /// Forget it
     #[arg(long, value_name = "NAME", conflicts_with = "name")]
     forget: Option<String>,
-    /// Options to add
+    /// Options to add or to replace
     #[arg(
         trailing_var_arg = true,
         allow_hyphen_values = true,
@@ -67,9 +67,12 @@ impl SavedArguments {
         let (_, words) = question(&questions, &name)?;
         let words = ["ptu".to_owned()]
             .into_iter()
-            .chain(words.iter().cloned())
+            .chain(without_rivals(words, &self.more))
             .chain(self.more);
-        match Cli::try_parse_from(words) {
+        let matches = Cli::command()
+            .args_override_self(true)
+            .try_get_matches_from(words);
+        match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
             Ok(cli) => cli.run(),
             Err(error) => Err(Failure::usage(format!(
                 "the saved question \"{name}\" cannot be asked so: {error}"
@@ -101,13 +104,38 @@ pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Fai
 
 /// The words without those that say under which name to save it, and of which database it is asked.
 fn asked(words: impl Iterator<Item = String>) -> Vec<String> {
+    without(words.skip(1), &["--save", "--db"], &[])
+}
+
+/// The words without the options that cannot stand beside one of these: that one replaces them.
+fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
+    let is_given = |options: &[&str]| {
+        let mut names = more.iter().map(|word| word.split('=').next());
+        names.any(|name| name.is_some_and(|name| options.contains(&name)))
+    };
+    let drop_if_given = |options| match is_given(options) {
+        true => options,
+        false => &[],
+    };
+    let spans = drop_if_given(&["--when", "--since", "--since-repair"]);
+    let forms = drop_if_given(&["--json", "--csv"]);
+    without(words.iter().cloned(), spans, forms)
+}
+
+/// The words without these options, those with a value, which goes with them, and those without.
+fn without(
+    mut words: impl Iterator<Item = String>,
+    with_value: &[&str],
+    plain: &[&str],
+) -> Vec<String> {
     let mut kept = Vec::new();
-    let mut words = words.skip(1);
     while let Some(word) = words.next() {
-        match word.as_str() {
-            "--save" | "--db" => drop(words.next()),
-            word if word.starts_with("--save=") || word.starts_with("--db=") => {}
-            _ => kept.push(word),
+        let name = word.split('=').next().unwrap_or_default();
+        match with_value.contains(&name) {
+            true if name == word => drop(words.next()),
+            true => {}
+            false if plain.contains(&name) => {}
+            false => kept.push(word),
         }
     }
     kept
@@ -183,5 +211,26 @@ mod tests {
             "ptu faults --db a.db stats --save worst --by lru --db=b.db --save=x --when 90d";
         let kept = asked(words.split(' ').map(str::to_owned));
         assert_eq!(kept.join(" "), "faults stats --by lru --when 90d");
+    }
+
+    #[test]
+    fn an_option_given_now_replaces_those_it_cannot_stand_beside() {
+        let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        let saved = words("faults list --when 90d --since=30d --json --limit 3");
+        for (more, kept) in [
+            (
+                "--limit 2",
+                "faults list --when 90d --since=30d --json --limit 3",
+            ),
+            ("--csv", "faults list --when 90d --since=30d --limit 3"),
+            ("--when=7d", "faults list --json --limit 3"),
+            ("--since 7d --json", "faults list --limit 3"),
+        ] {
+            assert_eq!(
+                without_rivals(&saved, &words(more)).join(" "),
+                kept,
+                "{more}"
+            );
+        }
     }
 }

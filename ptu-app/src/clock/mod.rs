@@ -72,9 +72,14 @@ pub fn local_minute(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d %H:%M")
 }
 
-/// Local year and month.
-pub fn local_month(at_us: i64) -> String {
-    local_as(at_us, "%Y-%m")
+/// Year and month in UTC, of what is counted by UTC days.
+pub fn utc_month(at_us: i64) -> String {
+    utc_as(at_us, "%Y-%m")
+}
+
+/// Date in UTC, of what is counted by UTC days.
+pub fn utc_day(at_us: i64) -> String {
+    utc_as(at_us, "%Y-%m-%d")
 }
 
 /// Local date, for sentences.
@@ -85,4 +90,9 @@ pub fn local_day(at_us: i64) -> String {
 fn local_as(at_us: i64, format: &str) -> String {
     let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
     at.with_timezone(&Local).format(format).to_string()
+}
+
+fn utc_as(at_us: i64, format: &str) -> String {
+    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
+    at.format(format).to_string()
 }

@@ -85,6 +85,21 @@ fn run_fault_json(fault: &RunFault) -> Value {
     })
 }
 
+/// Keys of a fault in a list, in their order.
+pub const FAULT_KEYS: [&str; 11] = [
+    "id",
+    "unit_serial",
+    "code",
+    "name",
+    "lru",
+    "severity",
+    "state",
+    "first_at",
+    "last_at",
+    "occurrences",
+    "trace_id",
+];
+
 /// A fault in a list.
 pub fn fault_json(fault: &FaultSummary) -> Value {
     json!({

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 use fault_db::{RunDetail, Store};
 
-pub use json::{fault_json, run_json, run_summary_json};
+pub use json::{FAULT_KEYS, fault_json, run_json, run_summary_json};
 pub(crate) use plot::round_step;
 
 use crate::data::{self, ScriptsDirectory};

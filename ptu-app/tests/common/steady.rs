@@ -17,8 +17,10 @@ const PERIOD: Duration = Duration::from_millis(5);
 /// A hold-up that may matter: two of them after one another and the time between two frames are what a
 /// unit bears.
 const MATTERS: Duration = Duration::from_millis(60);
-/// How often a test is made at most.
+/// A test that keeps failing on a machine that keeps being held up is made so often at least, and until
+/// so much time has gone.
 const ATTEMPTS: usize = 8;
+const ATTEMPTED: Duration = Duration::from_secs(10 * 60);
 /// The machine is steady again when nothing was held up for so long.
 const STEADY: Duration = Duration::from_secs(5);
 /// After this time it will not become steadier.
@@ -72,13 +74,15 @@ pub fn wait_until_steady() {
 
 /// Makes a test in real time; again if it fails while a processor was held up.
 pub fn steadily(test: impl Fn()) {
+    let first_began = Instant::now();
     for attempt in 1.. {
         let began = Instant::now();
         held_up_since(began);
         let Err(panic) = catch_unwind(AssertUnwindSafe(&test)) else {
             return;
         };
-        if attempt == ATTEMPTS || !held_up_since(began) {
+        let may_repeat = attempt < ATTEMPTS || first_began.elapsed() < ATTEMPTED;
+        if !may_repeat || !held_up_since(began) {
             resume_unwind(panic);
         }
         eprintln!("the machine was held up: attempt {attempt} proves nothing");

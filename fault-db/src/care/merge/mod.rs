@@ -17,6 +17,7 @@ use crate::base::{Base, SqlError, SqlResult};
 use crate::error::StoreError;
 use crate::file::CACHE_KIB;
 use crate::id::Id;
+use crate::part::Part;
 use crate::store::{OpenOptions, Store};
 use crate::sync::Different;
 use rows::{MEASUREMENTS, RECORDINGS, SCRIPTS, STEPS};
@@ -65,6 +66,9 @@ impl Store {
 
     /// Adds all that this file has to another one, which is created if need be.
     pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
+        if !to.exists() {
+            Part::can_be_made(to)?;
+        }
         let target = Store::open(to, options)?;
         let counts = target.merge_from(self)?;
         target.close()?;

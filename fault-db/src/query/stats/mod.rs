@@ -148,14 +148,23 @@ impl Store {
         })
     }
 
-    /// The first and the last time a fault was seen, if there is one.
+    /// The first and the last time of anything that is counted: a run begun, a fault seen, repaired or
+    /// closed. None of an empty history.
     ///
     /// # Errors
     /// Of the file or server.
     pub fn history_span(&self) -> Result<Option<(i64, i64)>, StoreError> {
+        // Each time by its index: of two in one question neither would be.
         let found = self.first(
-            "looking for the first fault",
-            "SELECT (SELECT min(at_us) FROM fault_occurrence), (SELECT max(at_us) FROM fault_occurrence)",
+            "looking for the span of the history",
+            "SELECT min(began_us), max(ended_us) FROM (
+                SELECT (SELECT min(started_at_us) FROM run) AS began_us,
+                    (SELECT max(started_at_us) FROM run) AS ended_us
+                UNION ALL SELECT (SELECT min(at_us) FROM fault_occurrence),
+                    (SELECT max(at_us) FROM fault_occurrence)
+                UNION ALL SELECT (SELECT min(at_us) FROM fault_event),
+                    (SELECT max(at_us) FROM fault_event)
+            ) AS spans",
             &[],
             |row| Ok((row.get::<Option<i64>>(0)?, row.get::<Option<i64>>(1)?)),
         )?;

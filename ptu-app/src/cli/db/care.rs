@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use fault_db::{Different, MergeCounts, PruneCounts, PruneRule, StateConflict};
+use fault_db::{Different, MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
 use serde_json::{json, to_value};
 
 use crate::cli::{Database, print_json, print_out, since_argument};
@@ -14,7 +14,7 @@ use crate::failure::{Exit, Failure};
 #[derive(Debug, Args)]
 pub(super) struct PruneArguments {
     /// Older than: 90d, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument,
+    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true,
         required_unless_present_any = ["passed_only", "max_size"])]
     older_than: Option<i64>,
     /// Of runs that passed only
@@ -39,7 +39,8 @@ impl Database {
 
     pub(super) fn import(&self, from: &Path, json: bool) -> Result<Exit, Failure> {
         let store = self.open()?;
-        let counts = store.import(from)?;
+        let counts = store.import(from);
+        let counts = counts.map_err(|error| of_named_file(from, error))?;
         // What was known before needs no telling again; what came just now may be a rival of it.
         let conflicts = match counts.events {
             0 => Vec::new(),
@@ -50,7 +51,8 @@ impl Database {
 
     pub(super) fn export(&self, to: &Path, json: bool) -> Result<Exit, Failure> {
         let store = self.open_read_only()?;
-        let counts = store.export(to, clock::open_options())?;
+        let counts = store.export(to, clock::open_options());
+        let counts = counts.map_err(|error| of_named_file(to, error))?;
         tell_merged(&counts, &[], json)
     }
 
@@ -72,6 +74,21 @@ impl Database {
              runs, faults and traces are as they were",
         )
     }
+}
+
+/// An error with the advice for a file that was not named with --db, if it is of that file.
+fn of_named_file(file: &Path, error: StoreError) -> Failure {
+    if matches!(&error, StoreError::Missing { path } if path == file) {
+        let file = file.display();
+        return Failure::bench(format!("there is no database {file}; name another file"));
+    }
+    let mut failure = Failure::from(error);
+    if failure.message.contains(&file.display().to_string()) {
+        failure.message = failure
+            .message
+            .replace("choose another file with --db", "name another file");
+    }
+    failure
 }
 
 /// What a merge did, and what it left as it was, with the next move.
@@ -140,7 +157,9 @@ fn pruned(counts: &PruneCounts, dry_run: bool) -> String {
             counts.kept_unsent
         );
     }
-    text += &format!(", file {} bytes smaller", counts.freed_bytes);
+    if !dry_run {
+        text += &format!(", file {} bytes smaller", counts.freed_bytes);
+    }
     if counts.over_bytes > 0 {
         text += &format!(
             "\nit {} {} bytes larger than it may be: the rest is runs, faults and traces that are kept",

@@ -15,7 +15,7 @@ const MAX_ROWS: usize = 10_000;
 /// Ask the database in SQL, reading only; `ptu db schema` says about what
 ///
 /// Examples:
-///   ptu db query "SELECT unit, count(*) AS n FROM faults WHERE state = 'open' GROUP BY unit ORDER BY n DESC"
+///   ptu db query "SELECT unit, count(*) FROM faults WHERE state = 'open' GROUP BY unit"
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct QueryArguments {
@@ -38,22 +38,35 @@ impl QueryArguments {
         if answer.truncated && !self.output.is_table() {
             eprintln!("only the first {MAX_ROWS} rows; add LIMIT, or ask for less");
         }
-        self.output.print(&rows(&answer), || table(&answer))
+        let columns = columns(&answer);
+        let columns: Vec<_> = columns.iter().map(String::as_str).collect();
+        self.output
+            .print(&columns, &rows(&answer, &columns), || table(&answer))
     }
 }
 
-/// Each row by the names of its columns; of two with one name the last has another.
-fn rows(answer: &QueryResult) -> Vec<Value> {
-    let row = |row: &Vec<SqlValue>| {
-        let mut cells = Map::new();
-        for (column, value) in answer.columns.iter().zip(row) {
-            let mut name = column.clone();
-            while cells.contains_key(&name) {
-                name.push('_');
-            }
-            cells.insert(name, json!(value));
+/// The names of the columns; of two with one name the last has another.
+fn columns(answer: &QueryResult) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for column in &answer.columns {
+        let mut name = column.clone();
+        while names.contains(&name) {
+            name.push('_');
         }
-        Value::Object(cells)
+        names.push(name);
+    }
+    names
+}
+
+/// Each row by the names of its columns.
+fn rows(answer: &QueryResult, columns: &[&str]) -> Vec<Value> {
+    let row = |row: &Vec<SqlValue>| {
+        let cells = columns.iter().zip(row);
+        Value::Object(
+            cells
+                .map(|(name, value)| ((*name).to_owned(), json!(value)))
+                .collect::<Map<_, _>>(),
+        )
     };
     answer.rows.iter().map(row).collect()
 }
@@ -73,7 +86,7 @@ fn table(answer: &QueryResult) -> String {
         table.row(row.iter().map(|value| match value {
             SqlValue::Null => String::new(),
             SqlValue::Integer(number) => number.to_string(),
-            SqlValue::Real(number) => number.to_string(),
+            SqlValue::Real(number) => real(*number),
             SqlValue::Text(text) => text.clone(),
         }));
     }
@@ -82,4 +95,34 @@ fn table(answer: &QueryResult) -> String {
         false => "",
     };
     format!("{}{more}", table.render())
+}
+
+/// As few digits as tell it from all other numbers; with an exponent where zeros would fill the table.
+fn real(number: f64) -> String {
+    let size = number.abs();
+    if size > 0.0 && size.is_finite() && !(1e-5..=1e15).contains(&size) {
+        return format!("{number:e}");
+    }
+    number.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_an_exponent_only_where_they_need_one() {
+        for (number, text) in [
+            (0.0, "0"),
+            (-2.5, "-2.5"),
+            (0.1 + 0.2, "0.30000000000000004"),
+            (1e15, "1000000000000000"),
+            (1e300, "1e300"),
+            (-1.25e-7, "-1.25e-7"),
+            (0.00001, "0.00001"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(real(number), text);
+        }
+    }
 }

@@ -5,7 +5,7 @@ use fault_db::{FaultState, RepairRecord, Store};
 
 use crate::cli::print_out;
 use crate::clock::now_us;
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, did_you_mean};
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed
 #[derive(Debug, Args)]
@@ -70,6 +70,7 @@ impl RepairArguments {
             return Err(Failure::usage("a repair is of a part; name it with --part"));
         }
         let id = store.resolve_fault(&self.id)?;
+        let note = self.of_unknown_part(store)?;
         let repair = RepairRecord {
             part: self.part.clone(),
             serial_old: self.old.clone(),
@@ -77,7 +78,29 @@ impl RepairArguments {
             note: self.note.clone(),
         };
         let state = store.record_repair(id, &repair, &self.who, now_us())?;
+        if let Some(note) = note {
+            eprintln!("{note}");
+        }
         print_out(&format!("fault {} is {}", id.short(), state.as_str()))
+    }
+
+    /// What to say of a part that nothing knows by this name, while another has nearly the same: a unit has
+    /// more parts than faults ever named, so the repair is recorded all the same.
+    fn of_unknown_part(&self, store: &Store) -> Result<Option<String>, Failure> {
+        let known = store.known_parts()?;
+        let part = self.part.trim().to_lowercase();
+        if known
+            .iter()
+            .any(|known| known.trim().to_lowercase() == part)
+        {
+            return Ok(None);
+        }
+        let hint = did_you_mean(&part, known.iter().map(String::as_str));
+        let note = format!(
+            "note: no fault and no earlier repair names a part \"{}\"{hint}; recorded as it is",
+            self.part
+        );
+        Ok((!hint.is_empty()).then_some(note))
     }
 }
 

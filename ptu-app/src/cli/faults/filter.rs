@@ -1,11 +1,15 @@
 //! Which faults are meant, as options.
 
 use clap::Args;
-use fault_db::{FaultFilter, FaultState, Store};
+use fault_db::{FaultFilter, FaultState, Store, code_number};
+use protocol::event::Severity;
 
-use crate::cli::since_argument;
+use crate::cli::{since_argument, unknown_unit};
 use crate::clock::Span;
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{Failure, did_you_mean, did_you_mean_number};
+
+/// How bad a fault is; what is less is none.
+const SEVERITIES: [Severity; 3] = [Severity::Minor, Severity::Major, Severity::Critical];
 
 /// Which faults.
 #[derive(Debug, Args)]
@@ -19,18 +23,18 @@ pub struct FilterArguments {
     /// Only of units in this train
     #[arg(long, value_name = "TRAIN")]
     pub train: Option<String>,
-    /// Only this code, number or name
-    #[arg(long)]
+    /// Only this code, number or name; several with commas between
+    #[arg(long, value_name = "CODE[,CODE]")]
     code: Option<String>,
     /// Only this part
     #[arg(long)]
     lru: Option<String>,
     /// Only this severity
-    #[arg(long)]
+    #[arg(long, ignore_case = true, value_parser = SEVERITIES.map(Severity::label))]
     severity: Option<String>,
-    /// Only in this state: open, acknowledged, repaired, verified, closed
-    #[arg(long)]
-    state: Option<FaultState>,
+    /// Only in this state: open, acknowledged, repaired, verified, closed; several with commas between
+    #[arg(long, value_name = "STATE[,STATE]", value_delimiter = ',')]
+    state: Vec<FaultState>,
     /// Only seen in this procedure
     #[arg(long, value_name = "PROCEDURE")]
     procedure: Option<String>,
@@ -41,10 +45,16 @@ pub struct FilterArguments {
     #[arg(long, value_name = "RUN")]
     run: Option<String>,
     /// Only seen then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
-    #[arg(long, value_name = "SPAN", conflicts_with = "since")]
+    // A hyphen before it is a slip that the span itself answers.
+    #[arg(
+        long,
+        value_name = "SPAN",
+        conflicts_with = "since",
+        allow_hyphen_values = true
+    )]
     pub when: Option<Span>,
     /// Only seen since: 30d, 12h, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument)]
+    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
     pub since: Option<i64>,
     /// Only with these words in a note on it, on its repair, or on a run that saw it
     #[arg(long, value_name = "WORDS")]
@@ -62,6 +72,18 @@ impl FilterArguments {
 
     /// As the history takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
+        if let Some(unit) = &self.unit {
+            let said = format!("no unit \"{unit}\" was ever tested");
+            if let Some(said) = unknown_unit(store, unit, &said)? {
+                return Err(Failure::usage(said));
+            }
+        }
+        // Of several the others would hide it.
+        if self.code.as_ref().is_some_and(|codes| codes.contains(','))
+            && let Some(unknown) = self.unknown_code(store)?
+        {
+            return Err(Failure::usage(unknown));
+        }
         let run = self.run.as_deref().map(|run| store.resolve_run(run));
         let span = self.span();
         Ok(FaultFilter {
@@ -71,7 +93,7 @@ impl FilterArguments {
             code: self.code.clone(),
             lru: self.lru.clone(),
             severity: self.severity.clone(),
-            state: self.state,
+            states: self.state.clone(),
             procedure: self.procedure.clone(),
             line: self.line.clone(),
             run: run.transpose()?,
@@ -82,28 +104,87 @@ impl FilterArguments {
         })
     }
 
-    /// What to say when nothing was found: that a name asked for is not in this history at all, or that
-    /// there is nothing.
+    /// What to say when nothing was found: that a name asked for is not in this history at all, that nothing
+    /// fits, or that there is nothing.
     pub fn nothing(&self, store: &Store) -> Result<String, Failure> {
-        if let Some(code) = self
-            .code
-            .as_deref()
-            .filter(|code| code.parse::<i64>().is_err() && !code.starts_with("0x"))
-        {
-            let known = store.known_codes()?;
-            let names: Vec<_> = known.iter().map(|(_, name)| name.as_str()).collect();
-            if !names.iter().any(|name| name.eq_ignore_ascii_case(code)) {
-                let hint = did_you_mean(code, names);
-                return Ok(format!("no fault \"{code}\" was ever recorded{hint}"));
-            }
+        if let Some(said) = self.unknown(store)? {
+            return Ok(said);
+        }
+        Ok(match self.filter(store)? == FaultFilter::default() {
+            true => "no faults recorded",
+            false => "no such faults recorded",
+        }
+        .to_owned())
+    }
+
+    /// What to say of the first code that no fault has.
+    fn unknown_code(&self, store: &Store) -> Result<Option<String>, Failure> {
+        let Some(codes) = &self.code else {
+            return Ok(None);
+        };
+        let known = store.known_codes()?;
+        let names = || known.iter().map(|(_, name)| name.as_str());
+        let is_known = |code: &str| match code_number(code) {
+            Some(number) => known.iter().any(|(known, _)| *known == number),
+            None => names().any(|name| name.eq_ignore_ascii_case(code)),
+        };
+        let mut asked = codes.split(',').map(str::trim);
+        Ok(asked.find(|code| !is_known(code)).map(|code| {
+            let hint = did_you_mean(code, names());
+            format!("no fault \"{code}\" was ever recorded{hint}")
+        }))
+    }
+
+    /// The first name that nothing here has, and the nearest that something has.
+    fn unknown(&self, store: &Store) -> Result<Option<String>, Failure> {
+        if let Some(said) = self.unknown_code(store)? {
+            return Ok(Some(said));
         }
         if let Some(lru) = &self.lru {
             let known = store.known_lrus()?;
             if !known.iter().any(|known| known.eq_ignore_ascii_case(lru)) {
                 let hint = did_you_mean(lru, known.iter().map(String::as_str));
-                return Ok(format!("no fault ever named the part \"{lru}\"{hint}"));
+                return Ok(Some(format!(
+                    "no fault ever named the part \"{lru}\"{hint}"
+                )));
             }
         }
-        Ok("no faults recorded".to_owned())
+        if let Some(train) = &self.train {
+            let known = store.known_trains()?;
+            if !known.contains(train) {
+                let hint = did_you_mean_number(train, known.iter().map(String::as_str));
+                return Ok(Some(format!(
+                    "no run in the train \"{train}\" was ever recorded{hint}"
+                )));
+            }
+        }
+        if let Some(line) = &self.line {
+            let known = store.known_lines()?;
+            if !known.contains(line) {
+                let hint = did_you_mean(line, known.iter().map(String::as_str));
+                return Ok(Some(format!(
+                    "no fault was ever seen on the line \"{line}\"{hint}"
+                )));
+            }
+        }
+        if let Some(procedure) = &self.procedure {
+            let known = store.known_procedures()?;
+            if !known.contains(procedure) {
+                let hint = did_you_mean(procedure, known.iter().map(String::as_str));
+                return Ok(Some(format!(
+                    "no fault was ever seen in the procedure \"{procedure}\"{hint}"
+                )));
+            }
+        }
+        if let Some(serial) = &self.serial {
+            let known = store.known_part_serials()?;
+            if !known.contains(serial) {
+                let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
+                return Ok(Some(format!(
+                    "no part with the serial number \"{serial}\" was ever taken out or put in{hint}"
+                )));
+            }
+        }
+        Ok(None)
     }
 }

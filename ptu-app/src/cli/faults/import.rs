@@ -50,7 +50,7 @@ pub struct ImportArguments {
     #[arg(long, value_name = "TEXT", default_value = "")]
     operator: String,
     /// Only what is dated since: 30d, 12h, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument)]
+    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
     since: Option<i64>,
     /// Print JSON
     #[arg(long)]

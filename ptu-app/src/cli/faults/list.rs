@@ -5,10 +5,10 @@ use fault_db::{FaultFilter, FaultSummary, Store};
 
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
-use crate::cli::print_out;
+use crate::cli::{at_least_one, print_out};
 use crate::clock::local;
 use crate::failure::{Exit, Failure};
-use crate::report::fault_json;
+use crate::report::{FAULT_KEYS, fault_json};
 use crate::table::Table;
 
 /// List faults, last seen first
@@ -23,7 +23,7 @@ pub struct ListArguments {
     #[command(flatten)]
     filter: FilterArguments,
     /// At most so many
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     #[command(flatten)]
     output: Output,
@@ -43,8 +43,11 @@ impl ListArguments {
         if faults.is_empty() && self.output.is_table() {
             return print_out(&self.filter.nothing(store)?);
         }
+        if more && !self.output.is_table() {
+            eprintln!("only the first {}; see --limit", self.limit);
+        }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
-        self.output.print(&rows, || {
+        self.output.print(&FAULT_KEYS, &rows, || {
             let more = if more {
                 "\n… and more; see --limit"
             } else {

@@ -1,6 +1,6 @@
 //! `ptu faults show`: one fault with all that belongs to it.
 
-use fault_db::{FaultDetail, FreezeSample, Store};
+use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
 use serde_json::{Value, json};
 
 use crate::cli::{print_json, print_out};
@@ -50,7 +50,7 @@ fn detail_json(detail: &FaultDetail) -> Value {
 fn detail(detail: &FaultDetail) -> String {
     let fault = &detail.fault;
     let mut text = format!(
-        "fault {}  {} {}  {}\nunit {}  part {}  {}  seen {} times, {} .. {}\n",
+        "fault {}  {} {}  {}\nunit {}  part {}  {}  seen {}\n",
         fault.id,
         fault.code,
         fault.code_name,
@@ -58,9 +58,7 @@ fn detail(detail: &FaultDetail) -> String {
         fault.unit_serial,
         fault.lru,
         fault.state.as_str(),
-        fault.occurrences,
-        local(fault.first_at_us),
-        local(fault.last_at_us),
+        times(fault),
     );
     let mut table = Table::new(&["SEEN AT", "RUN", "TRACE", "WHAT"]);
     for seen in &detail.occurrences {
@@ -102,6 +100,15 @@ fn detail(detail: &FaultDetail) -> String {
     }
     text.push_str(&format!("\n{}", table.render()));
     text
+}
+
+/// How often and when it was seen.
+fn times(fault: &FaultSummary) -> String {
+    let last = local(fault.last_at_us);
+    match fault.occurrences {
+        1 => format!("once, {last}"),
+        n => format!("{n} times, {} .. {last}", local(fault.first_at_us)),
+    }
 }
 
 fn freeze_frame(samples: &[FreezeSample]) -> String {

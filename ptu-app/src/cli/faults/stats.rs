@@ -6,11 +6,33 @@ use serde_json::{Value, json};
 
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
-use crate::cli::print_out;
-use crate::clock::{self, local_day, local_minute, rfc3339};
+use crate::cli::{at_least_one, print_out};
+use crate::clock::{self, local_minute, rfc3339};
 use crate::failure::{Exit, Failure};
 use crate::sparkline::sparkline;
 use crate::table::Table;
+
+/// Keys of a row, in their order.
+const KEYS: [&str; 18] = [
+    "key",
+    "name",
+    "faults",
+    "not_closed",
+    "occurrences",
+    "share",
+    "units",
+    "last_at",
+    "mtbf_days",
+    "mttr_hours",
+    "repairs",
+    "repairs_judged",
+    "repairs_back",
+    "back_rate",
+    "closed",
+    "no_fault_found",
+    "no_fault_found_rate",
+    "course",
+];
 
 /// A course over time is shown in so many bars at most: the last ones.
 const BARS: usize = 24;
@@ -37,8 +59,8 @@ pub struct StatsArguments {
     /// A fault that is seen again within so many days of its repair is back
     #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
     back_within: u32,
-    /// At most so many rows in a table
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    /// At most so many rows in a table; of months the last
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     #[command(flatten)]
     filter: FilterArguments,
@@ -93,7 +115,7 @@ impl StatsArguments {
         let all: u64 = stats.iter().map(|stat| stat.occurrences).sum();
         let rows: Vec<_> = stats.iter().map(|stat| entry(stat, all)).collect();
         self.output
-            .print(&rows, || self.table(&stats, together.first(), all))
+            .print(&KEYS, &rows, || self.table(&stats, together.first(), all))
     }
 
     fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
@@ -125,10 +147,12 @@ impl StatsArguments {
         let numbers = 1..headings.len() - 1 - usize::from(is_course);
         let mut table = Table::new(&headings).right(numbers);
         let mut so_far = 0;
-        let shown = stats
-            .iter()
-            .take(self.limit as usize)
-            .map(|stat| (stat, true));
+        let more = stats.len().saturating_sub(self.limit as usize);
+        let shown = match self.by {
+            By::Month => &stats[more..],
+            _ => &stats[..stats.len() - more],
+        };
+        let shown = shown.iter().map(|stat| (stat, true));
         for (stat, is_row) in shown.chain(together.map(|all| (all, false))) {
             so_far += if is_row { stat.occurrences } else { 0 };
             let name = match is_row {
@@ -160,24 +184,24 @@ impl StatsArguments {
             }
             table.row(row);
         }
-        let more = match stats.len().checked_sub(self.limit as usize) {
-            Some(more) if more > 0 => format!("\n… and {more} more; see --limit"),
-            _ => String::new(),
+        let (earlier, more) = match (more, self.by) {
+            (0, _) => Default::default(),
+            (_, By::Month) => (
+                format!("… {more} earlier months; see --limit\n"),
+                String::new(),
+            ),
+            _ => (String::new(), format!("\n… and {more} more; see --limit")),
         };
-        format!("{}{more}\n\n{}", table.render(), self.caption(stats))
+        format!(
+            "{earlier}{}{more}\n\n{}",
+            table.render(),
+            self.caption(stats)
+        )
     }
 
     /// What the numbers are of.
     fn caption(&self, stats: &[FaultStat]) -> String {
         let span = self.filter.span();
-        let span = match (span.since_us, span.until_us) {
-            (None, None) => "all of history".to_owned(),
-            (since, until) => format!(
-                "{} .. {}",
-                since.map_or_else(String::new, local_day),
-                until.map_or_else(|| "now".to_owned(), |until| local_day(until - 1)),
-            ),
-        };
         let by_day = stats
             .iter()
             .map(|stat| stat.course.len())
@@ -195,11 +219,15 @@ impl StatsArguments {
     }
 }
 
-/// Each local month of the span for itself, the oldest first.
+/// Each local month of the span for itself, the oldest first. None if there is nothing to count in any of
+/// them.
 fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure> {
     let Some((first_us, last_us)) = store.history_span()? else {
         return Ok(Vec::new());
     };
+    // Before the history there is nothing, and after now only what a computer with a fast clock recorded:
+    // a span that reaches farther has no months there, and no count is another for it.
+    let end_us = query.now_us.max(last_us.saturating_add(1));
     let since_us = query
         .filter
         .since_us
@@ -207,8 +235,9 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
     let until_us = query
         .filter
         .until_us
-        .map_or(last_us + 1, |until| until.min(last_us + 1));
+        .map_or(end_us, |until| until.min(end_us));
     let mut stats = Vec::new();
+    let mut is_quiet = true;
     for (name, since_us, until_us) in clock::months(since_us, until_us) {
         let query = StatQuery {
             filter: FaultFilter {
@@ -220,10 +249,14 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
         };
         // A quiet month has a row, too.
         let stat = store.stats(&query)?.into_iter().next();
+        is_quiet &= stat.is_none();
         stats.push(FaultStat {
             key: name,
             ..stat.unwrap_or_default()
         });
+    }
+    if is_quiet {
+        stats.clear();
     }
     Ok(stats)
 }

@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
-use crate::clock::{Span, rfc3339};
+use crate::cli::{at_least_one, unknown_unit};
+use crate::clock::{Span, local_day, rfc3339, utc_day};
 use crate::data;
 use crate::failure::{Exit, Failure, did_you_mean};
 
@@ -41,16 +42,16 @@ pub struct TrendArguments {
     #[arg(long, value_name = "TRAIN")]
     train: Option<String>,
     /// Only then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
-    #[arg(long, value_name = "SPAN")]
+    #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     when: Option<Span>,
     /// Only since this part of the unit was repaired last
     #[arg(long, value_name = "PART", requires = "unit", conflicts_with = "when")]
     since_repair: Option<String>,
     /// At most so many values, months or units in a table: the last, and those farthest off
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = at_least_one())]
     limit: u32,
     /// Draw it, too, on a page
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", value_parser = page_file)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     output: Output,
@@ -88,7 +89,7 @@ impl TrendArguments {
         if self.output.is_json() {
             return crate::cli::print_json(&trend.json());
         }
-        self.output.print(&trend.rows(), || {
+        self.output.print(trend.keys(), &trend.rows(), || {
             trend_text::text(&trend, self.limit as usize)
         })
     }
@@ -102,6 +103,16 @@ impl TrendArguments {
                 self.measurement
             )));
         }
+        if let Some(unit) = &self.unit {
+            let said = format!(
+                "no measurement \"{}\" of unit {unit} recorded",
+                self.measurement
+            );
+            if let Some(said) = unknown_unit(store, unit, &said)? {
+                return Err(Failure::usage(said));
+            }
+        }
+        let procedures = store.measuring_procedures(&self.measurement)?;
         let span = self.when.unwrap_or_default();
         let mut query = TrendQuery {
             measurement: self.measurement.clone(),
@@ -113,25 +124,13 @@ impl TrendArguments {
             until_us: span.until_us,
         };
         if let (Some(unit), Some(part)) = (&self.unit, &self.since_repair) {
-            let repaired = store
-                .last_repair(unit, part)
-                .map_err(|error| self.unknown(error))?;
+            let repaired = store.last_repair(unit, part)?;
             query.since_us = Some(repaired.ok_or_else(|| {
                 Failure::usage(format!("no repair of {part} on unit {unit} recorded"))
             })?);
         }
-        let limits = store
-            .trend_limits(&query)
-            .map_err(|error| self.unknown(error))?;
-        let Some(limits) = limits else {
-            let of = self
-                .unit
-                .as_ref()
-                .map_or_else(String::new, |unit| format!(" of unit {unit}"));
-            return Err(Failure::usage(format!(
-                "no measurement \"{}\"{of} recorded so; `ptu runs list` shows the units",
-                self.measurement
-            )));
+        let Some(limits) = store.trend_limits(&query)? else {
+            return Err(Failure::usage(self.nothing(store, &query, &procedures)?));
         };
         let course = match query.unit {
             Some(_) => Course::Points(store.trend(&query)?),
@@ -141,26 +140,71 @@ impl TrendArguments {
             process: Process::of(&course.samples()),
             limits,
             course,
-            procedures: store.measuring_procedures(&self.measurement)?,
+            procedures,
             query,
         })
     }
 
-    /// A unit that is not known, in the words of this question.
-    fn unknown(&self, error: fault_db::StoreError) -> Failure {
-        match (&error, &self.unit) {
-            (fault_db::StoreError::NotFound { what: "unit", .. }, Some(unit)) => {
-                Failure::usage(format!(
-                    "no measurement \"{}\" of unit {unit} recorded; `ptu runs list` shows the units",
-                    self.measurement
-                ))
-            }
-            _ => error.into(),
+    /// Why there is no value: another procedure measures it, or it was measured at another time, or it was
+    /// not measured on such units.
+    fn nothing(
+        &self,
+        store: &Store,
+        query: &TrendQuery,
+        procedures: &[String],
+    ) -> Result<String, Failure> {
+        let of = match &self.unit {
+            Some(unit) => format!(" of unit {unit}"),
+            None => String::new(),
+        };
+        let what = format!("no measurement \"{}\"{of} recorded", self.measurement);
+        if let Some(procedure) = self.procedure.as_ref().filter(|p| !procedures.contains(p)) {
+            return Ok(format!(
+                "{what} by \"{procedure}\"; it was measured by {}",
+                procedures.join(", ")
+            ));
         }
+        let span = Span {
+            since_us: query.since_us,
+            until_us: query.until_us,
+        };
+        if span != Span::default() {
+            let days = store.trend_by_day(&TrendQuery {
+                since_us: None,
+                until_us: None,
+                ..query.clone()
+            })?;
+            if let (Some(first), Some(last)) = (days.first(), days.last()) {
+                return Ok(format!(
+                    "{what} in {span}; it was recorded from {} to {}",
+                    utc_day(first.day_us),
+                    utc_day(last.day_us)
+                ));
+            }
+        }
+        Ok(format!("{what} so; `ptu runs list` shows the units"))
+    }
+}
+
+/// A file for a page: browsers tell by its ending what it is.
+fn page_file(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    match ending.map(str::to_ascii_lowercase).as_deref() {
+        Some("html" | "htm") => Ok(file),
+        _ => Err("a trend is drawn on a page, in a file that ends in .html".to_owned()),
     }
 }
 
 impl Course {
+    /// How its days are called: those of a fleet are counted in UTC, and begin the evening before in its west.
+    pub fn day_name(&self) -> fn(i64) -> String {
+        match self {
+            Self::Points(_) => local_day,
+            Self::Days(..) => utc_day,
+        }
+    }
+
     /// For its analysis.
     pub fn samples(&self) -> Vec<Sample> {
         match self {
@@ -189,6 +233,23 @@ impl Course {
 }
 
 impl Trend {
+    /// Keys of the values, or of the days, in their order.
+    fn keys(&self) -> &'static [&'static str] {
+        match self.course {
+            Course::Points(_) => &[
+                "at",
+                "run_id",
+                "unit_serial",
+                "value",
+                "unit",
+                "low",
+                "high",
+                "verdict",
+            ],
+            Course::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
+        }
+    }
+
     /// The values, or the days.
     fn rows(&self) -> Vec<Value> {
         match &self.course {

@@ -61,7 +61,7 @@ fn plot(trend: &Trend) -> Plot {
     }
     Plot {
         title: title(trend),
-        x_label: format!("days until {}", crate::clock::local_day(last_us)),
+        x_label: format!("days until {}", trend.course.day_name()(last_us)),
         y_label: format!("{} ({})", trend.query.measurement, trend.limits.unit),
         series,
         ..Plot::default()

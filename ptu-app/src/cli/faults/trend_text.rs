@@ -4,7 +4,7 @@ use fault_db::process::{Process, Sign};
 use fault_db::{TrendDay, TrendPoint, TrendUnit};
 
 use super::trend::{Course, Trend};
-use crate::clock::{local, local_day, local_month};
+use crate::clock::{local, utc_month};
 use crate::limits::short;
 use crate::sparkline::sparkline_of;
 use crate::table::Table;
@@ -65,7 +65,7 @@ fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
 }
 
 fn months_table(days: &[TrendDay], limit: usize) -> String {
-    let month = |day: &TrendDay| local_month(day.day_us);
+    let month = |day: &TrendDay| utc_month(day.day_us);
     let months: Vec<_> = days.chunk_by(|a, b| month(a) == month(b)).collect();
     let last = &months[months.len().saturating_sub(limit)..];
     let mut table =
@@ -116,6 +116,7 @@ fn bars(values: &[Option<f64>]) -> String {
 
 fn process_text(trend: &Trend, process: &Process) -> String {
     let (limits, unit) = (&trend.limits, &trend.limits.unit);
+    let day_name = trend.course.day_name();
     let value = |value: f64| format!("{} {unit}", short(value));
     let mut lines = vec![format!(
         "{} values, mean {}{}",
@@ -155,19 +156,19 @@ fn process_text(trend: &Trend, process: &Process) -> String {
     if let Some(forecast) = process.forecast(limits.low, limits.high) {
         let latest = forecast
             .latest_us
-            .map_or_else(|| "never".to_owned(), local_day);
+            .map_or_else(|| "never".to_owned(), day_name);
         lines.push(format!(
             "reaches {} about {} (95 %: {} .. {latest})",
             value(forecast.limit),
-            local_day(forecast.at_us),
-            local_day(forecast.earliest_us),
+            day_name(forecast.at_us),
+            day_name(forecast.earliest_us),
         ));
     }
-    lines.extend(process.signs.iter().map(sign));
+    lines.extend(process.signs.iter().map(|found| sign(found, day_name)));
     lines.join("\n")
 }
 
-fn sign(sign: &Sign) -> String {
+fn sign(sign: &Sign, day_name: fn(i64) -> String) -> String {
     let what = match sign.kind {
         "beyond_control" => "beyond a control limit",
         "nine_on_one_side" => "nine in a row on one side of the mean",
@@ -175,11 +176,11 @@ fn sign(sign: &Sign) -> String {
     };
     let times = match sign.times {
         1 => "once".to_owned(),
-        n => format!("{n} times, first {}", local_day(sign.first_at_us)),
+        n => format!("{n} times, first {}", day_name(sign.first_at_us)),
     };
     format!(
         "more than chance: {what}, {times}, last {}",
-        local_day(sign.last_at_us)
+        day_name(sign.last_at_us)
     )
 }
 

@@ -1,0 +1,82 @@
+//! The names a history knows: what there is to ask for.
+
+use crate::error::StoreError;
+use crate::record::part_name;
+use crate::store::Store;
+
+impl Store {
+    /// Every code a fault was ever recorded with, and its latest name.
+    pub fn known_codes(&self) -> Result<Vec<(i64, String)>, StoreError> {
+        // From one code to the next by index: all faults need not be looked at.
+        let sql = "WITH RECURSIVE c(code) AS (
+                SELECT min(code) FROM fault
+                UNION ALL SELECT (SELECT min(f.code) FROM fault f WHERE f.code > c.code)
+                FROM c WHERE c.code IS NOT NULL)
+            SELECT code, (SELECT f.code_name FROM fault f WHERE f.code = c.code
+                ORDER BY f.last_at_us DESC LIMIT 1)
+            FROM c WHERE code IS NOT NULL ORDER BY code";
+        self.select("listing codes", sql, &[], |row| {
+            Ok((row.get(0)?, row.get(1)?))
+        })
+    }
+
+    /// Every part a fault ever pointed at.
+    pub fn known_lrus(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "WITH RECURSIVE c(lru) AS (
+                SELECT min(lru) FROM fault
+                UNION ALL SELECT (SELECT min(f.lru) FROM fault f WHERE f.lru > c.lru)
+                FROM c WHERE c.lru IS NOT NULL)
+            SELECT lru FROM c WHERE lru IS NOT NULL ORDER BY lru";
+        self.select("listing parts", sql, &[], |row| row.get(0))
+    }
+
+    /// Every part a fault ever pointed at or a repair was made of, as written in one of them.
+    pub fn known_parts(&self) -> Result<Vec<String>, StoreError> {
+        let mut known = self.known_lrus()?;
+        let sql = "SELECT DISTINCT part FROM repairs ORDER BY part";
+        let repaired: Vec<String> = self.select("listing parts", sql, &[], |row| row.get(0))?;
+        for part in repaired {
+            if !known.iter().any(|known| part_name(known) == part) {
+                known.push(part);
+            }
+        }
+        Ok(known)
+    }
+
+    /// The serial number of every unit.
+    pub fn known_units(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "SELECT serial FROM unit ORDER BY serial";
+        self.select("listing units", sql, &[], |row| row.get(0))
+    }
+
+    /// Every train a unit was in when it was tested.
+    pub fn known_trains(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "WITH RECURSIVE c(train) AS (
+                SELECT min(train) FROM run WHERE train <> ''
+                UNION ALL SELECT (SELECT min(r.train) FROM run r WHERE r.train > c.train AND r.train <> '')
+                FROM c WHERE c.train IS NOT NULL)
+            SELECT train FROM c WHERE train IS NOT NULL ORDER BY train";
+        self.select("listing trains", sql, &[], |row| row.get(0))
+    }
+
+    /// Every line a fault was ever seen on. Looks at all occurrences.
+    pub fn known_lines(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "SELECT DISTINCT line FROM fault_occurrence WHERE line <> '' ORDER BY line";
+        self.select("listing lines", sql, &[], |row| row.get(0))
+    }
+
+    /// Every procedure a fault was ever seen in. Looks at all occurrences.
+    pub fn known_procedures(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "SELECT DISTINCT s.procedure FROM fault_occurrence o
+            JOIN step s ON s.run = o.run AND s.step_index = o.step_index ORDER BY s.procedure";
+        self.select("listing procedures", sql, &[], |row| row.get(0))
+    }
+
+    /// The serial number of every part that was taken out or put in. Looks at all repairs.
+    pub fn known_part_serials(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "SELECT serial FROM (SELECT serial_old AS serial FROM repairs
+                UNION SELECT serial_new FROM repairs) AS changed
+            WHERE serial IS NOT NULL ORDER BY serial";
+        self.select("listing parts", sql, &[], |row| row.get(0))
+    }
+}
