@@ -127,24 +127,61 @@ impl Store {
     }
 }
 
-/// Adds an event that was made in knowledge of all that is here.
-pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
+/// What an event was made in knowledge of.
+pub(crate) struct Known {
+    /// The ids of the last words on the fault's state, one after the other; none for an event that leaves it.
+    pub follows: Vec<u8>,
+    /// One more than the greatest turn.
+    pub turn: i64,
+    /// Occurrences of the fault.
+    pub seen: i64,
+}
+
+/// All that is here.
+fn known(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<Known> {
     let mut follows = Vec::new();
     if event.state.is_some() {
         let last_words = concat!("SELECT e.id FROM ", last_words!("?1"), " ORDER BY e.id");
-        let known = base.select(last_words, &values![fault], |row| row.get::<Id>(0))?;
-        follows = known.iter().flat_map(Id::as_bytes).copied().collect();
+        let said = base.select(last_words, &values![fault], |row| row.get::<Id>(0))?;
+        follows = said.iter().flat_map(Id::as_bytes).copied().collect();
+    }
+    let found = base.first(
+        "SELECT coalesce((SELECT max(turn) FROM fault_event WHERE fault = ?1), 0) + 1, occurrences
+         FROM fault WHERE seq = ?1",
+        &values![fault],
+        |row| Ok((row.get(0)?, row.get(1)?)),
+    )?;
+    let (turn, seen) = found.unwrap_or_default();
+    Ok(Known {
+        follows,
+        turn,
+        seen,
+    })
+}
+
+/// Adds an event that was made in knowledge of all that is here.
+pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
+    if event.state.is_some() {
         let agreed = "UPDATE fault SET disputed = 0 WHERE seq = ?1 AND disputed = 1";
         base.execute(agreed, &values![fault])?;
     }
+    let known = known(base, fault, event)?;
+    insert_knowing(base, fault, event, &known)
+}
+
+/// Adds an event, unless it is there.
+pub(crate) fn insert_knowing(
+    base: &Base,
+    fault: i64,
+    event: &NewEvent<'_>,
+    known: &Known,
+) -> SqlResult<()> {
     if let Base::Server(_) = base {
-        return said::insert_event(base, fault, event, &follows);
+        return said::insert_event(base, fault, event, known);
     }
     base.execute(
         "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7,
-            (SELECT coalesce(max(turn), 0) + 1 FROM fault_event WHERE fault = ?2), ?8,
-            (SELECT occurrences FROM fault WHERE seq = ?2))",
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT (id) DO NOTHING",
         &values![
             event.id,
             fault,
@@ -153,7 +190,9 @@ pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> Sql
             event.who,
             event.body,
             event.state,
-            &follows[..]
+            known.turn,
+            &known.follows[..],
+            known.seen
         ],
     )?;
     Ok(())

@@ -1,7 +1,7 @@
 //! A copy of a file being made beside its place. It has its name only when it is complete: one cut short is
 //! worse than none.
 
-use std::hash::{BuildHasher as _, RandomState};
+use std::hash::{BuildHasher as _, DefaultHasher, Hash as _, Hasher as _, RandomState};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -62,8 +62,9 @@ impl Part {
     /// Nothing yet, under a name of its own.
     fn of(to: &Path) -> Self {
         let mut name = to.as_os_str().to_owned();
-        let random = RandomState::new().hash_one(to);
-        name.push(format!(".{}-{random:016x}.part", std::process::id()));
+        let random = RandomState::new().hash_one(to) as u32;
+        let process = std::process::id();
+        name.push(format!(".{process}-{:08x}{random:08x}.part", processes()));
         Self {
             beside: name.into(),
             to: to.to_path_buf(),
@@ -84,7 +85,12 @@ impl Part {
     /// Something has; or the disk's.
     pub fn publish(self) -> Result<(), StoreError> {
         let linked = match std::fs::hard_link(&self.beside, &self.to) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => self.rename(),
+            // Neither is there a name to give nor a copy to give it to.
+            Err(error)
+                if !matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) =>
+            {
+                self.rename()
+            }
             done => done,
         };
         linked.map_err(|error| match error.kind() {
@@ -137,18 +143,38 @@ fn left_of(to: &Path) -> Vec<PathBuf> {
     left.map(|entry| entry.path()).collect()
 }
 
-/// The number of the process that makes a copy, by what follows the name it is to have.
-fn maker(end: &[u8]) -> Option<u32> {
+/// The process that makes a copy, by what follows the name it is to have: among which, and its number.
+fn maker(end: &[u8]) -> Option<(u32, u32)> {
     let end = std::str::from_utf8(end).ok()?;
     let end = end.strip_prefix('.')?.strip_suffix(".part")?;
-    let (process, random) = end.split_once('-')?;
-    let is_ours = random.len() == 16 && random.bytes().all(|digit| digit.is_ascii_hexdigit());
-    process.parse().ok().filter(|_| is_ours)
+    let (process, name) = end.split_once('-')?;
+    let is_ours = name.len() == 16 && name.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let among = is_ours.then(|| u32::from_str_radix(&name[..8], 16).ok())?;
+    Some((among?, process.parse().ok()?))
 }
 
-/// Where processes can be looked up.
-fn is_gone(process: u32) -> bool {
-    Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{process}")).exists()
+/// Names the processes that can be looked up here: those of this computer, since it was started, in this
+/// container. 0 where none can be.
+fn processes() -> u32 {
+    // Others' can be seen, too, unless the system is told to hide them.
+    if !Path::new("/proc/1").exists() {
+        return 0;
+    }
+    let boot = std::fs::read("/proc/sys/kernel/random/boot_id");
+    let space = std::fs::read_link("/proc/self/ns/pid");
+    match (boot, space) {
+        (Ok(boot), Ok(space)) => {
+            let mut hasher = DefaultHasher::new();
+            (boot, space).hash(&mut hasher);
+            (hasher.finish() as u32).max(1)
+        }
+        _ => 0,
+    }
+}
+
+/// Of those that can be looked up here.
+fn is_gone((among, process): (u32, u32)) -> bool {
+    among != 0 && among == processes() && !Path::new(&format!("/proc/{process}")).exists()
 }
 
 fn is_given_up(entry: &std::fs::DirEntry) -> bool {
@@ -160,6 +186,25 @@ fn is_given_up(entry: &std::fs::DirEntry) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A copy whose program is dead goes; one of another computer may be in the making.
+    #[test]
+    fn a_copy_is_left_by_a_process_of_this_computer_that_is_gone() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let to = dir.path().join("b.db");
+        let name = |process: u32, among: u32| {
+            let name = format!("b.db.{process}-{among:08x}01234567.part");
+            let path = dir.path().join(name);
+            std::fs::write(&path, "half").expect("written");
+            path
+        };
+        let here = processes();
+        let dead = name(u32::MAX, here);
+        name(std::process::id(), here);
+        name(u32::MAX, here ^ 1);
+        let expected = if here == 0 { vec![] } else { vec![dead] };
+        assert_eq!(left_of(&to), expected);
+    }
 
     /// On a disk without hard links, too, a name that is taken stays with the file that has it.
     #[test]

@@ -7,88 +7,120 @@
 use sha2::{Digest as _, Sha256};
 
 use crate::base::{Base, Server, SqlResult, values};
-use crate::fault_log::{NewEvent, insert_event};
+use crate::fault_log::{Known, NewEvent, insert_knowing};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::settle::last_words;
 
-/// A fault of a file that counts as done: when it was last seen after that, if it was seen more often than
-/// was known then.
+/// Last words by which a fault of a file was done with, and when it was first seen after that, if it was seen
+/// more often than was known then.
 const IN_FILE: &str = concat!(
-    "SELECT o.at_us, o.message, done.id
-     FROM fault f, fault_occurrence o, (SELECT e.id, e.at_us, e.seen FROM ",
+    "SELECT e.fault, e.id, e.turn, o.at_us, o.message FROM fault f, fault_occurrence o, ",
     last_words!("?1"),
-    " AND e.kind <> 'opened' ORDER BY e.at_us DESC, e.id LIMIT 1) AS done
-     WHERE f.seq = ?1 AND f.state IN ('repaired', 'verified', 'closed') AND f.occurrences > done.seen
-        AND o.fault = f.seq AND o.at_us > done.at_us
-     ORDER BY o.at_us DESC, o.id LIMIT 1"
+    " AND e.state IN ('repaired', 'verified', 'closed') AND f.seq = e.fault AND f.occurrences > e.seen
+        AND o.seq = (SELECT x.seq FROM fault_occurrence x WHERE x.fault = e.fault AND x.at_us > e.at_us
+            ORDER BY x.at_us, x.id LIMIT 1)
+     ORDER BY e.id"
 );
 
-/// Of these faults of a server those that count as done, and when another laptop than the one where that
-/// was said last saw them after it.
+/// Last words by which these faults of a server were done with, and when another laptop than the one where
+/// that was said first saw them after it: if either has come after `$2`, the last event, and `$3`, the last
+/// occurrence that were here. What both were here has been judged, by the clocks of that time.
 const ON_SERVER: &str = concat!(
-    "SELECT f.seq, seen.at_us, seen.message, done.id FROM fault f
+    "SELECT f.seq, done.id, done.turn, seen.at_us, seen.message FROM fault f
         CROSS JOIN LATERAL (
-            SELECT e.id, e.laptop, e.at_us - coalesce(
+            SELECT e.seq, e.id, e.turn, e.laptop, e.at_us - coalesce(
                 (SELECT l.clock_offset_us FROM laptop l WHERE l.seq = e.laptop), 0) AS at_us
             FROM ",
     last_words!("f.seq"),
-    " AND e.kind <> 'opened' ORDER BY 3 DESC, e.id LIMIT 1
+    " AND e.state IN ('repaired', 'verified', 'closed')
         ) AS done
         CROSS JOIN LATERAL (
             SELECT o.at_us, o.message FROM fault_occurrence o
                 JOIN run r ON r.seq = o.run JOIN laptop l ON l.seq = r.laptop
             WHERE o.fault = f.seq AND r.laptop IS DISTINCT FROM done.laptop
-                AND o.at_us - l.clock_offset_us > done.at_us
-            ORDER BY o.at_us - l.clock_offset_us DESC, o.id LIMIT 1
+                AND o.at_us - l.clock_offset_us > done.at_us AND (done.seq > $2 OR o.seq > $3)
+            ORDER BY o.at_us - l.clock_offset_us, o.id LIMIT 1
         ) AS seen
-     WHERE f.seq = ANY($1) AND f.state IN ('repaired', 'verified', 'closed') ORDER BY f.seq"
+     WHERE f.seq = ANY($1) ORDER BY f.seq, done.id"
 );
 
-/// What was seen too late for those who were done with a fault.
+/// What was seen too late for somebody who was done with a fault.
 struct Seen {
     fault: i64,
+    /// The event that it takes back, and its turn.
+    done: Id,
+    turn: i64,
     at_us: i64,
     message: String,
-    /// The event that it takes back.
-    done: Id,
 }
 
-/// Opens a fault of a file again, if it was seen; runs after it was settled, in the caller's transaction.
+/// Takes back what was said too early about a fault of a file; whether anything was. Runs in the caller's
+/// transaction; the fault is to be settled after it.
 pub(crate) fn open_again(base: &Base, fault: i64) -> SqlResult<bool> {
-    let seen = base.first(IN_FILE, &values![fault], |row| {
+    let all = base.select(IN_FILE, &values![fault], |row| {
         Ok(Seen {
-            fault,
-            at_us: row.get(0)?,
-            message: row.get(1)?,
-            done: row.get(2)?,
+            fault: row.get(0)?,
+            done: row.get(1)?,
+            turn: row.get(2)?,
+            at_us: row.get(3)?,
+            message: row.get(4)?,
         })
     })?;
-    seen.as_ref()
-        .map_or(Ok(()), |seen| answer(base, seen))
-        .map(|()| seen.is_some())
+    all.iter().try_for_each(|seen| answer(base, seen))?;
+    Ok(!all.is_empty())
 }
 
-/// Opens faults of a server again, of these; which they were.
-pub(crate) fn open_again_of(base: &Base, server: &Server, faults: &[i64]) -> SqlResult<Vec<i64>> {
+/// The last event and the last occurrence of a server.
+#[derive(Clone, Copy)]
+pub(crate) struct Mark {
+    event: i64,
+    occurrence: i64,
+}
+
+impl Mark {
+    /// Before anything is added, by who alone may add.
+    pub fn of(base: &Base) -> SqlResult<Self> {
+        let found = base.first(
+            "SELECT coalesce((SELECT max(seq) FROM fault_event), 0),
+                coalesce((SELECT max(seq) FROM fault_occurrence), 0)",
+            &[],
+            |row| Ok((row.get(0)?, row.get(1)?)),
+        )?;
+        let (event, occurrence) = found.unwrap_or_default();
+        Ok(Self { event, occurrence })
+    }
+}
+
+/// The same of faults of a server, as far as either is new since the mark; which faults they were.
+pub(crate) fn open_again_of(
+    base: &Base,
+    server: &Server,
+    faults: &[i64],
+    mark: Mark,
+) -> SqlResult<Vec<i64>> {
     let mut opened = Vec::new();
-    for row in server.select_columns(ON_SERVER, &[&faults])? {
-        let done: &[u8] = row.try_get(3)?;
+    let found = server.select_columns(ON_SERVER, &[&faults, &mark.event, &mark.occurrence])?;
+    for row in found {
+        let done: &[u8] = row.try_get(1)?;
         let Ok(done) = done.try_into().map(Id::from_bytes) else {
             continue;
         };
         let seen = Seen {
             fault: row.try_get(0)?,
-            at_us: row.try_get(1)?,
-            message: row.try_get(2)?,
             done,
+            turn: row.try_get(2)?,
+            at_us: row.try_get(3)?,
+            message: row.try_get(4)?,
         };
         answer(base, &seen)?;
         opened.push(seen.fault);
     }
+    opened.dedup();
     Ok(opened)
 }
 
+/// The answer to each is its own, and the same wherever it is found out.
 fn answer(base: &Base, seen: &Seen) -> SqlResult<()> {
     let event = NewEvent {
         id: answer_to(seen.done, seen.at_us),
@@ -98,11 +130,15 @@ fn answer(base: &Base, seen: &Seen) -> SqlResult<()> {
         body: &seen.message,
         state: Some(FaultState::Open),
     };
-    insert_event(base, seen.fault, &event)
+    let known = Known {
+        follows: seen.done.as_bytes().to_vec(),
+        turn: seen.turn + 1,
+        seen: 0,
+    };
+    insert_knowing(base, seen.fault, &event, &known)
 }
 
-/// The id of the event that takes back another, the same wherever it is found out: nobody was there to make
-/// one.
+/// The id of the event that takes back another: nobody was there to make one.
 fn answer_to(done: Id, at_us: i64) -> Id {
     let hash = Sha256::new()
         .chain_update(b"recurred")

@@ -2,7 +2,7 @@
 //! a note that a search finds, and the part a repair was of.
 
 use crate::base::{Base, SqlResult, values};
-use crate::fault_log::{NewEvent, REPAIR};
+use crate::fault_log::{Known, NewEvent, REPAIR};
 use crate::functions;
 use crate::id::Id;
 use crate::record::{RepairRecord, part_name};
@@ -33,18 +33,17 @@ pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
     Some(part_name(&part))
 }
 
-/// Adds an event that was said to the server itself, in knowledge of those it follows.
+/// Adds an event that was said to the server itself, unless it is there.
 pub(crate) fn insert_event(
     base: &Base,
     fault: i64,
     event: &NewEvent<'_>,
-    follows: &[u8],
+    known: &Known,
 ) -> SqlResult<()> {
     base.execute(
         "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen, part, words)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7,
-            (SELECT coalesce(max(turn), 0) + 1 FROM fault_event WHERE fault = ?2),
-            ?10, (SELECT occurrences FROM fault WHERE seq = ?2), ?8, CAST(?9 AS tsvector))",
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, CAST(?12 AS tsvector))
+         ON CONFLICT (id) DO NOTHING",
         &values![
             event.id,
             fault,
@@ -53,9 +52,11 @@ pub(crate) fn insert_event(
             event.who,
             event.body,
             event.state,
+            known.turn,
+            &known.follows[..],
+            known.seen,
             part(event.kind, event.body),
-            event_words(event.kind, event.body),
-            follows
+            event_words(event.kind, event.body)
         ],
     )?;
     Ok(())

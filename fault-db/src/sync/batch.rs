@@ -10,7 +10,7 @@ use super::rows::Rows;
 use super::tables;
 use crate::base::{Base, Field, Server, SqlResult, values};
 use crate::id::Id;
-use crate::seen_again::open_again_of;
+use crate::seen_again::{Mark, open_again_of};
 use crate::server::said;
 use crate::settle::settle_all;
 
@@ -206,6 +206,7 @@ impl<'a> Batch<'a> {
     /// Adds all of it to the server, parents before children; runs in the caller's transaction.
     pub fn send(mut self, base: &Base, server: &Server, known: &Laptop) -> SqlResult<SyncOutcome> {
         let laptop = known.seq;
+        let mark = Mark::of(base)?;
         let (units, faults, other_ids) = self.identities()?;
         units.send(server, laptop)?;
         let runs = self.runs.send(server, laptop)?;
@@ -224,9 +225,14 @@ impl<'a> Batch<'a> {
         }
         settle_all(server, &spoken_of(&faults, server, laptop)?)?;
         doubles::join(server, &spoken_of(&faults, server, laptop)?)?;
-        // Joined or not: what was seen elsewhere counts for both.
-        let again = open_again_of(base, server, &spoken_of(&faults, server, laptop)?)?;
-        if !again.is_empty() {
+        // What opens a fault again may make it one with another, where more was seen, or somebody was done
+        // with it, too.
+        loop {
+            let spoken_of = spoken_of(&faults, server, laptop)?;
+            let again = open_again_of(base, server, &spoken_of, mark)?;
+            if again.is_empty() {
+                break;
+            }
             settle_all(server, &again)?;
             doubles::join(server, &again)?;
         }

@@ -98,9 +98,11 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
         let fault: Option<i64> = file.first(known, &values![event.fault], |row| row.get(0))?;
         // The file came back from a backup older than the fault.
         let Some(fault) = fault else { continue };
+        // What others saw of it stays with them and the server: of that, nothing is known here.
         let added = file.execute(
             "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT (id) DO NOTHING",
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9,
+                min(?10, (SELECT occurrences FROM fault WHERE seq = ?2))) ON CONFLICT (id) DO NOTHING",
             &values![
                 event.id,
                 fault,

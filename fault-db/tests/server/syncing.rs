@@ -285,6 +285,71 @@ fn a_fault_that_was_seen_again_after_it_was_done_with_elsewhere_is_open() {
     }
 }
 
+/// Goal: what was judged stays judged. Method: a laptop whose clock is hours ahead sees a fault; at the server,
+/// where that is known, it is closed; then the clock is set, and somebody says a word about the fault.
+#[test]
+fn a_clock_that_is_set_opens_nothing_again() {
+    let address = shared().database();
+    let (ahead, other) = (Laptop::new("ahead"), Laptop::new("other"));
+    let hour_us = 3_600_000_000;
+    ahead.clock_ahead_us.set(3 * hour_us);
+    ahead.run("U-1", day(0) + 3 * hour_us, &[101], false);
+    ahead.sync(&address);
+    other.run("U-1", day(-1), &[101], false);
+    other.sync(&address);
+    let desk = connect(&address).expect("a server");
+    let fault = only_fault(&desk).fault.id;
+    let closed = desk.set_state(fault, FaultState::Closed, "park", "", day(0) + hour_us);
+    closed.expect("a state");
+    ahead.clock_ahead_us.set(0);
+    ahead.sync(&address);
+    for laptop in [&other, &ahead] {
+        let store = laptop.open();
+        let fault = only_fault(&store).fault.id;
+        let noted = store.add_note(fault, "kim", "well then", day(1));
+        noted.expect("a note");
+        drop(store);
+        laptop.sync(&address);
+        assert_eq!(only_fault(&desk).fault.state, FaultState::Closed);
+    }
+}
+
+/// Goal: a closing that came from the server is taken back by what a third laptop saw after it, also where no
+/// server is within reach. Method: the server knows of more occurrences than the laptop that was told.
+#[test]
+fn a_closing_that_was_pulled_is_no_wiser_than_the_file_it_came_to() {
+    let address = shared().database();
+    let (told, many, away) = (
+        Laptop::new("told"),
+        Laptop::new("many"),
+        Laptop::new("away"),
+    );
+    told.run("U-1", day(0), &[101], false);
+    away.open()
+        .merge_from(&told.open())
+        .expect("a shared beginning");
+    told.sync(&address);
+    for n in 0..4 {
+        many.run("U-1", day(n), &[101], false);
+    }
+    many.sync(&address);
+    let desk = connect(&address).expect("a server");
+    let closed = desk.set_state(
+        only_fault(&desk).fault.id,
+        FaultState::Closed,
+        "park",
+        "",
+        day(5),
+    );
+    closed.expect("a state");
+    told.sync(&address);
+    assert_eq!(only_fault(&told.open()).fault.state, FaultState::Closed);
+    away.run("U-1", day(6), &[101], false);
+    told.open().merge_from(&away.open()).expect("merged");
+    assert_eq!(only_fault(&told.open()).fault.state, FaultState::Open);
+    told.is_whole();
+}
+
 /// Who did more does not win over who knew nothing of it: both are kept, and shown everywhere.
 #[test]
 fn who_did_more_does_not_win() {

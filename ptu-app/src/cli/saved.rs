@@ -118,8 +118,11 @@ fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
         false => &[],
     };
     let spans = drop_if_given(&["--when", "--since", "--since-repair"]);
+    // Several states are one question: given now, they are another.
+    let states = drop_if_given(&["--state"]);
     let forms = drop_if_given(&["--json", "--csv"]);
-    without(words.iter().cloned(), spans, forms)
+    let with_value = [spans, states].concat();
+    without(words.iter().cloned(), &with_value, forms)
 }
 
 /// The words without these options, those with a value, which goes with them, and those without.
@@ -216,15 +219,19 @@ mod tests {
     #[test]
     fn an_option_given_now_replaces_those_it_cannot_stand_beside() {
         let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
-        let saved = words("faults list --when 90d --since=30d --json --limit 3");
+        let saved = words("faults list --state open --when 90d --since=30d --json");
         for (more, kept) in [
             (
                 "--limit 2",
-                "faults list --when 90d --since=30d --json --limit 3",
+                "faults list --state open --when 90d --since=30d --json",
             ),
-            ("--csv", "faults list --when 90d --since=30d --limit 3"),
-            ("--when=7d", "faults list --json --limit 3"),
-            ("--since 7d --json", "faults list --limit 3"),
+            ("--csv", "faults list --state open --when 90d --since=30d"),
+            ("--when=7d", "faults list --state open --json"),
+            ("--since 7d --json", "faults list --state open"),
+            (
+                "--state closed",
+                "faults list --when 90d --since=30d --json",
+            ),
         ] {
             assert_eq!(
                 without_rivals(&saved, &words(more)).join(" "),

@@ -29,14 +29,18 @@ impl Merge<'_> {
             settle(self.base, *fault)?;
         }
         self.join_doubles(known.touched.clone(), &mut known)?;
-        let mut again = BTreeSet::new();
-        for fault in known.touched.clone() {
-            if open_again(self.base, fault)? {
-                settle(self.base, fault)?;
-                again.insert(fault);
+        // What opens one may make it one with another, where more was seen, or somebody was done with it, too.
+        let mut changed = known.touched.clone();
+        while !changed.is_empty() {
+            let mut again = BTreeSet::new();
+            for fault in changed {
+                if open_again(self.base, fault)? {
+                    settle(self.base, fault)?;
+                    again.insert(fault);
+                }
             }
+            changed = self.join_doubles(again, &mut known)?;
         }
-        self.join_doubles(again, &mut known)?;
         self.counts.faults = known.added.len();
         Ok(())
     }
@@ -215,17 +219,20 @@ impl Merge<'_> {
         Ok(())
     }
 
-    /// Faults of the same unit, code and part, none of them closed: two laptops saw one fault.
-    fn join_doubles(&self, of: BTreeSet<i64>, known: &mut Known) -> SqlResult<()> {
+    /// Faults of the same unit, code and part, none of them closed: two laptops saw one fault. Those that others
+    /// were joined with.
+    fn join_doubles(&self, of: BTreeSet<i64>, known: &mut Known) -> SqlResult<BTreeSet<i64>> {
+        let mut stay = BTreeSet::new();
         for fault in of {
             let mut doubles = open_doubles(self.base, fault)?.into_iter();
             if let Some(oldest) = doubles.next() {
                 for double in doubles {
                     known.join(self, oldest, double)?;
+                    stay.insert(oldest);
                 }
             }
         }
-        Ok(())
+        Ok(stay)
     }
 }
 

@@ -133,7 +133,7 @@ fn warnings(outcome: &SyncOutcome) -> Vec<String> {
             "behind"
         };
         all.push(format!(
-            "this computer's clock is {} {way} the server's; set it, or its times will puzzle people (what stands does not depend on them)",
+            "this computer's clock is {} {way} the server's; set it, or its times will puzzle people",
             span(outcome.clock_offset_us.unsigned_abs())
         ));
     }

@@ -4,8 +4,10 @@ use eframe::egui::{Button, DragValue, RichText, TextEdit, Ui};
 
 use super::ProceduresPage;
 use crate::gui::library::Asked;
+use crate::gui::units::Unit;
 use crate::gui::{Desk, Palette};
 use crate::station::Phase;
+use crate::words::Procedures;
 
 /// Most repetitions of a run.
 const MOST: u32 = 10_000;
@@ -28,7 +30,8 @@ impl ProceduresPage {
         let may = desk.units.chosen().may_run() && sound && self.orders.is_empty();
         let run = Button::new(RichText::new(words.run).strong().size(17.0));
         let run = ui.add_enabled(may, run);
-        if run.on_disabled_hover_text(words.connect_first).clicked() {
+        let why_not = why_not(desk.units.chosen(), words);
+        if run.on_disabled_hover_text(why_not).clicked() {
             self.order(desk.units.chosen().id, false, desk);
         }
         let find = ui.add_enabled(may, Button::new(words.find_part));
@@ -58,6 +61,14 @@ impl ProceduresPage {
         if phase != Phase::Idle {
             ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));
         }
+    }
+}
+
+/// Why a unit cannot be run now.
+pub(super) fn why_not(unit: &Unit, words: &Procedures) -> &'static str {
+    match unit.phase() {
+        Phase::Idle => words.about_to_begin,
+        _ => words.connect_first,
     }
 }
 

@@ -97,7 +97,7 @@ impl ProceduresPage {
         let words = &desk.words.procedures;
         let chosen = desk.units.chosen();
         if !chosen.may_run() {
-            desk.messages.trouble(words.connect_first, "");
+            desk.messages.trouble(controls::why_not(chosen, words), "");
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
             desk.messages.trouble(said, "");
