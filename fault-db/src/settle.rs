@@ -6,6 +6,7 @@
 //! again. That a fault was seen is no decision: it yields to who is at it, and that it was opened to all.
 
 use crate::base::{Base, Server, SqlResult, values};
+use crate::id::Id;
 
 /// Brings a fault's own row in line with its occurrences and events.
 pub(crate) fn settle(base: &Base, fault: i64) -> SqlResult<()> {
@@ -18,6 +19,15 @@ pub(crate) fn settle_all(server: &Server, faults: &[i64]) -> SqlResult<()> {
     let all = format!("{SETTLE} WHERE seq = ANY($1)");
     server.execute_columns(&all, &[&faults])?;
     Ok(())
+}
+
+/// The fault of this id, be it one that was given to it elsewhere.
+pub(crate) fn fault_of(base: &Base, id: Id) -> SqlResult<Option<i64>> {
+    base.first(
+        "SELECT seq FROM fault WHERE id = ?1 UNION ALL SELECT fault FROM fault_alias WHERE id = ?1",
+        &values![id],
+        |row| row.get(0),
+    )
 }
 
 /// Faults not closed of the same unit, code and part as this one, if it is not closed itself, oldest first.

@@ -223,8 +223,9 @@ impl<'a> Batch<'a> {
         if self.seals.send(server, laptop)? < self.seals.count as u64 {
             self.different.extend(other_seals(&self.seals, server)?);
         }
-        settle_all(server, &spoken_of(&faults, server, laptop)?)?;
-        doubles::join(server, &spoken_of(&faults, server, laptop)?)?;
+        let settled = spoken_of(&faults, server, laptop)?;
+        settle_all(server, &settled)?;
+        doubles::join(server, &settled)?;
         // What opens a fault again may make it one with another, where more was seen, or somebody was done
         // with it, too.
         loop {

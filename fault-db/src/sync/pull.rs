@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::outcome::SyncOutcome;
 use crate::base::{Base, SqlResult, values};
 use crate::id::Id;
-use crate::settle::{join, open_doubles, settle};
+use crate::settle::{fault_of, join, open_doubles, settle};
 
 /// Events of a batch at most.
 const MOST_EVENTS: usize = 500;
@@ -93,11 +93,10 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
         .unwrap_or_default();
     let mut faults = BTreeSet::new();
     for event in events {
-        let known = "SELECT seq FROM fault WHERE id = ?1
-             UNION ALL SELECT fault FROM fault_alias WHERE id = ?1";
-        let fault: Option<i64> = file.first(known, &values![event.fault], |row| row.get(0))?;
         // The file came back from a backup older than the fault.
-        let Some(fault) = fault else { continue };
+        let Some(fault) = fault_of(file, event.fault)? else {
+            continue;
+        };
         // What others saw of it stays with them and the server: of that, nothing is known here.
         let added = file.execute(
             "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)

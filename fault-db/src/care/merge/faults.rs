@@ -10,7 +10,7 @@ use super::rows::{Numbers, renumber, values};
 use crate::base::SqlResult;
 use crate::id::Id;
 use crate::seen_again::open_again;
-use crate::settle::{join, open_doubles, settle};
+use crate::settle::{fault_of, join, open_doubles, settle};
 
 impl Merge<'_> {
     /// A fault of theirs is ours if it has an id in common with it, aliases included. Whether two laptops
@@ -59,7 +59,7 @@ impl Merge<'_> {
                 .collect();
             let mut ours = BTreeSet::new();
             for id in &ids {
-                ours.extend(self.our_fault(*id)?);
+                ours.extend(fault_of(self.base, *id)?);
             }
             let mut ours = ours.into_iter();
             let fault = match ours.next() {
@@ -116,15 +116,6 @@ impl Merge<'_> {
             aliases.entry(row.get(0)?).or_default().push(row.get(1)?);
         }
         Ok(aliases)
-    }
-
-    /// Our fault of this id, be it one that was given to it elsewhere.
-    fn our_fault(&self, id: Id) -> rusqlite::Result<Option<i64>> {
-        let mut find = self.ours.prepare_cached(
-            "SELECT seq FROM fault WHERE id = ?1 UNION ALL SELECT fault FROM fault_alias WHERE id = ?1",
-        )?;
-        let mut rows = find.query([id])?;
-        rows.next()?.map(|row| row.get(0)).transpose()
     }
 
     /// What follows from occurrences and events is settled when they are here.
