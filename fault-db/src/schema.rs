@@ -19,6 +19,7 @@ const STEPS: &[M<'static>] = &[
         include_str!("schema/counts.sql"),
         include_str!("schema/words.sql")
     )),
+    M::up(include_str!("schema/0005.sql")),
 ];
 
 /// Makes what is counted from other rows anew.
