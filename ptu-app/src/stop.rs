@@ -1,4 +1,5 @@
-//! The operator's stop: Ctrl-C or a polite kill, counted; and a run's own decision to end early.
+//! The operator's stop: Ctrl-C, a polite kill or a terminal that closes, counted; and a run's own decision to
+//! end early.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -34,7 +35,7 @@ impl Stop {
         self.presses() == 0 && !self.0.ended.load(Ordering::Relaxed)
     }
 
-    /// Listens to interrupt and termination signals on a thread of its own. Without it (no runtime,
+    /// Listens to interrupt, termination and hang-up signals on a thread of its own. Without it (no runtime,
     /// no signals) the process ends at once, and the unit's own time-out makes its outputs safe.
     pub fn listen(&self) {
         self.listen_and(|| {});
@@ -61,13 +62,53 @@ impl Stop {
             ) else {
                 return;
             };
+            let mut hang_up = heeds_hang_up()
+                .then(|| signal(SignalKind::hangup()).ok())
+                .flatten();
             loop {
                 tokio::select! {
-                    _ = interrupt.recv() => self.press(),
-                    _ = terminate.recv() => self.press(),
+                    _ = interrupt.recv() => {}
+                    _ = terminate.recv() => {}
+                    () = received(hang_up.as_mut()) => {}
                 }
+                self.press();
                 then();
             }
         });
+    }
+}
+
+/// Waits for a signal, for ever if there is none to wait for.
+async fn received(signal: Option<&mut tokio::signal::unix::Signal>) {
+    match signal {
+        Some(signal) => drop(signal.recv().await),
+        None => std::future::pending().await,
+    }
+}
+
+/// Whether a closed terminal is to end this process: not if it was started to outlive it (`nohup`).
+fn heeds_hang_up() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    !ignores_hang_up(&status)
+}
+
+/// Whether SIGHUP, number 1 and so bit 0, is ignored, by what Linux tells of a process.
+fn ignores_hang_up(status: &str) -> bool {
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask & 1 != 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_was_started_to_outlive_its_terminal_does() {
+        let status = |mask| format!("Name:\tptu\nSigBlk:\t0000000000000001\nSigIgn:\t{mask}\n");
+        assert!(ignores_hang_up(&status("0000000000001001")));
+        assert!(!ignores_hang_up(&status("0000000000001000")));
+        assert!(!ignores_hang_up("no Linux"));
     }
 }
