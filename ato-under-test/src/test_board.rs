@@ -98,8 +98,10 @@ impl TestBoard {
 
     /// Makes a speed signal.
     pub fn set_speed(&mut self, mut request: TestSpeed) -> Answer {
-        let answer =
-            self.take(request.speed_cms <= SPEED_MAX_CMS && matches!(request.channels, 1..=3));
+        let in_range = request.speed_cms <= SPEED_MAX_CMS
+            && matches!(request.channels, 1..=3)
+            && request.backward <= 1;
+        let answer = self.take(in_range);
         if answer == Answer::Accepted {
             if request.accel_mms2 == 0 {
                 request.accel_mms2 = OWN_ACCEL_MMS2;
@@ -129,7 +131,10 @@ impl TestBoard {
 
     /// Makes station data.
     pub fn set_twc(&mut self, now: Instant, request: TestTwc) -> Answer {
-        let answer = self.take(true);
+        let in_range = request.running_mode.is_known()
+            && request.door_side.is_known()
+            && request.departure <= 1;
+        let answer = self.take(in_range);
         if answer == Answer::Accepted {
             let data = TwcWayside {
                 route: request.route,

@@ -144,6 +144,16 @@ impl Unit {
         }
     }
 
+    /// The wire ends at another tester from now on: nothing of the last one's goes on.
+    pub fn begin_anew(&mut self) {
+        self.link.begin_anew();
+    }
+
+    /// Frames accepted since power-up, on all channels.
+    pub fn frames_accepted(&self) -> u64 {
+        self.link.counters().accepted_total()
+    }
+
     /// One scan, every 10 ms; frames to send are appended to `out`.
     pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.faults.step(now);

@@ -66,6 +66,23 @@ fn it_arms_the_unit_sets_a_code_and_reads_back_the_limit() {
     });
 }
 
+/// Goal: the text says how the emergency brake is released. Method: a client that knows nothing else drives the
+/// unit into it, and out of it again.
+#[test]
+fn it_drives_the_unit_into_the_emergency_brake_and_releases_it() {
+    steadily(|| {
+        let (_unit, port) = serve();
+        let output = client(&[&port, "--overspeed", "1750"]);
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8_lossy(&said);
+        assert!(output.status.success(), "{said}");
+        assert!(
+            said.contains("acknowledged: emergency brake released"),
+            "{said}"
+        );
+    });
+}
+
 #[test]
 fn without_the_maintenance_key_it_is_refused() {
     steadily(|| {

@@ -60,6 +60,37 @@ fn overspeed_goes_from_alarm_to_service_brake_to_emergency_brake() {
     assert!(!bench.braking());
 }
 
+/// The parameter of an event in the log.
+fn parameter(bench: &mut Bench, name: &str) -> i32 {
+    let place = bench.events().iter().position(|event| *event == name);
+    bench.log[place.unwrap_or_else(|| panic!("no {name}"))].parameter
+}
+
+/// 55 km/h are 1528 cm/s, 63 are 1750.
+#[test]
+fn what_brought_the_emergency_brake_is_logged_with_its_size() {
+    let mut bench = Bench::new(&[]);
+    bench.code("55");
+    bench.run(0.6);
+    bench.speed_kmh(63.0);
+    assert!(bench.until(1.0, Bench::braking).is_some());
+    let excess_cms = parameter(&mut bench, "overspeed_eb");
+    assert!((170..=222).contains(&excess_cms), "{excess_cms} cm/s");
+
+    let mut bench = Bench::new(&[]);
+    bench.code("55");
+    bench.run(0.6);
+    bench.speed_kmh(60.0);
+    while !bench.braking() {
+        bench.speeds = bench.speeds.map(|speed| speed - 0.001);
+        bench.run(0.01);
+    }
+    bench.run(0.1);
+    assert_eq!(bench.status.eb_cause, EbCause::ServiceBrakeIneffective);
+    let decel_mms2 = parameter(&mut bench, "service_brake_ineffective");
+    assert!((90..=110).contains(&decel_mms2), "{decel_mms2} mm/s²");
+}
+
 #[test]
 fn the_service_brake_releases_by_itself_under_the_limit() {
     let mut bench = Bench::new(&[]);

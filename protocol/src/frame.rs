@@ -228,6 +228,15 @@ impl Decoder {
         self.pending.extend_from_slice(newest);
     }
 
+    /// Forgets a frame under way and what was not looked at yet, as garbage: other bytes follow than those.
+    pub fn restart(&mut self) {
+        self.garbage += (self.pending_len() + self.len) as u64;
+        self.pending.clear();
+        self.read = 0;
+        self.len = 0;
+        self.state = State::Hunt;
+    }
+
     /// The next whole frame, good or refused, or `None` until more bytes arrive.
     ///
     /// A frame that is returned has a right FCS and known version, channel and addresses.

@@ -60,6 +60,11 @@ impl Counters {
         self.gaps[channel as usize]
     }
 
+    /// Frames accepted.
+    pub fn accepted_total(&self) -> u64 {
+        self.accepted.iter().sum()
+    }
+
     /// Frames refused for a reason.
     pub fn rejected(&self, reason: Reject) -> u64 {
         self.rejected[reason as usize].iter().sum()
@@ -149,6 +154,14 @@ impl Link {
     pub fn push(&mut self, bytes: &[u8]) {
         self.decoder.push(bytes);
         self.counters.garbage = self.decoder.garbage();
+    }
+
+    /// Another connection stands in place of the last: its bytes do not go on from the other's, and
+    /// every channel begins anew. What was counted stays.
+    pub fn begin_anew(&mut self) {
+        self.decoder.restart();
+        self.counters.garbage = self.decoder.garbage();
+        self.receivers = [None; CHANNELS];
     }
 
     /// The next accepted frame. Refused ones on the way to it are counted and nothing else.
@@ -304,7 +317,33 @@ impl Receiver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::message::{Identify, Status};
+    use crate::message::{Identify, KeepAlive, Status};
+
+    /// A tester whose numbers and clock begin anew is heard at once on a connection of its own, and half a
+    /// frame of the one before it spoils none of its frames.
+    #[test]
+    fn on_another_connection_every_channel_begins_anew() {
+        let keep_alive = Message::from(KeepAlive { session: 0 });
+        let (mut unit, mut before) = (Link::new(End::Unit), Link::new(End::Bench));
+        let mut frames = Vec::new();
+        for ms in [60_000, 60_200] {
+            before.send(Instant::from_ms(ms), &keep_alive, &mut frames);
+        }
+        let now = Instant::from_ms(70_000);
+        unit.push(&frames[..frames.len() - 5]);
+        assert!(unit.poll(now).is_some() && unit.poll(now).is_none());
+        let mut frame = Vec::new();
+        Link::new(End::Bench).send(Instant::from_ms(10), &keep_alive, &mut frame);
+        unit.begin_anew();
+        unit.push(&frame);
+        assert_eq!(unit.poll(now).map(|r| r.message), Some(keep_alive));
+        let counters = unit.counters();
+        assert_eq!(
+            (counters.accepted_total(), counters.rejected_total()),
+            (2, 0)
+        );
+        assert_eq!(counters.garbage(), frame.len() as u64 - 6);
+    }
 
     #[test]
     fn both_ends_hear_each_other() {

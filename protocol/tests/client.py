@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Arms an on-board ATC unit over a pseudo terminal, feeds a speed code into its test coil and
-checks the limit. Written from WIRE.md alone, to show that the text is enough."""
+checks the limit; if asked, drives it into overspeed and releases the emergency brake that follows.
+Written from WIRE.md alone, to show that the text is enough."""
 import argparse, collections, contextlib, os, random, re, select, struct, sys, time, tty, zlib
 
 UNIT, PTU, IO, TCMS = 0x20, 1, 2, 3
 PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40}                             # channel: address
-DOORS_CLOSED, HCR, MAINTENANCE_KEY, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x20, 0x40
+DOORS_CLOSED, HCR, MAINTENANCE_KEY, ACKNOWLEDGE, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x08, 0x20, 0x40
 EB_LOOP_FED = 0x100
-EB_RELAY, CODE_VALID, ARMED, UP, MANUAL = 0x001, 0x080, 0x001, 0x180, 2  # UP: STARTED and INPUTS_OK
+EB_RELAY, FSB, ALARM, CODE_VALID, STANDSTILL = 0x001, 0x002, 0x008, 0x080, 0x100
+ARMED, UP, MANUAL, OVERSPEED = 0x001, 0x180, 2, 2                       # UP: STARTED and INPUTS_OK
 ANSWERS = dict(enumerate("accepted not_armed out_of_range board_failed".split()))
 REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up".split()))
 FROM_UNIT = {                               # the fields that are used here; x = a byte passed over
@@ -15,7 +17,9 @@ FROM_UNIT = {                               # the fields that are used here; x =
     (PTU, 0x82): ("ArmChallenge", ">II", "session challenge"),
     (PTU, 0x83): ("ArmState", ">IBB", "session armed refusal"),
     (PTU, 0x84): ("StimulusAnswer", ">HB", "request_seq answer"),
-    (PTU, 0x90): ("Status", ">H3xB37x", "bits code_index"),
+    (PTU, 0x90): ("Status", ">H3xBB12xxI19x", "bits code_index eb_cause events"),
+    (PTU, 0xA0): ("LogEntry", ">IH4xi10x", "index code parameter"),
+    (PTU, 0xA1): ("LogEnd", ">II", "next_index oldest_index"),
     (IO, 0x81): ("IoOutput", ">HH4x", "outputs limit_cms"),
     (TCMS, 0x81): ("AtcToTcms", ">9x", "")}
 
@@ -25,6 +29,7 @@ class Client:
         tty.setraw(self.fd)
         self.lines, self.session = lines, 0                             # session 0 only listens
         self.next_seq, self.due = {PTU: 0, IO: 0}, {PTU: 0.0, IO: 0.0}
+        self.log = []                       # entries as they came
         self.last, self.heard = {}, {}      # channel: (sequence, time); name: its newest message
         self.bytes, self.refused = b"", 0   # bytes since the last flag; number of frames
 
@@ -71,6 +76,7 @@ class Client:
             return False                    # sequence
         self.last[channel] = seq, time.monotonic()
         self.heard[name] = collections.namedtuple(name, fields)(*struct.unpack(layout, body[11:-4]))
+        self.log += [self.heard[name]] if name == "LogEntry" else []
         return True
 
     def wait(self, what, name, fits=lambda message: True):
@@ -91,7 +97,56 @@ class Client:
         self.heard.pop(answer, None)
         return self.send(PTU, layout, *fields), self.wait(answer, answer)
 
-def run(client, carrier, rate, level, limit):
+    def wait_for(self, outputs, off=0):
+        """Waits until these outputs are on and those are off."""
+        return self.wait(f"outputs 0x{outputs:03x} on and 0x{off:03x} off", "IoOutput",
+                         lambda output: output.outputs & outputs == outputs and not output.outputs & off)
+
+    def stimulate(self, what, layout, *fields):
+        """Sends a stimulus, which must be accepted."""
+        seq, given = self.ask("StimulusAnswer", layout, *fields)
+        if (given.request_seq, given.answer) != (seq, 0):
+            sys.exit(f"failed: {what} {seq}: {ANSWERS.get(given.answer, given.answer)}, {given}")
+
+    def idle(self, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.keep_sending()
+            self.receive()
+
+def overspeed(client, session, speed):
+    """Drives into the emergency brake, and releases it."""
+    begin = client.wait("Status", "Status").events
+    client.wait_for(EB_RELAY)
+    print("emergency brake released: the unit stands")
+    client.stimulate("TestSpeed", "BIBBHH", 0x11, session, 3, 0, speed, 0)
+    client.wait_for(ALARM | EB_RELAY)
+    client.wait_for(ALARM | FSB | EB_RELAY)
+    client.wait_for(ALARM | FSB, off=EB_RELAY)
+    client.wait("cause of the emergency brake", "Status", lambda status: status.eb_cause == OVERSPEED)
+    print(f"overspeed at {speed} cm/s: alarm, full service brake, emergency brake")
+    client.lines |= ACKNOWLEDGE
+    client.idle(0.5)
+    client.lines &= ~ACKNOWLEDGE
+    client.idle(0.1)
+    client.wait_for(0, off=EB_RELAY | STANDSTILL)
+    client.stimulate("TestSpeed", "BIBBHH", 0x11, session, 3, 0, 0, 0)
+    client.wait_for(STANDSTILL, off=ALARM | FSB | EB_RELAY)
+    print("standing; acknowledged under way, the emergency brake stays")
+    client.lines |= ACKNOWLEDGE
+    client.wait_for(EB_RELAY)
+    client.lines &= ~ACKNOWLEDGE
+    client.wait("no cause", "Status", lambda status: status.eb_cause == 0)
+    client.log.clear()
+    client.ask("LogEnd", "BI", 0x20, begin)
+    codes = [entry.code for entry in client.log]
+    excess = next((entry.parameter for entry in client.log if entry.code == 212), 0)
+    print(f"acknowledged: emergency brake released; events {codes}, excess {excess} cm/s")
+    if codes != [210, 211, 212, 214] or not 0 < excess <= speed:
+        sys.exit("failed: events 210, 211, 212 with its excess, and 214 were expected")
+    client.stimulate("TestRelease", "BIH", 0x14, session, 0x000F)
+
+def run(client, carrier, rate, level, limit, speed):
     quiet = time.monotonic() + 1.1          # after 1 s of silence every channel begins anew
     while time.monotonic() < quiet:
         client.receive()
@@ -105,14 +160,14 @@ def run(client, carrier, rate, level, limit):
     client.ask("ArmState", "BII", 0x03, session, asked.challenge ^ 0xFFFFFFFF ^ session)
     client.wait("Status with ARMED", "Status", lambda status: status.bits & ARMED)
     print(f"armed; limit without a code {client.wait('IoOutput', 'IoOutput').limit_cms} cm/s")
-    seq, given = client.ask("StimulusAnswer", "BI3H", 0x10, session, carrier, rate, level)
-    if (given.request_seq, given.answer) != (seq, 0):
-        sys.exit(f"failed: TestCode {seq}: {ANSWERS.get(given.answer, given.answer)}, {given}")
+    client.stimulate("TestCode", "BI3H", 0x10, session, carrier, rate, level)
     print(f"TestCode accepted: carrier {carrier} Hz, code rate {rate / 100:.2f} Hz, level {level} mV")
     client.wait(f"limit of {limit} cm/s", "IoOutput",
                 lambda output: output.outputs & CODE_VALID and output.limit_cms == limit)
     status = client.wait("code in Status", "Status", lambda status: status.code_index != 255)
     print(f"limit {limit} cm/s = {limit * 0.036:.0f} km/h, code {status.code_index} of the table")
+    if speed:
+        overspeed(client, session, speed)
     _, state = client.ask("ArmState", "BI", 0x04, session)
     if state.armed or REFUSALS.get(state.refusal) != "disarmed":
         sys.exit(f"failed: Disarm answered by {state}")
@@ -123,9 +178,12 @@ if __name__ == "__main__":
     parser.add_argument("pty")
     parser.add_argument("--code", nargs=4, type=int, default=[3000, 1500, 500, 1528],
                         metavar=("HZ", "CHZ", "MV", "CM/S"), help="carrier, rate, level, expected limit")
+    parser.add_argument("--overspeed", type=int, default=0, metavar="CM/S",
+                        help="a speed beyond the emergency margin")
     parser.add_argument("--no-key", dest="key", action="store_const", const=0, default=MAINTENANCE_KEY)
     options = parser.parse_args()
     try:
-        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | EB_LOOP_FED | options.key), *options.code)
+        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | EB_LOOP_FED | options.key), *options.code,
+            options.overspeed)
     except (OSError, struct.error) as error:
         sys.exit(f"failed: {error}")

@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
+use protocol::Speed;
+use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::frame::{FCS_LEN, HEADER_LEN, MAX_BODY, MAX_PAYLOAD, Reject, VERSION};
 use protocol::link::{MAX_AHEAD, MAX_DELAY, RESYNC};
@@ -130,7 +132,9 @@ fn section(name: &str) -> String {
         "enums" => words(ENUMS, "Value", "Label", |code| code.to_string()),
         "bits" => words(BIT_SETS, "Bit", "Name", |bit| bit.to_string()),
         "events" => events(),
+        "configuration" => configuration(),
         "session" => vector("session.hex"),
+        "overspeed" => vector("overspeed.hex"),
         other => panic!("no section is called {other}"),
     }
 }
@@ -140,6 +144,72 @@ fn limits() -> String {
         "| | bytes |\n|---|---:|\n| header | {HEADER_LEN} |\n| longest payload | {MAX_PAYLOAD} |\n\
          | FCS | {FCS_LEN} |\n| longest body | {MAX_BODY} |\n"
     )
+}
+
+/// What the prose speaks of, of the configuration that the worked sessions are of.
+fn configuration() -> String {
+    let text = fs::read_to_string(root("../scripts/units/sg100.toml")).expect("sg100 is there");
+    let config = UnitConfig::from_toml(&text).expect("sg100 is sound");
+    let (tacho, speed) = (&config.tacho, &config.overspeed);
+    let mut table = String::from("| Value | of `sg100` |\n|---|---:|\n");
+    for (key, value) in [
+        ("`tacho.pulses_per_turn`", tacho.pulses_per_turn.to_string()),
+        (
+            "`tacho.wheel_diameter_mm`",
+            format!("{} mm", tacho.wheel_diameter_mm),
+        ),
+        (
+            "way for a pulse, π × diameter / pulses",
+            format!("{:.3} mm", 1000.0 * config.metres_per_pulse()),
+        ),
+        (
+            "`overspeed.alarm_margin_kmh`, `alarm_delay_ms`",
+            margin(speed.alarm_margin_kmh, speed.alarm_delay_ms),
+        ),
+        (
+            "`overspeed.fsb_margin_kmh`, `fsb_delay_ms`",
+            margin(speed.fsb_margin_kmh, speed.fsb_delay_ms),
+        ),
+        (
+            "`overspeed.eb_margin_kmh`, `eb_delay_ms`",
+            margin(speed.eb_margin_kmh, speed.eb_delay_ms),
+        ),
+        (
+            "`overspeed.brake_proof_mps2`, `brake_proof_ms`",
+            format!(
+                "{} m/s², {} ms",
+                speed.brake_proof_mps2, speed.brake_proof_ms
+            ),
+        ),
+        (
+            "`overspeed.step_down_grace_ms`",
+            format!("{} ms", speed.step_down_grace_ms),
+        ),
+        (
+            "`overspeed.yard_kmh`, limit in yard mode",
+            format!("{} km/h", speed.yard_kmh),
+        ),
+        (
+            "`overspeed.emergency_kmh`, limit in emergency mode",
+            format!("{} km/h", speed.emergency_kmh),
+        ),
+    ] {
+        let _ = writeln!(table, "| {key} | {value} |");
+    }
+    table += "\n| Code | Limit, km/h | Limit, cm/s | Carrier, Hz | Code rate, Hz |\n|---:|---:|---:|---:|---:|\n";
+    for (index, code) in config.codes.iter().enumerate() {
+        let limit_cms = Speed::from_kmh(code.limit_kmh).to_cms();
+        let _ = writeln!(
+            table,
+            "| {index} | {} | {limit_cms} | {} | {:.2} |",
+            code.limit_kmh, code.carrier_hz, code.rate_hz
+        );
+    }
+    table
+}
+
+fn margin(kmh: f64, ms: u32) -> String {
+    format!("{kmh} km/h, {ms} ms")
 }
 
 fn channels() -> String {

@@ -230,7 +230,7 @@ def bad(wire):
         ("The bench hears the unit", [(0, "accept ArmState", one(name="ArmState"))], "end bench"),
         ("The bench does not hear itself", [(0, "reject address", good)], "end bench"),
     ]
-    blocks = ["# Frames that must be refused, and some that must not; WIRE.md, section 11, says how to read this.\n"]
+    blocks = ["# Frames that must be refused, and some that must not; WIRE.md, section 12, says how to read this.\n"]
     for what, feeds, *more in cases:
         lines = [f"case {what}"] + more
         lines += [f"{at:<5} {outcome:32}  {spaced(data)}" for at, outcome, data in feeds]
@@ -248,51 +248,119 @@ def fcs_over_stuffed(wire):
     return stuffed(body + fcs(inner))
 
 
+RACK = {
+    "carrier_hz": 0, "code_rate_chz": 0, "level_mv": 0, "tacho1_count": 0, "tacho1_edge_us": 65535,
+    "tacho2_count": 0, "tacho2_edge_us": 65535, "tacho_backward": 0, "marker": 0,
+    "marker_edges": 0, "marker_edge_us": 65535,
+    "lines": "DOORS_CLOSED|HCR|MAINTENANCE_KEY|FORWARD|EB_LOOP_FED", "mode_switch": "manual", "controller": 0,
+}
+STANDING = {
+    "bits": "TRA_OK|ATO_READY|STARTED|INPUTS_OK", "mode": "manual", "ato_state": "stop",
+    "refusals": "NO_TWC|STATION_INVALID|NO_CODE|MODE_SWITCH|TCMS_NOT_READY|NO_DEPARTURE",
+    "code_index": 255, "eb_cause": "none", "fsb_cause": "no_code", "events": 3,
+}
+CODED = {
+    **STANDING, "bits": "ARMED|TRA_OK|ATO_READY|STARTED|INPUTS_OK",
+    "refusals": "NO_TWC|STATION_INVALID|MODE_SWITCH|TCMS_NOT_READY|NO_DEPARTURE", "code_index": 4,
+    "fsb_cause": "none", "events": 4, "test_signals": "CODE", "test_carrier_hz": 3000,
+    "test_code_rate_chz": 1500, "test_level_mv": 500,
+}
+ARM = [
+    (f"Arm, session 0x{SESSION:08X}.", 110, ">", "ArmRequest", None),
+    (f"Challenge 0x{CHALLENGE:08X}.", 150, "<", "ArmChallenge", None),
+    (f"Its complement, exclusive-or the session: 0x{ANSWER:08X}.", 160, ">", "ArmConfirm", None),
+    ("Armed.", 200, "<", "ArmState", {"session": SESSION, "armed": 1, "refusal": "none"}),
+    ("3000 Hz with 15.00 Hz at 500 mV into the test coil.", 210, ">", "TestCode", None),
+]
+
+
+def rack(*lines):
+    """Inputs with these lines beside those that are always on."""
+    return {**RACK, "lines": "|".join((RACK["lines"], *lines))}
+
+
 def session(wire):
     """The worked session of WIRE.md."""
-    rack = {
-        "carrier_hz": 0, "code_rate_chz": 0, "level_mv": 0, "tacho1_count": 0, "tacho1_edge_us": 65535,
-        "tacho2_count": 0, "tacho2_edge_us": 65535, "tacho_backward": 0, "marker": 0,
-        "marker_edges": 0, "marker_edge_us": 65535,
-        "lines": "DOORS_CLOSED|HCR|MAINTENANCE_KEY|FORWARD", "mode_switch": "manual", "controller": 0,
-    }
-    idle = {
-        "bits": "TRA_OK|STARTED|INPUTS_OK", "mode": "manual", "refusals": "NO_TWC|NO_CODE",
-        "code_index": 255, "eb_cause": "not_released", "fsb_cause": "no_code", "speed1_cms": 0,
-        "speed2_cms": 0, "target_cms": 0, "effort": 0, "position_cm": 0, "events": 1,
-        "rejected_frames": 0, "twc_received": 0, "self_test": 0, "test_signals": 0,
-        "test_carrier_hz": 0, "test_code_rate_chz": 0, "test_level_mv": 0, "test_speed_cms": 0,
-    }
-    coded = {
-        **idle, "bits": "ARMED|TRA_OK|STARTED|INPUTS_OK", "refusals": "NO_TWC", "code_index": 4,
-        "fsb_cause": "none", "events": 2, "test_signals": "CODE", "test_carrier_hz": 3000,
-        "test_code_rate_chz": 1500, "test_level_mv": 500,
-    }
-    output = {"outputs": "CODE_VALID|STANDSTILL|HEALTHY", "limit_cms": 1528, "speed_cms": 0,
-              "marker": 0, "marker_count": 0}
-    steps = [
+    output = {"outputs": "EB_RELAY|CODE_VALID|STANDSTILL|HEALTHY", "limit_cms": 1528}
+    return conversation(wire, [
         ("The I/O rack holds the maintenance key on; nothing in the antenna, no tachometer pulse.",
-         0, ">", "IoInput", rack),
+         0, ">", "IoInput", RACK),
         ("Listen.", 0, ">", "KeepAlive", {"session": 0}),
-        ("Status, every 50 ms: STARTED is set, so the self-test is over.", 50, "<", "Status", idle),
-        ("Who are you?", 60, ">", "Identify", None),
-        ("The unit says who it is.", 100, "<", "Identity", {**VALUES["Identity"], "self_test": 0}),
-        (f"Arm, session 0x{SESSION:08X}.", 110, ">", "ArmRequest", None),
-        (f"Challenge 0x{CHALLENGE:08X}.", 150, "<", "ArmChallenge", None),
-        (f"Its complement, exclusive-or the session: 0x{ANSWER:08X}.", 160, ">", "ArmConfirm", None),
-        ("Armed.", 200, "<", "ArmState", {"session": SESSION, "armed": 1, "refusal": "none"}),
-        ("3000 Hz with 15.00 Hz at 500 mV into the test coil.", 210, ">", "TestCode", None),
+        ("The cab is active and the train stands: the brake is released, and the line goes with it.",
+         60, ">", "IoInput", rack("EB_LOOP")),
+        ("Status, every 50 ms: STARTED is set, so the self-test is over.", 100, "<", "Status", STANDING),
+        ("Who are you?", 100, ">", "Identify", None),
+        ("The unit says who it is.", 110, "<", "Identity", {**VALUES["Identity"], "self_test": 0}),
+        *ARM,
         ("Request 4 (sequence number of the frame above) is accepted.", 250, "<", "StimulusAnswer",
          {"request_seq": 4, "answer": "accepted"}),
         ("Stay armed.", 500, ">", "KeepAlive", None),
-        ("Code 4 of the table is received, the board reads back what it makes.", 850, "<", "Status", coded),
-        ("Limit 1528 cm/s = 55 km/h; EB_RELAY is not set: the emergency brake is still applied.",
+        ("Code 4 of the table is received, the board reads back what it makes.", 850, "<", "Status", CODED),
+        ("Limit 1528 cm/s = 55 km/h; EB_RELAY is set: the emergency brake is released.",
          860, "<", "IoOutput", output),
         ("Take the test code away.", 900, ">", "TestRelease", {"session": SESSION, "signals": "CODE"}),
         ("Request 6 is accepted.", 950, "<", "StimulusAnswer", {"request_seq": 6, "answer": "accepted"}),
         ("Leave.", 960, ">", "Disarm", None),
         ("No longer armed.", 1000, "<", "ArmState", {"session": SESSION, "armed": 0, "refusal": "disarmed"}),
-    ]
+    ])
+
+
+def overspeed(wire):
+    """Overspeed, emergency brake and release of WIRE.md."""
+    speed = lambda cms: {"session": SESSION, "channels": 3, "backward": 0, "speed_cms": cms, "accel_mms2": 0}
+    output = lambda outputs, cms: {"outputs": outputs, "limit_cms": 1528, "speed_cms": cms}
+    entry = lambda index, code, parameter, cms, cause: {
+        "index": index, "code": code, "at_ms": 0, "parameter": parameter, "speed_cms": cms, "limit_cms": 1528,
+        "mode": "manual", "eb_cause": cause}
+    return conversation(wire, [
+        ("The I/O rack as in the first session.", 0, ">", "IoInput", RACK),
+        ("Listen.", 0, ">", "KeepAlive", {"session": 0}),
+        ("The brake is released by itself: the unit stands, and nothing but start-up held it.",
+         60, "<", "IoOutput", {"outputs": "EB_RELAY|FSB|POWER_CUT|STANDSTILL|HEALTHY"}),
+        ("The brake line follows the relay.", 60, ">", "IoInput", rack("EB_LOOP")),
+        *ARM,
+        ("Stay armed: from here on every 500 ms.", 500, ">", "KeepAlive", None),
+        ("Limit 1528 cm/s.", 1000, "<", "IoOutput", output("EB_RELAY|CODE_VALID|STANDSTILL|HEALTHY", 0)),
+        ("1580 cm/s on both tachometers, at the board's own 3000 mm/s²: above the alarm margin.",
+         1000, ">", "TestSpeed", speed(1580)),
+        ("The alarm sounds.", 7000, "<", "IoOutput", output("EB_RELAY|ALARM|CODE_VALID|HEALTHY", 1580)),
+        ("1640 cm/s: above the margin of the full service brake.", 7000, ">", "TestSpeed", speed(1640)),
+        ("Full service brake requested, powering cut.", 8000, "<", "IoOutput",
+         output("EB_RELAY|FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1640)),
+        ("1750 cm/s: above the emergency margin.", 8000, ">", "TestSpeed", speed(1750)),
+        ("EB_RELAY is off: the emergency brake.", 9000, "<", "IoOutput",
+         output("FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1750)),
+        ("The brake line follows.", 9000, ">", "IoInput", rack()),
+        ("Its cause.", 9050, "<", "Status", {
+            **CODED, "refusals": "NOT_STANDSTILL|NO_TWC|STATION_INVALID|MODE_SWITCH|EB_APPLIED|TCMS_NOT_READY|NO_DEPARTURE",
+            "eb_cause": "overspeed", "fsb_cause": "overspeed", "speed1_cms": 1750, "speed2_cms": 1750,
+            "events": 7, "test_signals": "CODE|SPEED_1|SPEED_2", "test_speed_cms": 1750}),
+        ("The button under way does nothing.", 9100, ">", "IoInput", rack("ACKNOWLEDGE")),
+        ("Still braking.", 9600, "<", "IoOutput", output("FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1750)),
+        ("Let it go.", 9600, ">", "IoInput", rack()),
+        ("Stop.", 9700, ">", "TestSpeed", speed(0)),
+        ("STANDSTILL is set, alarm and service brake are released, the emergency brake stays.", 17000, "<", "IoOutput",
+         output("POWER_CUT|CODE_VALID|STANDSTILL|HEALTHY", 0)),
+        ("Acknowledge.", 17000, ">", "IoInput", rack("ACKNOWLEDGE")),
+        ("EB_RELAY is on: the emergency brake is released.", 17050, "<", "IoOutput",
+         output("EB_RELAY|CODE_VALID|STANDSTILL|HEALTHY", 0)),
+        ("The brake line follows, the button is let go.", 17060, ">", "IoInput", rack("EB_LOOP")),
+        ("No cause.", 17200, "<", "Status", {
+            **CODED, "events": 8, "test_signals": "CODE|SPEED_1|SPEED_2"}),
+        ("What is in the log from entry 6 on?", 17200, ">", "ReadLog", {"from_index": 6}),
+        ("Event 212, the emergency brake, 220 cm/s above the limit.", 17250, "<", "LogEntry",
+         entry(6, 212, 220, 1747, "none")),
+        ("Event 214, its release.", 17250, "<", "LogEntry", entry(7, 214, 0, 0, "overspeed")),
+        ("The end.", 17250, "<", "LogEnd", {"next_index": 8, "oldest_index": 0}),
+        ("Take all test signals away.", 17500, ">", "TestRelease",
+         {"session": SESSION, "signals": "CODE|SPEED_1|SPEED_2"}),
+        ("Leave.", 17600, ">", "Disarm", None),
+        ("No longer armed.", 17650, "<", "ArmState", {"session": SESSION, "armed": 0, "refusal": "disarmed"}),
+    ])
+
+
+def conversation(wire, steps):
+    """Steps (note, ms, way, message, values) as frames."""
     boot = {">": 4660, "<": 90000}  # each side's own clock at time 0
     seqs, lines = {}, []
     for note, at, way, name, given in steps:
@@ -300,7 +368,7 @@ def session(wire):
         seq = seqs[key] = seqs.get(key, -1) + 1
         given = {**wire.zeros(name), **(VALUES.get(name, {}) if given is None else given)}
         data = spaced(wire.frame(name, seq, boot[way] + at, given))
-        lines += [f"# {note}", f"{at:<4} {way} {name:14} {data}"]
+        lines += [f"# {note}", f"{at:<5} {way} {name:14} {data}"]
     return "\n".join(lines) + "\n"
 
 
@@ -319,7 +387,8 @@ def main():
     wire = Wire((HERE.parent / "WIRE.md").read_text(encoding="utf-8"))
     files = {f"{channel}.hex": messages(wire, channel) for channel in CHANNELS}
     files |= {"escapes.hex": escapes(wire), "fcs.hex": checks(), "bad.hex": bad(wire),
-              "session.hex": session(wire), "example.txt": example(wire)}
+              "session.hex": session(wire),
+              "overspeed.hex": overspeed(wire), "example.txt": example(wire)}
     for name, text in files.items():
         (HERE / name).write_text(text, encoding="utf-8")
 

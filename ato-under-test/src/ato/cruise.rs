@@ -37,12 +37,13 @@ mod tests {
     /// Limit, order, running mode and the speed to run at, km/h; lowering 5 and 3 km/h.
     #[test]
     fn the_most_restrictive_counts() {
-        use RunningMode::{Normal, Recovery};
+        use RunningMode::{Normal, Recovery, Unknown};
         let mut config = config();
         config.normal_lowering_kmh = 3.0;
         for (limit, fixed, running_mode, expected) in [
             (65.0, None, Recovery, 60.0),
             (65.0, None, Normal, 57.0),
+            (65.0, None, Unknown(2), 57.0),
             (65.0, Some(40.0), Recovery, 40.0),
             (45.0, Some(60.0), Recovery, 40.0),
             (0.0, Some(60.0), Recovery, 0.0),

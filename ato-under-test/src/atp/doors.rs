@@ -75,3 +75,38 @@ impl Doors {
         self.enable
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Side given and what is enabled at the platform; a side that is not known enables none.
+    #[test]
+    fn the_side_that_is_given_is_enabled() {
+        let both = Outputs::DOOR_ENABLE_LEFT | Outputs::DOOR_ENABLE_RIGHT;
+        for (side, enabled) in [
+            (DoorSide::None, Outputs::empty()),
+            (DoorSide::Left, Outputs::DOOR_ENABLE_LEFT),
+            (DoorSide::Right, Outputs::DOOR_ENABLE_RIGHT),
+            (DoorSide::Both, both),
+            (DoorSide::Unknown(4), Outputs::empty()),
+            (DoorSide::Unknown(255), Outputs::empty()),
+        ] {
+            let inputs = DoorInputs {
+                closed: true,
+                standstill: true,
+                aligned: true,
+                at_platform: true,
+                side,
+                speed: Speed::ZERO,
+            };
+            let config = DoorConfig {
+                aligned_m: 0.3,
+                open_moving_ms: 100,
+            };
+            let (mut doors, mut log) = (Doors::default(), EventLog::default());
+            doors.step(Instant::ZERO, inputs, &config, &mut log);
+            assert_eq!(doors.enable(), enabled, "{side:?}");
+        }
+    }
+}

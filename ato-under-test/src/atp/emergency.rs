@@ -5,6 +5,7 @@ use protocol::event::Event;
 use protocol::message::{EbCause, TrainLines};
 use protocol::{Duration, Instant};
 
+use super::Overspeed;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, Lasting};
 
@@ -13,6 +14,8 @@ use crate::timer::{Edge, Lasting};
 pub struct BrakeInputs {
     /// A cause that holds now, `None` = none.
     pub cause: EbCause,
+    /// What the overspeed supervision measured.
+    pub overspeed: Overspeed,
     /// Unit started, cab active, mode chosen, inputs alive.
     pub may_release: bool,
     /// Standing still.
@@ -53,7 +56,7 @@ impl EmergencyBrake {
             .acknowledge
             .rises(inputs.lines.contains(TrainLines::ACKNOWLEDGE));
         if inputs.cause != EbCause::None {
-            self.apply(now, inputs.cause, log);
+            self.apply(now, &inputs, log);
         } else if !inputs.may_release {
             if self.cause == EbCause::None {
                 self.cause = EbCause::NotReleased;
@@ -67,18 +70,20 @@ impl EmergencyBrake {
         self.watch_line(now, inputs, log);
     }
 
-    fn apply(&mut self, now: Instant, cause: EbCause, log: &mut EventLog) {
+    fn apply(&mut self, now: Instant, inputs: &BrakeInputs, log: &mut EventLog) {
         if !matches!(self.cause, EbCause::None | EbCause::NotReleased) {
             return;
         }
-        self.cause = cause;
-        match cause {
-            EbCause::Overspeed => log.push(now, Event::OverspeedEb, 0),
+        self.cause = inputs.cause;
+        let (event, parameter) = match self.cause {
+            EbCause::Overspeed => (Event::OverspeedEb, inputs.overspeed.excess_cms),
             EbCause::ServiceBrakeIneffective => {
-                log.push(now, Event::ServiceBrakeIneffective, 0);
+                let decel_mms2 = inputs.overspeed.decel_mms2;
+                (Event::ServiceBrakeIneffective, decel_mms2)
             }
-            _ => {}
-        }
+            _ => return,
+        };
+        log.push(now, event, parameter);
     }
 
     /// The line must die with the relay, and live with it as long as it is fed: a button, the master

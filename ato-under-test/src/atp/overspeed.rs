@@ -24,6 +24,10 @@ pub struct Overspeed {
     pub emergency: bool,
     /// The service brake has shown no effect.
     pub ineffective: bool,
+    /// Speed above the limit, cm/s.
+    pub excess_cms: i32,
+    /// Deceleration, negative while the train gains speed, mm/s².
+    pub decel_mms2: i32,
 }
 
 /// The supervision.
@@ -77,13 +81,13 @@ impl Supervision {
         let decel_mps2 = self.deceleration(speed);
         self.watch_step_down(now, speed, limit, margins);
         self.stage(now, speed, limit, margins);
-        let excess = i32::from((speed - limit).to_cms());
+        let excess_cms = i32::from((speed - limit).to_cms());
         if self.alarmed.rises(self.alarm) {
-            log.push(now, Event::Overspeed, excess);
+            log.push(now, Event::Overspeed, excess_cms);
         }
         if self.braked.rises(self.service) {
             self.service_since = now;
-            log.push(now, Event::OverspeedFsb, excess);
+            log.push(now, Event::OverspeedFsb, excess_cms);
         }
         let proof = Duration::from_ms(u64::from(margins.brake_proof_ms));
         let proved = decel_mps2 >= margins.brake_proof_mps2;
@@ -100,6 +104,8 @@ impl Supervision {
             service_brake: self.service,
             emergency,
             ineffective,
+            excess_cms,
+            decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
         }
     }
 

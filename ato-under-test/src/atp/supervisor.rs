@@ -108,6 +108,7 @@ impl Atp {
         let cause = self.emergency_cause(now, inputs, context, (door_open, rollback), log);
         let brake_inputs = BrakeInputs {
             cause,
+            overspeed: self.overspeed,
             may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
             standstill,
             lines: inputs.lines,

@@ -1,6 +1,7 @@
 //! The program around the unit: arguments, data files, pacing and the wire's far end.
 
 mod data;
+mod tcp;
 mod wire;
 
 use std::path::PathBuf;
@@ -34,7 +35,7 @@ pub struct Arguments {
     /// Serve on a serial port
     #[arg(long, value_name = "PATH[@BAUD]")]
     serial: Option<String>,
-    /// Serve one TCP client at a time
+    /// Serve one TCP client at a time; others are told that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
     /// Faults to inject, from `ptu catalog faults`
@@ -82,6 +83,11 @@ fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
     let mut to_send = Vec::with_capacity(1024);
     loop {
         let behind = sleep_until(&mut due, i64::from(slower))?;
+        let another = wire.attend(now, behind, unit.frames_accepted());
+        if another.context("attending to the wire")? {
+            backlog = Backlog::default();
+            unit.begin_anew();
+        }
         let count = wire.read(&mut read).context("reading from the wire")?;
         received.clear();
         backlog.share(&read[..count], behind, &mut received);

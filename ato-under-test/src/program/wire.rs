@@ -2,15 +2,15 @@
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{TcpListener, TcpStream};
-use std::time::Duration;
 
 use anyhow::{Context, Result};
+use protocol::{Duration, Instant};
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::OpenptFlags;
 use rustix::termios::OptionalActions;
 
 use super::Arguments;
+use super::tcp::Server;
 
 /// Baud rate of a serial port when none is given.
 const BAUD: u32 = 115_200;
@@ -21,11 +21,8 @@ pub enum Wire {
     Pty { master: File, _slave: File },
     /// A real port.
     Serial(Box<dyn serialport::SerialPort>),
-    /// A listener and the present client.
-    Tcp {
-        listener: TcpListener,
-        client: Option<TcpStream>,
-    },
+    /// A socket that serves one client at a time.
+    Tcp(Server),
 }
 
 impl Wire {
@@ -35,7 +32,7 @@ impl Wire {
             return Self::open_serial(port);
         }
         if let Some(address) = &arguments.tcp {
-            return Self::listen(address);
+            return Ok(Self::Tcp(Server::listen(address)?));
         }
         Self::open_pty()
     }
@@ -70,23 +67,20 @@ impl Wire {
             None => (port, BAUD),
         };
         let port = serialport::new(path, baud)
-            .timeout(Duration::ZERO)
+            .timeout(std::time::Duration::ZERO)
             .open()
             .with_context(|| format!("opening serial port {path}"))?;
         println!("{path}");
         Ok(Self::Serial(port))
     }
 
-    fn listen(address: &str) -> Result<Self> {
-        let listener =
-            TcpListener::bind(address).with_context(|| format!("listening on {address}"))?;
-        listener.set_nonblocking(true)?;
-        println!("{}", listener.local_addr()?);
-        io::stdout().flush()?;
-        Ok(Self::Tcp {
-            listener,
-            client: None,
-        })
+    /// Attends to who comes and goes; true when another tester has the wire from now on. This program is
+    /// `behind` its time; `accepted` counts the frames that the unit accepted.
+    pub fn attend(&mut self, now: Instant, behind: Duration, accepted: u64) -> io::Result<bool> {
+        match self {
+            Self::Tcp(server) => server.attend(now, behind, accepted),
+            _ => Ok(false),
+        }
     }
 
     /// Reads what is there, 0 when there is nothing.
@@ -94,19 +88,7 @@ impl Wire {
         match self {
             Self::Pty { master, .. } => nothing_is_zero(master.read(into)),
             Self::Serial(port) => nothing_is_zero(port.read(into)),
-            Self::Tcp { listener, client } => {
-                if client.is_none() {
-                    *client = accept(listener)?;
-                }
-                let Some(stream) = client else { return Ok(0) };
-                match stream.read(into) {
-                    Ok(0) => *client = None,
-                    Ok(count) => return Ok(count),
-                    Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-                    Err(_) => *client = None,
-                }
-                Ok(0)
-            }
+            Self::Tcp(server) => Ok(server.read(into)),
         }
     }
 
@@ -115,32 +97,12 @@ impl Wire {
         let written = match self {
             Self::Pty { master, .. } => master.write(bytes),
             Self::Serial(port) => port.write(bytes),
-            Self::Tcp { client, .. } => {
-                let Some(stream) = client else { return Ok(()) };
-                let written = stream.write(bytes);
-                if written
-                    .as_ref()
-                    .is_err_and(|e| e.kind() != ErrorKind::WouldBlock)
-                {
-                    *client = None;
-                    return Ok(());
-                }
-                written
+            Self::Tcp(server) => {
+                server.write(bytes);
+                return Ok(());
             }
         };
         nothing_is_zero(written).map(|_| ())
-    }
-}
-
-fn accept(listener: &TcpListener) -> io::Result<Option<TcpStream>> {
-    match listener.accept() {
-        Ok((stream, _)) => {
-            stream.set_nonblocking(true)?;
-            stream.set_nodelay(true)?;
-            Ok(Some(stream))
-        }
-        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(None),
-        Err(error) => Err(error),
     }
 }
 

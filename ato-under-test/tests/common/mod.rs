@@ -53,6 +53,8 @@ pub struct Bench {
     pub alive_stands: bool,
     /// Something besides the unit's relay opens the emergency brake line.
     pub opens_line: bool,
+    /// Bits of the tachometers' phase beside the two that have a meaning.
+    pub backward_bits: u8,
     pub answers: Vec<Message>,
     pub log: Vec<LogEntry>,
     turned: [f64; 2],
@@ -125,6 +127,7 @@ impl Bench {
             }),
             alive_stands: false,
             opens_line,
+            backward_bits: 0,
             answers: Vec::new(),
             log: Vec::new(),
             turned: [0.0; 2],
@@ -238,8 +241,9 @@ impl Bench {
         }
         (self.input.tacho1_count, self.input.tacho2_count) = (counts[0], counts[1]);
         (self.input.tacho1_edge_us, self.input.tacho2_edge_us) = (ages[0], ages[1]);
-        self.input.tacho_backward =
-            u8::from(self.speeds[0] < 0.0) | u8::from(self.speeds[1] < 0.0) << 1;
+        self.input.tacho_backward = u8::from(self.speeds[0] < 0.0)
+            | u8::from(self.speeds[1] < 0.0) << 1
+            | self.backward_bits;
     }
 
     /// The counters jump, as when a rack is restarted.

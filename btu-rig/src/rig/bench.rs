@@ -60,10 +60,15 @@ impl<L: UnitLink> Bench<L> {
         self.to_unit.clear();
         self.rig.step(self.now, &mut self.to_unit);
         self.from_unit.clear();
-        self.link
-            .exchange(self.now, &self.to_unit, &mut self.from_unit)?;
+        let exchanged = self
+            .link
+            .exchange(self.now, &self.to_unit, &mut self.from_unit);
         self.rig.receive(self.now, &self.from_unit);
-        Ok(())
+        // Who is turned away is told why, and then the connection is closed.
+        exchanged.map_err(|failure| LinkFailure {
+            reason: self.rig.turned_away().unwrap_or(failure.reason),
+            ..failure
+        })
     }
 
     /// Time of the last tick.

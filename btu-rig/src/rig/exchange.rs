@@ -208,12 +208,13 @@ impl Exchange {
         if state.session != self.session {
             return;
         }
-        self.armed_at = (state.armed != 0).then_some(now);
+        let armed = state.armed == 1;
+        self.armed_at = armed.then_some(now);
         let Some(current) = &mut self.current else {
             return;
         };
         let patient = now.since(current.begun) < ARM_PATIENCE;
-        match (current.request, state.armed != 0) {
+        match (current.request, armed) {
             (Request::Arm, true) | (Request::Disarm, false) => self.current = None,
             (Request::Arm, false) => match state.refusal {
                 // Not about this exchange but the end of the last one.

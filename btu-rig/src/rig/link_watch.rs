@@ -3,9 +3,11 @@
 //! Only channels that no fault of the unit can silence are watched: a unit that does not answer
 //! TCMS or the wayside is a finding, not a bench error.
 
+use std::net::{Ipv6Addr, SocketAddr};
+
 use protocol::frame::Reject;
 use protocol::link::{Counters, Link, RESYNC};
-use protocol::message::Channel;
+use protocol::message::{Channel, Taken};
 use protocol::{Duration, Instant};
 
 /// Time a unit has to be heard for the first time: it may be starting.
@@ -18,12 +20,34 @@ const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 pub struct LinkWatch {
     begun: Option<Instant>,
     bytes: u64,
+    taken: Option<Taken>,
 }
 
 impl LinkWatch {
     /// Notes what arrived.
     pub fn note(&mut self, bytes: usize) {
         self.bytes += bytes as u64;
+    }
+
+    /// Notes that another client has the unit.
+    pub fn note_taken(&mut self, taken: Taken) {
+        self.taken = Some(taken);
+    }
+
+    /// Why the unit turned this client away, if it did.
+    pub fn turned_away(&self) -> Option<String> {
+        let taken = self.taken?;
+        let ip = Ipv6Addr::from(taken.address).to_canonical();
+        let by = SocketAddr::new(ip, taken.port);
+        let seconds = |ms: u32| Duration::from_ms(u64::from(ms)).as_secs();
+        let silence = match seconds(taken.silent_ms) {
+            silent_s if silent_s < SILENCE.as_secs() => String::new(),
+            silent_s => format!(", which has been silent for {silent_s:.0} s"),
+        };
+        Some(format!(
+            "the unit is taken by another tester, {by}, for {:.0} s{silence}",
+            seconds(taken.for_ms)
+        ))
     }
 
     /// Notes that the bench runs.
@@ -33,6 +57,9 @@ impl LinkWatch {
 
     /// What is wrong, if anything; `asks_since` = since when the tester speaks.
     pub fn error(&self, now: Instant, link: &Link, asks_since: Option<Instant>) -> Option<String> {
+        if let Some(why) = self.turned_away() {
+            return Some(why);
+        }
         let begun = self.begun?;
         if now.since(begun) < FIRST_CONTACT {
             return None;

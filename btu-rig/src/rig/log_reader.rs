@@ -45,6 +45,11 @@ impl LogReader {
         };
     }
 
+    /// Entries before this index are not wanted.
+    pub fn begin_at(&mut self, index: u32) {
+        self.next = self.next.max(index);
+    }
+
     /// Takes the count from the unit's status.
     pub fn note_logged(&mut self, events: u32) {
         self.logged = events;

@@ -61,6 +61,7 @@ impl LogSession {
                     self.identified_at = Some((now, identity.uptime_ms));
                 }
                 Message::Status(status) => self.status = Some(status.bits),
+                Message::Taken(taken) => self.watch.note_taken(*taken),
                 _ => {}
             }
             self.tester.hear(now, &received.message);
@@ -102,6 +103,11 @@ impl LogSession {
     /// Times the unit was started again since it was first heard.
     pub fn restarts(&self) -> u32 {
         self.tester.restarts()
+    }
+
+    /// Why the unit turned this tester away, if it did: another has it.
+    pub fn turned_away(&self) -> Option<String> {
+        self.watch.turned_away()
     }
 
     /// What is wrong with the connection, after a time allowed for first contact.

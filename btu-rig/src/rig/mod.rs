@@ -128,6 +128,8 @@ pub struct Rig {
     watch: LinkWatch,
     recorder: Recorder,
     now: Instant,
+    /// When a frame of the unit came last, and its stamp.
+    unit_stamp: Option<(Instant, u32)>,
 }
 
 impl Rig {
@@ -184,6 +186,7 @@ impl Rig {
             watch: LinkWatch::default(),
             recorder: Recorder::default(),
             now: Instant::ZERO,
+            unit_stamp: None,
         };
         rig.record();
         rig
@@ -230,6 +233,7 @@ impl Rig {
         self.watch.note(bytes.len());
         self.link.push(bytes);
         while let Some(received) = self.link.poll(now) {
+            self.unit_stamp = Some((now, received.header.stamp_ms));
             match &received.message {
                 Message::IoOutput(io) => self.recorder.hear_io(now, io),
                 Message::AtcToTcms(command) => {
@@ -242,6 +246,7 @@ impl Rig {
                     self.wayside.hear_answer();
                     self.recorder.hear_twc(now, answer, self.wayside.answers());
                 }
+                Message::Taken(taken) => self.watch.note_taken(*taken),
                 message => {
                     if let Message::Status(status) = message {
                         self.recorder.hear_status(now, status);
@@ -287,6 +292,16 @@ impl Rig {
         self.tester.identity()
     }
 
+    /// When a frame of the unit came last, and what the unit's clock was when it was made, ms.
+    pub fn unit_stamp_ms(&self) -> Option<(Instant, u32)> {
+        self.unit_stamp
+    }
+
+    /// What the unit logged before it was first heard is not read.
+    pub fn leave_log_before_contact(&mut self) {
+        self.tester.leave_log_before_contact();
+    }
+
     /// Times the unit was started again since it was first heard.
     pub fn unit_restarts(&self) -> u32 {
         self.tester.restarts()
@@ -296,6 +311,11 @@ impl Rig {
     pub fn link_error(&self) -> Option<String> {
         self.watch
             .error(self.now, &self.link, self.tester.speaks_since())
+    }
+
+    /// Why the unit turned this bench away, if it did: another has it.
+    pub fn turned_away(&self) -> Option<String> {
+        self.watch.turned_away()
     }
 
     /// Frames taken and refused by the rig.

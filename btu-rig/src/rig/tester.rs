@@ -31,6 +31,8 @@ pub struct Tester {
     /// Count of events in the last status.
     logged: Option<u32>,
     events_at_contact: Option<u32>,
+    /// Those are not read.
+    leaves_old: bool,
     restarts: u32,
     exchange: Exchange,
     log: LogReader,
@@ -48,6 +50,7 @@ impl Tester {
             identity: None,
             logged: None,
             events_at_contact: None,
+            leaves_old: false,
             restarts: 0,
             exchange: Exchange::new(session),
             log: LogReader::default(),
@@ -110,6 +113,9 @@ impl Tester {
             self.hear_restart(now);
         }
         self.logged = Some(status.events);
+        if self.events_at_contact.is_none() && self.leaves_old {
+            self.log.begin_at(status.events);
+        }
         self.events_at_contact.get_or_insert(status.events);
         self.log.note_logged(status.events);
         self.exchange
@@ -199,6 +205,11 @@ impl Tester {
     /// Entries the unit's log had when it was first heard.
     pub fn events_at_contact(&self) -> Option<u32> {
         self.events_at_contact
+    }
+
+    /// What the unit logged before it was first heard is not read.
+    pub fn leave_log_before_contact(&mut self) {
+        self.leaves_old = true;
     }
 
     /// Times the unit was started again.

@@ -267,6 +267,8 @@ macro_rules! wire_enum {
             pub const fn code(self) -> u8 {
                 match self { $( Self::$variant => $value, )* Self::Unknown(other) => other }
             }
+            /// Whether this version knows the value.
+            pub const fn is_known(self) -> bool { !matches!(self, Self::Unknown(_)) }
             /// The word for it.
             pub fn label(self) -> &'static str {
                 match self { $( Self::$variant => $label, )* Self::Unknown(_) => "unknown" }

@@ -18,7 +18,7 @@ pub use layout::{
 pub use ptu::{
     ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
     KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, RunEnd, RunRow, SelfTest, Status, StatusBits,
-    StimulusAnswer, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
+    StimulusAnswer, Taken, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
 };
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
@@ -203,6 +203,7 @@ messages!(
     LogEnd,
     RunRow,
     RunEnd,
+    Taken,
     IoInput,
     IoOutput,
     TcmsToAtc,

@@ -122,7 +122,7 @@ layout! {
         session: u32,
         /// Inputs driven: bit 0 = tachometer 1, bit 1 = tachometer 2; not 0.
         channels: u8,
-        /// 1 = backward.
+        /// 1 = backward, 0 = forward.
         backward: u8,
         /// Speed to reach, cm/s, at most 3000.
         speed_cms: u16,
@@ -160,7 +160,7 @@ layout! {
         running_mode: RunningMode,
         /// Door side.
         door_side: DoorSide,
-        /// 1 = departure given.
+        /// Departure: 1 = given, 0 = held.
         departure: u8,
         /// Train number.
         train_number: u16,
@@ -171,7 +171,7 @@ layout! {
     TestRelease, Ptu, 0x14 {
         /// Session number.
         session: u32,
-        /// Signals to take away.
+        /// Signals to take away; either speed bit takes away both.
         signals: TestSignals,
     }
 }
@@ -242,6 +242,19 @@ layout! {
         request_seq: u16,
         /// Outcome.
         answer: Answer,
+    }
+}
+layout! {
+    /// Another client has the unit: said once to a TCP client that is turned away. Unit → tester.
+    Taken, Ptu, 0x85 {
+        /// IPv6 address of the client that has it; one of IPv4 is mapped, `::ffff:192.0.2.1`.
+        address: [u8; 16],
+        /// Its port.
+        port: u16,
+        /// Time since that client came, ms.
+        for_ms: u32,
+        /// Time since a frame of that client was accepted, ms.
+        silent_ms: u32,
     }
 }
 layout! {

@@ -78,7 +78,7 @@ pub fn read_log<L: UnitLink>(
         }
         since_power_up.extend(session.take_events());
         if let Err(failure) = exchanged {
-            break Some(failure.to_string());
+            break Some(session.turned_away().unwrap_or(failure.to_string()));
         }
         if session.is_complete() {
             break None;

@@ -1,0 +1,216 @@
+//! One TCP client at a time. Who comes meanwhile is told who has the unit, and turned away: of what a client
+//! sends while it waits nothing may act later as if it were fresh.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+
+use anyhow::{Context, Result};
+use protocol::link::{End, Link, MAX_DELAY};
+use protocol::message::Taken;
+use protocol::{Duration, Instant};
+use socket2::{SockRef, TcpKeepalive};
+
+/// A client of which no frame was accepted for so long is let go.
+const SILENT: Duration = Duration::from_ms(10_000);
+/// A connection on which nothing comes is probed after this time, and as often again.
+const PROBED_AFTER: std::time::Duration = std::time::Duration::from_secs(5);
+/// A newcomer waits so long to be taken: its predecessor's last bytes may still have to be read.
+const HANDS_OVER: Duration = Duration::from_ms(100);
+/// Who is turned away has so long to close, so that what it is told is not lost by a reset.
+const LEAVES_WITHIN: Duration = Duration::from_ms(1000);
+/// Newcomers attended to at once; others wait for them in the system's queue.
+const MOST_COMING: usize = 16;
+
+/// The listener and those who came.
+pub struct Server {
+    listener: TcpListener,
+    client: Option<Client>,
+    coming: Vec<Newcomer>,
+    /// Where what is not heard is read to.
+    unheard: [u8; 4096],
+}
+
+/// Who has the unit.
+struct Client {
+    stream: TcpStream,
+    address: SocketAddr,
+    since: Instant,
+    /// Frames accepted when that last grew, and when.
+    accepted: u64,
+    heard_at: Instant,
+}
+
+/// Who came while another had it.
+struct Newcomer {
+    stream: TcpStream,
+    address: SocketAddr,
+    since: Instant,
+    told: bool,
+}
+
+impl Server {
+    /// Listens, and prints where.
+    pub fn listen(address: &str) -> Result<Self> {
+        let listener =
+            TcpListener::bind(address).with_context(|| format!("listening on {address}"))?;
+        listener.set_nonblocking(true)?;
+        println!("{}", listener.local_addr()?);
+        io::stdout().flush()?;
+        Ok(Self {
+            listener,
+            client: None,
+            coming: Vec::new(),
+            unheard: [0; 4096],
+        })
+    }
+
+    /// Takes the first who comes, turns others away and lets a silent one go; true when there is another
+    /// client from now on. This program is `behind` its time; `accepted` counts the frames that the unit
+    /// accepted.
+    pub fn attend(&mut self, now: Instant, behind: Duration, accepted: u64) -> io::Result<bool> {
+        self.let_silent_go(now, accepted);
+        self.receive_newcomers(now, behind)?;
+        let taken = self.client.is_none() && self.take_first(now, accepted);
+        self.turn_away(now);
+        Ok(taken)
+    }
+
+    fn let_silent_go(&mut self, now: Instant, accepted: u64) {
+        let Some(client) = &mut self.client else {
+            return;
+        };
+        if client.accepted != accepted {
+            client.accepted = accepted;
+            client.heard_at = now;
+        }
+        if now.since(client.heard_at) >= SILENT {
+            self.client = None;
+        }
+    }
+
+    fn receive_newcomers(&mut self, now: Instant, behind: Duration) -> io::Result<()> {
+        while self.coming.len() < MOST_COMING {
+            let (mut stream, address) = match self.listener.accept() {
+                Ok(came) => came,
+                Err(error) if is_of_one_client(&error) => continue,
+                Err(error) if error.kind() == ErrorKind::WouldBlock => break,
+                Err(error) => return Err(error),
+            };
+            stream.set_nonblocking(true)?;
+            // What came while this program stood still may be as old as that.
+            if behind > MAX_DELAY {
+                drain(&mut stream, &mut self.unheard);
+            }
+            self.coming.push(Newcomer {
+                stream,
+                address,
+                since: now,
+                told: false,
+            });
+        }
+        Ok(())
+    }
+
+    fn take_first(&mut self, now: Instant, accepted: u64) -> bool {
+        let Some(place) = self.coming.iter().position(|newcomer| !newcomer.told) else {
+            return false;
+        };
+        let first = self.coming.remove(place);
+        // What cannot be set on a connection that has broken already shows when it is read.
+        let _ = first.stream.set_nodelay(true);
+        let keepalive = TcpKeepalive::new()
+            .with_time(PROBED_AFTER)
+            .with_interval(PROBED_AFTER);
+        let _ = SockRef::from(&first.stream).set_tcp_keepalive(&keepalive);
+        self.client = Some(Client {
+            stream: first.stream,
+            address: first.address,
+            since: now,
+            accepted,
+            heard_at: now,
+        });
+        true
+    }
+
+    /// Tells those who came while another has the unit, and lets them go when they close.
+    fn turn_away(&mut self, now: Instant) {
+        let unheard = &mut self.unheard;
+        let client = self.client.as_ref();
+        self.coming.retain_mut(|newcomer| {
+            let waited = now.since(newcomer.since);
+            if let Some(client) = client.filter(|_| !newcomer.told && waited >= HANDS_OVER) {
+                newcomer.told = true;
+                let _ = newcomer.stream.write(&client.taken(now));
+                let _ = newcomer.stream.shutdown(std::net::Shutdown::Write);
+            }
+            !newcomer.told
+                || (waited < HANDS_OVER + LEAVES_WITHIN && drain(&mut newcomer.stream, unheard))
+        });
+    }
+
+    /// Reads what is there, 0 when there is nothing.
+    pub fn read(&mut self, into: &mut [u8]) -> usize {
+        let Some(client) = &mut self.client else {
+            return 0;
+        };
+        match client.stream.read(into) {
+            Ok(count @ 1..) => return count,
+            Err(error) if is_nothing(&error) => {}
+            Ok(_) | Err(_) => self.client = None,
+        }
+        0
+    }
+
+    /// Writes what fits.
+    pub fn write(&mut self, bytes: &[u8]) {
+        let Some(client) = &mut self.client else {
+            return;
+        };
+        if client.stream.write(bytes).is_err_and(|e| !is_nothing(&e)) {
+            self.client = None;
+        }
+    }
+}
+
+impl Client {
+    /// What somebody else is told, as a frame.
+    fn taken(&self, now: Instant) -> Vec<u8> {
+        let ip = match self.address.ip() {
+            IpAddr::V4(ip) => ip.to_ipv6_mapped(),
+            IpAddr::V6(ip) => ip,
+        };
+        let message = Taken {
+            address: ip.octets(),
+            port: self.address.port(),
+            for_ms: now.since(self.since).as_ms() as u32,
+            silent_ms: now.since(self.heard_at).as_ms() as u32,
+        };
+        let mut frame = Vec::new();
+        Link::new(End::Unit).send(now, &message.into(), &mut frame);
+        frame
+    }
+}
+
+/// Reads what is there and passes it over, not for ever; false when the other end has closed.
+fn drain(stream: &mut TcpStream, into: &mut [u8]) -> bool {
+    for _ in 0..64 {
+        match stream.read(into) {
+            Ok(0) => return false,
+            Ok(_) => {}
+            Err(error) => return is_nothing(&error),
+        }
+    }
+    true
+}
+
+fn is_nothing(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+/// A connection that broke before it was taken is no reason to stop serving.
+fn is_of_one_client(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::ConnectionAborted | ErrorKind::ConnectionReset | ErrorKind::Interrupted
+    )
+}

@@ -1,0 +1,500 @@
+//! The unit does what `protocol/WIRE.md` says: its table of values outside a field's range, and its worked
+//! sessions.
+
+mod common;
+
+use std::path::Path;
+
+use ato_under_test::{Setup, Unit};
+use common::Bench;
+use protocol::link::{End, Link};
+use protocol::message::{
+    Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
+    IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, Status, StimulusAnswer,
+    TrainLines,
+};
+use protocol::{Duration, Instant, SCAN};
+
+const SESSION: u32 = 0xCAFE;
+/// A row of the table begins like this one's head.
+const TABLE: &str = "| Field | Takes | Any other value |";
+
+/// A file of the wire's description.
+fn described(file: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../protocol")
+        .join(file);
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// A row of the table.
+struct Rule {
+    spec: &'static MessageSpec,
+    field: &'static FieldSpec,
+    /// Offset in the payload.
+    offset: usize,
+    low: i64,
+    high: i64,
+    bits: bool,
+    otherwise: String,
+}
+
+fn rules() -> Vec<Rule> {
+    let text = described("WIRE.md");
+    let (_, table) = text.split_once(TABLE).expect("the table of fields");
+    let rows = table
+        .lines()
+        .skip(2)
+        .take_while(|line| line.starts_with('|'));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, field, takes, otherwise, _] = cells[..] else {
+            panic!("{row}")
+        };
+        let name = field.trim_matches('`');
+        let (message, field) = name.split_once('.').expect("`Message.field`");
+        let spec = CATALOGUE.iter().find(|spec| spec.name == message);
+        let spec = spec.unwrap_or_else(|| panic!("no message {message}"));
+        let place = spec.fields.iter().position(|f| f.name == field);
+        let place = place.unwrap_or_else(|| panic!("no field {name}"));
+        let (bits, span) = match takes.strip_prefix("bits ") {
+            Some(span) => (true, span),
+            None => (false, takes),
+        };
+        let (low, high) = span.split_once(" to ").expect("from and to");
+        let number = |text: &str| text.replace('−', "-").parse().expect("a number");
+        Rule {
+            spec,
+            field: &spec.fields[place],
+            offset: 1 + spec.fields[..place].iter().map(|f| f.size).sum::<usize>(),
+            low: number(low),
+            high: number(high),
+            bits,
+            otherwise: otherwise.to_owned(),
+        }
+    })
+    .collect()
+}
+
+impl Rule {
+    fn name(&self) -> String {
+        format!("{}.{}", self.spec.name, self.field.name)
+    }
+
+    /// Least and greatest number of the field's type.
+    fn bounds(&self) -> (i64, i64) {
+        let bits = 8 * self.field.size as u32;
+        match self.field.ty {
+            "i8" | "i16" | "i32" => (-(1 << (bits - 1)), (1 << (bits - 1)) - 1),
+            _ => (0, (1 << bits) - 1),
+        }
+    }
+
+    /// Values the unit does not know: next to the range, at the type's ends, and some between.
+    fn others(&self) -> Vec<i64> {
+        let (least, most) = self.bounds();
+        if self.bits {
+            let unknown = (self.high + 1)..(8 * self.field.size as i64);
+            return unknown.clone().map(|bit| 1 << bit).collect();
+        }
+        let between = [(self.high + most) / 2, (self.low + least) / 2, most - 1];
+        let all = [self.low - 1, self.high + 1, least, most];
+        let mut others: Vec<i64> = all.into_iter().chain(between).collect();
+        others.retain(|v| (least..=most).contains(v) && !(self.low..=self.high).contains(v));
+        others.sort_unstable();
+        others.dedup();
+        others
+    }
+
+    /// The message with this value in the field.
+    fn set(&self, message: impl Into<Message>, value: i64) -> Message {
+        set(
+            self.spec,
+            self.offset,
+            self.field.size,
+            message.into(),
+            value,
+        )
+    }
+}
+
+fn set(spec: &MessageSpec, offset: usize, size: usize, message: Message, value: i64) -> Message {
+    let mut payload = Vec::new();
+    message.encode(&mut payload);
+    assert_eq!(message.name(), spec.name);
+    payload[offset..offset + size].copy_from_slice(&value.to_be_bytes()[8 - size..]);
+    Message::decode(spec.channel, &payload).expect("fields take any value")
+}
+
+#[test]
+fn every_enumeration_and_set_of_bits_towards_the_unit_has_a_rule() {
+    let rules: Vec<String> = rules().iter().map(Rule::name).collect();
+    for spec in CATALOGUE.iter().filter(|spec| !spec.sent_by_unit()) {
+        for field in spec.fields {
+            let words = ENUMS.iter().chain(BIT_SETS);
+            let listed = words.clone().any(|word| word.name == field.ty);
+            let name = format!("{}.{}", spec.name, field.name);
+            assert!(!listed || rules.contains(&name), "{name}: no rule");
+        }
+    }
+    for (i, name) in rules.iter().enumerate() {
+        assert!(!rules[..i].contains(name), "{name} twice");
+    }
+}
+
+/// A good request of each kind that the TEST board answers.
+fn requests() -> Vec<Message> {
+    let files = described("vectors/ptu.hex");
+    let frames = files.lines().filter_map(|line| line.strip_prefix("frame "));
+    let mut unit = Vec::new();
+    for frame in frames {
+        // Each in a receiver of its own: the vectors are no conversation.
+        let mut link = Link::new(End::Unit);
+        link.push(&bytes(frame));
+        unit.extend(link.poll(Instant::ZERO).map(|received| received.message));
+    }
+    unit.retain(|m| matches!(m.spec().code, 0x10..=0x14));
+    assert_eq!(unit.len(), 5);
+    unit
+}
+
+fn bytes(hex: &str) -> Vec<u8> {
+    hex.split_whitespace()
+        .map(|pair| u8::from_str_radix(pair, 16).expect("two digits"))
+        .collect()
+}
+
+fn armed() -> Bench {
+    let mut bench = Bench::new(&[]);
+    bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
+    bench.run(0.1);
+    bench.send(ArmRequest { session: SESSION });
+    bench.run(0.1);
+    let challenge = bench.answers.iter().find_map(|answer| match answer {
+        Message::ArmChallenge(challenge) => Some(challenge.challenge),
+        _ => None,
+    });
+    let answer = !challenge.expect("a challenge") ^ SESSION;
+    bench.send(ArmConfirm {
+        session: SESSION,
+        answer,
+    });
+    bench.session = SESSION;
+    bench.run(0.1);
+    bench
+}
+
+fn answer_to(bench: &mut Bench, request: Message) -> Answer {
+    bench.answers.clear();
+    bench.send(request);
+    bench.run(0.02);
+    match bench.answers[..] {
+        [Message::StimulusAnswer(StimulusAnswer { answer, .. })] => answer,
+        ref other => panic!("{request:?}: {other:?}"),
+    }
+}
+
+/// Goal: no request is carried out with a value that has no meaning, and none with a meaning is refused.
+/// Method: each field of each stimulus, at and beyond the ends of what the table says it takes.
+#[test]
+fn the_test_board_refuses_what_it_cannot_make_and_nothing_else() {
+    let rules = rules();
+    for request in requests() {
+        let spec = request.spec();
+        let mut offset = 1;
+        for field in spec.fields {
+            let rule = rules
+                .iter()
+                .find(|rule| rule.spec.name == spec.name && rule.field.name == field.name);
+            let (least, most) = (0, (1i64 << (8 * field.size)) - 1);
+            let at = |value| set(spec, offset, field.size, request, value);
+            let (good, refused) = match rule {
+                Some(rule) if rule.otherwise == "refused: `out_of_range`" => {
+                    (vec![rule.low, rule.high], rule.others())
+                }
+                // No other value, or one that changes nothing.
+                _ => (vec![least, 1, most], vec![]),
+            };
+            for value in good.into_iter().filter(|_| field.name != "session") {
+                let answer = answer_to(&mut armed(), at(value));
+                assert_eq!(answer, Answer::Accepted, "{:?}", at(value));
+            }
+            for value in refused {
+                let mut bench = armed();
+                let answer = answer_to(&mut bench, at(value));
+                assert_eq!(answer, Answer::OutOfRange, "{:?}", at(value));
+                bench.run(0.1);
+                assert!(bench.status.test_signals.is_empty(), "{:?}", at(value));
+            }
+            offset += field.size;
+        }
+    }
+}
+
+/// What a bench does while the unit is watched.
+type Act = Box<dyn Fn(&mut Bench)>;
+
+/// All that a unit in automatic mode, ready to depart, says while this is done to it.
+fn said(act: &Act) -> Vec<(IoOutput, Status)> {
+    let mut bench = Bench::new(&[]);
+    bench.input.mode_switch = ModeSwitch::Automatic;
+    bench.code("55");
+    bench.run(1.0);
+    act(&mut bench);
+    let scan = |_| {
+        bench.scan();
+        (bench.output, bench.status)
+    };
+    (0..90).map(scan).collect()
+}
+
+/// The bench goes on with this value in the field.
+fn holding(rule: &Rule, value: i64) -> Act {
+    let (spec, offset, size) = (rule.spec, rule.offset, rule.field.size);
+    let set = move |message: Message, value| set(spec, offset, size, message, value);
+    Box::new(move |bench| match spec.name {
+        "IoInput" => {
+            // A marker is passed in this frame.
+            bench.input.marker_edges += 1;
+            if let Message::IoInput(input) = set(bench.input.into(), value) {
+                bench.input = input;
+            }
+        }
+        "TcmsToAtc" => {
+            let frame = bench.tcms.expect("TCMS speaks");
+            if let Message::TcmsToAtc(frame) = set(frame.into(), value) {
+                bench.tcms = Some(frame);
+            }
+        }
+        "TwcWayside" => {
+            let data = bench.station.expect("the wayside speaks");
+            if let Message::TwcWayside(data) = set(data.into(), value) {
+                bench.station = Some(data);
+            }
+        }
+        other => panic!("{other}"),
+    })
+}
+
+/// Goal: what holds in place of a value without a meaning is what the table says. Method: two units, one
+/// given the value and one what stands for it, say the same.
+#[test]
+fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
+    for rule in rules() {
+        for value in rule.others() {
+            let name = format!("{} {value}", rule.name());
+            let (given, held): (Act, Act) = match rule.otherwise.as_str() {
+                "refused: `out_of_range`" => continue,
+                "refused: `bad_answer`" => {
+                    refuses_to_arm(rule.set(ArmRequest { session: SESSION }, value));
+                    continue;
+                }
+                // What changes nothing is accepted, and held above.
+                "passed over" if rule.spec.name == "TestRelease" => continue,
+                "passed over" => (beside(&rule, value), beside(&rule, 0)),
+                "no marker" => (holding(&rule, value), Box::new(|_| {})),
+                "not neutral" => (holding(&rule, value), holding(&rule, 1)),
+                "the frame is as good as lost" => {
+                    (holding(&rule, value), Box::new(|bench| bench.tcms = None))
+                }
+                other => {
+                    let zero = other.strip_prefix("as ").and_then(|n| n.parse().ok());
+                    let zero = zero.unwrap_or_else(|| panic!("what is \"{other}\"?"));
+                    (holding(&rule, value), holding(&rule, zero))
+                }
+            };
+            let same = said(&given) == said(&held);
+            assert!(same, "{name} is not {}", rule.otherwise);
+        }
+    }
+}
+
+#[track_caller]
+fn refuses_to_arm(request: Message) {
+    let mut bench = Bench::new(&[]);
+    bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
+    bench.run(0.1);
+    bench.answers.clear();
+    bench.send(request);
+    bench.run(0.1);
+    let [Message::ArmState(state)] = bench.answers[..] else {
+        panic!("{:?}", bench.answers)
+    };
+    assert_eq!((state.armed, state.refusal), (0, ArmRefusal::BadAnswer));
+}
+
+/// Bits beside those that are held anyway.
+fn beside(rule: &Rule, bits: i64) -> Act {
+    let name = rule.name();
+    Box::new(move |bench| match name.as_str() {
+        "IoInput.tacho_backward" => bench.backward_bits = bits as u8,
+        "IoInput.lines" => {
+            let unknown = TrainLines::from_bits_retain(bits as u16);
+            bench.input.lines = bench.input.lines.union(unknown);
+        }
+        "TcmsToAtc.bits" => {
+            let frame = bench.tcms.as_mut().expect("TCMS speaks");
+            frame.bits = frame
+                .bits
+                .union(protocol::message::TcmsToAtcBits::from_bits_retain(
+                    bits as u16,
+                ));
+        }
+        other => panic!("{other}"),
+    })
+}
+
+/// Fields of a worked session that are not the same on every unit, or each time.
+const VARIES: [&str; 9] = [
+    "challenge",
+    "serial",
+    "config_crc",
+    "tdb_crc",
+    "software",
+    "uptime_ms",
+    "at_ms",
+    "position_cm",
+    "request_seq",
+];
+
+/// A tester that plays the requests of a worked session to a unit, and keeps the line going in between.
+struct Player {
+    unit: Unit,
+    link: Link,
+    now: Instant,
+    input: Option<IoInput>,
+    session: u32,
+    challenge: u32,
+    heard: Vec<(Instant, Message)>,
+}
+
+impl Player {
+    fn new() -> Self {
+        let mut player = Self {
+            unit: Unit::new(Setup {
+                serial: "SG-0042".into(),
+                config: common::config(),
+                config_crc: 1,
+                line: common::line(),
+                tdb_crc: 2,
+                seed: 7,
+                faults: Vec::new(),
+            }),
+            link: Link::new(End::Bench),
+            now: Instant::ZERO,
+            input: None,
+            session: 0,
+            challenge: 0,
+            heard: Vec::new(),
+        };
+        player.run_until(Instant::from_ms(2000));
+        player
+    }
+
+    fn send(&mut self, message: Message) {
+        let mut frame = Vec::new();
+        self.link.send(self.now, &message, &mut frame);
+        self.unit.receive(&frame);
+    }
+
+    /// Takes a request of the session; the challenge is the unit's own.
+    fn request(&mut self, message: Message) {
+        match message {
+            Message::IoInput(input) => self.input = Some(input),
+            Message::KeepAlive(alive) => {
+                self.session = alive.session;
+                self.send(message);
+            }
+            Message::ArmConfirm(ArmConfirm { session, .. }) => {
+                self.session = session;
+                let answer = !self.challenge ^ session;
+                self.send(ArmConfirm { session, answer }.into());
+            }
+            other => self.send(other),
+        }
+    }
+
+    /// What was said under this name within the last cycles.
+    fn said(&self, name: &str) -> Vec<Message> {
+        let lately = |at: Instant| self.now.since(at) < Duration::from_ms(100);
+        let heard = self.heard.iter().rev().take_while(|(at, _)| lately(*at));
+        let mut said: Vec<_> = heard.map(|(_, message)| *message).collect();
+        said.retain(|message| message.name() == name);
+        said.reverse();
+        said
+    }
+
+    fn run_until(&mut self, at: Instant) {
+        while self.now < at {
+            self.now += SCAN;
+            if let Some(input) = self.input {
+                self.send(input.into());
+                if self.now.as_us().is_multiple_of(200_000) {
+                    let session = self.session;
+                    self.send(KeepAlive { session }.into());
+                }
+            }
+            let mut out = Vec::new();
+            self.unit.step(self.now, &mut out);
+            self.link.push(&out);
+            while let Some(received) = self.link.poll(self.now) {
+                if let Message::ArmChallenge(asked) = received.message {
+                    self.challenge = asked.challenge;
+                }
+                if let (Message::IoOutput(output), Some(input)) =
+                    (received.message, &mut self.input)
+                {
+                    let released = output.outputs.contains(Outputs::EB_RELAY);
+                    input.lines.set(TrainLines::EB_LOOP, released);
+                }
+                self.heard.push((self.now, received.message));
+            }
+        }
+    }
+}
+
+/// Goal: the worked sessions are what a unit does. Method: their requests to a unit with the configuration
+/// they are of; what it says at the times of its messages is what stands there, but for what varies.
+#[test]
+fn the_unit_answers_as_in_the_worked_sessions() {
+    let mut differ = Vec::new();
+    for file in ["session.hex", "overspeed.hex"] {
+        let mut player = Player::new();
+        let mut ends = [Link::new(End::Unit), Link::new(End::Bench)];
+        for line in described(&format!("vectors/{file}")).lines() {
+            let columns: Vec<&str> = line.split_whitespace().collect();
+            let [at_ms, way @ ("<" | ">"), name, ref hex @ ..] = columns[..] else {
+                continue;
+            };
+            let after = Duration::from_ms(at_ms.parse().expect("a time in ms"));
+            let end = &mut ends[usize::from(way == "<")];
+            end.push(&bytes(&hex.join(" ")));
+            let written = end.poll(Instant::ZERO + after).expect("a good frame");
+            player.run_until(Instant::from_ms(2000) + after);
+            if way == ">" {
+                player.request(written.message);
+                continue;
+            }
+            let said = player.said(name);
+            let differences = said.iter().map(|said| differences(&written.message, said));
+            let least = differences.min_by_key(Vec::len);
+            if least != Some(Vec::new()) {
+                differ.push(format!("{file} {at_ms} ms {name}: {least:#?}"));
+            }
+        }
+    }
+    assert!(differ.is_empty(), "{}", differ.join("\n"));
+}
+
+/// Fields that are not what is written, but for those that vary.
+fn differences(written: &Message, said: &Message) -> Vec<String> {
+    let (written, said) = (written.show(), said.show());
+    let fields = written.iter().zip(said);
+    let other = fields
+        .filter(|((field, wanted), (_, said))| wanted != said && !VARIES.contains(&field.name));
+    other
+        .map(|((field, wanted), (_, said))| {
+            format!("{}: written {wanted}, said {said}", field.name)
+        })
+        .collect()
+}

@@ -1,0 +1,255 @@
+//! The unit served on a TCP socket: one client at a time, others are told, and who falls silent is let go.
+
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use protocol::link::{End, Link};
+use protocol::message::{ArmRequest, Identify, IoInput, KeepAlive, Message, Taken};
+
+// What holds the machine up is no fault of the unit.
+#[path = "../../ptu-app/tests/common/steady.rs"]
+mod steady;
+
+use steady::steadily;
+
+/// A client of which nothing is heard is let go after this time, and what a busy machine may add.
+const SILENT: Duration = Duration::from_secs(10);
+const SLACK: Duration = Duration::from_secs(3);
+
+/// A served unit; ends with the value.
+struct Unit {
+    child: Child,
+    address: SocketAddr,
+}
+
+impl Unit {
+    fn serve() -> Self {
+        let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+        let mut child = Command::new(env!("CARGO_BIN_EXE_ato-under-test"))
+            .args(["--tcp", "127.0.0.1:0", "--scripts"])
+            .arg(scripts)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("ato-under-test starts");
+        let mut address = String::new();
+        let out = child.stdout.take().expect("stdout");
+        BufReader::new(out)
+            .read_line(&mut address)
+            .expect("its address");
+        Self {
+            child,
+            address: address.trim().parse().expect("an address"),
+        }
+    }
+
+    fn signal(&self, name: &str) {
+        let pid = self.child.id().to_string();
+        let sent = Command::new("kill").args(["-s", name, &pid]).status();
+        assert!(sent.expect("kill").success());
+    }
+}
+
+impl Drop for Unit {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A tester whose sequence numbers begin at 0, and its clock with it.
+struct Client {
+    stream: TcpStream,
+    link: Link,
+    began: Instant,
+    closed: bool,
+}
+
+impl Client {
+    fn connect(unit: &Unit) -> Self {
+        let stream = TcpStream::connect(unit.address).expect("a connection");
+        stream.set_nodelay(true).expect("no delay");
+        let patience = Some(Duration::from_millis(10));
+        stream.set_read_timeout(patience).expect("a time-out");
+        Self {
+            stream,
+            link: Link::new(End::Bench),
+            began: Instant::now(),
+            closed: false,
+        }
+    }
+
+    fn now(&self) -> protocol::Instant {
+        protocol::Instant::from_ms(self.began.elapsed().as_millis() as u64)
+    }
+
+    fn send(&mut self, message: impl Into<Message>) {
+        let mut frame = Vec::new();
+        self.link.send(self.now(), &message.into(), &mut frame);
+        // Who has been turned away may not be able to write any more.
+        let _ = self.stream.write_all(&frame);
+    }
+
+    /// What arrives within the next few milliseconds.
+    fn hear(&mut self) -> Vec<Message> {
+        let mut chunk = [0; 4096];
+        match self.stream.read(&mut chunk) {
+            Ok(0) => self.closed = true,
+            Ok(count) => self.link.push(&chunk[..count]),
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => {}
+            Err(_) => self.closed = true,
+        }
+        let now = self.now();
+        std::iter::from_fn(|| self.link.poll(now))
+            .map(|received| received.message)
+            .collect()
+    }
+
+    /// All that arrives for a while, or until the connection is closed.
+    fn hear_for(&mut self, time: Duration) -> Vec<Message> {
+        let began = Instant::now();
+        let mut heard = Vec::new();
+        while began.elapsed() < time && !self.closed {
+            heard.extend(self.hear());
+        }
+        heard
+    }
+
+    /// Whether the unit answers who it is to one question, within a while.
+    fn is_answered(&mut self, within: Duration) -> bool {
+        self.send(Identify {});
+        let began = Instant::now();
+        while began.elapsed() < within && !self.closed {
+            let heard = self.hear();
+            if heard.iter().any(|m| matches!(m, Message::Identity(_))) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+fn taken(heard: &[Message]) -> Option<Taken> {
+    heard.iter().find_map(|message| match message {
+        Message::Taken(taken) => Some(*taken),
+        _ => None,
+    })
+}
+
+#[test]
+fn who_comes_second_is_told_who_has_the_unit_and_is_never_heard() {
+    steadily(|| {
+        let unit = Unit::serve();
+        let mut first = Client::connect(&unit);
+        assert!(first.is_answered(Duration::from_secs(2)));
+        let mut second = Client::connect(&unit);
+        second.send(Identify {});
+        second.send(ArmRequest { session: 7 });
+        second.send(KeepAlive { session: 7 });
+        let heard = second.hear_for(Duration::from_secs(2));
+        let taken = taken(&heard).unwrap_or_else(|| panic!("{heard:?}"));
+        assert_eq!(heard.len(), 1, "{heard:?}");
+        let own = first.stream.local_addr().expect("its address");
+        let ip = std::net::Ipv6Addr::from(taken.address).to_canonical();
+        assert_eq!(SocketAddr::new(ip, taken.port), own);
+        assert!(second.closed, "the end of the stream follows");
+        // Nothing of what it sent has become anybody's.
+        let heard = first.hear_for(Duration::from_millis(500));
+        let answers = |m: &Message| {
+            matches!(
+                m,
+                Message::Identity(_) | Message::ArmState(_) | Message::Status(_)
+            )
+        };
+        assert!(!heard.iter().any(answers), "{heard:?}");
+        assert!(first.is_answered(Duration::from_secs(2)));
+    });
+}
+
+/// Goal: nobody waits for a predecessor's sequence numbers and clock to be forgotten. Method: one that is far
+/// ahead leaves in the middle of a frame; the next begins at 0, and asks once.
+#[test]
+fn who_follows_on_a_connection_of_its_own_is_heard_at_once() {
+    steadily(|| {
+        let unit = Unit::serve();
+        for _ in 0..3 {
+            let mut client = Client::connect(&unit);
+            assert!(client.is_answered(Duration::from_millis(500)));
+            for _ in 0..50 {
+                client.send(KeepAlive { session: 0 });
+            }
+            client
+                .stream
+                .write_all(&[0x7E, 1, 1, 0x10])
+                .expect("half a frame");
+            client.hear_for(Duration::from_millis(300));
+        }
+    });
+}
+
+/// How long the unit keeps a client that does this every 100 ms.
+fn kept_for(at_most: Duration, act: impl Fn(&mut Client)) -> Duration {
+    let unit = Unit::serve();
+    let mut client = Client::connect(&unit);
+    assert!(client.is_answered(Duration::from_secs(2)));
+    let began = Instant::now();
+    while began.elapsed() < at_most && !client.closed {
+        act(&mut client);
+        client.hear_for(Duration::from_millis(100));
+    }
+    began.elapsed()
+}
+
+#[test]
+fn a_client_that_falls_silent_is_let_go_and_one_that_speaks_on_any_channel_is_not() {
+    steadily(|| {
+        let longest = SILENT + SLACK;
+        let noise = |client: &mut Client| drop(client.stream.write_all(&[0x7E, 1, 2, 3, 0x7E]));
+        let rack = |client: &mut Client| client.send(IoInput::default());
+        let [silent, noisy, speaking] = std::thread::scope(|scope| {
+            let silent = scope.spawn(|| kept_for(longest, |_| {}));
+            let noisy = scope.spawn(|| kept_for(longest, noise));
+            let speaking = scope.spawn(|| kept_for(longest, rack));
+            [silent, noisy, speaking].map(|kept| kept.join().expect("a client"))
+        });
+        for kept in [silent, noisy] {
+            assert!((SILENT..longest).contains(&kept), "{kept:?}");
+        }
+        assert!(speaking >= longest, "{speaking:?}");
+    });
+}
+
+#[test]
+fn what_was_sent_while_the_unit_stood_still_is_not_heard_as_fresh() {
+    steadily(|| {
+        let unit = Unit::serve();
+        std::thread::sleep(Duration::from_millis(200));
+        unit.signal("STOP");
+        let mut client = Client::connect(&unit);
+        client.send(Identify {});
+        client.send(KeepAlive { session: 0 });
+        std::thread::sleep(Duration::from_millis(1500));
+        unit.signal("CONT");
+        let heard = client.hear_for(Duration::from_millis(700));
+        let answers = |m: &Message| matches!(m, Message::Identity(_) | Message::Status(_));
+        assert!(!heard.iter().any(answers), "{heard:?}");
+        assert!(client.is_answered(Duration::from_secs(2)));
+    });
+}
+
+#[test]
+fn a_hang_up_closes_the_socket_like_a_termination() {
+    for signal in ["TERM", "HUP"] {
+        let mut unit = Unit::serve();
+        let mut client = Client::connect(&unit);
+        assert!(client.is_answered(Duration::from_secs(5)));
+        unit.signal(signal);
+        client.hear_for(Duration::from_secs(5));
+        assert!(client.closed, "{signal}");
+        let ended = unit.child.wait().expect("the unit's end");
+        assert!(!ended.success(), "{signal}");
+    }
+}
