@@ -22,7 +22,7 @@ use super::fault_watch::{self, FaultSeen};
 use super::reach::Reached;
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
-use super::{Attendant, ProcedureStream, RunPlan, Task, stream};
+use super::{Attendant, ProcedureStream, RunPlan, Task, stream, unit_text};
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
@@ -75,10 +75,12 @@ pub enum Connected {
 impl BenchSetup {
     /// Serial number before the unit has said its own.
     pub fn expected_serial(&self) -> String {
-        self.serial.clone().unwrap_or_else(|| match self.endpoint {
-            Endpoint::Sim => SIM_SERIAL.into(),
-            _ => "unknown".into(),
-        })
+        match (&self.serial, &self.endpoint) {
+            (Some(serial), Endpoint::Sim) => unit_text::of_serial(serial.as_bytes()),
+            (Some(serial), _) => serial.clone(),
+            (None, Endpoint::Sim) => SIM_SERIAL.into(),
+            (None, _) => "unknown".into(),
+        }
     }
 
     /// Names of the injected faults.
@@ -125,7 +127,7 @@ impl BenchSetup {
     pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimLink>> {
         let seed = seed_for(self.seed, procedure);
         let setup = Setup {
-            serial: self.expected_serial(),
+            serial: self.serial.clone().unwrap_or(SIM_SERIAL.into()),
             config: self.config.content.clone(),
             config_crc: self.config.crc,
             line: self.line.content.clone(),
@@ -159,7 +161,7 @@ impl Connected {
     pub fn serial(&self) -> String {
         match self {
             Self::Sim(setup) => setup.expected_serial(),
-            Self::Port(_, identity, _) => text(&identity.serial),
+            Self::Port(_, identity, _) => unit_text::serial(identity),
         }
     }
 
@@ -332,15 +334,6 @@ pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
 
 pub(super) fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
     bench.rig().sample().get(Signal::Started) == Some(1.0)
-}
-
-/// ASCII filled up with zeros.
-pub(crate) fn text(field: &[u8]) -> String {
-    let end = field
-        .iter()
-        .position(|byte| *byte == 0)
-        .unwrap_or(field.len());
-    String::from_utf8_lossy(&field[..end]).into_owned()
 }
 
 /// A seed for one procedure of a run: the same whatever else is run (FNV-1a over its name).

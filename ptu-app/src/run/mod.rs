@@ -22,6 +22,7 @@ mod session;
 mod stopped;
 mod store_thread;
 mod suite;
+pub(crate) mod unit_text;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -33,7 +34,7 @@ use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 pub use adaptive::Adaptive;
 pub use attendant::Attendant;
 pub use benches::{BenchSetup, Connected, run_here};
-pub(crate) use benches::{READY_WITHIN, settled, text};
+pub(crate) use benches::{READY_WITHIN, settled};
 pub use choice::Choice;
 pub use collector::{Listener, Outcome, steps_of, stored};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};

@@ -11,10 +11,10 @@ use protocol::message::Identity;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
-use super::benches::{BenchSetup, READY_WITHIN, started, text};
+use super::benches::{BenchSetup, READY_WITHIN, started};
 use super::fault_watch::{self, FaultSeen};
-use super::recorder::BEFORE;
 use super::session::Session;
+use super::unit_text;
 use crate::failure::{Exit, Failure};
 use crate::link::{Pace, WireLink};
 use crate::stop::Stop;
@@ -22,6 +22,12 @@ use crate::stop::Stop;
 /// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
 /// goes at another pace on purpose.
 const CLOCKS_AGREE: RangeInclusive<f64> = 0.55..=1.8;
+
+/// Clocks that go together so nearly after [`CLOCK_WATCHED`] are in step; others are watched longer, up to
+/// [`CLOCK_DOUBTED`], because either end may have been held up.
+const IN_STEP: RangeInclusive<f64> = 0.8..=1.25;
+const CLOCK_WATCHED: Duration = Duration::from_ms(1000);
+const CLOCK_DOUBTED: Duration = Duration::from_ms(10_000);
 
 /// A unit on a port, ready.
 pub(super) struct Reached {
@@ -38,7 +44,8 @@ impl BenchSetup {
     /// It cannot be reached, is another one, or has another configuration.
     pub(super) fn reach(&self, stop: &Stop) -> Result<Reached, Failure> {
         let link = WireLink::open(&self.endpoint)?.slower(self.slower);
-        let bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
+        let mut bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
+        bench.rig_mut().leave_log_before_contact();
         let mut session = Session::new(bench, Pace::slower(self.slower), stop.clone(), false)
             .attended_by(self.attendant.clone())
             .keeping_up(self.bears());
@@ -54,7 +61,6 @@ impl BenchSetup {
             });
         }
         let identity = identity?;
-        self.check_identity(&identity)?;
         Ok(Reached {
             session,
             identity,
@@ -69,8 +75,8 @@ impl BenchSetup {
         Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))
     }
 
-    /// Contact, identity, the old log read, and a brake left from before acknowledged. The unit's log has
-    /// a history; the train is this bench's, and what TCMS finds goes to `found`.
+    /// Contact, identity, a brake left from before acknowledged, and the clocks compared. The unit's log has
+    /// a history, which is not read; the train is this bench's, and what TCMS finds goes to `found`.
     fn bring_up(
         &self,
         session: &mut Session<WireLink>,
@@ -81,9 +87,17 @@ impl BenchSetup {
                 found.push(fault_watch::of_event(entry, at, sample));
             }
         };
+        let wrong = |identity: &Identity| self.check_identity(identity).is_err();
         let ready = session.idle(READY_WITHIN, &mut seen, |bench| {
-            bench.rig().identity().is_some() && started(bench)
+            let identity = bench.rig().identity();
+            identity.is_some_and(|identity| wrong(identity) || started(bench))
         });
+        if let Some(why) = session.bench().rig().turned_away() {
+            return Err(Failure::bench(format!(
+                "{}: {why}; wait until it has left, or end it there",
+                self.endpoint
+            )));
+        }
         if let Some(error) = session.link_failure() {
             return Err(Failure::bench(format!(
                 "{error}; check the cable and that the unit is served there"
@@ -99,30 +113,40 @@ impl BenchSetup {
                 self.endpoint
             )));
         };
+        self.check_identity(&identity)?;
         let now = session.now();
         // A brake latched since the last tester left needs its acknowledgement.
         let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
-        let mut told = vec![(now, identity.uptime_ms)];
-        session.idle(BEFORE, &mut seen, |bench| {
-            let uptime = bench.rig().identity().map(|identity| identity.uptime_ms);
-            let news = uptime.filter(|ms| told.last().is_none_or(|(_, before)| before != ms));
-            told.extend(news.map(|ms| (bench.now(), ms)));
-            bench.now().since(Instant::ZERO) > BEFORE
-        });
-        self.check_clock(&told[1..])?;
+        self.check_clock(session, &mut seen)?;
         Ok(identity)
     }
 
-    /// The unit's clock beside the bench's, from what it told of its uptime.
-    fn check_clock(&self, told: &[(Instant, u32)]) -> Result<(), Failure> {
-        let [(first_at, first_ms), .., (at, ms)] = told else {
-            return Ok(());
-        };
-        // A unit that started again meanwhile is for the procedures to find.
-        let Some(passed_ms) = ms.checked_sub(*first_ms) else {
-            return Ok(());
-        };
-        let times_faster = f64::from(passed_ms) / 1000.0 / at.since(*first_at).as_secs();
+    /// Holds the unit's clock against the bench's, as long as there is doubt.
+    fn check_clock(
+        &self,
+        session: &mut Session<WireLink>,
+        seen: &mut impl FnMut(&UnitEvent, Instant, &Sample),
+    ) -> Result<(), Failure> {
+        let mut first = None;
+        let mut times_faster = 1.0;
+        session.idle(CLOCK_DOUBTED, seen, |bench| {
+            let Some((at, stamp_ms)) = bench.rig().unit_stamp_ms() else {
+                return false;
+            };
+            let (first_at, first_ms) = *first.get_or_insert((at, stamp_ms));
+            let passed_ms = stamp_ms.wrapping_sub(first_ms) as i32;
+            if passed_ms < 0 {
+                // A unit that started again meanwhile is for the procedures to find.
+                first = None;
+                return false;
+            }
+            let watched = at.since(first_at);
+            if watched < CLOCK_WATCHED {
+                return false;
+            }
+            times_faster = f64::from(passed_ms) / 1000.0 / watched.as_secs();
+            IN_STEP.contains(&times_faster)
+        });
         if CLOCKS_AGREE.contains(&times_faster) {
             return Ok(());
         }
@@ -134,7 +158,7 @@ impl BenchSetup {
     }
 
     fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
-        let serial = text(&identity.serial);
+        let serial = unit_text::serial(identity);
         if let Some(expected) = self.serial.as_ref().filter(|expected| **expected != serial) {
             return Err(Failure::bench(format!(
                 "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",

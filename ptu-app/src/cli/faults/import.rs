@@ -11,7 +11,7 @@ use crate::clock::{local, now_us, rfc3339};
 use crate::failure::{Exit, Failure};
 use crate::field::{Imported, Judged, LogRead, Source, import, judge, read_log};
 use crate::link::{Endpoint, Pace, WireLink};
-use crate::run::text;
+use crate::run::unit_text;
 use crate::stop::Stop;
 use crate::table::Table;
 
@@ -102,7 +102,7 @@ impl ImportArguments {
         let read = read_log(&mut link, Instant::ZERO, &mut Pace::real(), &stop, &now_us);
         let read = read.map_err(|why| Failure::bench(format!("{}: {why}", self.unit)))?;
         let identity = &read.identity;
-        let serial = text(&identity.serial);
+        let serial = unit_text::serial(identity);
         if let Some(expected) = self.serial_no.as_ref().filter(|e| **e != serial) {
             return Err(Failure::bench(format!(
                 "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
@@ -120,13 +120,13 @@ impl ImportArguments {
         if !same_config {
             warnings.push(format!(
                 "the unit's configuration, {}, is not {} as it is here; name its own with --unit-config",
-                text(&identity.config),
+                unit_text::config_name(identity),
                 config.name
             ));
         }
         let source = Source {
             endpoint: self.unit.to_string(),
-            config_name: text(&identity.config),
+            config_name: unit_text::config_name(identity),
             unit_config_sha256: if same_config {
                 config.sha256
             } else {

@@ -106,7 +106,7 @@ fn identity(ui: &mut Ui, desk: &Desk<'_>) {
         );
     }
     if let Some(identity) = identity {
-        let serial = crate::run::text(&identity.serial);
+        let serial = crate::run::unit_text::serial(&identity);
         let label = ui.label(RichText::new(serial).strong());
         label.on_hover_text(versions(&identity, words));
         let share = 100.0 * share.unwrap_or(1.0);
@@ -134,7 +134,7 @@ fn versions(identity: &Identity, words: &Words) -> String {
                 "config",
                 &format!(
                     "{} {:08x}",
-                    crate::run::text(&identity.config),
+                    crate::run::unit_text::config_name(identity),
                     identity.config_crc
                 ),
             ),

@@ -81,7 +81,7 @@ impl Unit {
     /// What it is called: its serial number, or where it is.
     pub fn name(&self) -> String {
         match self.identity() {
-            Some(identity) => crate::run::text(&identity.serial),
+            Some(identity) => crate::run::unit_text::serial(&identity),
             None => self.choice.endpoint.clone(),
         }
     }
