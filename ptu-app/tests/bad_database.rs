@@ -239,3 +239,60 @@ fn a_full_disk() {
     place.ptu(&["db", "check", "--db", &db]).exits(0);
     place.ptu(&["run", "tcms/link", "--db", &db]).exits(0);
 }
+
+/// A time that no clock shows is told as it is, at once.
+#[test]
+fn absurd_times_are_shown_without_delay() {
+    let place = Place::new();
+    let db = place.text_path("absurd.db");
+    let slow = [
+        "run",
+        "atp/overspeed",
+        "--inject",
+        "eb_relay.slow",
+        "--db",
+        &db,
+    ];
+    place.ptu(&slow).exits(1);
+    let connection = Connection::open(&db).expect("a database");
+    // In place of a signal's rows beside what was expected, why there is none.
+    let asked = ["trace", "show", "latest", "--db", &db];
+    for (column, table) in [
+        ("t0_bench_us", "trace"),
+        ("period_us", "trace"),
+        ("trigger_row", "trace"),
+        ("t0_bench_us", "recording"),
+    ] {
+        let sql = format!("SELECT {column} FROM {table}");
+        let before: i64 = connection
+            .query_row(&sql, [], |row| row.get(0))
+            .expect("a value");
+        for absurd in [i64::MAX, i64::MIN, i64::from(u32::MAX), 0, before] {
+            let change = format!("UPDATE {table} SET {column} = {absurd}");
+            connection.execute_batch(&change).expect("changed");
+            let begun = std::time::Instant::now();
+            let said = place.ptu(&asked);
+            assert!(matches!(said.code, Some(0 | 3)), "{change}: {}", said.all());
+            assert!(begun.elapsed().as_secs() < 20, "{change}");
+        }
+    }
+    for (column, table) in [
+        ("t0_us", "trace"),
+        ("started_at_us", "run"),
+        ("finished_at_us", "run"),
+    ] {
+        let change = format!("UPDATE {table} SET {column} = {}", i64::MAX);
+        connection.execute_batch(&change).expect("changed");
+    }
+    for arguments in [
+        &["trace", "show", "latest", "--db", &db][..],
+        &["trace", "show", "latest", "--json", "--db", &db],
+        &["runs", "list", "--db", &db],
+        &["runs", "show", "latest", "--json", "--db", &db],
+    ] {
+        let begun = std::time::Instant::now();
+        let said = place.ptu(arguments).exits(0);
+        assert!(said.out.contains("no date"), "{arguments:?}: {}", said.out);
+        assert!(begun.elapsed().as_secs() < 20, "{arguments:?}");
+    }
+}

@@ -37,14 +37,13 @@ pub fn open_options() -> OpenOptions {
 
 /// RFC 3339 in UTC, for JSON and reports.
 pub fn rfc3339(at_us: i64) -> String {
-    DateTime::<Utc>::from_timestamp_micros(at_us)
-        .unwrap_or_default()
-        .to_rfc3339_opts(SecondsFormat::Millis, true)
+    let shown = |at: DateTime<Utc>| at.to_rfc3339_opts(SecondsFormat::Millis, true);
+    date(at_us).map_or_else(|| no_date(at_us), shown)
 }
 
 /// Year, and month, day, hour, minute and second, in UTC.
 pub fn utc_fields(at_us: i64) -> (u16, [u8; 5]) {
-    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
+    let at = date(at_us).unwrap_or_default();
     let fields = [at.month(), at.day(), at.hour(), at.minute(), at.second()];
     (
         u16::try_from(at.year()).unwrap_or_default(),
@@ -88,11 +87,20 @@ pub fn local_day(at_us: i64) -> String {
 }
 
 fn local_as(at_us: i64, format: &str) -> String {
-    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
-    at.with_timezone(&Local).format(format).to_string()
+    let shown = |at: DateTime<Utc>| at.with_timezone(&Local).format(format).to_string();
+    date(at_us).map_or_else(|| no_date(at_us), shown)
 }
 
 fn utc_as(at_us: i64, format: &str) -> String {
-    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
-    at.format(format).to_string()
+    date(at_us).map_or_else(|| no_date(at_us), |at| at.format(format).to_string())
+}
+
+/// A damaged file may name any time. Where local time is of a year far from ours takes for ever to find out.
+fn date(at_us: i64) -> Option<DateTime<Utc>> {
+    let at = DateTime::<Utc>::from_timestamp_micros(at_us)?;
+    (1..=9999).contains(&at.year()).then_some(at)
+}
+
+fn no_date(at_us: i64) -> String {
+    format!("no date ({at_us} µs)")
 }

@@ -43,6 +43,32 @@ pub struct Original {
     t0_bench_us: i64,
 }
 
+/// A procedure takes minutes. One that is said to take longer than this would be done again for ever.
+const LONGEST_US: i64 = 24 * 3_600_000_000;
+
+/// Holds the times of a trace against the clock of its recording: a file of somebody else may name any.
+fn check_times(trace: &TraceData, t0_bench_us: i64) -> Option<()> {
+    let near = |us: i64| (-LONGEST_US..=LONGEST_US).contains(&us).then_some(us);
+    let row_us = |row: usize| {
+        let later_us = i64::try_from(row).ok()?.checked_mul(trace.period_us)?;
+        near(
+            trace
+                .t0_bench_us
+                .checked_sub(t0_bench_us)?
+                .checked_add(later_us)?,
+        )
+    };
+    let trigger = trace.trigger_row.map_or(0, |row| row as usize);
+    let is_in = trace.period_us > 0 && trigger < trace.rows();
+    row_us(0)?;
+    row_us(trace.rows() - 1)?;
+    // What is said of it is said in the run's own time.
+    is_in
+        .then(|| trace.t0_bench_us.checked_add(LONGEST_US))
+        .flatten()
+        .map(|_| ())
+}
+
 impl Original {
     /// Reads a trace with its recording.
     ///
@@ -61,6 +87,12 @@ impl Original {
         if trace.rows() == 0 {
             return Err(Failure::usage(format!("trace {} has no rows", id.short())));
         }
+        check_times(&trace, recording.t0_bench_us).ok_or_else(|| {
+            Failure::usage(format!(
+                "trace {} names times at which no procedure was under way",
+                id.short()
+            ))
+        })?;
         Ok(Self {
             id,
             run_id: recording.run_id,
