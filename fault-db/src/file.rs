@@ -84,6 +84,19 @@ pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError
     Ok(version)
 }
 
+/// Makes an empty file, for its owner alone. SQLite would make one as the umask has it; what it keeps beside a
+/// file gets that file's rights.
+///
+/// # Errors
+/// There is a file of this name, or none can be made.
+pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
+    let mut options = std::fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path).map(drop)
+}
+
 pub(crate) fn set_up(
     conn: &mut Connection,
     version: i32,

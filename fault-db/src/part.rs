@@ -9,6 +9,7 @@ use std::time::Duration;
 use rusqlite::{Connection, OpenFlags};
 
 use crate::error::StoreError;
+use crate::file::make_private;
 use crate::schema;
 
 /// Nobody works any more at a copy that nothing was written to for so long.
@@ -32,6 +33,8 @@ impl Part {
             path: to.to_path_buf(),
             reason: "the name is not UTF-8".to_owned(),
         })?;
+        // SQLite fills an empty file; why there is none, it says itself.
+        let _ = make_private(&part.beside);
         // What fails here is the target: the source was readable a moment ago.
         conn.execute("VACUUM INTO ?1", [name])
             .map_err(|error| StoreError::from_sqlite(to, doing, error))?;
@@ -55,8 +58,7 @@ impl Part {
         }
         // Beside it: its own name may be another program's the next moment.
         let part = Self::of(to);
-        let made = std::fs::File::create_new(&part.beside);
-        made.map(drop).map_err(|error| cannot(error.to_string()))
+        make_private(&part.beside).map_err(|error| cannot(error.to_string()))
     }
 
     /// Nothing yet, under a name of its own.
@@ -106,7 +108,7 @@ impl Part {
 
     /// The same on a disk without hard links, as memory sticks are: an empty file takes the name first.
     fn rename(&self) -> std::io::Result<()> {
-        std::fs::File::create_new(&self.to)?;
+        make_private(&self.to)?;
         let renamed = std::fs::rename(&self.beside, &self.to);
         if renamed.is_err() {
             let _ = std::fs::remove_file(&self.to);

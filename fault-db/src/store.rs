@@ -10,7 +10,8 @@ use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 use crate::base::{Base, Row, Server, SqlError, SqlResult, Value, values};
 use crate::error::StoreError;
 use crate::file::{
-    READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy, set_up,
+    READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy,
+    make_private, set_up,
 };
 use crate::id::{Id, IdSource};
 use crate::schema::SCHEMA_VERSION;
@@ -92,8 +93,13 @@ impl std::fmt::Debug for Store {
 
 impl Store {
     /// Opens a file for writing; creates it, or brings its schema up to date, if need be. A file of
-    /// an earlier schema is copied first, to `FILE.schemaN` beside it.
+    /// an earlier schema is copied first, to `FILE.schemaN` beside it. What is made is its owner's alone.
     pub fn open(path: &Path, options: OpenOptions) -> Result<Self, StoreError> {
+        // One that is there is not touched: closing it would let go of SQLite's locks on it. Why none can be
+        // made is said by SQLite, which tries again.
+        if !path.exists() {
+            let _ = make_private(path);
+        }
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
             | OpenFlags::SQLITE_OPEN_CREATE
             | OpenFlags::SQLITE_OPEN_NO_MUTEX;

@@ -12,6 +12,7 @@ use protocol::line::{self, Line};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, did_you_mean};
+use crate::private;
 
 /// Folder of unit configurations and the fault catalogue.
 const UNITS: &str = "units";
@@ -268,7 +269,7 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
 /// The file or its folder cannot be written.
 pub fn keep(file: &Path, value: &impl serde::Serialize) -> std::io::Result<()> {
     if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder)?;
+        private::folder(folder)?;
     }
     let beside = file.with_extension("new");
     std::fs::write(&beside, serde_json::to_vec_pretty(value)?)?;

@@ -31,6 +31,7 @@ pub mod limits;
 pub mod link;
 mod owner;
 mod pool;
+mod private;
 mod progress;
 pub mod replay;
 pub mod report;

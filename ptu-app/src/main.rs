@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use ptu_app::cli::Cli;
 
 fn main() -> ExitCode {
-    match Cli::asked().run() {
+    match Cli::asked().and_then(Cli::run) {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {
             eprintln!("ptu: {failure}");

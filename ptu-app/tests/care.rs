@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, list, number, record_bad_unit, relay_fault, text};
+use common::{Place, Said, list, number, record_bad_unit, relay_fault, text};
 
 #[test]
 fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one() {
@@ -197,4 +197,60 @@ fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
         !list(&place.json(&["faults", "list", "--json"])).is_empty(),
         "faults stay"
     );
+}
+
+/// Whatever the umask allows, history and settings are their owner's alone; what others were given before is
+/// told, and stays.
+#[cfg(unix)]
+#[test]
+fn history_and_settings_are_for_their_owner_alone() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let place = Place::new();
+    let ptu = |arguments: &str| {
+        let mut shell = std::process::Command::new("sh");
+        let command = format!("umask 000; exec {} {arguments}", env!("CARGO_BIN_EXE_ptu"));
+        let usual = place.command(&[]);
+        let environment = usual
+            .get_envs()
+            .filter_map(|(name, value)| Some((name, value?)));
+        shell
+            .args(["-c", &command])
+            .envs(environment)
+            .env_remove("PTU_DB");
+        shell.current_dir(place.path("."));
+        Said::from(shell.output().expect("ptu starts"))
+    };
+    let mode = |name: &str| {
+        let about = std::fs::metadata(place.path(name)).expect(name);
+        format!("{:o}", about.permissions().mode() & 0o777)
+    };
+    ptu("run tcms/link").exits(0);
+    ptu("faults list --state open --save waiting").exits(0);
+    ptu("db backup copy.db").exits(0);
+    ptu("db export other.db").exits(0);
+    for file in ["ptu/history.db", "copy.db", "other.db"] {
+        assert_eq!(mode(file), "600", "{file}");
+    }
+    assert_eq!(mode("ptu"), "700");
+    // While it is open, what SQLite keeps beside it.
+    let store = rusqlite::Connection::open(place.path("ptu/history.db")).expect("opens");
+    store
+        .execute_batch("BEGIN IMMEDIATE; UPDATE run SET line = line; COMMIT")
+        .expect("written");
+    for file in ["ptu/history.db-wal", "ptu/history.db-shm"] {
+        assert_eq!(mode(file), "600", "{file}");
+    }
+    drop(store);
+
+    let shared = std::fs::Permissions::from_mode(0o644);
+    std::fs::set_permissions(place.path("ptu/history.db"), shared).expect("shared");
+    let said = ptu("run tcms/link").exits(0);
+    assert!(
+        said.err.contains("mode 644") && said.err.contains("chmod 600"),
+        "{}",
+        said.err
+    );
+    assert_eq!(mode("ptu/history.db"), "644");
+    let said = ptu("db backup second.db").exits(0);
+    assert_eq!(mode("second.db"), "600", "{}", said.err);
 }

@@ -41,9 +41,25 @@ pub struct Address {
 }
 
 impl Address {
-    /// Whether a text is meant as a server's address, rather than as a file's name.
+    /// Whether a text is meant as a server's address, rather than as a file's name: it begins with a scheme,
+    /// be it the right one or not.
     pub fn is_meant(text: &str) -> bool {
-        text.starts_with("postgres://") || text.starts_with("postgresql://")
+        let is_postgres = |scheme: &str| scheme.to_ascii_lowercase().starts_with("postgres");
+        scheme(text).is_some_and(|(scheme, rest)| rest.starts_with("//") || is_postgres(scheme))
+    }
+
+    /// Whether a text holds the password of a server: as an address, be it spelled wrong or a part of something
+    /// longer, or as libpq's `password=`.
+    pub fn holds_password(text: &str) -> bool {
+        if let Ok(address) = text.parse::<Self>() {
+            return address.password.is_some();
+        }
+        let lower = text.to_ascii_lowercase();
+        let is_place = |word: &str| lower.contains(word);
+        let named = lower.contains("password=")
+            && (after_schemes(text).next().is_some()
+                || ["host=", "dbname=", "user="].into_iter().any(is_place));
+        named || after_schemes(text).any(is_login)
     }
 
     /// A folder that holds a socket, or this machine by its own name.
@@ -58,6 +74,11 @@ impl Address {
     /// A folder that holds a socket.
     pub(super) fn is_socket(&self) -> bool {
         self.host.starts_with('/')
+    }
+
+    /// Who logs in, if the address says so.
+    pub fn user(&self) -> Option<&str> {
+        self.user.as_deref()
     }
 
     /// How far the connection is guarded.
@@ -90,7 +111,11 @@ impl Address {
                 self.connect_timeout_s =
                     seconds.ok_or("connect_timeout is a number of seconds from 1 to 600")?;
             }
-            _ => return Err(format!("there is no option {name:?}; there are {OPTIONS}")),
+            _ => {
+                return Err(format!(
+                    "it has an option that is not known; there are {OPTIONS}"
+                ));
+            }
         }
         Ok(())
     }
@@ -104,6 +129,36 @@ impl FromStr for Address {
     }
 }
 
+/// A scheme and what follows its colon.
+fn scheme(text: &str) -> Option<(&str, &str)> {
+    let (scheme, rest) = text.split_once(':')?;
+    let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "+-._".contains(letter);
+    let begins = scheme.starts_with(|first: char| first.is_ascii_alphabetic());
+    (begins && scheme.chars().all(is_letter)).then_some((scheme, rest))
+}
+
+/// What follows each `://` of a text, and the colon of a scheme that is nearly PostgreSQL's.
+fn after_schemes(text: &str) -> impl Iterator<Item = &str> {
+    let marked = (text.match_indices("://")).map(|(at, mark)| &text[at + mark.len()..]);
+    let short = (text.match_indices(':')).filter_map(|(at, _)| {
+        let word = text[..at].rsplit(|letter: char| !letter.is_ascii_alphanumeric());
+        let is_near = (word.take(1)).any(|word| word.to_ascii_lowercase().starts_with("postgre"));
+        is_near.then(|| text[at + 1..].trim_start_matches('/'))
+    });
+    marked.chain(short)
+}
+
+/// Whether it begins with `user:password@`.
+fn is_login(rest: &str) -> bool {
+    let end = rest.find(char::is_whitespace).unwrap_or(rest.len());
+    let rest = &rest[..end];
+    let Some((user, rest)) = rest.split_once(':') else {
+        return false;
+    };
+    !user.contains(['/', '@', '?']) && rest.contains('@')
+}
+
+/// The reason names no part of the text: any may be of a password that is spelled wrong.
 fn parse(text: &str) -> Result<Address, String> {
     let rest = text
         .strip_prefix("postgres://")
@@ -141,8 +196,19 @@ fn parse(text: &str) -> Result<Address, String> {
     for option in options.split('&').filter(|option| !option.is_empty()) {
         let (name, value) = option
             .split_once('=')
-            .ok_or_else(|| format!("the option {option:?} has no value"))?;
+            .ok_or("one of its options has no value")?;
         address.set(&plain(name)?, plain(value)?)?;
+    }
+    if address
+        .database
+        .as_deref()
+        .is_some_and(|name| name.contains('@'))
+    {
+        return Err(
+            "a / or @ of its password has to be written as %2F or %40; better, the password belongs into \
+             ~/.pgpass"
+                .to_owned(),
+        );
     }
     if address.host.is_empty() {
         address.host = "localhost".to_owned();
@@ -168,7 +234,7 @@ fn split_host(place: &str) -> Result<(&str, Option<&str>), String> {
 
 fn port(text: &str) -> Result<u16, String> {
     let port = text.parse().ok().filter(|port| *port > 0);
-    port.ok_or_else(|| format!("{text:?} is no port; a port is a number from 1 to 65535"))
+    port.ok_or_else(|| "its port is no number from 1 to 65535".to_owned())
 }
 
 fn guard(word: &str) -> Result<Guard, String> {
@@ -176,9 +242,10 @@ fn guard(word: &str) -> Result<Guard, String> {
         "disable" => Ok(Guard::Disable),
         "prefer" => Ok(Guard::Prefer),
         "require" | "verify-ca" | "verify-full" => Ok(Guard::Verify),
-        _ => Err(format!(
-            "sslmode {word:?} is not known; it is disable, prefer, require, verify-ca or verify-full"
-        )),
+        _ => Err(
+            "its sslmode is not known; it is disable, prefer, require, verify-ca or verify-full"
+                .to_owned(),
+        ),
     }
 }
 
@@ -279,17 +346,85 @@ mod tests {
         for (text, words) in [
             ("mysql://h/d", "neither postgres://"),
             ("postgres://a,b/d", "several hosts"),
-            ("postgres://a:99999/d", "no port"),
+            ("postgres://a:99999/d", "1 to 65535"),
+            // A password whose / and ? were left as they are.
+            ("postgres://kim:pa/ss@a/d", "1 to 65535"),
+            ("postgres://kim:77/pass@a/d", "%2F or %40"),
+            ("postgres://kim:77?pass@a/d", "has no value"),
+            ("postgres://kim:77?pass=1@a/d", "option that is not known"),
             ("postgres://kim:pa%zz@a/d", "two hex digits"),
             ("postgres://a/d?sslmode=yes", "disable, prefer"),
-            ("postgres://a/d?colour=red", "no option \"colour\""),
+            ("postgres://a/d?colour=red", "not known; there are"),
             ("postgres://a/d?sslmode", "no value"),
             ("postgres://[::1/d", "no ]"),
             ("postgres://a/d?connect_timeout=0", "1 to 600"),
         ] {
             let said = text.parse::<Address>().expect_err(text).to_string();
             assert!(said.contains(words), "{text}: {said}");
-            assert!(!said.contains("pa%"), "{said}");
+            let plain = said
+                .replace("password", "")
+                .replace("passfile", "")
+                .replace(".pgpass", "");
+            assert!(!plain.contains("pa%") && !plain.contains("pass"), "{said}");
+        }
+    }
+
+    #[test]
+    fn a_password_is_seen_however_the_address_is_spelled() {
+        for text in [
+            "postgres://kim:s3cret@a/h",
+            "postgresql://kim:s3cret@a/h?sslmode=disable",
+            "postgre://kim:s3cret@a/h",
+            "postgresql+ssl://kim:s3cret@a/h",
+            "POSTGRES://kim:s3cret@a/h",
+            "postgres:/kim:s3cret@a/h",
+            "postgresql:kim:s3cret@a/h",
+            "mysql://kim:s3cret@a/h",
+            "--db=postgres://kim:s3cret@a/h",
+            "--db=postgres://kim@a/h?password=s3cret",
+            "see postgres://kim:s3cret@a/h there",
+            "postgres://kim:s3/cret@a/h",
+            "postgres://kim:s3?cret@a/h",
+            "postgres://:s3cret@a/h",
+            "postgres://kim@a/h?password=s3cret",
+            "postgre://kim@a/h?password=s3cret",
+            "host=a user=kim password=s3cret",
+        ] {
+            assert!(Address::holds_password(text), "{text}");
+        }
+        for text in [
+            "postgres://kim@a:5432/h?passfile=/home/kim/@pass",
+            "postgres://[::1]:5432/h",
+            "postgres://a:5432/h",
+            "postgre://kim@a:5432/h",
+            "see https://example.com/a:b",
+            "12:30 called kim@depot",
+            "tcp:127.0.0.1:4000",
+            "password=lost",
+        ] {
+            assert!(!Address::holds_password(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_address_is_told_from_a_file_by_its_scheme() {
+        for text in [
+            "postgres://a/h",
+            "postgre://a/h",
+            "mysql://a",
+            "postgresql:a",
+            "s3://x/y",
+        ] {
+            assert!(Address::is_meant(text), "{text}");
+        }
+        for text in [
+            "history.db",
+            "./a:b",
+            "C:\\history.db",
+            "/tmp/a://b",
+            "run:1.db",
+        ] {
+            assert!(!Address::is_meant(text), "{text}");
         }
     }
 }

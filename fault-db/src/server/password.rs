@@ -6,10 +6,19 @@ use std::path::{Path, PathBuf};
 use super::address::Address;
 
 /// A password, and a file that was not looked into, in words.
-#[derive(Debug, Default, PartialEq, Eq)]
+#[derive(Default, PartialEq, Eq)]
 pub(super) struct Password {
     pub secret: Option<String>,
     pub passed_over: Option<String>,
+}
+
+impl std::fmt::Debug for Password {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let secret = self.secret.as_ref().map(|_| "…");
+        (f.debug_struct("Password").field("secret", &secret))
+            .field("passed_over", &self.passed_over)
+            .finish()
+    }
 }
 
 /// What the environment says.

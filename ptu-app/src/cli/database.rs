@@ -1,12 +1,13 @@
 //! `--db`: which history, in a file or on a server.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
 use crate::clock;
 use crate::failure::Failure;
+use crate::private;
 
 /// Names a history for all commands that are given none.
 const VARIABLE: &str = "PTU_DB";
@@ -21,6 +22,23 @@ pub struct Database {
     // Read by us: clap would show a variable that is set as an option that has to be given.
     #[arg(long, value_name = "FILE", global = true, display_order = LAST)]
     db: Option<PathBuf>,
+}
+
+/// The server that was named where a file could have been, if it was one.
+fn as_address(path: &Path) -> Option<Result<Address, StoreError>> {
+    let text = path.to_string_lossy();
+    Address::is_meant(&text).then(|| text.parse())
+}
+
+/// A file that is named beside `--db`; not a server, whose address would be taken for a file's name.
+pub(in crate::cli) fn only_file(path: &Path) -> Result<&Path, Failure> {
+    match as_address(path) {
+        None => Ok(path),
+        Some(address) => Err(StoreError::NotAFile {
+            path: address?.to_string().into(),
+        }
+        .into()),
+    }
 }
 
 /// Where it is.
@@ -43,8 +61,8 @@ impl Database {
                 "{VARIABLE} is empty; let it name a database, or unset it"
             )));
         }
-        Ok(match path.to_str().filter(|text| Address::is_meant(text)) {
-            Some(text) => Place::Server(text.parse()?),
+        Ok(match as_address(&path) {
+            Some(address) => Place::Server(address?),
             None => Place::File(path),
         })
     }
@@ -77,10 +95,11 @@ impl Database {
     /// The same, of a file: for runs.
     pub(in crate::cli) fn open_file(&self) -> Result<Store, Failure> {
         let path = self.file()?;
-        if let Some(folder) = path.parent().filter(|_| self.named().is_none()) {
-            std::fs::create_dir_all(folder).map_err(|error| {
-                Failure::bench(format!("cannot make {}: {error}", folder.display()))
-            })?;
+        if self.named().is_none() {
+            private::folder_of(&path)?;
+        }
+        if let Some(told) = private::told_if_shared(&path) {
+            eprintln!("{told}");
         }
         Ok(Store::open(&path, clock::open_options())?)
     }

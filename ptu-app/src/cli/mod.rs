@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use clap::builder::RangedI64ValueParser;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use database::Database;
-use fault_db::Store;
+use fault_db::{Address, Store};
 use serde::Serialize;
 
 use crate::clock;
@@ -71,9 +71,21 @@ enum Verb {
 
 impl Cli {
     /// What the command line asks; ends the program if that is help, or nothing that can be done.
-    pub fn asked() -> Self {
+    ///
+    /// # Errors
+    /// It holds a server's password. Looked at first: whatever else is wrong would be shown as it stands.
+    pub fn asked() -> Result<Self, Failure> {
+        let mut arguments = std::env::args_os().skip(1);
+        if arguments.any(|argument| Address::holds_password(&argument.to_string_lossy())) {
+            return Err(Failure::usage(
+                "the command line holds a password, and every program on this computer can read it there: leave \
+                 it out of the address and put it into ~/.pgpass (a line HOST:PORT:DATABASE:USER:PASSWORD, chmod \
+                 600), into a file named with ?passfile=FILE, or into PGPASSWORD; and change it, if others work \
+                 here",
+            ));
+        }
         let matches = help::flowing(Self::command()).get_matches();
-        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+        Ok(Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()))
     }
 
     /// Does what was asked.

@@ -8,6 +8,7 @@ use fault_db::{Store, StoreError};
 use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
+use crate::private;
 use crate::station::Wake;
 
 type Question = Box<dyn FnOnce(&Shelf) + Send>;
@@ -27,11 +28,7 @@ impl Shelf {
     /// # Errors
     /// It cannot be opened.
     pub fn open(&self) -> Result<Store, Failure> {
-        if let Some(folder) = self.database.parent().filter(|f| !f.as_os_str().is_empty()) {
-            std::fs::create_dir_all(folder).map_err(|error| {
-                Failure::bench(format!("cannot make {}: {error}", folder.display()))
-            })?;
-        }
+        private::folder_of(&self.database)?;
         Ok(Store::open(&self.database, clock::open_options())?)
     }
 

@@ -6,6 +6,7 @@ use clap::Args;
 use fault_db::{Different, MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
 use serde_json::{json, to_value};
 
+use crate::cli::database::only_file;
 use crate::cli::{Database, print_json, print_out, since_argument};
 use crate::clock;
 use crate::failure::{Exit, Failure};
@@ -33,11 +34,12 @@ pub(super) struct PruneArguments {
 
 impl Database {
     pub(super) fn backup(&self, to: &Path) -> Result<Exit, Failure> {
-        self.open_read_only()?.backup(to)?;
+        self.open_read_only()?.backup(only_file(to)?)?;
         print_out(&format!("copied to {}", to.display()))
     }
 
     pub(super) fn import(&self, from: &Path, json: bool) -> Result<Exit, Failure> {
+        let from = only_file(from)?;
         let store = self.open()?;
         let counts = store.import(from);
         let counts = counts.map_err(|error| of_named_file(from, error))?;
@@ -50,6 +52,7 @@ impl Database {
     }
 
     pub(super) fn export(&self, to: &Path, json: bool) -> Result<Exit, Failure> {
+        let to = only_file(to)?;
         let store = self.open_read_only()?;
         let counts = store.export(to, clock::open_options());
         let counts = counts.map_err(|error| of_named_file(to, error))?;
