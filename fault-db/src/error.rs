@@ -255,10 +255,18 @@ pub enum StoreError {
         reason: String,
     },
     /// There are no tables on the server yet.
-    #[error("there is no history on {} yet; `ptu db sync` brings a laptop's there", .path.display())]
+    #[error("there is no history on {} yet; who looks after the server makes its tables once: `ptu db server init ADDRESS`, as their owner", .path.display())]
     ServerEmpty {
         /// The server.
         path: PathBuf,
+    },
+    /// The server's tables cannot be made, or their rights cannot be given.
+    #[error("{} was not set up: {reason}", .path.display())]
+    ServerSetup {
+        /// The server.
+        path: PathBuf,
+        /// What is missing, and what to do.
+        reason: String,
     },
     /// The database on the server holds something else.
     #[error("the database of {} holds tables of another program; make one of its own with createdb", .path.display())]
@@ -267,7 +275,7 @@ pub enum StoreError {
         path: PathBuf,
     },
     /// The server's tables are of an earlier version.
-    #[error("{} has the older schema {found} (this program knows {known}); `ptu db sync` of this program brings it up to date", .path.display())]
+    #[error("{} has the older schema {found} (this program knows {known}); who looks after the server brings it up to date: `ptu db server init ADDRESS` of this program, as the owner of its tables", .path.display())]
     ServerOlderSchema {
         /// The server.
         path: PathBuf,

@@ -6,7 +6,7 @@ use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::record::RepairRecord;
 use crate::server::said;
-use crate::settle::last_words;
+use crate::settle::{last_words, settle};
 use crate::store::Store;
 
 /// An event about to be added.
@@ -104,10 +104,15 @@ impl Store {
             };
             let work = || {
                 insert_event(base, seq, &event)?;
+                // A server does not let others say what follows from what was said.
+                if let Base::Server(_) = base {
+                    return settle(base, seq);
+                }
                 base.execute(
                     "UPDATE fault SET state = ?2, closed_at_us = ?3 WHERE seq = ?1",
                     &values![seq, to, (to == FaultState::Closed).then_some(at_us)],
-                )
+                )?;
+                Ok(())
             };
             work().map_err(|error| self.failed(DOING, error))?;
             Ok(to)
@@ -161,7 +166,7 @@ fn known(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<Known> {
 
 /// Adds an event that was made in knowledge of all that is here.
 pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
-    if event.state.is_some() {
+    if event.state.is_some() && matches!(base, Base::File(_)) {
         let agreed = "UPDATE fault SET disputed = 0 WHERE seq = ?1 AND disputed = 1";
         base.execute(agreed, &values![fault])?;
     }

@@ -71,7 +71,7 @@ pub use recording::{Recording, RecordingRecord};
 pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
-pub use server::{Address, SERVER_SCHEMA_VERSION};
+pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use store::{OpenOptions, Store, Synchronous};
 pub use sync::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
 pub use text_enum::UnknownWord;

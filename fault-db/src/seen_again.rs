@@ -25,11 +25,12 @@ const IN_FILE: &str = concat!(
 
 /// Last words by which these faults of a server were done with, and when another laptop than the one where
 /// that was said first saw them after it: if either has come after `$2`, the last event, and `$3`, the last
-/// occurrence that were here. What both were here has been judged, by the clocks of that time.
+/// occurrence that were here. What both were here has been judged, by the clocks of that time. An occurrence of
+/// no time, from before the server refused such, is no answer to anything.
 const ON_SERVER: &str = concat!(
     "SELECT f.seq, done.id, done.turn, seen.at_us, seen.message FROM fault f
         CROSS JOIN LATERAL (
-            SELECT e.seq, e.id, e.turn, e.laptop, e.at_us - coalesce(
+            SELECT e.seq, e.id, e.turn, e.laptop, near(e.at_us) - coalesce(
                 (SELECT l.clock_offset_us FROM laptop l WHERE l.seq = e.laptop), 0) AS at_us
             FROM ",
     last_words!("f.seq"),
@@ -38,9 +39,9 @@ const ON_SERVER: &str = concat!(
         CROSS JOIN LATERAL (
             SELECT o.at_us, o.message FROM fault_occurrence o
                 JOIN run r ON r.seq = o.run JOIN laptop l ON l.seq = r.laptop
-            WHERE o.fault = f.seq AND r.laptop IS DISTINCT FROM done.laptop
-                AND o.at_us - l.clock_offset_us > done.at_us AND (done.seq > $2 OR o.seq > $3)
-            ORDER BY o.at_us - l.clock_offset_us, o.id LIMIT 1
+            WHERE o.fault = f.seq AND r.laptop IS DISTINCT FROM done.laptop AND is_time(o.at_us)
+                AND near(o.at_us) - l.clock_offset_us > done.at_us AND (done.seq > $2 OR o.seq > $3)
+            ORDER BY near(o.at_us) - l.clock_offset_us, o.id LIMIT 1
         ) AS seen
      WHERE f.seq = ANY($1) ORDER BY f.seq, done.id"
 );

@@ -10,14 +10,23 @@ use crate::id::Id;
 
 /// Brings a fault's own row in line with its occurrences and events.
 pub(crate) fn settle(base: &Base, fault: i64) -> SqlResult<()> {
+    if let Base::Server(server) = base {
+        return settle_all(server, &[fault]);
+    }
     base.execute(&format!("{SETTLE} WHERE seq = ?1"), &values![fault])?;
     Ok(())
 }
 
-/// The same of many faults of a server at once: each question to it takes a while to get there.
+/// The same of many faults of a server at once: each question to it takes a while to get there. There a function
+/// of the owner does it.
 pub(crate) fn settle_all(server: &Server, faults: &[i64]) -> SqlResult<()> {
-    let all = format!("{SETTLE} WHERE seq = ANY($1)");
-    server.execute_columns(&all, &[&faults])?;
+    server.execute_columns("SELECT settle_faults($1)", &[&faults])?;
+    Ok(())
+}
+
+/// Makes one of all faults of a server that are one of these: of the same unit, code and part, none of them closed.
+pub(crate) fn join_all(server: &Server, faults: &[i64]) -> SqlResult<()> {
+    server.execute_columns("SELECT join_faults($1)", &[&faults])?;
     Ok(())
 }
 
@@ -41,7 +50,7 @@ pub(crate) fn open_doubles(base: &Base, fault: i64) -> SqlResult<Vec<i64>> {
 }
 
 /// Makes one fault of two in a file: all of `goes` becomes that of `stays`, and its ids other names of it. A
-/// server has no counts of its own and does so with many at once: `sync/doubles.rs`.
+/// server has no counts of its own and does so with many at once: `join_faults` in `server/functions.sql`.
 pub(crate) fn join(base: &Base, stays: i64, goes: i64) -> SqlResult<()> {
     for sql in JOIN {
         base.execute(sql, &values![stays, goes])?;
@@ -112,7 +121,8 @@ macro_rules! rank {
     };
 }
 
-const SETTLE: &str = concat!(
+/// What follows `UPDATE`, but for which faults.
+pub(crate) const SETTLE: &str = concat!(
     "UPDATE fault SET
         occurrences = (SELECT count(*) FROM fault_occurrence o WHERE o.fault = fault.seq),
         first_at_us = coalesce(

@@ -75,24 +75,26 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
 fn a_server_that_cannot_be_used_is_named_with_the_exit_code_of_the_contract() {
     let place = Place::new();
     place.recorded_run();
-    let away = format!(
-        "postgres://kim:s3cret@127.0.0.1:{}/h?sslmode=disable",
-        free_port()
-    );
-    let empty = shared().database();
+    let away = format!("postgres://kim@127.0.0.1:{}/h?sslmode=disable", free_port());
+    let empty = shared().empty();
     let refused = shared().address("no_such_database");
     for (arguments, code, words) in [
         (&["db", "sync", &away][..], 3, "nothing listens there"),
         (&["runs", "list", "--db", &away], 3, "nothing listens there"),
         (&["db", "sync", &refused], 3, "does not exist"),
-        (&["runs", "list", "--db", &empty], 3, "`ptu db sync`"),
         (
-            &["db", "sync", "postgres://kim:s3cret@a/h?sslmode=x"],
+            &["runs", "list", "--db", &empty],
+            3,
+            "`ptu db server init ADDRESS`",
+        ),
+        (&["db", "sync", &empty], 3, "`ptu db server init ADDRESS`"),
+        (
+            &["db", "sync", "postgres://kim@a/h?sslmode=x"],
             2,
             "disable, prefer",
         ),
         (
-            &["db", "sync", "mysql://kim:s3cret@a/h"],
+            &["db", "sync", "mysql://kim@a/h"],
             2,
             "postgres://USER@HOST/DATABASE",
         ),
@@ -109,12 +111,73 @@ fn a_server_that_cannot_be_used_is_named_with_the_exit_code_of_the_contract() {
         (&["db", "check", "--db", &away], 3, "nothing listens there"),
         (&["gui", "--db", &away], 2, "needs a database file"),
     ] {
-        let said = place.ptu(arguments);
+        place.ptu(arguments).exits(code).explains(&[words]);
+    }
+}
+
+/// However an address with a password is spelled and wherever it is given, the password is not shown, and on
+/// the command line it is refused.
+#[test]
+fn a_password_on_the_command_line_is_refused_and_never_shown() {
+    let place = Place::new();
+    place.recorded_run();
+    for address in [
+        "postgres://kim:s3cret@127.0.0.1:1/h",
+        "postgre://kim:s3cret@a/h",
+        "postgresql+ssl://kim:s3cret@a/h",
+        "postgres:/kim:s3cret@a/h",
+        "postgres://kim:s3cret/@a/h",
+        "postgres://kim@a/h?password=s3cret",
+        "mysql://kim:s3cret@a/h",
+    ] {
+        let with_equals = format!("--db={address}");
+        for arguments in [
+            &["runs", "list", "--db", address][..],
+            &["runs", "list", &with_equals],
+            &["run", "tcms/link", "--db", address],
+            &["db", "sync", address],
+            &["db", "import", address],
+            &["db", "export", address],
+            &["db", "backup", address],
+            &["db", "check", "--db", address],
+            &["faults", "list", "--save", "open", "--db", address],
+            &["no", "such", "command", address],
+            &["--help", address],
+        ] {
+            let said = place.ptu(arguments);
+            assert!(
+                !said.all().contains("s3cret"),
+                "{arguments:?}: {}",
+                said.all()
+            );
+            said.exits(2)
+                .explains(&["~/.pgpass", "PGPASSWORD", "passfile="]);
+        }
+        // In the environment it is the user's own, and not shown either.
+        let mut asked = place.command(&["runs", "list"]);
+        let said = common::Said::from(asked.env("PTU_DB", address).output().expect("ptu starts"));
+        assert!(!said.all().contains("s3cret"), "{address}: {}", said.all());
         assert!(
-            !said.all().contains("s3cret"),
-            "{arguments:?}: {}",
+            matches!(said.code, Some(2 | 3)),
+            "{address}: {}",
             said.all()
         );
-        said.exits(code).explains(&[words]);
+    }
+    let files = std::fs::read_dir(place.path("."))
+        .expect("a folder")
+        .flatten();
+    for file in files.filter(|file| file.path().is_file()) {
+        let bytes = std::fs::read(file.path()).expect("a file");
+        let holds = bytes.windows(6).any(|some| some == b"s3cret");
+        assert!(!holds, "{}", file.path().display());
+    }
+    // An address without a password is no file either.
+    for verb in ["import", "export", "backup"] {
+        (place.ptu(&["db", verb, "postgres://kim@a/h"]).exits(2))
+            .explains(&["postgres://kim@a/h", "needs a database file"]);
+        place
+            .ptu(&["db", verb, "postgre://kim@a/h"])
+            .exits(2)
+            .explains(&["postgres://USER@HOST"]);
     }
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
 
-use postgres::config::SslMode;
+use postgres::config::{SslMode, SslNegotiation};
 use postgres::{Client, Config, NoTls};
 
 use super::address::{Address, Guard};
+use super::bounded::Bounded;
 use super::password::{self, Password};
 use super::{schema, tls, trouble};
 use crate::base::{Base, Server};
@@ -34,11 +35,11 @@ const MANNERS: &str = "
     SET jit = off";
 
 impl Store {
-    /// Connects to a server for reading, and for writing what people say about faults and runs. Its
-    /// tables are made, or brought up to date, if need be.
-    pub fn connect(address: &Address, mut ids: IdSource) -> Result<Self, StoreError> {
+    /// Connects to a server for reading, for a sync, and for writing what people say about faults and runs.
+    /// Its tables are made by [`Store::set_up_server`], and by nobody else.
+    pub fn connect(address: &Address, ids: IdSource) -> Result<Self, StoreError> {
         let (base, path) = open(address)?;
-        schema::bring_up_to_date(&base, &path, ids.mint())?;
+        schema::check(&base, &path)?;
         Self::of(base, &path, Some(ids))
     }
 
@@ -52,7 +53,7 @@ impl Store {
     }
 }
 
-fn open(address: &Address) -> Result<(Base, PathBuf), StoreError> {
+pub(super) fn open(address: &Address) -> Result<(Base, PathBuf), StoreError> {
     let path = PathBuf::from(address.to_string());
     let environment = |name: &str| std::env::var_os(name);
     let user = address.user.clone().or_else(|| {
@@ -103,16 +104,15 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
         .tcp_user_timeout(NETWORK_PATIENCE)
         .keepalives_idle(Duration::from_secs(20))
         .keepalives_interval(Duration::from_secs(10))
-        .keepalives_retries(3)
-        .ssl_mode(match address.guard() {
-            Guard::Disable => SslMode::Disable,
-            Guard::Prefer => SslMode::Prefer,
-            Guard::Verify => SslMode::Require,
-        });
+        .keepalives_retries(3);
     if address.is_socket() {
-        config.host_path(&address.host);
+        config.ssl_mode(SslMode::Disable).host_path(&address.host);
     } else {
-        config.host(&address.host);
+        // Our own stream asks for TLS, and whether there is any.
+        config
+            .ssl_mode(SslMode::Require)
+            .ssl_negotiation(SslNegotiation::Direct)
+            .host(&address.host);
     }
     config
 }
@@ -126,24 +126,27 @@ fn reach(
     password: Password,
 ) -> Result<Client, StoreError> {
     let guard = address.guard();
-    let connector = match guard {
-        Guard::Disable => None,
-        Guard::Prefer | Guard::Verify => {
-            Some(
-                tls::connector(address).map_err(|reason| StoreError::ServerNotTrusted {
-                    path: path.to_path_buf(),
-                    reason,
-                })?,
-            )
-        }
+    let not_trusted = |reason| StoreError::ServerNotTrusted {
+        path: path.to_path_buf(),
+        reason,
     };
+    let tls = match guard {
+        Guard::Disable => None,
+        Guard::Prefer | Guard::Verify => Some(tls::connector(address).map_err(not_trusted)?),
+    };
+    let bounded = Bounded {
+        tls,
+        or_clear: guard != Guard::Verify,
+    };
+    let is_socket = address.is_socket();
     let (done, waiting) = mpsc::channel();
     let connecting = std::thread::Builder::new()
         .name("connecting".into())
         .spawn(move || {
-            let connected = match connector {
-                Some(tls) => config.connect(tls),
-                None => config.connect(NoTls),
+            // Who may put a socket into that folder is trusted; no other stream is made of one.
+            let connected = match is_socket {
+                true => config.connect(NoTls),
+                false => config.connect(bounded),
             };
             // Nobody waits any more if it took too long.
             let _ = done.send(connected);

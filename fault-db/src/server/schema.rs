@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use crate::base::{Base, Server, SqlError, SqlResult, values};
+use crate::base::{Base, Server, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 
 /// The schema's versions, one text each; `meta` counts them.
-const STEPS: &[&str] = &[concat!(
-    include_str!("schema.sql"),
-    include_str!("views.sql")
-)];
+const STEPS: &[&str] = &[
+    concat!(include_str!("schema.sql"), include_str!("views.sql")),
+    include_str!("0002.sql"),
+];
 
 /// The schema this crate reads and writes on a server.
 pub const SERVER_SCHEMA_VERSION: i32 = STEPS.len() as i32;
@@ -51,40 +51,23 @@ pub(super) fn check(base: &Base, path: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// Makes the tables of a new database, or brings those of an earlier version up to date. Two programs
-/// that do so at the same time wait for each other; what fails leaves nothing behind.
-pub(super) fn bring_up_to_date(base: &Base, path: &Path, new_id: Id) -> Result<(), StoreError> {
-    match check(base, path) {
-        Err(StoreError::ServerEmpty { .. } | StoreError::ServerOlderSchema { .. }) => {}
-        other => return other,
-    }
-    let Base::Server(server) = base else {
-        return Ok(());
-    };
-    let failed = |error: SqlError| StoreError::from_sql(path, "making the server's tables", error);
-    server.begin().map_err(failed)?;
-    let made = || {
-        // Another program may have been first.
-        match look(base)? {
-            Found::Nothing => steps(server, 0)?,
-            Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
-                steps(server, usize::try_from(schema).unwrap_or_default())?;
-            }
-            Found::Ours { .. } | Found::Others => {}
+/// Makes the tables of a new database, or brings those of an earlier version up to date; runs in the caller's
+/// transaction, which no other program's is beside of.
+pub(super) fn bring_up_to_date(base: &Base, server: &Server, new_id: Id) -> SqlResult<()> {
+    // Another program may have been first.
+    match look(base)? {
+        Found::Nothing => steps(server, 0)?,
+        Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
+            steps(server, usize::try_from(schema).unwrap_or_default())?;
         }
-        base.execute(
-            "INSERT INTO meta(key, value) VALUES ('application', ?1), ('server_id', ?2)
-             ON CONFLICT DO NOTHING",
-            &values![APPLICATION, new_id.to_string()],
-        )?;
-        server.batch("COMMIT")
-    };
-    made().map_err(|error| {
-        // The error says more than a failed rollback would.
-        let _ = server.batch("ROLLBACK");
-        failed(error)
-    })?;
-    check(base, path)
+        Found::Ours { .. } | Found::Others => return Ok(()),
+    }
+    base.execute(
+        "INSERT INTO meta(key, value) VALUES ('application', ?1), ('server_id', ?2)
+         ON CONFLICT DO NOTHING",
+        &values![APPLICATION, new_id.to_string()],
+    )?;
+    Ok(())
 }
 
 fn steps(server: &Server, from: usize) -> SqlResult<()> {

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use postgres::error::SqlState;
 
+use super::bounded::NO_TLS;
 use super::tls;
 use crate::error::StoreError;
 
@@ -73,7 +74,7 @@ fn unsaid(path: std::path::PathBuf, doing: &'static str, source: postgres::Error
         // Of these there are few, and their words are plain: no TLS here, no password given.
         let reason = cause.to_string();
         return match reason.as_str() {
-            "server does not support TLS" => StoreError::ServerRefuses {
+            NO_TLS => StoreError::ServerRefuses {
                 path,
                 reason: "it has no TLS; on a network you trust add sslmode=disable".to_owned(),
             },

@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::doubles;
 use super::ledger::Laptop;
 use super::outcome::{Different, SyncOutcome};
 use super::rows::Rows;
@@ -12,7 +11,7 @@ use crate::base::{Base, Field, Server, SqlResult, values};
 use crate::id::Id;
 use crate::seen_again::{Mark, open_again_of};
 use crate::server::said;
-use crate::settle::settle_all;
+use crate::settle::{join_all, settle_all};
 
 /// Entries of a batch at most.
 pub(super) const MOST_ENTRIES: i64 = 500;
@@ -225,7 +224,7 @@ impl<'a> Batch<'a> {
         }
         let settled = spoken_of(&faults, server, laptop)?;
         settle_all(server, &settled)?;
-        doubles::join(server, &settled)?;
+        join_all(server, &settled)?;
         // What opens a fault again may make it one with another, where more was seen, or somebody was done
         // with it, too.
         loop {
@@ -235,7 +234,7 @@ impl<'a> Batch<'a> {
                 break;
             }
             settle_all(server, &again)?;
-            doubles::join(server, &again)?;
+            join_all(server, &again)?;
         }
         let there = |rows: &Rows, new: u64| rows.count as u64 - new.min(rows.count as u64);
         Ok(SyncOutcome {

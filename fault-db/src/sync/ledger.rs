@@ -32,12 +32,8 @@ pub(super) fn introduce(base: &Base, file_id: Id, options: &SyncOptions<'_>) -> 
     let theirs_us = theirs_us.unwrap_or(answered_us);
     let clock_offset_us = asked_us + (answered_us - asked_us) / 2 - theirs_us;
     let found = base.first(
-        "INSERT INTO laptop(file_id, name, first_at_us, last_at_us, clock_offset_us, sent,
-            sent_traces, received) VALUES (?1, ?2, ?3, ?3, ?4, 0, 0, 0)
-         ON CONFLICT (file_id) DO UPDATE SET name = excluded.name,
-            last_at_us = excluded.last_at_us, clock_offset_us = excluded.clock_offset_us
-         RETURNING seq, sent, sent_traces, received",
-        &values![file_id, options.laptop, theirs_us, clock_offset_us],
+        "SELECT number, through, traces_through, told FROM meet_laptop(?1, ?2, ?3)",
+        &values![file_id, options.laptop, clock_offset_us],
         |row| Ok((row.get(0)?, cursors(row.get(1)?, row.get(2)?, row.get(3)?))),
     )?;
     let (seq, cursors) = found.unwrap_or((0, cursors(0, 0, 0)));
@@ -94,7 +90,7 @@ pub(super) fn remember(
 /// was: who breaks off before that has to be told again.
 pub(super) fn note(base: &Base, laptop: i64, cursors: Cursors) -> SqlResult<()> {
     base.execute(
-        "UPDATE laptop SET sent = ?2, sent_traces = ?3 WHERE seq = ?1",
+        "SELECT note_sent(?1, ?2, ?3)",
         &values![laptop, cursors.sent, cursors.sent_traces],
     )?;
     Ok(())

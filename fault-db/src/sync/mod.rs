@@ -7,7 +7,6 @@
 
 mod adopt;
 mod batch;
-mod doubles;
 mod ledger;
 mod outcome;
 mod pull;
@@ -196,8 +195,8 @@ impl Sync<'_> {
             return Ok(());
         }
         self.cursors.received = until;
-        self.server.change(RECEIVING, |base| {
-            pull::told(base, self.laptop.seq, &new, until)
+        self.server.change(RECEIVING, |_| {
+            pull::told(self.wire, self.laptop.seq, &new, until)
                 .map_err(|error| self.server.failed(RECEIVING, error))
         })?;
         self.remember(options)

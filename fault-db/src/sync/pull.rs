@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::outcome::SyncOutcome;
-use crate::base::{Base, SqlResult, values};
+use crate::base::{Base, Server, SqlResult, values};
 use crate::id::Id;
 use crate::settle::{fault_of, join, open_doubles, settle};
 
@@ -160,16 +160,10 @@ pub(super) fn fresh(base: &Base, laptop: i64) -> SqlResult<Vec<Fresh>> {
 
 /// The laptop has been told all of these faults, which were new to it, and of the others up to `received`.
 /// What became new once more meanwhile, since another laptop's sync joined it with a fault, stays new.
-pub(super) fn told(base: &Base, laptop: i64, fresh: &[Fresh], received: i64) -> SqlResult<()> {
-    base.execute(
-        "UPDATE laptop SET received = ?2 WHERE seq = ?1",
-        &values![laptop, received],
-    )?;
-    for Fresh { fault, times } in fresh {
-        base.execute(
-            "UPDATE laptop_fault SET fresh = 0 WHERE laptop = ?1 AND fault = ?2 AND fresh = ?3",
-            &values![laptop, *fault, *times],
-        )?;
-    }
+pub(super) fn told(server: &Server, laptop: i64, fresh: &[Fresh], received: i64) -> SqlResult<()> {
+    let faults: Vec<i64> = fresh.iter().map(|fresh| fresh.fault).collect();
+    let times: Vec<i64> = fresh.iter().map(|fresh| fresh.times).collect();
+    let told = "SELECT note_told($1, $2, $3, $4)";
+    server.execute_columns(told, &[&laptop, &received, &faults, &times])?;
     Ok(())
 }

@@ -22,12 +22,8 @@ pub(super) const UNITS: Table = Table {
          SELECT x.serial, x.kind, x.config_name, x.sw_versions FROM {rows}
          WHERE NOT EXISTS (SELECT 1 FROM unit u WHERE u.serial = x.serial)
          ORDER BY x.place ON CONFLICT DO NOTHING",
-        // Who has seen it last knows it best.
-        "UPDATE unit u SET kind = x.kind, config_name = x.config_name, sw_versions = x.sw_versions
-         FROM {rows} WHERE u.serial = x.serial
-            AND (u.kind, u.config_name, u.sw_versions) <> (x.kind, x.config_name, x.sw_versions)
-            AND x.seen_at_us >= coalesce(
-                (SELECT max(r.started_at_us) FROM run r WHERE r.unit = u.seq), 0)",
+        "SELECT know_units(array_agg(x.serial), array_agg(x.kind), array_agg(x.config_name),
+            array_agg(x.sw_versions), array_agg(x.seen_at_us)) FROM {rows}",
     ],
 };
 
@@ -64,10 +60,8 @@ pub(super) const RUNS: Table = Table {
             x.unit_config_sha256, x.injected, x.owner, x.train, {laptop}
          FROM {rows} JOIN unit u ON u.serial = x.serial
          ORDER BY x.place ON CONFLICT (id) DO NOTHING",
-        // It was thought dead, and was not.
-        "UPDATE run r SET verdict = x.verdict, finished_at_us = x.finished_at_us,
-            bench_time_us = x.bench_time_us, wall_time_us = x.wall_time_us
-         FROM {rows} WHERE r.id = x.id AND r.verdict IS NULL AND x.verdict IS NOT NULL",
+        "SELECT end_runs(array_agg(x.id), array_agg(x.verdict), array_agg(x.finished_at_us),
+            array_agg(x.bench_time_us), array_agg(x.wall_time_us)) FROM {rows}",
     ],
 };
 
@@ -185,9 +179,9 @@ pub(super) const FAULTS: Table = Table {
          FROM fault f JOIN unit u ON u.seq = f.unit WHERE f.seq = ?1",
     insert: &[
         "INSERT INTO fault(id, unit, code, code_name, lru, severity, state, first_at_us, last_at_us,
-            occurrences, line, repairs)
+            line)
          SELECT x.id, u.seq, x.code, x.code_name, x.lru, x.severity, x.state, x.first_at_us,
-            x.last_at_us, 0, x.line, 0
+            x.last_at_us, x.line
          FROM {rows} JOIN unit u ON u.serial = x.serial
          WHERE NOT EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = x.id)
          ORDER BY x.place ON CONFLICT (id) DO NOTHING",
@@ -195,11 +189,8 @@ pub(super) const FAULTS: Table = Table {
          SELECT {laptop}, x.id, coalesce(f.seq, a.fault), 1
          FROM {rows} LEFT JOIN fault f ON f.id = x.id LEFT JOIN fault_alias a ON a.id = x.id
          ON CONFLICT DO NOTHING",
-        // As it was called when it was seen last.
-        "UPDATE fault f SET code_name = x.code_name, severity = x.severity
-         FROM {rows} JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id
-         WHERE f.seq = k.fault AND (f.code_name, f.severity) <> (x.code_name, x.severity)
-            AND x.last_at_us >= f.last_at_us",
+        "SELECT name_faults({laptop}, array_agg(x.id), array_agg(x.code_name), array_agg(x.severity),
+            array_agg(x.last_at_us)) FROM {rows}",
     ],
 };
 
@@ -339,7 +330,5 @@ pub(super) const SHOWN: Table = Table {
     read:
         "SELECT o.id, t.id FROM trace t JOIN fault_occurrence o ON o.trace = t.seq WHERE t.seq = ?1
          ORDER BY o.seq",
-    insert: &["UPDATE fault_occurrence o SET trace = t.seq
-         FROM {rows} JOIN trace t ON t.id = x.trace
-         WHERE o.id = x.occurrence AND o.trace IS NULL"],
+    insert: &["SELECT show_traces(array_agg(x.occurrence), array_agg(x.trace)) FROM {rows}"],
 };

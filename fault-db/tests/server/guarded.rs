@@ -71,6 +71,10 @@ fn guarded() -> &'static Guarded {
         client
             .batch_execute("CREATE ROLE kim LOGIN SUPERUSER PASSWORD 's@cret'")
             .expect("kim");
+        let port = cluster.port();
+        cluster.set_up(&format!(
+            "postgres://ptu@127.0.0.1:{port}/postgres?sslmode=disable"
+        ));
         Guarded { cluster, folder }
     })
 }

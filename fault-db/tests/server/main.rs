@@ -12,5 +12,7 @@ mod answers;
 mod crash;
 mod guarded;
 mod insert_only;
+mod rights;
+mod sealed;
 mod syncing;
 mod trouble;

@@ -11,8 +11,12 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
+use fault_db::{Address, IdSource, ServerSetup, Store};
 use postgres::{Client, NoTls};
 use tempfile::TempDir;
+
+/// The account of the laptops.
+pub const LAPTOPS: &str = "laptop";
 
 /// For a server to start, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -83,8 +87,21 @@ impl Cluster {
         cluster
     }
 
-    /// A new, empty database and its address.
+    /// A new database that is ready for laptops, and its address with their account.
     pub fn database(&self) -> String {
+        let address = self.empty();
+        self.set_up(&address);
+        address.replace("ptu@", &format!("{LAPTOPS}@"))
+    }
+
+    /// Makes a database ready for laptops, as its owner.
+    pub fn set_up(&self, address: &str) -> ServerSetup {
+        let address: Address = address.parse().expect("an address");
+        Store::set_up_server(&address, ids(), LAPTOPS).expect("a server that is ready")
+    }
+
+    /// A new, empty database and its address with the account of its owner.
+    pub fn empty(&self) -> String {
         static NUMBER: AtomicU32 = AtomicU32::new(0);
         let name = format!("history_{}", NUMBER.fetch_add(1, Ordering::Relaxed));
         let mut client = self.client("postgres");
@@ -109,10 +126,15 @@ impl Cluster {
         self.folder.path().join("data")
     }
 
-    /// A plain connection, past all that is ours.
+    /// A plain connection, past all that is ours, as the owner of all there is.
     pub fn client(&self, database: &str) -> Client {
+        self.client_as("ptu", database)
+    }
+
+    /// The same with another account.
+    pub fn client_as(&self, user: &str, database: &str) -> Client {
         let address = format!(
-            "host=127.0.0.1 port={} user=ptu dbname={database}",
+            "host=127.0.0.1 port={} user={user} dbname={database}",
             self.port
         );
         Client::connect(&address, NoTls).expect("the private server takes connections")
@@ -184,6 +206,19 @@ impl Drop for Cluster {
         stop(server.id());
         let _ = server.wait();
     }
+}
+
+/// Ids that nothing else has.
+fn ids() -> IdSource {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    let mut now = since.expect("a clock after 1970").as_nanos() as u64;
+    IdSource::new(move || {
+        now += 1;
+        let mut bytes = [0; 10];
+        bytes[..8].copy_from_slice(&now.to_be_bytes());
+        bytes[8..].copy_from_slice(&(std::process::id() as u16).to_be_bytes());
+        (now / 1_000_000, bytes)
+    })
 }
 
 /// The database's name in an address.

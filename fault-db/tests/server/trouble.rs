@@ -46,7 +46,7 @@ fn a_database_that_is_missing_foreign_or_empty_is_named_and_left_alone() {
     );
     assert!(refused.to_string().contains("does not exist"), "{refused}");
 
-    let foreign = shared().database();
+    let foreign = shared().empty();
     let mut client = shared().client(name_of(&foreign));
     client
         .batch_execute("CREATE TABLE meta(key text, value text); CREATE TABLE song(title text)")
@@ -62,13 +62,20 @@ fn a_database_that_is_missing_foreign_or_empty_is_named_and_left_alone() {
     let made: i64 = client.query_one(tables, &[]).expect("a count").get(0);
     assert_eq!(made, 0);
 
-    let empty = shared().database();
-    let refused = read_only(&empty).expect_err("an empty database");
-    assert!(
-        matches!(refused, StoreError::ServerEmpty { .. }),
-        "{refused}"
-    );
-    let latin = shared().database().replace("history_", "latin_");
+    let empty = shared().empty();
+    for refused in [connect(&empty), read_only(&empty)] {
+        let refused = refused.expect_err("an empty database");
+        assert!(
+            matches!(refused, StoreError::ServerEmpty { .. }),
+            "{refused}"
+        );
+        assert!(refused.to_string().contains("`ptu db server init ADDRESS`"));
+    }
+    let tables = "SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace";
+    let mut client = shared().client(name_of(&empty));
+    let made: i64 = client.query_one(tables, &[]).expect("a count").get(0);
+    assert_eq!(made, 0, "a laptop makes no tables");
+    let latin = shared().empty().replace("history_", "latin_");
     let create = format!(
         "CREATE DATABASE {} ENCODING 'LATIN1' LC_COLLATE 'C' LC_CTYPE 'C' TEMPLATE template0",
         name_of(&latin)
@@ -87,7 +94,6 @@ fn a_database_that_is_missing_foreign_or_empty_is_named_and_left_alone() {
 #[test]
 fn an_older_and_a_newer_schema_are_named() {
     let address = shared().database();
-    drop(connect(&address).expect("tables"));
     let mut client = shared().client(name_of(&address));
     client
         .batch_execute("UPDATE meta SET value = '0' WHERE key = 'schema'")
@@ -98,7 +104,7 @@ fn an_older_and_a_newer_schema_are_named() {
         StoreError::ServerOlderSchema { found: 0, .. }
     ));
     assert!(
-        older.to_string().contains("`ptu db sync` of this program"),
+        older.to_string().contains("`ptu db server init ADDRESS`"),
         "{older}"
     );
     client
@@ -111,16 +117,16 @@ fn an_older_and_a_newer_schema_are_named() {
 }
 
 #[test]
-fn laptops_that_begin_together_make_one_set_of_tables() {
-    let address = shared().database();
+fn who_sets_a_server_up_at_the_same_time_makes_one_set_of_tables() {
+    let address = shared().empty();
     let threads: Vec<_> = (0..6)
         .map(|_| {
             let address = address.clone();
-            std::thread::spawn(move || connect(&address).map(drop))
+            std::thread::spawn(move || drop(shared().set_up(&address)))
         })
         .collect();
     for thread in threads {
-        thread.join().expect("no panic").expect("a server");
+        thread.join().expect("no panic");
     }
     let mut client = shared().client(name_of(&address));
     let names = "SELECT value FROM meta WHERE key = 'server_id'";
@@ -142,7 +148,7 @@ fn a_reader_can_ask_and_not_write() {
              GRANT SELECT ON ALL TABLES IN SCHEMA public TO reader",
         )
         .expect("a reader");
-    let address = address.replace("ptu@", "reader@");
+    let address = address.replace("laptop@", "reader@");
     let store = read_only(&address).expect("a server");
     assert_eq!(store.run(run, &|_| false).expect("the run").steps.len(), 3);
     let refused = store
@@ -161,9 +167,51 @@ fn a_reader_can_ask_and_not_write() {
         refused.to_string().contains("permission denied"),
         "{refused}"
     );
-    let needs_file = store.check().expect_err("a server");
+    let needs_file = store.rebuild().expect_err("a server");
     assert!(
         needs_file.to_string().contains("needs a database file"),
         "{needs_file}"
     );
+}
+
+/// Goal: what a false server announces costs nothing but its announcement.
+/// Method: one that says it has two gigabytes to tell, before and after somebody was let in, and counts what it
+/// gets rid of.
+#[test]
+fn a_message_longer_than_any_history_has_is_not_waited_for() {
+    use std::io::{Read as _, Write as _};
+    let let_in = |letter: u8| {
+        let ready = [&b"R\0\0\0\x08\0\0\0\0"[..], b"Z\0\0\0\x05I"].concat();
+        if letter == b'D' { ready } else { Vec::new() }
+    };
+    for letter in [b'R', b'D'] {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let port = listener.local_addr().expect("its number").port();
+        let server = std::thread::spawn(move || {
+            let (mut laptop, _) = listener.accept().expect("a laptop");
+            let mut greeting = [0; 8];
+            laptop.read_exact(&mut greeting).expect("a greeting");
+            laptop.write_all(&let_in(letter)).expect("let in");
+            let mut announced = vec![letter];
+            announced.extend(0x7fff_ff00_u32.to_be_bytes());
+            laptop.write_all(&announced).expect("announced");
+            let some = vec![0; 1 << 20];
+            let mut taken = 0_usize;
+            while taken < 256 << 20 && laptop.write_all(&some).is_ok() {
+                taken += some.len();
+            }
+            taken
+        });
+        let false_server = format!("postgres://ptu@127.0.0.1:{port}/h?sslmode=disable");
+        let refused = connect(&false_server)
+            .expect_err("a false server")
+            .to_string();
+        assert!(
+            refused.contains("a message of 2147483392 bytes"),
+            "{refused}"
+        );
+        let taken = server.join().expect("no panic");
+        // As much as fits into the two systems' own buffers.
+        assert!(taken <= 16 << 20, "{taken} bytes were taken");
+    }
 }

@@ -136,7 +136,9 @@ impl Station {
     ///
     /// Asked for again it does no more: clean-up is cut short only by [`stop_run`](Self::stop_run).
     pub fn stop_all(&self) {
-        self.stop.press_once();
+        if self.stop.presses() == 0 {
+            self.stop.press();
+        }
         self.send(Order::MakeSafe);
     }
 

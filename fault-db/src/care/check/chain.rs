@@ -62,6 +62,9 @@ pub(super) fn check(base: &Base, mut found: Findings<'_>) -> SqlResult<u32> {
             Ok(())
         })?;
     }
+    if let Base::Server(_) = base {
+        return Ok(runs);
+    }
     // Whoever cuts off the end takes the last runs with their seals; what waits for a server still names
     // them.
     let told = "SELECT count(*) FROM outbox o WHERE o.what = 'run'

@@ -2,10 +2,12 @@
 
 mod chain;
 mod counted;
+mod server;
 
 use rusqlite::Connection;
 use serde::Serialize;
 
+use crate::base::Base;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::recording::check_recordings;
@@ -27,7 +29,7 @@ pub struct CheckReport {
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// integrity, foreign_key, count, trace, recording, seal or tally.
+    /// integrity, schema, foreign_key, count, trace, recording, seal or tally.
     pub kind: &'static str,
     /// Which, and how.
     pub detail: String,
@@ -93,7 +95,13 @@ impl Store {
     /// Looks for damage and for what was changed by hand: SQLite's own check, foreign keys, every trace
     /// and recording, every run against its seal and the seals against each other, and all that is
     /// counted from other rows.
+    ///
+    /// Of a server: every run against its seal, the seals against each other, and what keeps its rows as they
+    /// are.
     pub fn check(&self) -> Result<CheckReport, StoreError> {
+        if let Base::Server(_) = self.base() {
+            return server::check(self);
+        }
         let conn = self.file()?;
         let mut problems = Vec::new();
         let failed = |error| self.failed("checking", error);

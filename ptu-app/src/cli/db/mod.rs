@@ -3,6 +3,7 @@
 mod care;
 mod check;
 mod query;
+mod server;
 mod sync;
 
 use std::path::PathBuf;
@@ -23,7 +24,7 @@ pub struct DbArguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Look for damage and for what was changed by hand; writes nothing
+    /// Look for damage and for what was changed by hand, in a file or on a server; writes nothing
     Check {
         /// Print JSON
         #[arg(long)]
@@ -61,6 +62,8 @@ enum Verb {
     /// Delete old traces that no open fault needs; runs and faults stay
     Prune(care::PruneArguments),
     Sync(sync::SyncArguments),
+    /// Look after a server for many laptops
+    Server(server::ServerArguments),
     Query(query::QueryArguments),
     /// Print what `ptu db query` can be asked about
     Schema,
@@ -77,6 +80,7 @@ impl DbArguments {
             Verb::Export { to, json } => self.database.export(&to, json),
             Verb::Prune(arguments) => self.database.prune(&arguments),
             Verb::Sync(arguments) => arguments.run(&self.database),
+            Verb::Server(arguments) => arguments.run(),
             Verb::Query(arguments) => arguments.query(&self.database),
             Verb::Schema => print_out(fault_db::VIEWS_PAGE.trim_end()),
         }

@@ -1,0 +1,275 @@
+//! The stream under a connection: guarded as far as the address says, and no message of a server is longer than
+//! any of ours can be. What a server announces is otherwise waited for and kept, however much it is.
+
+use std::error::Error;
+use std::future::Future;
+use std::io;
+use std::pin::Pin;
+use std::task::{Context, Poll, ready};
+
+use postgres::tls::{ChannelBinding, MakeTlsConnect, TlsConnect, TlsStream};
+use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, ReadBuf};
+use tokio_postgres_rustls::MakeRustlsConnect;
+
+/// Before somebody is let in there is little to say.
+const MOST_BEFORE: u32 = 64 << 10;
+/// A row may hold all samples of a trace.
+const MOST: u32 = 64 << 20;
+
+/// "Do you speak TLS?", as PostgreSQL is asked.
+const TLS_REQUEST: [u8; 8] = [0, 0, 0, 8, 0x04, 0xd2, 0x16, 0x2f];
+/// "Yes."
+const TLS_YES: u8 = b'S';
+
+/// What is said of a server that does not, where it has to.
+pub(super) const NO_TLS: &str = "server does not support TLS";
+
+type Failed = Box<dyn Error + Sync + Send>;
+
+/// Makes streams. It asks for TLS by itself, so that one in the clear is bounded, too: to the client beneath it,
+/// each is one of TLS.
+pub(super) struct Bounded {
+    pub tls: Option<MakeRustlsConnect>,
+    /// In the clear if the server has no TLS.
+    pub or_clear: bool,
+}
+
+/// Makes one.
+pub(super) struct Connecting<S>
+where
+    MakeRustlsConnect: MakeTlsConnect<S>,
+{
+    tls: Option<<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect>,
+    or_clear: bool,
+}
+
+impl<S> MakeTlsConnect<S> for Bounded
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+    <MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect: Send + 'static,
+    <<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect as TlsConnect<S>>::Future: Send,
+{
+    type Stream = Watched<S>;
+    type TlsConnect = Connecting<S>;
+    type Error = Failed;
+
+    fn make_tls_connect(&mut self, domain: &str) -> Result<Self::TlsConnect, Failed> {
+        let tls = self
+            .tls
+            .as_mut()
+            .map(|tls| <MakeRustlsConnect as MakeTlsConnect<S>>::make_tls_connect(tls, domain));
+        Ok(Connecting {
+            tls: tls.transpose().map_err(Into::<Failed>::into)?,
+            or_clear: self.or_clear,
+        })
+    }
+}
+
+impl<S> TlsConnect<S> for Connecting<S>
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+    <MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect: Send + 'static,
+    <<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect as TlsConnect<S>>::Future: Send,
+{
+    type Stream = Watched<S>;
+    type Error = Failed;
+    type Future = Pin<Box<dyn Future<Output = Result<Watched<S>, Failed>> + Send>>;
+
+    fn connect(self, mut stream: S) -> Self::Future {
+        Box::pin(async move {
+            let Some(tls) = self.tls else {
+                return Ok(Watched::new(Way::Clear(stream)));
+            };
+            stream.write_all(&TLS_REQUEST).await?;
+            let mut answer = [0];
+            stream.read_exact(&mut answer).await?;
+            if answer == [TLS_YES] {
+                let stream = tls.connect(stream).await.map_err(Into::<Failed>::into)?;
+                return Ok(Watched::new(Way::Tls(Box::new(stream))));
+            }
+            match self.or_clear {
+                true => Ok(Watched::new(Way::Clear(stream))),
+                false => Err(NO_TLS.into()),
+            }
+        })
+    }
+}
+
+type Tls<S> = <MakeRustlsConnect as MakeTlsConnect<S>>::Stream;
+
+/// One way or the other.
+enum Way<S>
+where
+    MakeRustlsConnect: MakeTlsConnect<S>,
+{
+    Clear(S),
+    Tls(Box<Tls<S>>),
+}
+
+/// A stream whose messages are looked at as they come.
+pub(super) struct Watched<S>
+where
+    MakeRustlsConnect: MakeTlsConnect<S>,
+{
+    way: Way<S>,
+    lengths: Lengths,
+}
+
+impl<S> Watched<S>
+where
+    MakeRustlsConnect: MakeTlsConnect<S>,
+{
+    fn new(way: Way<S>) -> Self {
+        Self {
+            way,
+            lengths: Lengths::default(),
+        }
+    }
+}
+
+impl<S> TlsStream for Watched<S>
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    fn channel_binding(&self) -> ChannelBinding {
+        match &self.way {
+            Way::Clear(_) => ChannelBinding::none(),
+            Way::Tls(stream) => stream.channel_binding(),
+        }
+    }
+}
+
+impl<S> AsyncRead for Watched<S>
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    fn poll_read(
+        self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        into: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        let Self { way, lengths } = self.get_mut();
+        let before = into.filled().len();
+        ready!(match way {
+            Way::Clear(stream) => Pin::new(stream).poll_read(context, into),
+            Way::Tls(stream) => Pin::new(&mut **stream).poll_read(context, into),
+        })?;
+        Poll::Ready(lengths.take(&into.filled()[before..]))
+    }
+}
+
+impl<S> AsyncWrite for Watched<S>
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    fn poll_write(
+        self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        match &mut self.get_mut().way {
+            Way::Clear(stream) => Pin::new(stream).poll_write(context, bytes),
+            Way::Tls(stream) => Pin::new(&mut **stream).poll_write(context, bytes),
+        }
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        match &mut self.get_mut().way {
+            Way::Clear(stream) => Pin::new(stream).poll_flush(context),
+            Way::Tls(stream) => Pin::new(&mut **stream).poll_flush(context),
+        }
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        match &mut self.get_mut().way {
+            Way::Clear(stream) => Pin::new(stream).poll_shutdown(context),
+            Way::Tls(stream) => Pin::new(&mut **stream).poll_shutdown(context),
+        }
+    }
+}
+
+/// How long each message says it is: a letter, four bytes of length (themselves included), the rest.
+#[derive(Default)]
+struct Lengths {
+    head: [u8; 5],
+    /// Bytes of the head that are there.
+    known: usize,
+    /// Bytes of the message that are to come.
+    rest: usize,
+    /// It has been told that it may ask.
+    is_in: bool,
+}
+
+/// "Ask", once somebody is let in and after each answer.
+const READY: u8 = b'Z';
+
+impl Lengths {
+    fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
+        while !bytes.is_empty() {
+            if self.rest > 0 {
+                let skipped = self.rest.min(bytes.len());
+                self.rest -= skipped;
+                bytes = &bytes[skipped..];
+                continue;
+            }
+            self.head[self.known] = bytes[0];
+            bytes = &bytes[1..];
+            self.known += 1;
+            if self.known == self.head.len() {
+                self.known = 0;
+                self.begin()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self) -> io::Result<()> {
+        let [letter, length @ ..] = self.head;
+        let length = u32::from_be_bytes(length);
+        self.is_in |= letter == READY;
+        let most = if self.is_in { MOST } else { MOST_BEFORE };
+        if !(4..=most).contains(&length) {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                format!(
+                    "it announces a message of {length} bytes, which no history has; it is no server of ours"
+                ),
+            ));
+        }
+        self.rest = length as usize - 4;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(letter: u8, length: u32) -> Vec<u8> {
+        let mut bytes = vec![letter];
+        bytes.extend(length.to_be_bytes());
+        bytes.resize(1 + length.min(1000) as usize, 0);
+        bytes
+    }
+
+    /// Each message is taken whole, byte by byte and in odd pieces.
+    #[test]
+    fn messages_are_bounded_wherever_they_are_cut() {
+        let greeting = [message(b'R', 8), message(b'S', 30), message(READY, 5)].concat();
+        let good = [greeting.clone(), message(b'D', 900), message(READY, 5)].concat();
+        let long = [greeting.clone(), message(b'D', MOST + 1)].concat();
+        let early = message(b'R', MOST_BEFORE + 1);
+        let short = [greeting, message(b'D', 3)].concat();
+        for piece in [1, 2, 3, 7, 4096] {
+            let taken = |bytes: &[u8]| {
+                let mut lengths = Lengths::default();
+                bytes.chunks(piece).try_for_each(|some| lengths.take(some))
+            };
+            assert!(taken(&good).is_ok(), "{piece}");
+            for bad in [&long, &early, &short, &message(b'R', u32::MAX)] {
+                let refused = taken(bad).expect_err("bounded").to_string();
+                assert!(refused.contains("it announces a message of"), "{refused}");
+            }
+        }
+    }
+}

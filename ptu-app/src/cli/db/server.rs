@@ -1,0 +1,88 @@
+//! `ptu db server`: a server that many laptops bring their history to.
+
+use clap::{Args, Subcommand};
+use fault_db::{Address, ServerSetup, Store};
+
+use crate::cli::{print_json, print_out};
+use crate::clock;
+use crate::failure::{Exit, Failure};
+
+/// The account of the laptops, if none is named.
+const LAPTOPS: &str = "ptu";
+
+#[derive(Debug, Args)]
+pub(super) struct ServerArguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Make the tables, or bring them up to date, and let laptops add rows and read
+    ///
+    /// Run once by who looks after the server, with the account that owns the database or as a superuser; done
+    /// again it changes nothing. The laptops' account may add rows and read; it can neither change nor remove
+    /// any.
+    ///
+    /// Exit codes: 0 done, 2 wrong address, 3 no server, or it may not be done.
+    Init {
+        /// The server, as postgres://OWNER@HOST/DATABASE; a password belongs into ~/.pgpass
+        #[arg(value_name = "ADDRESS")]
+        server: String,
+        /// The account laptops log in with; made if it is not there
+        #[arg(long, value_name = "ACCOUNT", default_value = LAPTOPS)]
+        laptops: String,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+impl ServerArguments {
+    pub(super) fn run(self) -> Result<Exit, Failure> {
+        let Verb::Init {
+            server,
+            laptops,
+            json,
+        } = self.verb;
+        let address: Address = server.parse()?;
+        let done = Store::set_up_server(&address, clock::ids(), &laptops)?;
+        match json {
+            true => print_json(&done),
+            false => print_out(&told(&done, &address)),
+        }
+    }
+}
+
+/// What was done, and what is left to do.
+fn told(done: &ServerSetup, address: &Address) -> String {
+    let ServerSetup {
+        server,
+        database,
+        owner,
+        laptops,
+        schema,
+        ..
+    } = done;
+    let tables = match done.schema_before {
+        None => format!("tables made (schema {schema})"),
+        Some(before) if before < *schema => {
+            format!("tables brought from schema {before} to {schema}")
+        }
+        Some(_) => format!("tables were there (schema {schema})"),
+    };
+    let password = match done.made_account {
+        true => {
+            format!("a password for {laptops}, which has none yet: \\password {laptops} in psql")
+        }
+        false => format!("a password for {laptops}, if it has none: \\password {laptops} in psql"),
+    };
+    let place = address.to_string().replacen(&format!("{owner}@"), "", 1);
+    let place = place.trim_start_matches("postgres://");
+    format!(
+        "{server}\n{tables}; they belong to {owner}\n{laptops} may add rows and read, and nothing else\n\n\
+         next, on the server:\n  {password}\n  for laptops on the network, in pg_hba.conf: hostssl {database} \
+         {laptops} 10.0.0.0/8 scram-sha-256\nand on each laptop:\n  in ~/.pgpass (chmod 600): \
+         HOST:PORT:{database}:{laptops}:PASSWORD\n  ptu db sync postgres://{laptops}@{place}"
+    )
+}
