@@ -132,12 +132,17 @@ impl Outcome {
     }
 }
 
-fn run_with(
+fn run_with(script: &str, options: RunOptions, each_scan: impl FnMut(&mut World<'_>)) -> Outcome {
+    run_round(script, options, 0, each_scan)
+}
+
+fn run_round(
     script: &str,
     options: RunOptions,
+    round: u32,
     mut each_scan: impl FnMut(&mut World<'_>),
 ) -> Outcome {
-    let mut runner = Runner::new(procedure(script), options);
+    let mut runner = Runner::new(procedure(script), options, round);
     let mut sample = Sample::default();
     sample.set(Signal::Eb, 0.0);
     sample.set(Signal::Speed, 0.0);
@@ -773,13 +778,52 @@ fn every_repetition_must_pass() {
     assert_eq!(verdicts, expected);
     assert_eq!(outcome.finished().0, Verdict::Failed);
 
+    // The second of two repetitions of the procedure.
     let options = RunOptions {
         repeat: 2,
         ..RunOptions::default()
     };
+    let outcome = run_round(&script, options, 1, |_| {});
+    let names: Vec<_> = outcome.steps().iter().map(|s| s.name.clone()).collect();
+    assert_eq!(names, ["a (4/6)", "a (5/6)", "a (6/6)"]);
+    assert_eq!(outcome.fake.applied, [ON, OFF], "set-up and clean-up");
+}
+
+/// Goal: a step that could not be judged for want of data did not pass either.
+#[test]
+fn a_step_whose_condition_has_no_data_can_stop_the_procedure() {
+    let script = format!("{HEAD}step('a', when = is_(limit, above = kmh(3)))\nstep('b')");
+    let options = RunOptions {
+        stop_on_fail: true,
+        ..RunOptions::default()
+    };
     let outcome = run_with(&script, options, |_| {});
-    assert_eq!(outcome.steps().len(), 6);
-    assert_eq!(outcome.steps()[5].name, "a (6/6)");
+    let verdicts: Vec<_> = outcome.steps().iter().map(|s| s.verdict).collect();
+    assert_eq!(verdicts, [Verdict::Error, Verdict::Skipped]);
+}
+
+/// Goal: a counter that begins anew at 0 has gone on. Method: a count of 8 bits that goes up by one, from its
+/// greatest to 0 and once around, and a quantity that falls, which is no counter.
+#[test]
+fn the_change_of_a_counter_counts_on_where_it_begins_anew() {
+    let script = format!(
+        "{HEAD}step('one', do = wait(ms(100)), measure = change('pulses', marker_count, low = 1, high = 1))
+step('many', do = wait(s(4)), measure = change('pulses', marker_count, low = 300, high = 300))
+step('none', do = wait(ms(100)), measure = [change('pulses', marker_count, high = 0), change('v', speed)])"
+    );
+    let outcome = run(&script, |world| {
+        let count = match world.ms() {
+            0..50 => 255,
+            50..150 => 256,
+            ms => (256 + (ms - 140) / 10).min(556),
+        };
+        let (count, speed) = (f64::from(count % 256), 9000.0 - f64::from(world.ms()));
+        world.sample.set(Signal::MarkerCount, count);
+        world.sample.set(Signal::Speed, speed);
+    });
+    assert_eq!(outcome.finished(), (Verdict::Passed, ""));
+    let speed = outcome.steps()[2].measurements[1].value;
+    assert_eq!(speed, Some(-100.0));
 }
 
 #[test]

@@ -204,6 +204,15 @@ impl Signal {
         self.definition().name
     }
 
+    /// Values of a counter that begins anew at 0 after its greatest; none of all that do not.
+    pub const fn wraps_at(self) -> Option<f64> {
+        match self {
+            Self::MarkerCount => Some(256.0),
+            Self::RejectedFrames | Self::TwcReceived | Self::TwcAnswers => Some(65_536.0),
+            _ => None,
+        }
+    }
+
     /// Its place in a sample row.
     pub const fn index(self) -> usize {
         self as usize
@@ -260,6 +269,16 @@ mod tests {
     fn names_are_unique_and_lead_back() {
         for &signal in Signal::ALL {
             assert_eq!(Signal::from_name(signal.name()), Some(signal));
+        }
+    }
+
+    #[test]
+    fn a_counter_wraps_after_its_greatest_value() {
+        for &signal in Signal::ALL {
+            let definition = signal.definition();
+            let expected = signal.wraps_at().map(|values| (0.0, values - 1.0));
+            let range = expected.map(|_| (definition.low, definition.high));
+            assert_eq!(range, expected, "{}", definition.name);
         }
     }
 

@@ -1,38 +1,33 @@
-//! The operator's stop: Ctrl-C, a polite kill or a terminal that closes, counted; and a run's own decision to
-//! end early.
+//! The operator's stop: Ctrl-C, a polite kill or a terminal that closes, counted.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Counts the presses of stop; clones share the count.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<State>);
-
-#[derive(Debug, Default)]
-struct State {
-    presses: AtomicU32,
-    ended: AtomicBool,
-}
+pub struct Stop(Arc<AtomicU32>);
 
 impl Stop {
     /// One more press.
     pub fn press(&self) {
-        self.0.presses.fetch_add(1, Ordering::Relaxed);
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Pressed, if it was not: a second press would cut clean-up short.
+    pub fn press_once(&self) {
+        let _ = self
+            .0
+            .compare_exchange(0, 1, Ordering::Relaxed, Ordering::Relaxed);
     }
 
     /// Presses so far.
     pub fn presses(&self) -> u32 {
-        self.0.presses.load(Ordering::Relaxed)
-    }
-
-    /// No further procedure is begun; the present one goes on.
-    pub fn end(&self) {
-        self.0.ended.store(true, Ordering::Relaxed);
+        self.0.load(Ordering::Relaxed)
     }
 
     /// Whether another procedure may begin.
     pub fn may_begin(&self) -> bool {
-        self.presses() == 0 && !self.0.ended.load(Ordering::Relaxed)
+        self.presses() == 0
     }
 
     /// Listens to interrupt, termination and hang-up signals on a thread of its own. Without it (no runtime,

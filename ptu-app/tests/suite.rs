@@ -242,12 +242,22 @@ fn steps_can_be_chosen_and_repeated() {
     );
 }
 
+/// Goal: which failure is the first is a matter of the order of the procedures, not of who is done first.
 #[test]
 fn a_run_can_end_with_the_first_failure() {
-    // One after the other: a procedure that runs beside the one that fails may fail in the same moment.
-    let (said, report) =
-        Place::new().run(&["--inject", "eb_relay.slow", "--stop-on-fail", "--jobs", "1"]);
-    said.exits(1);
+    let ends_early = |jobs| {
+        report_of(
+            1,
+            &[
+                "--inject",
+                "eb_relay.slow",
+                "--stop-on-fail",
+                "--jobs",
+                jobs,
+            ],
+        )
+    };
+    let report = ends_early("1");
     let failed: Vec<_> = list(&report["steps"])
         .iter()
         .filter(|step| step["verdict"] == "failed")
@@ -255,6 +265,44 @@ fn a_run_can_end_with_the_first_failure() {
     assert_eq!(failed.len(), 1, "{failed:?}");
     let last = list(&report["steps"]).last().expect("a step");
     assert_eq!(last["procedure"], failed[0]["procedure"]);
+    assert_eq!(ends_early("3"), report);
+}
+
+/// Goal: what is run again and in another order is neither of them a finding. Method: everything twice, in two
+/// orders; what is listed is what is run.
+#[test]
+fn a_good_unit_passes_everything_repeated_and_in_any_order() {
+    let place = Place::new();
+    let order = |steps: &Value| {
+        let mut names: Vec<_> = list(steps)
+            .iter()
+            .map(|s| text(&s["procedure"]).to_owned())
+            .collect();
+        names.dedup();
+        names
+    };
+    let usual = order(&whole_suite().1["steps"]);
+    let mut orders = Vec::new();
+    for seed in ["1", "2"] {
+        let asked = ["--repeat", "2", "--shuffle", "--seed", seed];
+        let (said, report) = place.run(&asked);
+        said.exits(0);
+        assert!(list(&report["faults"]).is_empty());
+        let ran = order(&report["steps"]);
+        let listed = place.json(&[&["run", "--list", "--json"], &asked[..]].concat());
+        assert_eq!(ran, order(&listed));
+        assert_eq!(
+            list(&report["steps"]).len(),
+            2 * list(&whole_suite().1["steps"]).len()
+        );
+        orders.push(ran);
+    }
+    assert_ne!(orders[0], orders[1]);
+    for mut order in orders {
+        assert_ne!(order, usual);
+        order.sort();
+        assert_eq!(order, usual, "each once");
+    }
 }
 
 /// Another train is another file: as many cars as it has, under any names, or none at all.

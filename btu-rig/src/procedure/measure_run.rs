@@ -39,8 +39,10 @@ pub(super) struct Taking {
     to: Edge,
     /// When the time measured began.
     start: Option<Instant>,
-    /// First value of a change.
+    /// First and latest value of a change, and what its counter has lost by beginning anew at 0.
     first: Option<f64>,
+    latest: Option<f64>,
+    wrapped: f64,
     value: Option<f64>,
     lack: Option<Lack>,
     done: bool,
@@ -72,8 +74,9 @@ impl Taking {
             What::Maximum(signal) => self.extreme(*signal, scan, f64::max),
             What::Minimum(signal) => self.extreme(*signal, scan, f64::min),
             What::Change(signal) => {
+                let value = self.follow(*signal, scan);
                 if self.start.replace(step_start).is_none() {
-                    self.first = self.known(*signal, scan);
+                    self.first = value;
                 }
             }
             What::Value(_) => {}
@@ -91,8 +94,9 @@ impl Taking {
         match measure.what {
             What::Value(signal) => self.value = self.known(signal, scan),
             What::Change(signal) => {
-                let last = self.known(signal, scan);
-                self.value = self.first.zip(last).map(|(first, last)| last - first);
+                let last = self.follow(signal, scan);
+                let change = |(first, last)| last - first + self.wrapped;
+                self.value = self.first.zip(last).map(change);
             }
             // A gap in the data may have hidden the greatest or least value.
             What::Maximum(_) | What::Minimum(_) if self.lack.is_some() => self.value = None,
@@ -144,6 +148,17 @@ impl Taking {
         if let Some(value) = self.known(signal, scan) {
             self.value = Some(self.value.map_or(value, |best| choose(best, value)));
         }
+    }
+
+    /// The value of a signal whose change is taken: a counter is followed from scan to scan, as it may begin
+    /// anew more than once.
+    fn follow(&mut self, signal: Signal, scan: Scan<'_>) -> Option<f64> {
+        let value = self.known(signal, scan)?;
+        let before = self.latest.replace(value);
+        if before.is_some_and(|before| value < before) {
+            self.wrapped += signal.wraps_at().unwrap_or(0.0);
+        }
+        Some(value)
     }
 
     fn known(&mut self, signal: Signal, scan: Scan<'_>) -> Option<f64> {

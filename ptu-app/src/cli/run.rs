@@ -30,6 +30,7 @@ use crate::stop::Stop;
 ///   ptu run --check                             all script errors, nothing driven
 ///   ptu run --list atp/overspeed                what would be done
 ///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
+///   ptu run --repeat 10 --shuffle --seed 7      each procedure ten times, in an order drawn by the seed
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
 ///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
 ///   ptu run --report out.json --report out.junit.xml
@@ -95,14 +96,18 @@ pub struct RunArguments {
     /// Only steps whose name matches
     #[arg(long, value_name = "GLOB")]
     step: Option<String>,
-    /// Run the steps of each procedure so often
+    /// Run each procedure so often, each time with its set-up and clean-up
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10000))]
     repeat: u32,
-    /// End after the first step that does not pass
+    /// Run the procedures in an order drawn by the seed
+    #[arg(long)]
+    shuffle: bool,
+    /// End after the first step that does not pass; with --jobs, too, the record ends with the first
+    /// procedure, in their order, that did not pass
     #[arg(long)]
     stop_on_fail: bool,
     /// Isolate a fault: after each step do what tells the most, until one part is found
-    #[arg(long, conflicts_with_all = ["check", "list", "step", "stop_on_fail"])]
+    #[arg(long, conflicts_with_all = ["check", "list", "step", "shuffle", "stop_on_fail"])]
     adaptive: bool,
     #[command(flatten)]
     reports: ReportOption,
@@ -232,7 +237,7 @@ impl RunArguments {
                 repeat: self.repeat,
                 stop_on_fail: self.stop_on_fail,
                 prompts: PromptPolicy::Refuse,
-                one_by_one: self.adaptive,
+                ..RunOptions::default()
             };
             Task { procedure, options }
         };
@@ -244,6 +249,9 @@ impl RunArguments {
                     "no step matches \"{glob}\"; `ptu run --list` shows all steps"
                 )));
             }
+        }
+        if self.shuffle {
+            select::shuffle(&mut tasks, self.seed);
         }
         Ok(tasks)
     }

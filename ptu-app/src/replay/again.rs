@@ -8,8 +8,8 @@ use protocol::{CYCLE, Instant};
 use super::{Original, Rule};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
-use crate::run::benches::{READY_WITHIN, settled};
 use crate::run::{BEFORE, BenchSetup, Session, Taped};
+use crate::run::{READY_WITHIN, settled};
 use crate::stop::Stop;
 
 /// What came of it.

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::Scope;
 
+use btu_rig::procedure::RunOptions;
 use fault_db::diagnosis::{Dictionary, Model, Settings, Strategy};
 
 use super::benches::{Connected, Worker};
@@ -71,6 +72,14 @@ fn isolate(
             // Its stream ends without a word: it was due.
             return;
         }
+        // A step waits until the strategy has judged the one before.
+        let task = Task {
+            procedure: task.procedure.clone(),
+            options: RunOptions {
+                one_by_one: true,
+                ..task.options.clone()
+            },
+        };
         let mut gatherer = Gatherer::new(&task.procedure.id);
         let enough = Cell::new(false);
         let mut sink = |event| {
@@ -82,7 +91,7 @@ fn isolate(
             // The collector listens until the stream ends, so that sending cannot fail.
             drop(sender.send(event));
         };
-        worker.run(task, &mut sink, &|| !enough.get());
+        worker.run(&task, &mut sink, &|| !enough.get());
         if !enough.get() {
             strategy.ended(&next.check.procedure);
         }

@@ -45,7 +45,6 @@ pub struct Collector<'a> {
     listener: &'a mut dyn Listener,
     /// What the benches are made of.
     made: BenchMade,
-    stop_on_fail: bool,
     /// Place of the present procedure in the run, counted from 1.
     ordinal: u32,
     procedure: Option<std::sync::Arc<Procedure>>,
@@ -59,24 +58,17 @@ pub struct Collector<'a> {
     verdict: Verdict,
     /// Procedures that came to their end.
     finished: u32,
-    not_passed: bool,
     step_failed: bool,
     link_lost: bool,
 }
 
 impl<'a> Collector<'a> {
     /// A collector that records in `store`.
-    pub fn new(
-        store: RunStore,
-        listener: &'a mut dyn Listener,
-        made: BenchMade,
-        stop_on_fail: bool,
-    ) -> Self {
+    pub fn new(store: RunStore, listener: &'a mut dyn Listener, made: BenchMade) -> Self {
         Self {
             store,
             listener,
             made,
-            stop_on_fail,
             ordinal: 0,
             procedure: None,
             before: Duration::ZERO,
@@ -86,7 +78,6 @@ impl<'a> Collector<'a> {
             faults_before: 0,
             verdict: Verdict::Skipped,
             finished: 0,
-            not_passed: false,
             step_failed: false,
             link_lost: false,
         }
@@ -100,16 +91,6 @@ impl<'a> Collector<'a> {
         self.faults_before = self.dates.len();
     }
 
-    /// Nothing is recorded any more: the run is worth nothing and must stop.
-    pub fn recording_failed(&self) -> bool {
-        self.store.failed()
-    }
-
-    /// A check failed and the run is to end with its procedure.
-    pub fn must_end(&self) -> bool {
-        self.stop_on_fail && self.not_passed
-    }
-
     /// Takes one event.
     pub fn take(&mut self, event: SessionEvent) {
         let Some(procedure) = self.procedure.clone() else {
@@ -120,7 +101,7 @@ impl<'a> Collector<'a> {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
             SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
                 self.finished += 1;
-                self.note(verdict);
+                self.verdict = self.verdict.and(verdict);
             }
             SessionEvent::Run(_) => {}
             SessionEvent::LinkLost(_) => self.link_lost = true,
@@ -133,11 +114,6 @@ impl<'a> Collector<'a> {
 
     /// A check that failed is said before one that could not be made: a faulty unit makes both, and
     /// the first is the finding. A stop and a lost link outrank it.
-    fn note(&mut self, verdict: Verdict) {
-        self.not_passed |= !matches!(verdict, Verdict::Passed | Verdict::Skipped);
-        self.verdict = self.verdict.and(verdict);
-    }
-
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,
@@ -221,9 +197,9 @@ impl<'a> Collector<'a> {
     /// The end of all streams; `stopped` = somebody pressed stop.
     ///
     /// What was still due is not tested then, so that what came before it is no verdict on the unit. A run
-    /// that was over when stop was pressed, or was to end with a check that failed, is none of that.
+    /// that was over when stop was pressed is none of that: nothing after a failure is due where that ends it.
     pub fn finish(mut self, id: Id, stopped: bool) -> (RunStore, Outcome) {
-        if stopped && self.finished < self.ordinal && !self.must_end() {
+        if stopped && self.finished < self.ordinal {
             self.verdict = self.verdict.and(Verdict::Aborted);
         }
         let verdict = self.overall();

@@ -13,11 +13,14 @@ pub(crate) mod benches;
 mod choice;
 mod collector;
 mod fault_watch;
+mod first_failure;
 mod made;
 mod reach;
 mod recorder;
+mod rounds;
 pub mod select;
 mod session;
+mod settle;
 #[cfg(test)]
 mod stopped;
 mod store_thread;
@@ -34,7 +37,6 @@ use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 pub use adaptive::Adaptive;
 pub use attendant::Attendant;
 pub use benches::{BenchSetup, Connected, run_here};
-pub(crate) use benches::{READY_WITHIN, settled};
 pub use choice::Choice;
 pub use collector::{Listener, Outcome, steps_of, stored};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
@@ -43,12 +45,14 @@ pub use made::{BenchMade, Made, Stimuli};
 pub(crate) use recorder::BEFORE;
 pub(crate) use session::{Session, Window};
 pub use session::{SessionEvent, Taped};
+pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;
 
 use crate::clock;
 use crate::failure::{Exit, Failure};
 use crate::stop::Stop;
 use collector::Collector;
+use first_failure::FirstFailure;
 use store_thread::RunStore;
 
 /// Events of one procedure that may wait for the collector.
@@ -68,7 +72,7 @@ pub struct RunPlan {
     pub tasks: Vec<Task>,
     /// Benches to run side by side; one on a port.
     pub jobs: usize,
-    /// Do not begin another procedure after one that did not pass.
+    /// The run ends with the first procedure, in this order, that does not pass.
     pub stop_on_fail: bool,
     /// Who tests.
     pub operator: String,
@@ -104,7 +108,7 @@ pub fn run(
                 Exit::Aborted => Verdict::Aborted,
                 _ => Verdict::Error,
             };
-            RunStore::begin(store, record)?.finish(began.end(verdict, 0))?;
+            RunStore::begin(store, record, stop)?.finish(began.end(verdict, 0))?;
             Err(failure)
         }
     }
@@ -125,23 +129,24 @@ pub fn run_on(
 ) -> Result<(Store, Outcome), Failure> {
     connected.heed(stop);
     let record = run_record(plan, setup, connected.serial(), began.at_us);
-    let run_store = RunStore::begin(store, record)?;
+    let run_store = RunStore::begin(store, record, stop)?;
     let id = run_store.id;
     let made = BenchMade::of(setup, connected.serial());
-    let mut collector = Collector::new(run_store, listener, made, plan.stop_on_fail);
+    let mut collector = Collector::new(run_store, listener, made);
+    let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
         std::thread::scope(|scope| match &plan.adaptive {
             Some(adaptive) => {
                 let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
-                collect(procedures, &mut collector, stop);
+                collect(procedures, &mut collector, &first_failure);
             }
             None => {
-                let procedures = benches::start(scope, plan, connected, stop);
-                collect(procedures, &mut collector, stop);
+                let procedures = benches::start(scope, plan, connected, &first_failure, stop);
+                collect(procedures, &mut collector, &first_failure);
             }
         });
     }));
-    let (run_store, mut outcome) = collector.finish(id, stop.presses() > 0);
+    let (run_store, outcome) = collector.finish(id, stop.presses() > 0);
     let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
@@ -151,30 +156,22 @@ pub fn run_on(
             id.short()
         )));
     }
-    let store = run_store.finish(end)?;
-    if stop.presses() > 0 {
-        outcome.exit = Exit::Aborted;
-    }
-    Ok((store, outcome))
+    Ok((run_store.finish(end)?, outcome))
 }
 
-/// Takes the procedures' streams one after the other.
+/// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
+/// what a bench does next.
 fn collect(
     procedures: impl IntoIterator<Item = ProcedureStream>,
     collector: &mut Collector<'_>,
-    stop: &Stop,
+    first_failure: &FirstFailure,
 ) {
-    for (procedure, stream) in procedures {
-        collector.begin(&procedure);
-        for event in stream {
-            collector.take(event);
-            if collector.recording_failed() && stop.presses() == 0 {
-                stop.press();
-            }
-            if collector.must_end() {
-                stop.end();
-            }
+    for (place, (procedure, stream)) in procedures.into_iter().enumerate() {
+        if !first_failure.admits(place) {
+            break;
         }
+        collector.begin(&procedure);
+        stream.into_iter().for_each(|event| collector.take(event));
     }
 }
 

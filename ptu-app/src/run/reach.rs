@@ -11,9 +11,10 @@ use protocol::message::Identity;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
-use super::benches::{BenchSetup, READY_WITHIN, started};
+use super::benches::BenchSetup;
 use super::fault_watch::{self, FaultSeen};
 use super::session::Session;
+use super::settle::{READY_WITHIN, started};
 use super::unit_text;
 use crate::failure::{Exit, Failure};
 use crate::link::{Pace, WireLink};

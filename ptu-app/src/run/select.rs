@@ -3,10 +3,22 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use btu_rig::rig::Random;
 use glob::Pattern;
 
 use crate::data::{self, ScriptsDirectory};
 use crate::failure::{Failure, did_you_mean};
+
+/// Sets the order apart from what else the same seed gives.
+const ORDER_SEQUENCE: u64 = 0x0D1C_E0F5_7E95_A3C1;
+
+/// Puts them into an order drawn by the seed.
+pub fn shuffle<T>(items: &mut [T], seed: u64) {
+    let mut random = Random::new(seed ^ ORDER_SEQUENCE);
+    for last in (1..items.len()).rev() {
+        items.swap(last, random.below(last + 1));
+    }
+}
 
 /// The texts the loader needs for the procedures asked for: those, and all libraries.
 ///

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{
-    EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent,
+    EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent, Verdict,
 };
 use btu_rig::rig::{Bench, UnitLink};
 use btu_rig::tape::{Player, Tape, Taping};
@@ -16,6 +16,8 @@ use protocol::{CYCLE, Duration, Instant, SCAN};
 use super::Attendant;
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::{Cut, Recorder};
+use super::rounds::Rounds;
+use super::settle::between_procedures;
 use crate::link::Pace;
 use crate::stop::Stop;
 
@@ -262,8 +264,8 @@ impl<L: UnitLink> Session<L> {
         (ready, faults)
     }
 
-    /// Runs a procedure to its end, or as long as `go_on` says so after a step; `found` are faults of
-    /// the bring-up.
+    /// Runs a procedure as often as it is to be repeated, each time with its set-up and clean-up, or as long as
+    /// `go_on` says so after a step; `found` are faults of the bring-up.
     pub fn run(
         &mut self,
         procedure: &Arc<Procedure>,
@@ -282,7 +284,8 @@ impl<L: UnitLink> Session<L> {
             began: self.bench.now(),
             tape: Tape::default(),
         };
-        let mut runner = Runner::new(procedure.clone(), options);
+        let mut rounds = Rounds::new(options.repeat);
+        let mut runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
         let mut progress = Progress {
             procedure,
             step: None,
@@ -325,20 +328,54 @@ impl<L: UnitLink> Session<L> {
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
             for event in runner.take_events() {
                 self.note(&event, &mut progress, sink);
-                sink(SessionEvent::Run(event));
+                if let Some(event) = rounds.take(event) {
+                    sink(SessionEvent::Run(event));
+                }
             }
             if !go_on() {
                 runner.leave();
             }
-            if poll == Poll::Done {
+            if poll == Poll::Running {
+                continue;
+            }
+            self.wait_with(false);
+            self.finish_window(sink);
+            let failed = |rounds: &Rounds, progress: &Progress<'_>| {
+                options.stop_on_fail && (!rounds.passed() || progress.faults > 0)
+            };
+            if !rounds.left() || link_lost || !go_on() || failed(&rounds, &progress) {
                 break;
             }
+            let settled = self.settle_again(&mut rounds, &mut progress, sink);
+            if !settled || failed(&rounds, &progress) {
+                break;
+            }
+            runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
         }
-        self.wait_with(false);
-        self.finish_window(sink);
+        sink(SessionEvent::Run(rounds.finished(self.bench.now())));
         if traced.get() {
             sink(SessionEvent::Recording(Box::new(taped)));
         }
+    }
+
+    /// Before the next repetition of a procedure the unit settles as between two procedures. False if stop was
+    /// pressed: then it is not begun.
+    fn settle_again(
+        &mut self,
+        rounds: &mut Rounds,
+        progress: &mut Progress<'_>,
+        sink: &mut dyn FnMut(SessionEvent),
+    ) -> bool {
+        progress.step = None;
+        progress.step_began = self.bench.now();
+        for fault in between_procedures(self) {
+            self.report(fault, progress, sink);
+        }
+        let stopped = self.stop.presses() > 0;
+        if stopped {
+            rounds.note(Verdict::Aborted, "stopped by the operator".into());
+        }
+        !stopped
     }
 
     /// Does again what is on a tape, up to `until`, and keeps every scan from `from` on as a trace.

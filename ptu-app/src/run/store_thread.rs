@@ -1,7 +1,5 @@
 //! The writer: one thread owns the database and takes what is to be recorded, in order.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -12,6 +10,7 @@ use fault_db::{
 };
 
 use crate::failure::Failure;
+use crate::stop::Stop;
 
 /// Entries that may wait for the disk; a bench that produces more waits for the writer.
 const QUEUE: usize = 4096;
@@ -37,25 +36,24 @@ enum Entry {
 pub struct RunStore {
     entries: SyncSender<Entry>,
     thread: JoinHandle<(Store, Result<(), StoreError>)>,
-    failed: Arc<AtomicBool>,
     /// The run's id.
     pub id: Id,
 }
 
 impl RunStore {
-    /// Begins the run: its row is on the disk when this returns.
+    /// Begins the run: its row is on the disk when this returns. Should writing fail later, `stop` is pressed
+    /// at once: nobody drives a unit for a run that is not kept.
     ///
     /// # Errors
     /// The database does not take it.
-    pub fn begin(store: Store, record: RunRecord) -> Result<Self, Failure> {
+    pub fn begin(store: Store, record: RunRecord, stop: &Stop) -> Result<Self, Failure> {
         let (entries, receiver) = mpsc::sync_channel(QUEUE);
         let (begun, beginning) = mpsc::sync_channel(1);
-        let failed = Arc::new(AtomicBool::new(false));
-        let flag = failed.clone();
+        let stop = stop.clone();
         let thread = std::thread::Builder::new()
             .name("store".into())
             .spawn(move || {
-                let result = write(&store, &record, &receiver, &begun, &flag);
+                let result = write(&store, &record, &receiver, &begun, &stop);
                 (store, result)
             })
             .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
@@ -63,7 +61,6 @@ impl RunStore {
             Ok(id) => Ok(Self {
                 entries,
                 thread,
-                failed,
                 id,
             }),
             Err(_) => Err(match thread.join() {
@@ -71,11 +68,6 @@ impl RunStore {
                 _ => Failure::bench("the writer ended before it began"),
             }),
         }
-    }
-
-    /// Writing has failed: nothing recorded from now on is kept.
-    pub fn failed(&self) -> bool {
-        self.failed.load(Ordering::Relaxed)
     }
 
     /// Records a step.
@@ -123,7 +115,7 @@ fn write(
     record: &RunRecord,
     entries: &Receiver<Entry>,
     begun: &SyncSender<Id>,
-    failed: &AtomicBool,
+    stop: &Stop,
 ) -> Result<(), StoreError> {
     // Nothing is lost yet: a file that is locked is said as soon as any.
     let mut writer = RunWriter::begin(store, record)?;
@@ -131,8 +123,8 @@ fn write(
     let _ = begun.send(writer.id());
     let result = write_entries(&mut writer, entries);
     if result.is_err() {
-        failed.store(true, Ordering::Relaxed);
-        // The run is being stopped; what still comes is taken off the queue so that nobody waits.
+        stop.press_once();
+        // What still comes is taken off the queue so that nobody waits.
         entries.iter().for_each(drop);
     }
     result
@@ -204,7 +196,7 @@ mod tests {
             owner: String::new(),
             scripts: Vec::new(),
         };
-        let run = RunStore::begin(store, record).expect("begun");
+        let run = RunStore::begin(store, record, &Stop::default()).expect("begun");
         let id = run.id;
         let other = rusqlite::Connection::open(&file).expect("the database");
         other.execute_batch("BEGIN IMMEDIATE").expect("a lock");

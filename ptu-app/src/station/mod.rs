@@ -136,9 +136,7 @@ impl Station {
     ///
     /// Asked for again it does no more: clean-up is cut short only by [`stop_run`](Self::stop_run).
     pub fn stop_all(&self) {
-        if self.stop.presses() == 0 {
-            self.stop.press();
-        }
+        self.stop.press_once();
         self.send(Order::MakeSafe);
     }
 

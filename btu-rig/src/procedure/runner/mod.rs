@@ -1,4 +1,4 @@
-//! Runs one procedure: a state machine stepped once per I/O scan.
+//! Runs one procedure once: a state machine stepped once per I/O scan.
 //!
 //! Three rules. Safe outputs are the runner's duty: whatever happened, the last thing it does is
 //! [`Driver::make_safe`], until the driver confirms or [`SAFE_WITHIN`] is over. Clean-up always
@@ -56,7 +56,7 @@ enum Stop {
     CutShort,
 }
 
-/// Runs one procedure.
+/// Runs one procedure once.
 #[derive(Debug)]
 pub struct Runner {
     procedure: Arc<Procedure>,
@@ -81,10 +81,10 @@ pub struct Runner {
 }
 
 impl Runner {
-    /// A runner that has not begun.
-    pub fn new(procedure: Arc<Procedure>, options: RunOptions) -> Self {
+    /// A runner that has not begun, for one of the procedure's repetitions, `round` of them before it.
+    pub fn new(procedure: Arc<Procedure>, options: RunOptions, round: u32) -> Self {
         Self {
-            schedule: schedule(&procedure, &options),
+            schedule: schedule(&procedure, &options, round),
             captured: vec![None; procedure.slots],
             procedure,
             options,

@@ -17,7 +17,7 @@ pub enum PromptPolicy {
 pub struct RunOptions {
     /// Places of the chosen steps; `None` = all.
     pub chosen: Option<Vec<usize>>,
-    /// How often the chosen steps are run through.
+    /// How often the procedure is run, each time with set-up and clean-up.
     pub repeat: u32,
     /// Skip the rest after the first step that did not pass.
     pub stop_on_fail: bool,
@@ -58,20 +58,18 @@ impl Turn {
     }
 }
 
-/// Rounds of the chosen steps, each with its own repetitions.
-pub(super) fn schedule(procedure: &Procedure, options: &RunOptions) -> Vec<Turn> {
+/// The chosen steps, each with its own repetitions, in one of the procedure's, counted from 0.
+pub(super) fn schedule(procedure: &Procedure, options: &RunOptions, round: u32) -> Vec<Turn> {
     let all: Vec<usize> = (0..procedure.steps.len()).collect();
     let chosen = options.chosen.as_ref().unwrap_or(&all);
     let mut turns = Vec::new();
-    for round in 0..options.repeat {
-        for &index in chosen.iter().filter(|&&i| i < procedure.steps.len()) {
-            let repeat = procedure.steps[index].repeat;
-            turns.extend((1..=repeat).map(|k| Turn {
-                index,
-                number: round * repeat + k,
-                of: options.repeat * repeat,
-            }));
-        }
+    for &index in chosen.iter().filter(|&&i| i < procedure.steps.len()) {
+        let repeat = procedure.steps[index].repeat;
+        turns.extend((1..=repeat).map(|k| Turn {
+            index,
+            number: round * repeat + k,
+            of: options.repeat * repeat,
+        }));
     }
     turns
 }

@@ -38,24 +38,23 @@ impl Runner {
             if idle && self.holds_back(|| turn.name(step), now) {
                 return;
             }
-            if idle && !self.start_step(step, turn, now, sample) {
-                continue;
+            if !idle || self.start_step(step, turn, now, sample) {
+                let Phase::Steps {
+                    live: Some(live), ..
+                } = &mut self.phase
+                else {
+                    return;
+                };
+                let scan = Scan {
+                    now,
+                    sample,
+                    captured: &self.captured,
+                };
+                if !live.advance(step, scan, operator, driver, &mut self.out) {
+                    return;
+                }
+                self.finish_step(now, sample, false);
             }
-            let Phase::Steps {
-                live: Some(live), ..
-            } = &mut self.phase
-            else {
-                return;
-            };
-            let scan = Scan {
-                now,
-                sample,
-                captured: &self.captured,
-            };
-            if !live.advance(step, scan, operator, driver, &mut self.out) {
-                return;
-            }
-            self.finish_step(now, sample, false);
             if self.options.one_by_one {
                 return;
             }
@@ -76,6 +75,7 @@ impl Runner {
             }
             Truth::NoData(lack) => {
                 self.pass_over(turn, now, Verdict::Error, &format!("its condition: {lack}"));
+                self.stop_unless_passed(turn, Verdict::Error, now);
                 return false;
             }
         }
@@ -127,8 +127,14 @@ impl Runner {
             measurements: end.measurements,
         }));
         self.verdict = self.verdict.and(end.verdict);
+        self.stop_unless_passed(turn, end.verdict, now);
+    }
+
+    /// Skips the rest after a step that did not pass, if it is to be so.
+    fn stop_unless_passed(&mut self, turn: Turn, verdict: Verdict, now: Instant) {
+        let step = &self.procedure.steps[turn.index];
         let stops = self.options.stop_on_fail || step.on_fail == OnFail::Stop;
-        if stops && end.verdict != Verdict::Passed {
+        if stops && verdict != Verdict::Passed {
             let name = turn.name(step);
             self.skip_rest(now, &format!("not run, \"{name}\" did not pass"));
         }

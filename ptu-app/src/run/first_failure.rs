@@ -1,0 +1,63 @@
+//! Where a run ends that is to end with its first failure.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::SyncSender;
+
+use btu_rig::procedure::{RunEvent, Verdict};
+
+use super::session::SessionEvent;
+
+/// The first procedure, in the order of the run, that did not pass.
+///
+/// Whoever runs procedures notes it before the stream of that procedure ends, and asks before the next begins.
+/// Whoever records them asks when the streams of all before have ended, so that the record ends with that
+/// procedure however many benches work side by side: what one of them has begun after it is given up.
+pub(super) struct FirstFailure {
+    ends_run: bool,
+    place: AtomicUsize,
+}
+
+impl FirstFailure {
+    /// None so far; `ends_run` = the run is to end with it.
+    pub(super) fn new(ends_run: bool) -> Self {
+        Self {
+            ends_run,
+            place: AtomicUsize::new(usize::MAX),
+        }
+    }
+
+    /// Whether the procedure with this place belongs to the run, as far as is known now; for good once all
+    /// before it are over.
+    pub(super) fn admits(&self, place: usize) -> bool {
+        place <= self.place.load(Ordering::Acquire)
+    }
+
+    /// Runs the procedure with this place, noting whether it passes. `run` is given where its events go, and
+    /// what says after each step whether to go on.
+    pub(super) fn watch(
+        &self,
+        place: usize,
+        sender: SyncSender<SessionEvent>,
+        run: impl FnOnce(&mut dyn FnMut(SessionEvent), &dyn Fn() -> bool),
+    ) {
+        let mut sink = |event: SessionEvent| {
+            if self.ends_run && is_failure(&event) {
+                self.place.fetch_min(place, Ordering::AcqRel);
+            }
+            // The collector listens until the stream ends, or wants no more of it.
+            drop(sender.send(event));
+        };
+        run(&mut sink, &|| self.admits(place));
+    }
+}
+
+/// A fault that was found while a unit was brought up fails no step, but the run.
+fn is_failure(event: &SessionEvent) -> bool {
+    match event {
+        SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
+            !matches!(verdict, Verdict::Passed | Verdict::Skipped)
+        }
+        SessionEvent::Fault(_) => true,
+        _ => false,
+    }
+}

@@ -1,0 +1,88 @@
+//! The repetitions of a procedure: whoever listens hears one procedure, with the steps of all of them.
+
+use btu_rig::procedure::{RunEvent, Verdict};
+use protocol::Instant;
+
+/// Different messages of repetitions that are kept; what went wrong in thousands is told by the first few.
+const MESSAGES: usize = 8;
+
+/// How many repetitions of a procedure are over, and what they came to.
+pub(super) struct Rounds {
+    of: u32,
+    over: u32,
+    verdict: Verdict,
+    messages: Vec<String>,
+    /// Messages that found no room.
+    more: u32,
+}
+
+impl Rounds {
+    /// None over of so many.
+    pub(super) fn new(of: u32) -> Self {
+        Self {
+            of,
+            over: 0,
+            verdict: Verdict::Skipped,
+            messages: Vec::new(),
+            more: 0,
+        }
+    }
+
+    /// How many are over: the place of the present one, from 0.
+    pub(super) fn over(&self) -> u32 {
+        self.over
+    }
+
+    /// Whether any are left.
+    pub(super) fn left(&self) -> bool {
+        self.over < self.of
+    }
+
+    /// Whether all so far passed.
+    pub(super) fn passed(&self) -> bool {
+        matches!(self.verdict, Verdict::Passed | Verdict::Skipped)
+    }
+
+    /// What the present repetition says, as the whole procedure says it: the procedure begins with the first,
+    /// and each one's end is kept for [`finished`](Self::finished).
+    pub(super) fn take(&mut self, event: RunEvent) -> Option<RunEvent> {
+        match event {
+            RunEvent::ProcedureStarted { steps, at } => {
+                let steps = steps * self.of as usize;
+                (self.over == 0).then_some(RunEvent::ProcedureStarted { steps, at })
+            }
+            RunEvent::ProcedureFinished {
+                verdict, message, ..
+            } => {
+                self.note(verdict, message);
+                self.over += 1;
+                None
+            }
+            other => Some(other),
+        }
+    }
+
+    /// Takes note of something beside the steps.
+    pub(super) fn note(&mut self, verdict: Verdict, message: String) {
+        self.verdict = self.verdict.and(verdict);
+        if message.is_empty() || self.messages.contains(&message) {
+        } else if self.messages.len() < MESSAGES {
+            self.messages.push(message);
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// The end of the procedure.
+    pub(super) fn finished(self, at: Instant) -> RunEvent {
+        let mut messages = self.messages;
+        if self.more > 0 {
+            messages.push(format!("and {} more", self.more));
+        }
+        RunEvent::ProcedureFinished {
+            verdict: self.verdict,
+            message: messages.join("; "),
+            at,
+        }
+    }
+}

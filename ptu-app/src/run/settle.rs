@@ -1,0 +1,56 @@
+//! A unit between power-up and its first procedure, and between one procedure and the next.
+
+use btu_rig::procedure::UnitEvent;
+use btu_rig::rig::{Bench, UnitLink};
+use protocol::Duration;
+use protocol::event::Event;
+use protocol::signal::{Sample, Signal};
+
+use super::fault_watch::{self, FaultSeen};
+use super::session::Session;
+
+/// Time a unit may take from power-up, or from first contact, until it is ready.
+pub(crate) const READY_WITHIN: Duration = Duration::from_ms(8_000);
+/// Quiet time after a unit is ready, before anything is judged.
+const SETTLE: Duration = Duration::from_ms(500);
+/// How often that is waited for, on a computer that is held up.
+const SETTLES: usize = 3;
+
+/// Waits until the unit has settled. What the last procedure's end still makes it log is not the next one's,
+/// but the train's equipment may break at any time, and nobody else would tell.
+pub(super) fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<FaultSeen> {
+    let mut found = Vec::new();
+    let mut seen = |entry: &UnitEvent, at, sample: &Sample| {
+        if Event::from_code(entry.code).is_some_and(Event::about_train)
+            && fault_watch::is_fault(entry)
+        {
+            found.push(fault_watch::of_event(entry, at, sample));
+        }
+    };
+    // A bench that was held up has made the unit brake, and it has to settle again.
+    for _ in 0..SETTLES {
+        session.catch_up(&mut seen);
+        session.was_held_up();
+        session.idle(READY_WITHIN, &mut seen, settled());
+        if !session.was_held_up() {
+            break;
+        }
+    }
+    found
+}
+
+/// Whether the unit is ready and its log read, [`SETTLE`] after it first was; asked at each scan.
+pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
+    let mut quiet_since = None;
+    move |bench| {
+        if !started(bench) || !bench.rig().log_up_to_date() {
+            return false;
+        }
+        let since = *quiet_since.get_or_insert(bench.now());
+        bench.now().since(since) >= SETTLE
+    }
+}
+
+pub(super) fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
+    bench.rig().sample().get(Signal::Started) == Some(1.0)
+}
