@@ -7,8 +7,11 @@ use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-use common::Place;
+use common::served::Unit;
 use common::steady::steadily;
+use common::{Place, number, scripts, text};
+use protocol::link::{End, Link};
+use protocol::message::KeepAlive;
 
 /// Time in which `ptu` must have given up, with room for a busy machine.
 const GIVES_UP_WITHIN: Duration = Duration::from_secs(60);
@@ -31,6 +34,9 @@ fn fails(unit: &str, words: &[&str]) {
     assert_eq!(run["run"]["verdict"], "error");
     assert_eq!(run["run"]["state"], "finished");
 }
+
+/// What a run may take beside its bench time.
+const BESIDE_S: f64 = 2.0;
 
 /// Takes one client and does this with it on a thread of its own.
 fn peer(act: impl FnOnce(TcpStream) + Send + 'static) -> SocketAddr {
@@ -148,4 +154,107 @@ fn a_unit_that_hangs_up() {
         &format!("tcp:{address}"),
         &[&address.to_string(), "check the cable"],
     );
+}
+
+/// Another tester that has the unit, until this is dropped.
+struct Other {
+    address: SocketAddr,
+    leaves: std::sync::mpsc::Sender<()>,
+}
+
+impl Other {
+    fn on(unit: &Unit) -> Self {
+        let mut stream = TcpStream::connect(&unit.port).expect("the unit");
+        let address = stream.local_addr().expect("its address");
+        let (leaves, stays) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            let mut link = Link::new(End::Bench);
+            for ms in (0..).step_by(100) {
+                let mut frame = Vec::new();
+                let now = protocol::Instant::from_ms(ms);
+                link.send(now, &KeepAlive { session: 0 }.into(), &mut frame);
+                stream.write_all(&frame).expect("the unit listens");
+                let waited = stays.recv_timeout(Duration::from_millis(100));
+                if waited != Err(std::sync::mpsc::RecvTimeoutError::Timeout) {
+                    return;
+                }
+            }
+        });
+        Self { address, leaves }
+    }
+}
+
+#[test]
+fn a_unit_that_another_tester_has_says_so_and_is_had_when_that_one_leaves() {
+    steadily(|| {
+        let unit = Unit::on_tcp(&[]);
+        let other = Other::on(&unit);
+        let by = other.address.to_string();
+        let taken = "the unit is taken by another tester";
+        fails(&unit.address, &[taken, &by, "wait until it has left"]);
+        let place = Place::new();
+        place
+            .ptu(&["faults", "import", "--unit", &unit.address])
+            .exits(3)
+            .explains(&[taken, &by]);
+        drop(other.leaves);
+        place
+            .ptu(&["run", "tcms/link", "--unit", &unit.address])
+            .exits(0);
+    });
+}
+
+/// Goal: nobody waits for what is not measured. Method: a short run on both kinds of port, the second right after
+/// the first.
+#[test]
+fn a_run_on_a_port_takes_little_more_than_its_bench_time() {
+    steadily(|| {
+        for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
+            let place = Place::new();
+            for _ in 0..2 {
+                let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
+                said.exits(0);
+                let run = &report["run"];
+                let beside_s = number(&run["wall_time_s"]) - number(&run["bench_time_s"]);
+                assert!(beside_s < BESIDE_S, "{beside_s} s on {}", unit.address);
+            }
+        }
+    });
+}
+
+#[test]
+fn a_unit_with_another_configuration_is_told_at_once() {
+    steadily(|| {
+        let place = Place::new();
+        let read = |name: &str| std::fs::read_to_string(scripts().join(name)).expect(name);
+        for folder in ["units", "lines"] {
+            std::fs::create_dir(place.path(folder)).expect("a folder");
+        }
+        place.write(
+            "units/sg100.toml",
+            &(read("units/sg100.toml") + "# another\n"),
+        );
+        place.write("lines/line8.toml", &read("lines/line8.toml"));
+        let unit = Unit::on_tcp(&["--scripts", &place.text_path("")]);
+        place
+            .ptu(&["run", "tcms/link", "--unit", &unit.address])
+            .exits(3)
+            .explains(&["unit configuration", "checksum", "--unit-config"]);
+        let run = &place.json(&["runs", "show", "latest", "--json"])["run"];
+        assert!(number(&run["wall_time_s"]) < BESIDE_S, "{run}");
+    });
+}
+
+/// Goal: a unit without a serial number is no unknown one. Method: its run, and one that reached nobody.
+#[test]
+fn a_unit_without_a_serial_number_is_shown_as_one() {
+    steadily(|| {
+        let unit = Unit::on_tcp(&["--serial-no", ""]);
+        let place = Place::new();
+        let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
+        said.exits(0);
+        assert_eq!(text(&report["run"]["unit_serial"]), "(no serial number)");
+        let (_, report) = place.run(&["tcms/link", "--serial-no", "A\u{1b}[2J"]);
+        assert_eq!(text(&report["run"]["unit_serial"]), "A\\x1b[2J");
+    });
 }

@@ -2,7 +2,9 @@
 
 mod common;
 
+use common::terminal::Terminal;
 use common::{Place, has_shape, list, number, scripts, text};
+use rustix::process::Signal;
 use serde_json::Value;
 
 /// Keys of a run that others rely on, and the kinds of their values.
@@ -281,4 +283,21 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
         said.exits(2).explains(&[words]);
     }
     assert!(!place.path("mine.toml").exists());
+}
+
+/// Goal: who drives by keys gets the terminal back as it was, however that ends. Method: each polite signal.
+#[test]
+fn keys_give_the_terminal_back_when_the_drive_is_told_to_end() {
+    for signal in [Signal::HUP, Signal::TERM, Signal::INT] {
+        let place = Place::new();
+        let terminal = Terminal::open();
+        let before = terminal.settings();
+        let drive = terminal.start(&place.command(&["drive", "--manual", "keys"]));
+        terminal.until_keys_are_taken();
+        assert_eq!(terminal.told(drive, signal), Some(130), "{signal:?}");
+        let after = terminal.settings();
+        assert_eq!(after.local_modes, before.local_modes, "{signal:?}");
+        let codes = |settings: &rustix::termios::Termios| format!("{:?}", settings.special_codes);
+        assert_eq!(codes(&after), codes(&before), "{signal:?}");
+    }
 }

@@ -227,10 +227,10 @@ impl<'a> Shown<'a> {
         self.ends_well();
     }
 
-    /// Tells it to end, as a system that is shut down does.
-    fn terminate(self) {
+    /// Tells it to end, as a system that is shut down does, or a terminal that is closed.
+    fn tell(self, signal: &str) {
         let id = self.child.id().to_string();
-        let told = Command::new("kill").args(["-TERM", &id]).status();
+        let told = Command::new("kill").args(["-s", signal, &id]).status();
         assert!(told.expect("kill starts").success());
         self.ends_well();
     }
@@ -327,7 +327,7 @@ fn every_page_is_shown_on_a_real_display_in_both_languages() {
 /// window closed, or told to end, in the midst of it.
 #[test]
 fn a_window_closed_in_mid_run_leaves_a_closed_record() {
-    for told_to_end in [false, true] {
+    for told_to_end in [None, Some("TERM"), Some("HUP")] {
         let place = Place::new();
         let settings = Settings {
             page: Page::Procedures,
@@ -353,10 +353,9 @@ fn a_window_closed_in_mid_run_leaves_a_closed_record() {
             }
             place.ptu(&["runs", "show", "latest"]).code == Some(0)
         });
-        if told_to_end {
-            shown.terminate();
-        } else {
-            shown.close();
+        match told_to_end {
+            Some(signal) => shown.tell(signal),
+            None => shown.close(),
         }
         let runs = place.json(&["runs", "list", "--json"]);
         let [run] = list(&runs) else {

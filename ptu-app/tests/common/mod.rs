@@ -4,6 +4,7 @@
 
 pub mod served;
 pub mod steady;
+pub mod terminal;
 pub mod window;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,98 @@
+//! A terminal of its own for a program, which it loses when this is dropped.
+
+use std::fs::File;
+use std::io::Read;
+use std::os::fd::OwnedFd;
+use std::process::{Child, Command};
+use std::time::{Duration, Instant};
+
+use rustix::fs::{Mode, OFlags};
+use rustix::process::{Pid, Signal, kill_process};
+use rustix::pty::OpenptFlags;
+use rustix::termios::{LocalModes, Termios, tcgetattr};
+
+/// Longest time anything here takes to come about, also on a machine that is held up.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+pub struct Terminal {
+    /// Whoever looks at it; what is written there is read and passed over.
+    screen: OwnedFd,
+    line: OwnedFd,
+}
+
+impl Terminal {
+    pub fn open() -> Self {
+        let screen =
+            rustix::pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
+        let screen = screen.expect("a pseudo-terminal");
+        rustix::pty::grantpt(&screen).expect("granted");
+        rustix::pty::unlockpt(&screen).expect("unlocked");
+        let name = rustix::pty::ptsname(&screen, Vec::new()).expect("its name");
+        let line = rustix::fs::open(
+            &name,
+            OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC,
+            Mode::empty(),
+        );
+        rustix::fs::fcntl_setfl(&screen, OFlags::NONBLOCK).expect("a flag");
+        Self {
+            screen,
+            line: line.expect("its other side"),
+        }
+    }
+
+    /// Starts a program whose terminal this is, as a shell's is that somebody looks at.
+    pub fn start(&self, program: &Command) -> Child {
+        let line = || self.line.try_clone().expect("a copy");
+        Command::new("setsid")
+            .arg("--ctty")
+            .arg(program.get_program())
+            .args(program.get_args())
+            .current_dir(program.get_current_dir().expect("a folder"))
+            .envs(program.get_envs().filter_map(|(k, v)| Some((k, v?))))
+            .stdin(line())
+            .stdout(line())
+            .stderr(line())
+            .spawn()
+            .expect("it starts")
+    }
+
+    pub fn settings(&self) -> Termios {
+        tcgetattr(&self.line).expect("settings")
+    }
+
+    /// Passes over what was written, so that the writer goes on.
+    pub fn read(&self) {
+        let mut screen = File::from(self.screen.try_clone().expect("a copy"));
+        let mut chunk = [0; 4096];
+        while screen.read(&mut chunk).is_ok_and(|count| count > 0) {}
+    }
+
+    /// Waits until it takes keys as they are typed.
+    pub fn until_keys_are_taken(&self) {
+        let began = Instant::now();
+        while self.settings().local_modes.contains(LocalModes::ICANON) {
+            assert!(began.elapsed() < PATIENCE, "no keys are taken");
+            self.read();
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Sends a signal and gives the exit code.
+    pub fn told(&self, mut program: Child, signal: Signal) -> Option<i32> {
+        kill_process(Pid::from_child(&program), signal).expect("a signal");
+        ended(&mut program, || self.read())
+    }
+}
+
+/// Waits for a program's end, and gives its exit code.
+pub fn ended(program: &mut Child, meanwhile: impl Fn()) -> Option<i32> {
+    let began = Instant::now();
+    loop {
+        if let Some(status) = program.try_wait().expect("its state") {
+            return status.code();
+        }
+        assert!(began.elapsed() < PATIENCE, "it does not end");
+        meanwhile();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
