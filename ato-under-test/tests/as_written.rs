@@ -5,6 +5,7 @@ mod common;
 
 use std::path::Path;
 
+use ato_under_test::kernel::{LOG_CAPACITY, RUN_ROWS};
 use ato_under_test::{Setup, Unit};
 use common::Bench;
 use protocol::link::{End, Link};
@@ -139,6 +140,40 @@ fn every_enumeration_and_set_of_bits_towards_the_unit_has_a_rule() {
     }
     for (i, name) in rules.iter().enumerate() {
         assert!(!rules[..i].contains(name), "{name} twice");
+    }
+}
+
+#[test]
+fn the_prose_names_what_the_unit_keeps_and_is_configured_to() {
+    let text = described("WIRE.md");
+    let config = common::config();
+    let (tacho, link) = (&config.tacho, &config.link);
+    for phrase in [
+        format!("keeps the last {LOG_CAPACITY} entries"),
+        format!("up to {RUN_ROWS} rows"),
+        format!(
+            "at most {} km/h for {} ms",
+            tacho.standstill_kmh, tacho.standstill_ms
+        ),
+        format!(
+            "| 0 to {:.0} | the frame",
+            (config.ato.train.empty_kg / 100.0).floor()
+        ),
+        format!(
+            "**{} ms of silence** (unit configuration, `io_timeout_ms`)",
+            link.io_timeout_ms
+        ),
+        format!(
+            "after {} ms of silence or of a standing `alive`",
+            link.tcms_timeout_ms
+        ),
+        format!(
+            "steady for {} ms (unit\nconfiguration",
+            config.receiver.detect_ms
+        ),
+    ] {
+        let plain = |text: &str| text.replace('\n', " ");
+        assert!(plain(&text).contains(&plain(&phrase)), "not said: {phrase}");
     }
 }
 

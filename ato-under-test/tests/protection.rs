@@ -60,6 +60,41 @@ fn overspeed_goes_from_alarm_to_service_brake_to_emergency_brake() {
     assert!(!bench.braking());
 }
 
+/// Goal: who only forgets a button does not release a brake. Method: it is held since the train moved, and
+/// pressed while the cab is not active.
+#[test]
+fn the_emergency_brake_is_released_only_by_a_press_while_it_may_be() {
+    let mut bench = Bench::new(&[]);
+    bench.code("55");
+    bench.run(0.6);
+    bench.speed_kmh(63.0);
+    assert!(bench.until(1.0, Bench::braking).is_some());
+    bench.input.lines.insert(TrainLines::ACKNOWLEDGE);
+    bench.speed_kmh(0.0);
+    bench.run(3.0);
+    assert!(bench.braking(), "the button is held, not pressed");
+    bench
+        .input
+        .lines
+        .remove(TrainLines::ACKNOWLEDGE | TrainLines::HCR);
+    bench.run(0.2);
+    bench.input.lines.insert(TrainLines::ACKNOWLEDGE);
+    bench.run(0.2);
+    bench.input.lines.insert(TrainLines::HCR);
+    bench.run(0.5);
+    assert!(bench.braking(), "pressed in a cab that was not active");
+    bench.input.lines.remove(TrainLines::ACKNOWLEDGE);
+    bench.run(0.2);
+    bench.acknowledge();
+    assert!(!bench.braking());
+    bench.input.lines.remove(TrainLines::HCR);
+    bench.run(0.2);
+    assert!(bench.braking() && bench.status.eb_cause == EbCause::NotReleased);
+    bench.input.lines.insert(TrainLines::HCR);
+    bench.run(0.2);
+    assert!(!bench.braking(), "by itself");
+}
+
 /// The parameter of an event in the log.
 fn parameter(bench: &mut Bench, name: &str) -> i32 {
     let place = bench.events().iter().position(|event| *event == name);

@@ -345,6 +345,51 @@ mod tests {
         assert_eq!(counters.garbage(), frame.len() as u64 - 6);
     }
 
+    /// Time from the last frame of a tester until one is accepted of its successor, which begins `after_ms` later
+    /// with `seq` and speaks every 10 ms by a clock that is `behind_ms` behind.
+    fn refused_ms(after_ms: u64, seq: u16, behind_ms: u64) -> u64 {
+        const LAST_MS: u64 = 10_000;
+        let (mut unit, mut before) = (Link::new(End::Unit), Link::new(End::Bench));
+        let mut say = |sender: &mut Link, at_ms, stamp_ms| {
+            let mut frame = Vec::new();
+            sender.send(Instant::from_ms(stamp_ms), &Identify {}.into(), &mut frame);
+            unit.push(&frame);
+            unit.poll(Instant::from_ms(at_ms)).is_some()
+        };
+        for ms in (0..=LAST_MS).step_by(10) {
+            assert!(say(&mut before, ms, ms));
+        }
+        let mut successor = Link::new(End::Bench);
+        successor.next_seq[Channel::Ptu as usize] = seq;
+        let begins_ms = LAST_MS + after_ms;
+        let mut said = (begins_ms..).step_by(10);
+        let heard = said.find(|&ms| say(&mut successor, ms, ms - behind_ms.min(ms)));
+        heard.expect("it is heard in the end") - LAST_MS
+    }
+
+    /// Goal: as long as `WIRE.md` says a successor is refused on the same line, and no longer. Method: such that
+    /// begin at any time, by any clock, with numbers that continue the predecessor's or do not.
+    #[test]
+    fn a_successor_is_refused_for_two_seconds_at_most() {
+        let last_seq = 1000;
+        let longest = |seq| {
+            let clocks = (0..4000).step_by(50);
+            let all =
+                clocks.flat_map(|behind| (10..1500).step_by(70).map(move |after| (after, behind)));
+            let beside =
+                all.map(|(after, behind)| refused_ms(after, seq, behind).max(after) - after);
+            beside.max().expect("some")
+        };
+        let fits = longest(last_seq + 100);
+        let other = longest(last_seq + 5000);
+        assert!((1500..=2000).contains(&fits), "{fits} ms");
+        assert!((900..=1000).contains(&other), "{other} ms");
+        // Silence first, and numbers far away: heard at once.
+        for behind in (0..4000).step_by(50) {
+            assert_eq!(refused_ms(1100, last_seq + 5000, behind), 1100);
+        }
+    }
+
     #[test]
     fn both_ends_hear_each_other() {
         let (mut unit, mut bench) = (Link::new(End::Unit), Link::new(End::Bench));
