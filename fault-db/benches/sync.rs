@@ -104,6 +104,7 @@ fn sync(path: &Path, address: &str) -> Result<SyncOutcome, StoreError> {
     let mut options = SyncOptions {
         laptop: "bench",
         traces: true,
+        as_copy: false,
         is_alive: &|_| false,
         now_us: &|| common::T0_US,
         go_on: &mut |_| true,

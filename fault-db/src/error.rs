@@ -56,6 +56,44 @@ pub enum StoreError {
         /// The newest this crate knows.
         known: i32,
     },
+    /// Something is in the file that this program never made, or is no longer as it was made.
+    #[error("{} was altered by hand: {what}; nothing is written to it. Look at it with `db check` and `db query`, keep a copy of it as it is, then go on with a backup, or take out by hand what is not of this program and check it again", .path.display())]
+    Altered {
+        /// The database file.
+        path: PathBuf,
+        /// What was found first.
+        what: String,
+    },
+    /// The file is a copy from before what is known of it elsewhere.
+    #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]
+    EarlierCopy {
+        /// The database file.
+        path: PathBuf,
+        /// Entries in it.
+        here: i64,
+        /// Entries known elsewhere.
+        there: i64,
+    },
+    /// The file and what is known of it elsewhere went on from each other.
+    #[error("{} is a copy that went on by itself after entry {after} of its chain of seals: what is known there of it after that is not in it; bring what is new in it into the file itself with `db import`, or give it a name of its own with `db sync --as-copy`", .path.display())]
+    PartedCopy {
+        /// The database file.
+        path: PathBuf,
+        /// The last entry both have.
+        after: i64,
+    },
+    /// What was sealed and is known elsewhere is sealed as something else now.
+    #[error("the history in {} was rewritten after entry {after} of its chain of seals: {what} {id} is not what it was sealed as; nothing of it is taken. Keep the file as it is, and go on with a backup or a new file", .path.display())]
+    Rewritten {
+        /// The database file.
+        path: PathBuf,
+        /// The last entry that is as it was.
+        after: i64,
+        /// run, event or note.
+        what: String,
+        /// Which.
+        id: Id,
+    },
     /// An earlier schema that a read-only opening may not migrate.
     #[error("{} has the older schema {found} (this version reads {known}); open it once for writing to bring it up to date", .path.display())]
     OlderSchema {

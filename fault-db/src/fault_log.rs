@@ -5,6 +5,7 @@ use crate::error::StoreError;
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::record::RepairRecord;
+use crate::seal;
 use crate::server::said;
 use crate::settle::{last_words, settle};
 use crate::store::Store;
@@ -184,21 +185,25 @@ pub(crate) fn insert_knowing(
     if let Base::Server(_) = base {
         return said::insert_event(base, fault, event, known);
     }
-    base.execute(
-        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
+    let says = values![
+        event.id,
+        event.kind,
+        event.at_us,
+        event.who,
+        event.body,
+        event.state,
+        known.turn,
+        &known.follows[..],
+    ];
+    let mut row = says.to_vec();
+    row.extend(values![fault, known.seen]);
+    let added = base.execute(
+        "INSERT INTO fault_event(id, kind, at_us, who, body, state, turn, follows, fault, seen)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT (id) DO NOTHING",
-        &values![
-            event.id,
-            fault,
-            event.kind,
-            event.at_us,
-            event.who,
-            event.body,
-            event.state,
-            known.turn,
-            &known.follows[..],
-            known.seen
-        ],
+        &row,
     )?;
-    Ok(())
+    match added {
+        0 => Ok(()),
+        _ => seal::said::event(base, fault, event.id, &says, known.seen),
+    }
 }

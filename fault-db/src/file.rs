@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use crate::error::StoreError;
 use crate::functions;
+use crate::guard;
 use crate::part::Part;
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
 use crate::store::Synchronous;
@@ -42,6 +43,8 @@ pub(crate) fn connect(
     conn.busy_timeout(std::time::Duration::from_millis(busy_timeout_ms.into()))
         .map_err(failed)?;
     functions::register(&conn).map_err(failed)?;
+    let may_write = flags.contains(OpenFlags::SQLITE_OPEN_READ_WRITE);
+    guard::restrain(&conn, may_write).map_err(failed)?;
     conn.execute_batch(&format!("PRAGMA cache_size = -{CACHE_KIB}"))
         .map_err(failed)?;
     Ok(conn)
@@ -97,11 +100,11 @@ pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
     options.open(path).map(drop)
 }
 
+/// What has to be set before a file is brought up to date.
 pub(crate) fn set_up(
-    conn: &mut Connection,
+    conn: &Connection,
     version: i32,
     synchronous: Synchronous,
-    max_pages: Option<u32>,
 ) -> Result<(), rusqlite::Error> {
     if version == 0 {
         // Takes effect only before the first table.
@@ -112,11 +115,14 @@ pub(crate) fn set_up(
         Synchronous::Full => "PRAGMA synchronous = FULL",
         Synchronous::Normal => "PRAGMA synchronous = NORMAL",
     })?;
-    conn.execute_batch("PRAGMA foreign_keys = ON")?;
-    if version < SCHEMA_VERSION {
-        conn.set_transaction_behavior(TransactionBehavior::Immediate);
-        schema::migrate(conn)?;
-    }
+    conn.execute_batch("PRAGMA foreign_keys = ON")
+}
+
+/// What is set for recording, in a file that is up to date.
+pub(crate) fn set_up_to_record(
+    conn: &Connection,
+    max_pages: Option<u32>,
+) -> Result<(), rusqlite::Error> {
     // Each statement that sets off triggers keeps the pages it changes until it is done: in a file that
     // costs more than the rows. Only now, because migrating sorts more than fits in memory.
     conn.execute_batch("PRAGMA temp_store = MEMORY")?;

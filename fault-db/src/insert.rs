@@ -8,17 +8,20 @@ use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::record::{FaultRecord, MeasurementRecord, RunRecord, StepRecord, UnitRecord};
 use crate::run_writer::FaultStored;
+use crate::seal;
 
 pub(crate) fn insert_run(
     conn: &Connection,
     id: Id,
     record: &RunRecord,
+    sw_versions: &str,
 ) -> rusqlite::Result<(i64, i64)> {
-    let unit = upsert_unit(conn, &record.unit)?;
+    let unit = upsert_unit(conn, &record.unit, sw_versions)?;
     conn.prepare_cached(
         "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version,
-            scripts_sha256, unit_config_sha256, injected, owner, train)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
+            scripts_sha256, unit_config_sha256, injected, owner, train, unit_kind, unit_config_name,
+            sw_versions)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)",
     )?
     .execute(params![
         id,
@@ -34,6 +37,9 @@ pub(crate) fn insert_run(
         record.injected,
         record.owner,
         record.train,
+        record.unit.kind,
+        record.unit.config_name,
+        sw_versions,
     ])?;
     let run = conn.last_insert_rowid();
     let mut insert = conn.prepare_cached(
@@ -45,8 +51,7 @@ pub(crate) fn insert_run(
     Ok((run, unit))
 }
 
-fn upsert_unit(conn: &Connection, unit: &UnitRecord) -> rusqlite::Result<i64> {
-    let versions = json(&unit.sw_versions)?;
+fn upsert_unit(conn: &Connection, unit: &UnitRecord, versions: &str) -> rusqlite::Result<i64> {
     conn.prepare_cached(
         "INSERT INTO unit(serial, kind, config_name, sw_versions) VALUES (?1, ?2, ?3, ?4)
          ON CONFLICT(serial) DO UPDATE SET kind = excluded.kind,
@@ -131,7 +136,7 @@ pub(crate) fn insert_fault(
     place: &FaultPlace<'_>,
     ids: FaultIds,
     record: &FaultRecord,
-) -> SqlResult<FaultStored> {
+) -> SqlResult<(FaultStored, [u8; 32])> {
     let known = base.first(
         "SELECT seq, id, state FROM fault
          WHERE unit = ?1 AND code = ?2 AND lru = ?3 AND state <> 'closed'
@@ -156,7 +161,7 @@ pub(crate) fn insert_fault(
         Some(state) if acted_since(base, fault, place, record.at_us)? => state,
         Some(state) => state.next(FaultAction::Occur).unwrap_or(FaultState::Open),
     };
-    insert_occurrence(base, fault, place, ids.occurrence, record)?;
+    let digest = insert_occurrence(base, fault, place, ids.occurrence, record)?;
     base.execute(
         "UPDATE fault SET occurrences = occurrences + 1, state = ?2, severity = ?3,
             code_name = ?4, line = CASE WHEN ?5 < first_at_us THEN ?6 ELSE line END,
@@ -189,12 +194,13 @@ pub(crate) fn insert_fault(
         };
         insert_event(base, fault, &event)?;
     }
-    Ok(FaultStored {
+    let stored = FaultStored {
         fault: id,
         occurrence: ids.occurrence,
         is_new: before.is_none(),
         reopened,
-    })
+    };
+    Ok((stored, digest))
 }
 
 /// Somebody brought the fault to another state after this time. What was known when a run began came before
@@ -237,30 +243,33 @@ fn insert_occurrence(
     place: &FaultPlace<'_>,
     id: Id,
     record: &FaultRecord,
-) -> SqlResult<()> {
+) -> SqlResult<[u8; 32]> {
+    let says = values![
+        id,
+        record.step_index,
+        record.at_us,
+        record.bench_us,
+        &record.message,
+        json(&record.freeze)?,
+        record.code,
+        &record.lru,
+        place.line,
+        &record.code_name,
+        &record.severity,
+    ];
+    let digest = seal::run::occurrence(&says);
+    let mut row = Vec::from(says);
+    row.extend(values![fault, place.run, place.unit]);
     base.execute(
-        "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us, message,
-            freeze_json, unit, code, lru, line)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
-        &values![
-            id,
-            fault,
-            place.run,
-            record.step_index,
-            record.at_us,
-            record.bench_us,
-            &record.message,
-            json(&record.freeze)?,
-            place.unit,
-            record.code,
-            &record.lru,
-            place.line
-        ],
+        "INSERT INTO fault_occurrence(id, step_index, at_us, bench_us, message, freeze_json, code, lru,
+            line, code_name, severity, fault, run, unit)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
+        &row,
     )?;
-    Ok(())
+    Ok(digest)
 }
 
-fn json(value: &impl serde::Serialize) -> rusqlite::Result<String> {
+pub(crate) fn json(value: &impl serde::Serialize) -> rusqlite::Result<String> {
     serde_json::to_string(value)
         .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))
 }

@@ -9,6 +9,7 @@ use crate::error::StoreError;
 use crate::id::Id;
 use crate::packed;
 use crate::run_writer::RunWriter;
+use crate::seal;
 use crate::store::Store;
 
 /// Compression of the stimuli; they are a few kilobytes.
@@ -59,6 +60,14 @@ impl RunWriter<'_> {
                     reason: error.to_string(),
                 }
             })?;
+        let digest = seal::trace::of_recording(&values![
+            self.id(),
+            record.ordinal,
+            &record.procedure,
+            record.t0_bench_us,
+            &record.bench_json,
+            &stimuli[..],
+        ]);
         store.write(DOING, |conn| {
             let work = || -> rusqlite::Result<()> {
                 conn.prepare_cached(
@@ -81,7 +90,9 @@ impl RunWriter<'_> {
                 Ok(())
             };
             work().map_err(|error| store.failed(DOING, error))
-        })
+        })?;
+        self.seal.recording(record.ordinal, digest, traces);
+        Ok(())
     }
 }
 

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::base::{Base, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::seal;
 use crate::server::said;
 use crate::store::Store;
 
@@ -49,7 +50,7 @@ impl Store {
                          VALUES (?1, ?2, ?3, ?4, ?5)",
                         &values![id, seq, at_us, who, text],
                     )?;
-                    Ok(())
+                    seal::said::note(base, id, &values![id, run, at_us, who, text])
                 }
             };
             add().map_err(|error| self.failed(DOING, error))

@@ -10,10 +10,11 @@ use rusqlite::params;
 use crate::base::SqlError;
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps};
+use crate::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
 use crate::query::LOG_SOURCE;
 use crate::record::{FaultRecord, RunEnd, RunRecord, StepRecord};
-use crate::seal::seal;
+use crate::seal;
+use crate::seal::run::RunSeal;
 use crate::store::Store;
 use crate::trace::TraceData;
 
@@ -38,6 +39,8 @@ pub struct RunWriter<'a> {
     /// The last event the file knew when the run began.
     known_events: i64,
     waiting: Vec<StepRecord>,
+    /// Made of what is recorded, as it comes.
+    pub(crate) seal: RunSeal,
     last_index: Option<u32>,
     finished: bool,
 }
@@ -60,8 +63,11 @@ impl<'a> RunWriter<'a> {
     pub fn begin(store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
         const DOING: &str = "beginning a run";
         let id = store.mint()?;
+        let sw_versions = json(&record.unit.sw_versions);
+        let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
+        let seal = RunSeal::begin(id, record, &sw_versions);
         let (run, unit) = store.write(DOING, |conn| {
-            insert_run(conn, id, record).map_err(|error| store.failed(DOING, error))
+            insert_run(conn, id, record, &sw_versions).map_err(|error| store.failed(DOING, error))
         })?;
         let waiting = Vec::with_capacity(FLUSH_AT_STEPS);
         Ok(Self {
@@ -73,6 +79,7 @@ impl<'a> RunWriter<'a> {
             of_log: record.source.starts_with(LOG_SOURCE),
             known_events: store.last_event()?,
             waiting,
+            seal,
             last_index: None,
             finished: false,
         })
@@ -107,6 +114,7 @@ impl<'a> RunWriter<'a> {
             });
         }
         self.last_index = Some(step.index);
+        self.seal.step(&step);
         self.waiting.push(step);
         if self.waiting.len() >= FLUSH_AT_STEPS {
             self.flush()
@@ -149,13 +157,14 @@ impl<'a> RunWriter<'a> {
             occurrence: store.mint()?,
             event: store.mint()?,
         };
-        let stored = store.write(DOING, |conn| {
+        let (stored, digest) = store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
                 insert_fault(store.base(), &place, ids, record)
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))
         })?;
+        self.seal.occurrence(stored.occurrence, digest);
         self.waiting.clear();
         Ok(stored)
     }
@@ -163,7 +172,9 @@ impl<'a> RunWriter<'a> {
     /// Commits a trace and hangs it on occurrences of this store; none is allowed too.
     pub fn trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Result<Id, StoreError> {
         self.check_unfinished()?;
-        self.store.insert_trace(self.run, occurrences, trace)
+        let (id, digest) = self.store.insert_trace(self.run, occurrences, trace)?;
+        self.seal.trace(id, digest);
+        Ok(id)
     }
 
     /// Commits the waiting steps and the verdict, and verifies repairs that a passed run has proven. After
@@ -175,7 +186,7 @@ impl<'a> RunWriter<'a> {
         self.check_unfinished()?;
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
         let (unit, id, known_events) = (self.unit, self.id, self.known_events);
-        let origin = store.file_id()?;
+        let (says, digest) = self.seal.end(end);
         store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
@@ -187,7 +198,7 @@ impl<'a> RunWriter<'a> {
                 } = end;
                 let values = params![run, verdict, finished_at_us, bench_time_us, wall_time_us];
                 conn.prepare_cached(SQL)?.execute(values)?;
-                seal(store.base(), origin, run)
+                seal::append(store.base(), "run", id, &says, digest)
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
             store.verify_proven((unit, run, id), known_events, end)

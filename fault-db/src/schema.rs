@@ -1,7 +1,6 @@
 //! The schema's versions: one SQL file each, applied in order; `user_version` counts them.
 
 use rusqlite::Connection;
-use rusqlite_migration::{M, Migrations};
 
 /// Marks a SQLite file as ours: the letters `FTDB`.
 pub const APPLICATION_ID: i32 = 0x4654_4442;
@@ -9,17 +8,17 @@ pub const APPLICATION_ID: i32 = 0x4654_4442;
 /// The schema version this crate reads and writes.
 pub const SCHEMA_VERSION: i32 = STEPS.len() as i32;
 
-const STEPS: &[M<'static>] = &[
-    M::up(include_str!("schema/0001.sql")),
-    M::up(include_str!("schema/0002.sql")),
-    M::up(include_str!("schema/0003.sql")),
-    M::up(concat!(
+const STEPS: &[&str] = &[
+    include_str!("schema/0001.sql"),
+    include_str!("schema/0002.sql"),
+    include_str!("schema/0003.sql"),
+    concat!(
         include_str!("schema/0004.sql"),
         include_str!("schema/views.sql"),
         include_str!("schema/counts.sql"),
         include_str!("schema/words.sql")
-    )),
-    M::up(include_str!("schema/0005.sql")),
+    ),
+    include_str!("schema/0005.sql"),
 ];
 
 /// Makes what is counted from other rows anew.
@@ -28,15 +27,13 @@ pub(crate) const COUNTS: &str = include_str!("schema/counts.sql");
 /// Makes the words of notes anew.
 pub(crate) const WORDS: &str = include_str!("schema/words.sql");
 
-/// Brings a file to [`SCHEMA_VERSION`], all steps in one transaction.
-pub(crate) fn migrate(conn: &mut Connection) -> Result<(), rusqlite::Error> {
-    match Migrations::from_slice(STEPS).to_latest(conn) {
-        Ok(()) => Ok(()),
-        // Another process may have created the same file between our look and our transaction.
-        Err(_) if user_version(conn)? == SCHEMA_VERSION => Ok(()),
-        Err(rusqlite_migration::Error::RusqliteError { err, .. }) => Err(err),
-        Err(other) => Err(rusqlite::Error::ToSqlConversionFailure(Box::new(other))),
+/// Brings a file from its own schema version to another, in the caller's transaction.
+pub(crate) fn bring_to(conn: &Connection, version: usize) -> Result<(), rusqlite::Error> {
+    let from = usize::try_from(user_version(conn)?).unwrap_or(version);
+    for step in STEPS.get(from..version).unwrap_or_default() {
+        conn.execute_batch(step)?;
     }
+    conn.pragma_update(None, "user_version", version as i64)
 }
 
 /// The file's own schema version; 0 for a new one.
@@ -57,11 +54,9 @@ mod tests {
 
     #[test]
     fn the_steps_apply() {
-        let mut conn = Connection::open_in_memory().expect("a database in memory");
+        let conn = Connection::open_in_memory().expect("a database in memory");
         functions::register(&conn).expect("functions");
-        Migrations::from_slice(STEPS)
-            .to_latest(&mut conn)
-            .expect("every step applies to the one before");
+        bring_to(&conn, STEPS.len()).expect("every step applies to the one before");
     }
 
     /// Goal: a program killed in the middle of bringing a file up to date leaves the file it found.
@@ -100,14 +95,14 @@ mod tests {
         std::fs::copy(&path, &killed).expect("the file");
         let written = std::fs::copy(log(&path), log(&killed)).expect("its log");
         assert!(written > 100_000, "{written}: the work was under way");
-        let mut found = Connection::open(&killed).expect("opens");
+        let found = Connection::open(&killed).expect("opens");
         assert_eq!(user_version(&found).expect("readable"), 3);
         let one = |sql: &str| found.query_row(sql, [], |row| row.get::<_, String>(0));
         assert_eq!(one("PRAGMA integrity_check").expect("checked"), "ok");
         let train = one("SELECT train FROM run").expect_err("not a column yet");
         assert!(train.to_string().contains("no such column"), "{train}");
         functions::register(&found).expect("functions");
-        migrate(&mut found).expect("and it can be brought up to date");
+        bring_to(&found, STEPS.len()).expect("and it can be brought up to date");
         assert_eq!(user_version(&found).expect("readable"), SCHEMA_VERSION);
     }
 }

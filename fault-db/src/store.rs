@@ -7,16 +7,16 @@ use std::sync::Arc;
 
 use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 
-use crate::base::{Base, Row, Server, SqlError, SqlResult, Value, values};
+use crate::base::{Base, Row, Server, SqlError, SqlResult, Value};
 use crate::error::StoreError;
 use crate::file::{
     READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy,
-    make_private, set_up,
+    make_private, set_up, set_up_to_record,
 };
 use crate::id::{Id, IdSource};
 use crate::schema::SCHEMA_VERSION;
-use crate::seal::seal_all;
 use crate::trace::{Channel, TraceCodec, TraceError};
+use crate::{guard, schema, seal};
 
 /// More than the crate has statements that repeat.
 const STATEMENT_CACHE: usize = 64;
@@ -77,8 +77,6 @@ pub struct Store {
     base: Base,
     path: PathBuf,
     ids: Option<RefCell<IdSource>>,
-    /// Names the file for ever; none of a server, or before it was opened for writing.
-    file_id: Option<Id>,
     codec: RefCell<TraceCodec>,
     pub(crate) channel_sets: RefCell<BTreeMap<i64, Arc<[Channel]>>>,
 }
@@ -105,7 +103,7 @@ impl Store {
             | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let looked = connect(path, path, flags, options.busy_timeout_ms)
             .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
-        let (mut conn, version) = match looked {
+        let (conn, version) = match looked {
             // On a write-protected disk SQLite fails before it can say why; what can be read but not
             // opened for writing is read-only.
             Err(StoreError::CannotOpen { .. }) if Self::open_read_only(path).is_ok() => {
@@ -122,6 +120,7 @@ impl Store {
                 path: path.to_path_buf(),
             });
         }
+        refuse_strangers(&conn, path)?;
         if (1..SCHEMA_VERSION).contains(&version) {
             keep_copy(&conn, path, version)?;
         }
@@ -131,9 +130,10 @@ impl Store {
             max_pages,
             ..
         } = options;
-        set_up(&mut conn, version, synchronous, max_pages).map_err(failed)?;
-        let mut store = Self::of_file(conn, path, Some(ids))?;
-        store.file_id = Some(store.name_file()?);
+        set_up(&conn, version, synchronous).map_err(failed)?;
+        let store = Self::of_file(conn, path, Some(ids))?;
+        store.bring_up_to_date(version)?;
+        set_up_to_record(store.file()?, max_pages).map_err(failed)?;
         Ok(store)
     }
 
@@ -178,6 +178,16 @@ impl Store {
         }
     }
 
+    /// What is in this file and was not made by this program, or is no longer as it was made, in words. Who
+    /// opens it for reading may be told; for writing it is refused.
+    pub fn strangers(&self) -> Result<Vec<String>, StoreError> {
+        let Base::File(conn) = &self.base else {
+            return Ok(Vec::new());
+        };
+        let found = guard::strangers(conn, SCHEMA_VERSION);
+        found.map_err(|error| self.failed("looking at its tables", error))
+    }
+
     /// Waits so long for other writers of the file from now on. Opening is answered soon; what is under way
     /// already, where nobody waits for it, may well be more patient than give up what it has.
     ///
@@ -199,36 +209,40 @@ impl Store {
         self.ids.is_none()
     }
 
-    /// The file's own name, given to it once; runs recorded until then are sealed as they are found.
-    fn name_file(&self) -> Result<Id, StoreError> {
-        const DOING: &str = "naming the file";
-        let known = "SELECT value FROM about WHERE key = 'file_id'";
-        if let Some(id) = self.first(DOING, known, &[], |row| row.get(0))? {
-            return Ok(id);
-        }
-        let minted = self.mint()?;
-        self.change(DOING, |base| {
-            let name = || {
-                // Another program may have opened it, too.
-                if let Some(id) = base.first(known, &[], |row| row.get(0))? {
-                    return Ok(id);
+    /// Makes the tables of a new file, or brings those of an earlier version up to date, and begins its chain
+    /// of seals, all at once; the file's own name, given to it once.
+    fn bring_up_to_date(&self, version: i32) -> Result<Id, StoreError> {
+        const DOING: &str = "bringing it up to date";
+        if version < SCHEMA_VERSION {
+            let minted = self.mint()?;
+            return self.write(DOING, |conn| {
+                let failed = |error| self.failed(DOING, error);
+                // Another program may have been first.
+                let from = schema::user_version(conn).map_err(failed)?;
+                if from == SCHEMA_VERSION {
+                    return self.name();
                 }
-                base.execute(
-                    "INSERT INTO about(key, value) VALUES ('file_id', ?1)",
-                    &values![minted],
-                )?;
-                seal_all(base, minted)?;
-                Ok(minted)
-            };
-            name().map_err(|error: SqlError| self.failed(DOING, error))
+                schema::bring_to(conn, SCHEMA_VERSION as usize).map_err(failed)?;
+                seal::begin(&self.base, from, minted).map_err(|error| self.failed(DOING, error))
+            });
+        }
+        self.name()
+    }
+
+    /// The file's name; without it the chain of its seals is lost, and it is not for us to begin another.
+    fn name(&self) -> Result<Id, StoreError> {
+        let name = seal::own_name(&self.base);
+        let name = name.map_err(|error| self.failed("reading its name", error))?;
+        name.ok_or_else(|| StoreError::Altered {
+            path: self.path.clone(),
+            what: "the file's own name was taken out of it".to_owned(),
         })
     }
 
-    /// The name runs of this file are sealed with.
+    /// The name that what is said in this file is sealed with.
     pub(crate) fn file_id(&self) -> Result<Id, StoreError> {
-        self.file_id.ok_or_else(|| StoreError::ReadOnly {
-            path: self.path.clone(),
-        })
+        self.check_writable()?;
+        self.name()
     }
 
     /// Moves everything into the one file and closes it. Dropping closes it too, but cannot say
@@ -353,7 +367,7 @@ impl Store {
         StoreError::from_sql(&self.path, doing, error.into())
     }
 
-    fn check_writable(&self) -> Result<(), StoreError> {
+    pub(crate) fn check_writable(&self) -> Result<(), StoreError> {
         if self.is_read_only() {
             return Err(StoreError::ReadOnly {
                 path: self.path.clone(),
@@ -389,9 +403,31 @@ impl Store {
             base,
             path: path.to_path_buf(),
             ids: ids.map(RefCell::new),
-            file_id: None,
             codec: RefCell::new(codec),
             channel_sets: RefCell::default(),
         })
+    }
+}
+
+/// Refuses a file for writing that has something in it that no version of this program made.
+fn refuse_strangers(conn: &Connection, path: &Path) -> Result<(), StoreError> {
+    let look = || {
+        // One snapshot: another program may be bringing the file up to date this moment.
+        let _snapshot = conn.unchecked_transaction()?;
+        match schema::user_version(conn)? {
+            0 => Ok(Vec::new()),
+            version => guard::strangers(conn, version),
+        }
+    };
+    let strangers = look().map_err(|error| StoreError::from_sqlite(path, "opening", error))?;
+    match &strangers[..] {
+        [] => Ok(()),
+        [first, rest @ ..] => Err(StoreError::Altered {
+            path: path.to_path_buf(),
+            what: match rest.len() {
+                0 => first.clone(),
+                more => format!("{first}, and {more} more"),
+            },
+        }),
     }
 }

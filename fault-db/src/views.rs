@@ -36,9 +36,9 @@ mod tests {
 
     #[test]
     fn the_page_tells_of_every_column() {
-        let mut conn = Connection::open_in_memory().expect("a database in memory");
+        let conn = Connection::open_in_memory().expect("a database in memory");
         functions::register(&conn).expect("functions");
-        schema::migrate(&mut conn).expect("the schema");
+        schema::bring_to(&conn, schema::SCHEMA_VERSION as usize).expect("the schema");
         let sql = "SELECT v.name, c.name FROM sqlite_schema v, pragma_table_info(v.name) c
             WHERE v.type = 'view' ORDER BY 1, 2";
         let mut select = conn.prepare(sql).expect("a question");

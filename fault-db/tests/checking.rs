@@ -5,8 +5,8 @@ mod common;
 
 use std::path::Path;
 
-use common::{T0_US, end, fault, measurement, open, run_record, step};
-use fault_db::{Id, Problem, RepairRecord, RunWriter, Store, Verdict};
+use common::{T0_US, by_hand, end, fault, measurement, open, run_record, step};
+use fault_db::{Id, Problem, PruneRule, RepairRecord, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
 use tempfile::tempdir;
 
@@ -23,8 +23,8 @@ fn three_runs(store: &Store) -> Vec<Id> {
         if n == 0 {
             let repair = RepairRecord {
                 part: "eb_relay".to_owned(),
-                serial_old: None,
-                serial_new: None,
+                serial_old: Some("SN-1".to_owned()),
+                serial_new: Some("SN-2".to_owned()),
                 note: "replaced".to_owned(),
             };
             let at_us = T0_US + 60;
@@ -41,12 +41,6 @@ fn problems(store: &Store) -> Vec<Problem> {
     store.check().expect("checked").problems
 }
 
-fn by_hand(path: &Path, sql: &str) {
-    let conn = Connection::open(path).expect("opens");
-    conn.execute_batch(&format!("PRAGMA foreign_keys = OFF; {sql}"))
-        .unwrap_or_else(|error| panic!("{sql}: {error}"));
-}
-
 /// Goal: each way to make a run say something else than it did is found, and the run or seal is named.
 /// Method: rows changed behind the program's back; `{1}` stands for the second run's id.
 #[test]
@@ -54,8 +48,8 @@ fn whatever_is_changed_about_a_run_is_found() {
     let no_trace_of_run_2 = "DELETE FROM measurement WHERE run = 2; DELETE FROM step WHERE run = 2;
         DELETE FROM run_script WHERE run = 2; DELETE FROM fault_occurrence WHERE run = 2;
         DELETE FROM run WHERE seq = 2";
-    let no_run_2 = format!("{no_trace_of_run_2}; DELETE FROM seal WHERE run = 2");
-    let no_last_run = no_run_2.replace("= 2", "= 3");
+    let no_run_2 = format!("{no_trace_of_run_2}; DELETE FROM seal WHERE ordinal = 6");
+    let no_last_run = no_run_2.replace("= 2", "= 3").replace("= 6", "= 8");
     let changed = "run {1} was changed";
     let cases: &[(&str, &[&str])] = &[
         (
@@ -84,36 +78,39 @@ fn whatever_is_changed_about_a_run_is_found() {
         ),
         ("DELETE FROM run_script WHERE run = 2", &[changed]),
         (
-            "UPDATE seal SET digest = (SELECT digest FROM seal WHERE ordinal = 1) WHERE ordinal = 2",
-            &["seal 2 of file", changed],
+            "UPDATE seal SET digest = (SELECT digest FROM seal WHERE ordinal = 3) WHERE ordinal = 6",
+            &["seal 6 of file", changed],
         ),
         (
-            "UPDATE seal SET hash = zeroblob(32) WHERE ordinal = 2",
-            &["seal 2 of file", "seal 3 of file"],
+            "UPDATE seal SET hash = zeroblob(32) WHERE ordinal = 6",
+            &["seal 6 of file", "seal 7 of file"],
         ),
         (
-            "UPDATE seal SET run = 5 - run WHERE ordinal > 1",
-            &["run {2} was changed", changed],
+            "UPDATE seal SET id = (SELECT id FROM run WHERE seq = 3) WHERE ordinal = 6",
+            &[
+                "run {2} was changed",
+                "run {1} was finished and has no seal",
+            ],
         ),
         (
             &no_run_2,
             &[
-                "before it runs were taken out, number 2",
+                "before it seals were taken out, number 6",
                 "1 runs that were recorded here",
             ],
         ),
         (
             no_trace_of_run_2,
-            &["seal 2 of file", "1 runs that were recorded here"],
+            &["seal 6 of file", "1 runs that were recorded here"],
         ),
         (&no_last_run, &["1 runs that were recorded here"]),
         (
-            "DELETE FROM seal WHERE ordinal = 2",
-            &["number 2", "run {1} was finished and has no seal"],
+            "DELETE FROM seal WHERE ordinal = 6",
+            &["number 6", "run {1} was finished and has no seal"],
         ),
         (
-            "DELETE FROM seal WHERE ordinal < 3",
-            &["number 1 to 2", "{0} was finished", "{1} was finished"],
+            "DELETE FROM seal WHERE ordinal < 6",
+            &["number 1 to 5", "the beginning", "{0} was finished"],
         ),
         (
             "UPDATE run SET verdict = NULL WHERE seq = 2",
@@ -165,12 +162,12 @@ fn what_follows_from_other_rows_is_held_against_them_and_made_anew() {
         ),
         ("DELETE FROM tally", "tally", "counts by day or month"),
         (
-            "DROP TRIGGER repair_known_better; UPDATE repair SET opened_at_us = 5",
+            "UPDATE repair SET opened_at_us = 5",
             "tally",
             "1 rows of the table of repairs",
         ),
         (
-            "DROP TRIGGER repair_known_better; UPDATE repair SET back_at_us = 5",
+            "UPDATE repair SET back_at_us = 5",
             "tally",
             "rows of the table of repairs",
         ),
@@ -202,7 +199,7 @@ fn what_follows_from_other_rows_is_held_against_them_and_made_anew() {
         (
             "UPDATE fault SET occurrences = 9 WHERE code = 1",
             "count",
-            "says 9 occurrences, has 1",
+            "does not stand as its occurrences and events say",
         ),
     ] {
         let dir = tempdir().expect("a directory");
@@ -220,7 +217,7 @@ fn what_follows_from_other_rows_is_held_against_them_and_made_anew() {
             "{sql}: {found:?}"
         );
         assert!(problem.advice.contains("db rebuild"), "{problem:?}");
-        store.rebuild().expect("made anew");
+        store.rebuild(T0_US).expect("made anew");
         assert_eq!(problems(&store), [], "{sql}");
     }
 }
@@ -274,4 +271,340 @@ fn writes_together_are_all_or_nothing() {
         .expect("the rest goes on");
     assert_eq!(count(&store), 3);
     assert_eq!(problems(&store), []);
+}
+
+/// What a file with a little of everything says, and its path.
+fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
+    let path = dir.join("a.db");
+    let store = open(&path);
+    let mut runs = three_runs(&store);
+    let at_us = T0_US + 70;
+    (store.add_run_note(runs[1], "kim", "door 3 rattles", at_us)).expect("noted");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-8")).expect("begun");
+    let stored = writer.fault(&fault(9, T0_US)).expect("stored");
+    let samples = common::realistic_trace(40, 3);
+    let trace = writer
+        .trace(&[stored.occurrence], &samples)
+        .expect("stored");
+    let recording = fault_db::RecordingRecord {
+        ordinal: 1,
+        procedure: "atp.overspeed".to_owned(),
+        t0_bench_us: 0,
+        bench_json: "{}".to_owned(),
+        stimuli_json: "[]".to_owned(),
+    };
+    writer.recording(&recording, &[trace]).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    runs.push(writer.id());
+    drop(writer);
+    let acknowledged = store.acknowledge(stored.fault, "lee", "", T0_US + 80);
+    acknowledged.expect("acknowledged");
+    assert_eq!(problems(&store), []);
+    (path, store, runs)
+}
+
+/// Goal: whatever a row says, a change of it is found, and no `rebuild` takes the finding away.
+#[test]
+fn every_row_that_says_something_is_covered() {
+    let note = "door 3 rattles";
+    for (sql, expected) in [
+        ("UPDATE run_note SET text = 'all fine'", "note"),
+        ("UPDATE run_note SET who = 'lee'", "note"),
+        ("UPDATE run_note SET at_us = at_us + 1", "note"),
+        ("DELETE FROM run_note", "its note was taken out"),
+        (
+            "INSERT INTO run_note SELECT 9, randomblob(16), run, at_us, who, text FROM run_note",
+            "one of the notes",
+        ),
+        (
+            "UPDATE fault_event SET body = replace(body, 'SN-2', 'SN-3') WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET at_us = 5 WHERE kind = 'acknowledged'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET who = 'kim' WHERE kind = 'acknowledged'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET state = 'closed' WHERE kind = 'acknowledged'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET turn = 9 WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET seen = 9 WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET fault = fault + 1 WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "DELETE FROM fault_event WHERE kind = 'repair'",
+            "its event was taken out",
+        ),
+        (
+            "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
+             VALUES (randomblob(16), 1, 'closed', 5, 'x', '', 'closed')",
+            "one of the events",
+        ),
+        (
+            "UPDATE fault SET code_name = 'OTHER' WHERE seq = 1",
+            "has a name or a severity",
+        ),
+        (
+            "UPDATE fault SET severity = 'minor' WHERE seq = 1",
+            "has a name or a severity",
+        ),
+        (
+            "UPDATE fault SET state = 'closed' WHERE seq = 1",
+            "does not stand as",
+        ),
+        (
+            "UPDATE fault SET first_at_us = 5 WHERE seq = 1",
+            "does not stand as",
+        ),
+        (
+            "UPDATE fault SET last_at_us = last_at_us + 5 WHERE seq = 1",
+            "does not stand as",
+        ),
+        (
+            "UPDATE fault SET code = 77 WHERE seq = 1",
+            "is of another unit, code or part",
+        ),
+        (
+            "UPDATE fault_occurrence SET code_name = 'OTHER' WHERE seq = 1",
+            "was changed after it was sealed",
+        ),
+        (
+            "UPDATE fault_occurrence SET severity = 'minor' WHERE seq = 1",
+            "was changed after it was sealed",
+        ),
+        (
+            "UPDATE fault_occurrence SET at_us = 5 WHERE seq = 1",
+            "was changed after",
+        ),
+        (
+            "UPDATE fault_occurrence SET line = 'x' WHERE seq = 1",
+            "was changed after",
+        ),
+        ("UPDATE trace SET t0_us = t0_us + 1", "trace"),
+        ("UPDATE trace SET trigger_row = 1", "trace"),
+        ("UPDATE trace SET recording = NULL", "trace"),
+        ("UPDATE fault_occurrence SET trace = NULL", "trace"),
+        ("DELETE FROM trace", "no seal says that it was pruned"),
+        ("DELETE FROM recording", "no seal says that it was pruned"),
+        ("UPDATE recording SET bench_json = '[]'", "recording"),
+        ("UPDATE recording SET t0_bench_us = 7", "recording"),
+        (
+            "UPDATE run SET sw_versions = '{}' WHERE seq = 1",
+            "was changed after",
+        ),
+        (
+            "UPDATE run SET owner = '' WHERE seq = 1",
+            "was changed after",
+        ),
+        (
+            "UPDATE unit SET sw_versions = '{}'",
+            "what no run found it to be",
+        ),
+        (
+            "UPDATE unit SET config_name = 'x'",
+            "what no run found it to be",
+        ),
+    ] {
+        let dir = tempdir().expect("a directory");
+        let (path, store, _) = a_little_of_everything(dir.path());
+        by_hand(&path, sql);
+        let all = problems(&store);
+        let named = |all: &[Problem]| all.iter().any(|found| found.detail.contains(expected));
+        assert!(named(&all), "{sql}: {all:#?}");
+        let _ = note;
+        store.rebuild(T0_US).expect("counted anew");
+        let stays = store.check().expect("checked");
+        let told = stays.remarks.join("; ").contains("counted anew at");
+        assert!(named(&stays.problems) || told, "{sql}: {stays:#?}");
+    }
+}
+
+/// Goal: a trigger that somebody planted is named and nothing is written to its file, which can still be read.
+#[test]
+fn a_planted_trigger_is_refused_by_name() {
+    for (sql, what) in [
+        (
+            "CREATE TRIGGER better AFTER UPDATE OF verdict ON run WHEN NEW.verdict = 'failed'
+             BEGIN UPDATE run SET verdict = 'passed' WHERE seq = NEW.seq; END",
+            "the trigger \"better\" on run is not of this program",
+        ),
+        (
+            "DROP TRIGGER event_said",
+            "the trigger \"event_said\" is missing",
+        ),
+        (
+            "DROP VIEW runs; CREATE VIEW runs AS SELECT 1 AS id",
+            "the view \"runs\" is not as this program made it",
+        ),
+        (
+            "CREATE INDEX mine ON run(operator)",
+            "the index \"mine\" on run is not of this program",
+        ),
+    ] {
+        let dir = tempdir().expect("a directory");
+        let (path, store, runs) = a_little_of_everything(dir.path());
+        store.close().expect("closed");
+        let conn = Connection::open(&path).expect("opens");
+        conn.execute_batch(sql).expect("planted");
+        drop(conn);
+        let options = fault_db::OpenOptions::new(common::ids(2));
+        let refused = Store::open(&path, options).expect_err("not to be written to");
+        assert!(matches!(refused, StoreError::Altered { .. }), "{refused}");
+        assert!(refused.to_string().contains(what), "{refused}");
+        let reader = Store::open_read_only(&path).expect("opens");
+        assert_eq!(reader.strangers().expect("looked at"), [what]);
+        reader.run(runs[0], &|_| false).expect("read");
+        let found = problems(&reader);
+        assert_eq!((found[0].kind, &found[0].detail[..]), ("schema", what));
+    }
+}
+
+/// Goal: a trigger planted while a run is under way gets nothing sealed but what was recorded.
+#[test]
+fn what_is_sealed_is_what_was_recorded_not_what_a_trigger_made_of_it() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    writer.step(step(0)).expect("kept");
+    let planted = "CREATE TRIGGER better AFTER UPDATE OF verdict ON run WHEN NEW.verdict = 'failed'
+        BEGIN UPDATE run SET verdict = 'passed' WHERE seq = NEW.seq; END;
+        CREATE TRIGGER best AFTER INSERT ON step
+        BEGIN UPDATE step SET message = 'fine' WHERE run = NEW.run; END";
+    (Connection::open(&path).expect("opens"))
+        .execute_batch(planted)
+        .expect("planted");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let run = writer.id();
+    let told = store.run(run, &|_| false).expect("there").run.verdict;
+    assert_eq!(told, Some(Verdict::Passed), "the trigger's work");
+    let found = problems(&store);
+    let changed = format!("run {run} was changed after it was sealed");
+    assert!(
+        found.iter().any(|found| found.detail == changed),
+        "{found:#?}"
+    );
+    by_hand(&path, "DROP TRIGGER IF EXISTS none");
+    let conn = Connection::open(&path).expect("opens");
+    conn.execute_batch("DROP TRIGGER better; DROP TRIGGER best")
+        .expect("gone");
+    let found = problems(&store);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!(found[0].detail, changed);
+}
+
+/// Goal: taken out seals are no beginning of a new history, whatever is done with the file.
+#[test]
+fn no_command_makes_seals_that_were_taken_out() {
+    let dir = tempdir().expect("a directory");
+    let (path, store, runs) = a_little_of_everything(dir.path());
+    store.close().expect("closed");
+    by_hand(
+        &path,
+        "DELETE FROM seal; UPDATE run SET verdict = 'passed' WHERE seq = 1",
+    );
+    let store = open(&path);
+    store.rebuild(T0_US).expect("counted anew");
+    store.close().expect("closed");
+    let store = open(&path);
+    let found = problems(&store);
+    let named = |text: &str| {
+        found
+            .iter()
+            .filter(|found| found.detail.contains(text))
+            .count()
+    };
+    assert_eq!(
+        named("was finished and has no seal"),
+        runs.len(),
+        "{found:#?}"
+    );
+    assert!(
+        named("the beginning of this file's own chain") == 1,
+        "{found:#?}"
+    );
+    by_hand(&path, "DELETE FROM about");
+    drop(store);
+    let options = fault_db::OpenOptions::new(common::ids(2));
+    let refused = Store::open(&path, options).expect_err("without a name");
+    assert!(
+        refused.to_string().contains("own name was taken out"),
+        "{refused}"
+    );
+}
+
+/// Goal: traces that were pruned are told as pruned, with what they were, and one that merely went is not.
+#[test]
+fn a_pruned_trace_leaves_a_sealed_statement() {
+    let dir = tempdir().expect("a directory");
+    let (path, store, runs) = a_little_of_everything(dir.path());
+    let faults = store
+        .faults(&fault_db::FaultFilter::default())
+        .expect("listed");
+    for fault in faults {
+        let _ = store.set_state(
+            fault.id,
+            fault_db::FaultState::Closed,
+            "kim",
+            "",
+            T0_US + 99,
+        );
+    }
+    let rule = PruneRule {
+        at_us: T0_US + 100,
+        ..PruneRule::default()
+    };
+    let counts = store.prune(&rule).expect("pruned");
+    assert_eq!((counts.traces, counts.recordings), (1, 1));
+    assert_eq!(problems(&store), []);
+    let conn = Connection::open(&path).expect("opens");
+    let says: Vec<String> = {
+        let mut select = conn
+            .prepare("SELECT says FROM seal WHERE what = 'pruned' ORDER BY ordinal")
+            .expect("a question");
+        let rows = select.query_map([], |row| row.get(0)).expect("asked");
+        rows.collect::<Result<_, _>>().expect("read")
+    };
+    assert_eq!(says.len(), 2, "{says:?}");
+    for said in says {
+        assert!(said.contains(&runs[3].to_string()), "{said}");
+        assert!(said.contains(&(T0_US + 100).to_string()), "{said}");
+    }
+    by_hand(&path, "DELETE FROM seal WHERE what = 'pruned'");
+    assert!(problems(&store).len() >= 2, "gaps, and two that are gone");
+}
+
+/// Goal: a chain that was rewritten throughout fits itself; what was counted meanwhile is the only thing here
+/// that shows it, and stays on record when it is counted anew.
+#[test]
+fn what_differed_before_it_was_counted_anew_stays_on_record() {
+    let dir = tempdir().expect("a directory");
+    let (path, store, _) = a_little_of_everything(dir.path());
+    by_hand(&path, "UPDATE measured_day SET most = 7");
+    let differed = store.rebuild(T0_US).expect("counted anew");
+    assert_eq!(differed.len(), 1, "{differed:?}");
+    let report = store.check().expect("checked");
+    assert_eq!(report.problems, []);
+    let [remark] = &report.remarks[..] else {
+        panic!("{:?}", report.remarks);
+    };
+    assert!(
+        remark
+            .starts_with("counted anew at 2026-03-01 00:00:00 UTC; until then 1 sums of measured"),
+        "{remark}"
+    );
+    assert_eq!(store.rebuild(T0_US).expect("again"), [""; 0]);
 }

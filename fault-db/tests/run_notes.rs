@@ -79,6 +79,6 @@ fn a_note_on_no_run_is_refused_and_one_whose_run_is_lost_is_found() {
     other.execute_batch(damage).expect("damaged");
     let problems = store.check().expect("checked").problems;
     let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
-    assert_eq!(kinds, ["foreign_key"], "{problems:?}");
+    assert_eq!(kinds, ["foreign_key", "seal"], "{problems:?}");
     assert!(problems[0].detail.contains("run_note"), "{problems:?}");
 }

@@ -30,6 +30,19 @@ macro_rules! values {
 }
 pub(crate) use values;
 
+impl Value<'_> {
+    /// As it is read again.
+    pub fn field(&self) -> Field<'_> {
+        match self {
+            Self::Null => Field::Null,
+            Self::Integer(value) => Field::Integer(*value),
+            Self::Real(value) => Field::Real(*value),
+            Self::Text(text) => Field::Text(text),
+            Self::Bytes(bytes) => Field::Bytes(bytes),
+        }
+    }
+}
+
 impl From<i64> for Value<'_> {
     fn from(value: i64) -> Self {
         Self::Integer(value)

@@ -6,5 +6,5 @@ mod merge;
 mod prune;
 
 pub use check::{CheckReport, Problem};
-pub use merge::MergeCounts;
+pub use merge::{CopyOf, MergeCounts};
 pub use prune::{PruneCounts, PruneRule};

@@ -3,7 +3,10 @@
 use rusqlite::{Connection, params};
 use serde::Serialize;
 
+use crate::base::{Base, SqlResult};
 use crate::error::StoreError;
+use crate::id::Id;
+use crate::seal::{PRUNED, PrunedSays, hex, state, trace};
 use crate::store::Store;
 
 /// Which traces may go. One that shows a fault that is not closed never does.
@@ -19,6 +22,8 @@ pub struct PruneRule {
     pub keep_unsent: bool,
     /// Count only.
     pub dry_run: bool,
+    /// When: it is sealed what was deleted then.
+    pub at_us: i64,
 }
 
 impl Default for PruneRule {
@@ -30,6 +35,7 @@ impl Default for PruneRule {
             max_file_bytes: None,
             keep_unsent: true,
             dry_run: false,
+            at_us: 0,
         }
     }
 }
@@ -76,6 +82,9 @@ const FOR_FAULT: i64 = 1;
 const IS_UNSENT: i64 = 2;
 const FITS: i64 = 3;
 
+/// About as many bytes the statement takes that a trace was deleted.
+const SAID_BYTES: i64 = 512;
+
 /// Recordings that no trace which stays was cut from.
 const RECORDINGS: &str = "
     FROM recording AS r WHERE NOT EXISTS (SELECT 1 FROM trace t
@@ -91,9 +100,13 @@ impl Store {
             return plan(self.file()?, rule).map_err(failed);
         }
         let mut all = PruneCounts::default();
+        // What is said of each trace takes room, too.
+        let pages_before = pragma(self.file()?, "page_count").map_err(failed)?;
         loop {
             let counts = self.write(DOING, |conn| {
                 let counts = plan(conn, rule).map_err(failed)?;
+                let sealed = seal_deleted(self.base(), rule.at_us);
+                sealed.map_err(|error| self.failed(DOING, error))?;
                 delete(conn).map_err(failed)?;
                 Ok(counts)
             })?;
@@ -109,21 +122,20 @@ impl Store {
                 break;
             }
         }
-        all.freed_bytes = self.give_back_room()?;
+        all.freed_bytes = self.give_back_room(pages_before)?;
         Ok(all)
     }
 
-    /// Returns free pages to the system and says how many bytes that were.
-    fn give_back_room(&self) -> Result<u64, StoreError> {
+    /// Returns free pages to the system and says by how many bytes the file is smaller than it was.
+    fn give_back_room(&self, pages_before: u64) -> Result<u64, StoreError> {
         let conn = self.file()?;
         let give = || -> rusqlite::Result<u64> {
-            let before = pragma(conn, "page_count")?;
             // Each step frees one page; run as a batch it would stop after the first.
             let mut vacuum = conn.prepare("PRAGMA incremental_vacuum")?;
             let mut steps = vacuum.query([])?;
             while steps.next()?.is_some() {}
             // Somebody may have recorded more meanwhile than was given back.
-            let freed = before.saturating_sub(pragma(conn, "page_count")?);
+            let freed = pages_before.saturating_sub(pragma(conn, "page_count")?);
             Ok(freed * pragma(conn, "page_size")?)
         };
         let freed = give().map_err(|error| self.failed("giving room back", error))?;
@@ -157,10 +169,11 @@ fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
         conn.execute(
             &format!(
                 "UPDATE temp.pruned SET fate = {FITS} WHERE seq IN (
-                    SELECT seq FROM (SELECT seq, sum(size / ?1 + 1) OVER (ORDER BY t0_us, seq
-                            ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS pages_before
+                    SELECT seq FROM (SELECT seq, sum((size / ?1 + 1) * ?1 - {SAID_BYTES}) OVER (
+                            ORDER BY t0_us, seq
+                            ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS bytes_before
                         FROM temp.pruned WHERE fate = {GOES})
-                    WHERE coalesce(pages_before, 0) * ?1 >= ?2)"
+                    WHERE coalesce(bytes_before, 0) >= ?2)"
             ),
             params![page_bytes, over_bytes],
         )?;
@@ -184,6 +197,41 @@ fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
             over_bytes: over_bytes.saturating_sub(trace_bytes),
         })
     })
+}
+
+/// Says of each trace and recording that is about to go what it was: their runs are sealed with them.
+fn seal_deleted(base: &Base, at_us: i64) -> SqlResult<()> {
+    let recordings = format!("SELECT u.id, r.run, r.ordinal {RECORDINGS}");
+    let recordings = recordings.replace("AS r WHERE", "AS r JOIN run u ON u.seq = r.run WHERE");
+    let recordings = base.select(&recordings, &[], |row| {
+        Ok((row.get::<Id>(0)?, row.get(1)?, row.get(2)?))
+    })?;
+    for (id, run, ordinal) in recordings {
+        let says = PrunedSays {
+            run: id.to_string(),
+            sha256: hex(&trace::recording_digest(base, run, ordinal)?),
+            recording: Some(ordinal),
+            at_us,
+        };
+        state(base, PRUNED, id, &says)?;
+    }
+    let traces = format!(
+        "SELECT t.id, r.id, t.seq FROM temp.pruned p JOIN trace t ON t.seq = p.seq
+            JOIN run r ON r.seq = t.run WHERE p.fate = {GOES} ORDER BY t.seq"
+    );
+    let traces = base.select(&traces, &[], |row| {
+        Ok((row.get::<Id>(0)?, row.get::<Id>(1)?, row.get(2)?))
+    })?;
+    for (id, run, seq) in traces {
+        let says = PrunedSays {
+            run: run.to_string(),
+            sha256: hex(&trace::digest(base, seq)?),
+            recording: None,
+            at_us,
+        };
+        state(base, PRUNED, id, &says)?;
+    }
+    Ok(())
 }
 
 /// Deletes what was planned.

@@ -11,6 +11,7 @@ use crate::fault_state::FaultState;
 use crate::id::Id;
 use crate::record::{MeasurementRecord, ScriptRecord, Verdict};
 use crate::run_notes::RunNote;
+use crate::seal::{RunSealed, sealed_as};
 use crate::store::Store;
 use crate::text_enum::text_enum;
 
@@ -107,6 +108,8 @@ pub struct RunDetail {
     pub faults: Vec<RunFault>,
     /// What was said about it, oldest first.
     pub notes: Vec<RunNote>,
+    /// What it is sealed as; none before its end.
+    pub seal: Option<RunSealed>,
 }
 
 /// A step as recorded.
@@ -209,6 +212,7 @@ impl Store {
                 steps: self.steps(seq)?,
                 faults: self.run_faults(seq)?,
                 notes: self.run_notes(seq)?,
+                seal: sealed_as(self.base(), id)?,
             })
         };
         rest().map_err(|error| self.failed(DOING, error))

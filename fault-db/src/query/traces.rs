@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 use crate::base::values;
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::seal;
 use crate::store::Store;
 use crate::trace::{Channel, ENCODING, TraceData, TraceError};
 
@@ -55,13 +56,13 @@ impl Store {
         )
     }
 
-    /// Packs and commits a trace of a run, and hangs it on the occurrences.
+    /// Packs and commits a trace of a run, and hangs it on the occurrences; its digest comes back, too.
     pub(crate) fn insert_trace(
         &self,
         run: i64,
         occurrences: &[Id],
         trace: &TraceData,
-    ) -> Result<Id, StoreError> {
+    ) -> Result<(Id, [u8; 32]), StoreError> {
         const DOING: &str = "storing a trace";
         let id = self.mint()?;
         let data = self.codec().encode(trace);
@@ -69,19 +70,31 @@ impl Store {
         let gaps = trace.gaps || trace.has_gaps();
         let flags = i64::from(trace.partial) * PARTIAL + i64::from(gaps) * GAPS;
         let known = self.known_channel_set(&trace.channels);
-        // A list is never changed or removed, so one that was seen need not be looked up.
-        let json = match known {
-            Some(_) => String::new(),
-            None => serde_json::to_string(&trace.channels).map_err(|error| {
-                let source = TraceError::ChannelSet {
-                    detail: error.to_string(),
-                };
-                StoreError::Trace { trace: id, source }
-            })?,
-        };
+        let json = serde_json::to_string(&trace.channels).map_err(|error| {
+            let source = TraceError::ChannelSet {
+                detail: error.to_string(),
+            };
+            StoreError::Trace { trace: id, source }
+        })?;
         let hash = sha256(&data);
+        let digest = seal::trace::of(
+            &values![
+                id,
+                trace.t0_bench_us,
+                trace.t0_us,
+                trace.period_us,
+                trace.rows() as i64,
+                trace.trigger_row,
+                flags,
+                ENCODING,
+                &hash[..],
+                &sha256(json.as_bytes())[..],
+            ],
+            occurrences,
+        );
         let channel_set = self.write(DOING, |conn| {
             let failed = |error| self.failed(DOING, error);
+            // A list is never changed or removed, so one that was seen need not be looked up.
             let channel_set = match known {
                 Some(seq) => seq,
                 None => channel_set_seq(conn, &json).map_err(failed)?,
@@ -118,7 +131,7 @@ impl Store {
             let channels = trace.channels.as_slice().into();
             self.channel_sets.borrow_mut().insert(channel_set, channels);
         }
-        Ok(id)
+        Ok((id, digest))
     }
 
     /// The row of a channel list that was read or written before.

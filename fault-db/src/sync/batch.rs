@@ -19,12 +19,12 @@ pub(super) const MOST_ENTRIES: i64 = 500;
 /// A batch is closed when it is as large as this, in bytes on the wire.
 pub(super) const ENOUGH_BYTES: usize = 4 << 20;
 
-/// An entry of the outbox, and of a run its id and its seal's digest.
+/// An entry of the outbox, and of a run its id and the digests it is sealed with.
 pub(super) struct Entry {
     pub seq: i64,
     pub what: What,
     pub row: i64,
-    run: Option<(Id, Option<Vec<u8>>)>,
+    run: Option<(Id, BTreeSet<Vec<u8>>)>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -36,10 +36,9 @@ pub(super) enum What {
 
 /// The next entries of the outbox, but for traces.
 pub(super) fn entries(file: &Base, after: i64) -> SqlResult<Vec<Entry>> {
-    file.select(
-        "SELECT o.seq, o.what, o.row, r.id, s.digest FROM outbox o
+    let mut entries = file.select(
+        "SELECT o.seq, o.what, o.row, r.id FROM outbox o
             LEFT JOIN run r ON o.what = 'run' AND r.seq = o.row
-            LEFT JOIN seal s ON s.run = r.seq
          WHERE o.seq > ?1 AND o.what <> 'trace' ORDER BY o.seq LIMIT ?2",
         &values![after, MOST_ENTRIES],
         |row| {
@@ -48,18 +47,20 @@ pub(super) fn entries(file: &Base, after: i64) -> SqlResult<Vec<Entry>> {
                 "event" => What::Event,
                 _ => What::Note,
             };
-            let run = match row.get(3)? {
-                Some(id) => Some((id, row.get(4)?)),
-                None => None,
-            };
+            let run: Option<Id> = row.get(3)?;
             Ok(Entry {
                 seq: row.get(0)?,
                 what,
                 row: row.get(2)?,
-                run,
+                run: run.map(|id| (id, BTreeSet::new())),
             })
         },
-    )
+    )?;
+    for (id, digests) in entries.iter_mut().filter_map(|entry| entry.run.as_mut()) {
+        let sealed = "SELECT digest FROM seal WHERE id = ?1 AND what = 'run'";
+        digests.extend(file.select(sealed, &values![*id], |row| row.get::<Vec<u8>>(0))?);
+    }
+    Ok(entries)
 }
 
 /// The last entry of the outbox.
@@ -86,7 +87,6 @@ pub(super) struct Batch<'a> {
     of_runs: [Rows; 5],
     events: Rows,
     notes: Rows,
-    seals: Rows,
     unit_numbers: BTreeSet<i64>,
     fault_numbers: BTreeSet<i64>,
     /// Up to which entry it goes.
@@ -112,7 +112,6 @@ impl<'a> Batch<'a> {
             ],
             events: Rows::of(&tables::EVENTS),
             notes: Rows::of(&tables::NOTES),
-            seals: Rows::of(&tables::SEALS),
             unit_numbers: BTreeSet::new(),
             fault_numbers: BTreeSet::new(),
             through: 0,
@@ -158,7 +157,6 @@ impl<'a> Batch<'a> {
         for rows in &mut self.of_runs {
             rows.read(self.file, run)?;
         }
-        self.seals.read(self.file, run)?;
         let of_run = |sql| {
             self.file
                 .select(sql, &values![run], |row| row.get::<i64>(0))
@@ -198,7 +196,7 @@ impl<'a> Batch<'a> {
 
     fn bytes(&self) -> usize {
         let of_runs: usize = self.of_runs.iter().map(|rows| rows.bytes).sum();
-        let rest = [&self.runs, &self.events, &self.notes, &self.seals];
+        let rest = [&self.runs, &self.events, &self.notes];
         of_runs + rest.iter().map(|rows| rows.bytes).sum::<usize>()
     }
 
@@ -219,9 +217,6 @@ impl<'a> Batch<'a> {
         }
         let events = self.events.send(server, laptop)?;
         let notes = self.notes.send(server, laptop)?;
-        if self.seals.send(server, laptop)? < self.seals.count as u64 {
-            self.different.extend(other_seals(&self.seals, server)?);
-        }
         let settled = spoken_of(&faults, server, laptop)?;
         settle_all(server, &settled)?;
         join_all(server, &settled)?;
@@ -288,9 +283,9 @@ const SERVER_FAULTS: &str = "SELECT DISTINCT k.fault FROM {rows}
 
 /// What the server has of the runs among the entries. A run that is sealed came as a whole.
 fn known_runs(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Id, Known>> {
-    let ours: BTreeMap<Id, Option<&Vec<u8>>> = (entries.iter())
+    let ours: BTreeMap<Id, &BTreeSet<Vec<u8>>> = (entries.iter())
         .filter_map(|entry| entry.run.as_ref())
-        .map(|(id, digest)| (*id, digest.as_ref()))
+        .map(|(id, digests)| (*id, digests))
         .collect();
     if ours.is_empty() {
         return Ok(BTreeMap::new());
@@ -298,7 +293,7 @@ fn known_runs(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Id, Know
     let ids: Vec<&[u8]> = ours.keys().map(|id| &id.as_bytes()[..]).collect();
     let found = server.select_columns(
         "SELECT r.id, s.digest FROM unnest($1::bytea[]) AS x(id)
-         JOIN run r ON r.id = x.id LEFT JOIN seal s ON s.run = r.seq",
+         JOIN run r ON r.id = x.id LEFT JOIN seal s ON s.id = r.id AND s.what = 'run'",
         &[&ids],
     )?;
     let mut known = BTreeMap::new();
@@ -307,33 +302,16 @@ fn known_runs(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Id, Know
         let Ok(id) = id.try_into().map(Id::from_bytes) else {
             continue;
         };
-        let state = match (ours.get(&id).copied().flatten(), theirs) {
-            (Some(ours), Some(theirs)) if *ours == theirs => Known::Whole,
-            (Some(_), Some(_)) => Known::Different,
+        let state = match (ours.get(&id), theirs) {
+            (Some(ours), Some(theirs)) if ours.contains(&theirs) => Known::Whole,
+            (Some(ours), Some(_)) if !ours.is_empty() => Known::Different,
             _ => Known::Perhaps,
         };
-        known.insert(id, state);
-    }
-    Ok(known)
-}
-
-/// Runs whose place in their chain another run has on the server: recorded in a copy of the file.
-fn other_seals(seals: &Rows, server: &Server) -> SqlResult<Vec<Different>> {
-    let found = seals.ask(
-        server,
-        0,
-        "SELECT x.run FROM {rows} JOIN seal s ON s.origin = x.origin AND s.ordinal = x.ordinal
-         WHERE s.hash <> x.hash ORDER BY x.place",
-    )?;
-    let mut different = Vec::new();
-    for row in found {
-        let run: &[u8] = row.try_get(0)?;
-        if let Ok(id) = run.try_into() {
-            different.push(Different {
-                what: "seal",
-                id: Id::from_bytes(id),
-            });
+        // Files that shared a run before there were seals have each sealed it.
+        let best = known.entry(id).or_insert(state);
+        if state == Known::Whole {
+            *best = state;
         }
     }
-    Ok(different)
+    Ok(known)
 }

@@ -7,6 +7,7 @@
 
 mod adopt;
 mod batch;
+mod heads;
 mod ledger;
 mod outcome;
 mod pull;
@@ -19,6 +20,8 @@ use crate::error::StoreError;
 use crate::id::Id;
 use crate::server::schema::server_id;
 use crate::store::Store;
+pub(crate) use heads::refusal;
+use heads::{Chain, HeadsError};
 use ledger::{Cursors, Laptop};
 pub use outcome::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
 
@@ -37,7 +40,7 @@ impl Store {
         options: &mut SyncOptions<'_>,
     ) -> Result<SyncOutcome, StoreError> {
         const DOING: &str = "beginning a sync";
-        let file_id = self.file_id()?;
+        let mut file_id = self.file_id()?;
         let wire = server.server()?;
         let id = server_id(server.base()).map_err(|error| server.failed(DOING, error))?;
         let id = id.ok_or_else(|| StoreError::ServerForeign {
@@ -50,6 +53,19 @@ impl Store {
                 ledger::remembered(file, id)
             };
             adopt().map_err(|error| self.failed(DOING, error))
+        })?;
+        if options.as_copy {
+            let (minted, at_us) = (self.mint()?, (options.now_us)());
+            let parted = self.change(DOING, |file| {
+                heads::part(file, server.base(), file_id, minted, at_us)
+                    .map_err(|error| self.either(server, DOING, error))
+            })?;
+            file_id = parted.unwrap_or(file_id);
+        }
+        let chains = heads::look(self.base(), server.base(), file_id, self.path());
+        let chains = chains.map_err(|error| match error {
+            HeadsError::Sql(error) => self.either(server, DOING, error),
+            HeadsError::Refused(error) => error,
         })?;
         let laptop = server.change(DOING, |base| {
             let known = ledger::introduce(base, file_id, options);
@@ -65,9 +81,11 @@ impl Store {
             own_too: remembered.received < laptop.cursors.received,
             outcome: SyncOutcome {
                 clock_offset_us: laptop.clock_offset_us,
+                different: chains.different,
                 ..SyncOutcome::default()
             },
             laptop,
+            chains: chains.chains,
         };
         sync.all(options)?;
         Ok(sync.outcome)
@@ -84,12 +102,16 @@ struct Sync<'a> {
     laptop: Laptop,
     cursors: Cursors,
     own_too: bool,
+    chains: Vec<Chain>,
     outcome: SyncOutcome,
 }
 
 impl Sync<'_> {
     fn all(&mut self, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
         let reach = self.send(options)?;
+        if !self.outcome.stopped {
+            self.send_seals()?;
+        }
         if !self.outcome.stopped && options.traces {
             self.send_traces(reach, options)?;
         }
@@ -121,6 +143,24 @@ impl Sync<'_> {
             let phase = SyncPhase::Sending;
             self.tell(SyncProgress { phase, done, total }, options);
         }
+    }
+
+    /// Sends the seals of what has been sent.
+    fn send_seals(&mut self) -> Result<(), StoreError> {
+        let (file, server, wire) = (self.file, self.server, self.wire);
+        for chain in &mut self.chains {
+            loop {
+                let sent = server.change(SENDING, |_| {
+                    heads::send(file.base(), wire, chain)
+                        .map_err(|error| file.either(server, SENDING, error))
+                })?;
+                match sent {
+                    Some(bytes) => self.outcome.bytes += bytes,
+                    None => break,
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Sends traces up to an entry of the outbox up to which all runs have been sent.
@@ -157,7 +197,7 @@ impl Sync<'_> {
                 ledger::note(base, self.laptop.seq, cursors)?;
                 Ok(sent)
             });
-            sent.map_err(|error| self.either(SENDING, error))
+            sent.map_err(|error| self.file.either(self.server, SENDING, error))
         })?;
         self.cursors = cursors;
         self.remember(options)?;
@@ -270,12 +310,14 @@ impl Sync<'_> {
     ) -> Result<T, StoreError> {
         ask(self.server.base()).map_err(|error| self.server.failed(doing, error))
     }
+}
 
-    /// An error of the file or of the server, as it says itself.
-    fn either(&self, doing: &'static str, error: SqlError) -> StoreError {
+impl Store {
+    /// An error of this file or of the server, as it says itself.
+    fn either(&self, server: &Store, doing: &'static str, error: SqlError) -> StoreError {
         match error {
-            SqlError::File(_) | SqlError::Value { .. } => self.file.failed(doing, error),
-            SqlError::Server(_) => self.server.failed(doing, error),
+            SqlError::File(_) | SqlError::Value { .. } => self.failed(doing, error),
+            SqlError::Server(_) => server.failed(doing, error),
         }
     }
 }

@@ -11,6 +11,9 @@ pub struct SyncOptions<'a> {
     pub laptop: &'a str,
     /// Whether samples go along; without them a later sync sends them.
     pub traces: bool,
+    /// The file is a copy, or came back from a backup: it gets a name of its own, if the server has seen more of
+    /// it or something else.
+    pub as_copy: bool,
     /// Whether the owner of an unfinished run still lives; a run of a dead one is sent as it is.
     pub is_alive: &'a dyn Fn(&str) -> bool,
     /// The laptop's clock, µs since 1970, UTC.
@@ -79,9 +82,9 @@ pub struct SyncOutcome {
 /// Something of which there are two versions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Different {
-    /// run, trace or seal.
+    /// run, trace or chain.
     pub what: &'static str,
-    /// Its id; of a seal the run's.
+    /// Its id; of a chain of seals that of its file.
     pub id: Id,
 }
 

@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use super::outcome::SyncOutcome;
 use crate::base::{Base, Server, SqlResult, values};
 use crate::id::Id;
+use crate::seal::BY_SYNC;
+use crate::seal::said::found_event;
 use crate::settle::{fault_of, join, open_doubles, settle};
 
 /// Events of a batch at most.
@@ -116,6 +118,13 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
             ],
         )?;
         if added > 0 {
+            if let Some(seq) = file.first(
+                "SELECT seq FROM fault_event WHERE id = ?1",
+                &values![event.id],
+                |row| row.get(0),
+            )? {
+                found_event(file, seq, BY_SYNC)?;
+            }
             outcome.events_received += 1;
             outcome.bytes += (event.body.len() + event.who.len() + 80) as u64;
             faults.insert(fault);

@@ -46,18 +46,23 @@ pub(super) const RUNS: Table = Table {
         ("injected", Text),
         ("owner", Text),
         ("train", Text),
+        ("unit_kind", Text),
+        ("unit_config_name", Text),
+        ("sw_versions", Text),
     ],
     read: "SELECT r.id, u.serial, r.line, r.seed, r.operator, r.source, r.started_at_us,
             r.finished_at_us, r.verdict, r.bench_time_us, r.wall_time_us, r.app_version,
-            r.scripts_sha256, r.unit_config_sha256, r.injected, r.owner, r.train
+            r.scripts_sha256, r.unit_config_sha256, r.injected, r.owner, r.train, r.unit_kind,
+            r.unit_config_name, r.sw_versions
          FROM run r JOIN unit u ON u.seq = r.unit WHERE r.seq = ?1",
     insert: &[
         "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, finished_at_us,
             verdict, bench_time_us, wall_time_us, app_version, scripts_sha256, unit_config_sha256,
-            injected, owner, train, laptop)
+            injected, owner, train, unit_kind, unit_config_name, sw_versions, laptop)
          SELECT x.id, u.seq, x.line, x.seed, x.operator, x.source, x.started_at_us, x.finished_at_us,
             x.verdict, x.bench_time_us, x.wall_time_us, x.app_version, x.scripts_sha256,
-            x.unit_config_sha256, x.injected, x.owner, x.train, {laptop}
+            x.unit_config_sha256, x.injected, x.owner, x.train, x.unit_kind, x.unit_config_name,
+            x.sw_versions, {laptop}
          FROM {rows} JOIN unit u ON u.serial = x.serial
          ORDER BY x.place ON CONFLICT (id) DO NOTHING",
         "SELECT end_runs(array_agg(x.id), array_agg(x.verdict), array_agg(x.finished_at_us),
@@ -207,16 +212,18 @@ pub(super) const OCCURRENCES: Table = Table {
         ("code", Integer),
         ("lru", Text),
         ("line", Text),
+        ("code_name", Text),
+        ("severity", Text),
     ],
     read: "SELECT o.id, f.id, r.id, o.step_index, o.at_us, o.bench_us, o.message, o.freeze_json,
-            o.code, o.lru, o.line
+            o.code, o.lru, o.line, o.code_name, o.severity
          FROM run r JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
          WHERE r.seq = ?1 ORDER BY o.seq",
     insert: &[
         "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us, message,
-            freeze_json, unit, code, lru, line)
+            freeze_json, unit, code, lru, line, code_name, severity)
          SELECT x.id, k.fault, r.seq, x.step_index, x.at_us, x.bench_us, x.message, x.freeze_json,
-            r.unit, x.code, x.lru, x.line
+            r.unit, x.code, x.lru, x.line, x.code_name, x.severity
          FROM {rows} JOIN run r ON r.id = x.run
             JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.fault
          ORDER BY x.place ON CONFLICT (id) DO NOTHING",
@@ -269,19 +276,24 @@ pub(super) const NOTES: Table = Table {
          FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT (id) DO NOTHING"],
 };
 
+/// The seal with this number in the order in which they are sent: `heads.rs` reads them.
 pub(super) const SEALS: Table = Table {
     columns: &[
         ("origin", Bytes),
         ("ordinal", Integer),
-        ("run", Bytes),
+        ("what", Text),
+        ("id", Bytes),
+        ("covers", Integer),
+        ("says", Text),
         ("digest", Bytes),
         ("hash", Bytes),
     ],
-    read: "SELECT s.origin, s.ordinal, r.id, s.digest, s.hash
-         FROM run r JOIN seal s ON s.run = r.seq WHERE r.seq = ?1",
-    insert: &["INSERT INTO seal(origin, ordinal, run, digest, hash)
-         SELECT x.origin, x.ordinal, r.seq, x.digest, x.hash
-         FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT DO NOTHING"],
+    read: "",
+    insert: &[
+        "INSERT INTO seal(origin, ordinal, what, id, covers, says, digest, hash)
+         SELECT x.origin, x.ordinal, x.what, x.id, x.covers, x.says, x.digest, x.hash
+         FROM {rows} ORDER BY x.place ON CONFLICT DO NOTHING",
+    ],
 };
 
 pub(super) const CHANNEL_SETS: Table = Table {

@@ -52,6 +52,7 @@ fn sync(file: &Path, address: &str) -> Result<(), StoreError> {
     let mut options = SyncOptions {
         laptop: "matrix",
         traces: true,
+        as_copy: false,
         is_alive: &|_| false,
         now_us: &crate::laptop::system_now_us,
         go_on: &mut |_| true,

@@ -17,6 +17,8 @@ pub struct Laptop {
     seed: std::cell::Cell<u64>,
     /// By how much its clock is ahead of the true time, µs.
     pub clock_ahead_us: std::cell::Cell<i64>,
+    /// Its next syncs give its file a name of its own, if that is a copy.
+    pub as_copy: std::cell::Cell<bool>,
 }
 
 impl Laptop {
@@ -30,6 +32,7 @@ impl Laptop {
             // Each opening of the file takes one more: names next to each other stay apart.
             seed: (letters * 100_003).into(),
             clock_ahead_us: 0.into(),
+            as_copy: false.into(),
         }
     }
 
@@ -60,6 +63,7 @@ impl Laptop {
             &mut SyncOptions {
                 laptop: self.name,
                 traces: true,
+                as_copy: self.as_copy.get(),
                 is_alive: &|owner| owner == "alive",
                 now_us: &|| system_now_us() + self.clock_ahead_us.get(),
                 go_on,

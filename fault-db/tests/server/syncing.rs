@@ -1,6 +1,8 @@
 //! What a sync brings to the server, and back.
 
-use fault_db::{FaultFilter, FaultState, Id, RepairRecord, RunFilter, RunWriter, Store};
+use fault_db::{
+    FaultFilter, FaultState, Id, RepairRecord, RunFilter, RunWriter, Store, StoreError,
+};
 
 use crate::common;
 use crate::counts;
@@ -585,9 +587,10 @@ fn a_run_that_says_something_else_on_the_server_is_named_and_left_as_it_is() {
     );
 }
 
-/// Two laptops record into copies of one file: both runs arrive, and the fork in the chain is named.
+/// Goal: of two laptops that record into copies of one file the second is refused, and goes on under a name of
+/// its own; nothing of either is lost.
 #[test]
-fn a_copied_file_that_went_on_by_itself_is_noticed() {
+fn a_copied_file_that_went_on_by_itself_gets_a_name_of_its_own() {
     let address = shared().database();
     let (one, copy) = (Laptop::new("one"), Laptop::new("copy"));
     one.run("U-1", day(0), &[], false);
@@ -595,10 +598,81 @@ fn a_copied_file_that_went_on_by_itself_is_noticed() {
     one.run("U-1", day(1), &[], false);
     let forked = copy.run("U-1", day(2), &[], false);
     one.sync(&address);
+    let refused = copy.try_sync(&address, &mut |_| true).expect_err("a copy");
+    assert!(
+        matches!(refused, StoreError::PartedCopy { after: 2, .. }),
+        "{refused}"
+    );
+    assert!(refused.to_string().contains("--as-copy"), "{refused}");
+    copy.as_copy.set(true);
     let told = copy.sync(&address);
-    assert_eq!(told.runs, 1);
-    let different: Vec<_> = told.different.iter().map(|d| (d.what, d.id)).collect();
-    assert_eq!(different, [("seal", forked)]);
+    assert_eq!((told.runs, told.different), (1, vec![]));
+    copy.as_copy.set(false);
+    copy.run("U-1", day(3), &[], false);
+    let told = copy.sync(&address);
+    assert_eq!((told.runs, told.different), (1, vec![]));
+    one.run("U-1", day(4), &[], false);
+    assert_eq!(one.sync(&address).runs, 1);
+    one.is_whole();
+    copy.is_whole();
+    let server = read_only(&address).expect("a server");
+    let seal = server.run(forked, &|_| false).expect("the run").seal;
+    let copied = copy.open().run(forked, &|_| false).expect("the run").seal;
+    assert_eq!(seal.expect("sealed").digest, copied.expect("sealed").digest);
+}
+
+/// Goal: a backup that was laid back is told from a file that was rewritten, and either from the file itself.
+#[test]
+fn what_the_server_has_seen_of_a_file_is_held_against_it() {
+    let address = shared().database();
+    let (laptop, backup) = (Laptop::new("laptop"), Laptop::new("backup"));
+    laptop.run("U-1", day(0), &[], false);
+    std::fs::copy(laptop.path(), backup.path()).expect("a backup");
+    let run = laptop.run("U-1", day(1), &[101], false);
+    laptop.sync(&address);
+    let refused = backup.try_sync(&address, &mut |_| true).expect_err("older");
+    assert!(
+        matches!(
+            refused,
+            StoreError::EarlierCopy {
+                here: 2,
+                there: 4,
+                ..
+            }
+        ),
+        "{refused}"
+    );
+    backup.as_copy.set(true);
+    backup.run("U-1", day(2), &[], false);
+    let told = backup.sync(&address);
+    assert_eq!((told.runs, told.different), (1, vec![]));
+    backup.is_whole();
+    // A verdict changed, and its chain made anew throughout.
+    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
+    file.execute_batch(
+        "DROP TRIGGER run_ended; UPDATE run SET verdict = 'passed' WHERE verdict = 'failed'",
+    )
+    .expect("changed");
+    file.execute(
+        "UPDATE seal SET digest = x'07', hash = x'08' WHERE what = 'run' AND id = ?1",
+        [run],
+    )
+    .expect("sealed anew");
+    let trigger = include_str!("../../src/schema/0004.sql");
+    let begin = trigger.find("CREATE TRIGGER run_ended").expect("there");
+    let end = begin + trigger[begin..].find("END;").expect("its end") + 4;
+    file.execute_batch(&trigger[begin..end]).expect("as it was");
+    drop(file);
+    for as_copy in [false, true] {
+        laptop.as_copy.set(as_copy);
+        let refused = laptop
+            .try_sync(&address, &mut |_| true)
+            .expect_err("made up");
+        assert!(
+            matches!(&refused, StoreError::Rewritten { after: 3, id, .. } if *id == run),
+            "{refused}"
+        );
+    }
 }
 
 #[test]

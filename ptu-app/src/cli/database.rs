@@ -107,7 +107,16 @@ impl Database {
     /// Opens it for reading.
     pub(in crate::cli) fn open_read_only(&self) -> Result<Store, Failure> {
         Ok(match self.place()? {
-            Place::File(path) => Store::open_read_only(&path)?,
+            Place::File(path) => {
+                let store = Store::open_read_only(&path)?;
+                for stranger in store.strangers()? {
+                    eprintln!(
+                        "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
+                        path.display()
+                    );
+                }
+                store
+            }
             Place::Server(address) => Store::connect_read_only(&address)?,
         })
     }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::clock::rfc3339;
 
-/// A run with its steps, faults and notes.
+/// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {
     json!({
         "run": run_summary_json(&run.run),
@@ -17,6 +17,7 @@ pub fn run_json(run: &RunDetail) -> Value {
         "notes": run.notes.iter().map(|note| json!({
             "at": rfc3339(note.at_us), "who": note.who, "text": note.text,
         })).collect::<Vec<_>>(),
+        "seal": run.seal,
     })
 }
 

@@ -6,9 +6,11 @@
 use rusqlite::Connection;
 
 use super::Findings;
-use crate::base::values;
+use super::derived::unsettled;
+use crate::base::SqlResult;
 use crate::error::StoreError;
 use crate::schema::{COUNTS, WORDS};
+use crate::seal::{RECOUNTED, RecountedSays, state};
 use crate::settle::settle;
 use crate::store::Store;
 
@@ -69,17 +71,25 @@ const DIFFERENCES: [(&str, &str); 6] = [
     ),
 ];
 
-/// Compares, in one view of the file: others may write meanwhile.
+/// Compares.
 pub(super) fn check(conn: &Connection, mut found: Findings<'_>) -> rusqlite::Result<()> {
+    in_one_view(conn, || compare(conn, |detail| found.add(detail)))
+}
+
+/// Does it in one view of the file, and leaves no temporary table: others may write meanwhile.
+pub(super) fn in_one_view(
+    conn: &Connection,
+    work: impl FnOnce() -> rusqlite::Result<()>,
+) -> rusqlite::Result<()> {
     in_files(conn, || {
         conn.execute_batch("BEGIN")?;
-        let compared = compare(conn, &mut found);
+        let done = work();
         let ended = conn.execute_batch("ROLLBACK");
-        compared.and(ended)
+        done.and(ended)
     })
 }
 
-fn compare(conn: &Connection, found: &mut Findings<'_>) -> rusqlite::Result<()> {
+fn compare(conn: &Connection, mut found: impl FnMut(String)) -> rusqlite::Result<()> {
     for (table, named_by) in TABLES {
         conn.execute_batch(&format!(
             "CREATE TEMP TABLE {table} AS SELECT * FROM main.{table} WHERE false"
@@ -94,27 +104,49 @@ fn compare(conn: &Connection, found: &mut Findings<'_>) -> rusqlite::Result<()> 
     for (what, sql) in DIFFERENCES {
         let differ: i64 = conn.query_row(sql, [], |row| row.get(0))?;
         if differ > 0 {
-            found.add(format!("{differ} {what} are not what the history says"));
+            found(format!("{differ} {what} are not what the history says"));
         }
     }
     Ok(())
 }
 
 /// Makes all of it anew.
-pub(super) fn rebuild(store: &Store) -> Result<(), StoreError> {
+pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreError> {
     const DOING: &str = "counting anew";
     let failed = |error| store.failed(DOING, error);
-    let wrong = "SELECT f.seq FROM fault f WHERE f.occurrences <>
-        (SELECT count(*) FROM fault_occurrence o WHERE o.fault = f.seq)";
     let conn = store.file()?;
+    let id = store.mint()?;
     in_files(conn, || {
         Ok(store.write(DOING, |conn| {
-            let faults = store.base().select(wrong, &values![], |row| row.get(0));
-            for fault in faults.map_err(|error| store.failed(DOING, error))? {
-                settle(store.base(), fault).map_err(|error| store.failed(DOING, error))?;
+            let mut differed = Vec::new();
+            compare(conn, |detail| differed.push(detail)).map_err(failed)?;
+            for (table, _) in TABLES {
+                let drop = format!("DROP TABLE temp.{table}");
+                conn.execute_batch(&drop).map_err(failed)?;
             }
+            let mut faults = Vec::new();
+            unsettled(conn, |fault, id| faults.push((fault, id))).map_err(failed)?;
+            if let Some((_, id)) = faults.first() {
+                let count = faults.len();
+                differed.push(format!(
+                    "{count} faults, first {id}, did not stand as their occurrences and events say"
+                ));
+            }
+            let work = || -> SqlResult<()> {
+                for (fault, _) in &faults {
+                    settle(store.base(), *fault)?;
+                }
+                if !differed.is_empty() {
+                    let differed = differed.clone();
+                    let says = RecountedSays { at_us, differed };
+                    state(store.base(), RECOUNTED, id, &says)?;
+                }
+                Ok(())
+            };
+            work().map_err(|error| store.failed(DOING, error))?;
             conn.execute_batch(COUNTS).map_err(failed)?;
-            conn.execute_batch(WORDS).map_err(failed)
+            conn.execute_batch(WORDS).map_err(failed)?;
+            Ok(differed)
         }))
     })
     .map_err(failed)?

@@ -2,6 +2,7 @@
 
 mod chain;
 mod counted;
+mod derived;
 mod server;
 
 use rusqlite::Connection;
@@ -9,8 +10,11 @@ use serde::Serialize;
 
 use crate::base::Base;
 use crate::error::StoreError;
+use crate::guard;
 use crate::id::Id;
 use crate::recording::check_recordings;
+use crate::schema::SCHEMA_VERSION;
+use crate::seal::SealHead;
 use crate::store::Store;
 
 /// What a check looked at and found.
@@ -24,12 +28,20 @@ pub struct CheckReport {
     pub recordings: u32,
     /// What is wrong; empty is good.
     pub problems: Vec<Problem>,
+    /// What is not wrong, and to be known: what was sealed by an earlier version or as it was found, and what
+    /// was counted anew.
+    pub remarks: Vec<String>,
+    /// Where the file's chain of seals ends: to compare with what is known elsewhere.
+    pub head: Option<SealHead>,
 }
+
+/// What is to be known, in words.
+type Remarks = Vec<String>;
 
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// integrity, schema, foreign_key, count, trace, recording, seal or tally.
+    /// integrity, schema, foreign_key, count, fault, trace, recording, seal or tally.
     pub kind: &'static str,
     /// Which, and how.
     pub detail: String,
@@ -44,9 +56,12 @@ const FROM_BACKUP: &str = "keep this file as it is and go on with a backup; othe
     have what was recorded since";
 const LOST: &str =
     "it cannot be brought back here; a backup, another laptop or the server may have it";
-const ALTERED: &str =
-    "hold it against the test sheet, a backup or the server; somebody has changed the file by hand";
-const REBUILD: &str = "`db rebuild` makes it anew from the rows it follows from";
+const ALTERED: &str = "somebody has changed the file by hand: what no line names can still be trusted as far as its \
+    seal is the one on a test sheet, in a backup or on the server; no command takes this finding away";
+const PLANTED: &str = "nothing is written to such a file; keep a copy of it as it is, then go on with a backup, or \
+    take out by hand what is not of this program and check it again";
+const REBUILD: &str = "a row may have been changed by hand: hold the file against a backup or the server first; then \
+    `db rebuild` makes it anew from the rows it follows from, and what differed stays on record";
 
 /// Problems of one kind, no more than are read.
 struct Findings<'a> {
@@ -92,9 +107,9 @@ impl Drop for Findings<'_> {
 }
 
 impl Store {
-    /// Looks for damage and for what was changed by hand: SQLite's own check, foreign keys, every trace
-    /// and recording, every run against its seal and the seals against each other, and all that is
-    /// counted from other rows.
+    /// Looks for damage and for what was changed by hand: SQLite's own check, what the file is made of, foreign
+    /// keys, every trace and recording, every run, event and note against its seal and the seals against each
+    /// other, faults and units against what they follow from, and all that is counted from other rows.
     ///
     /// Of a server: every run against its seal, the seals against each other, and what keeps its rows as they
     /// are.
@@ -122,6 +137,8 @@ impl Store {
             traces: 0,
             recordings: 0,
             problems,
+            remarks: Vec::new(),
+            head: None,
         };
         match self.check_rows(conn, &mut report) {
             // What SQLite has found already is worth more than where reading broke off.
@@ -139,12 +156,13 @@ impl Store {
     fn check_rows(&self, conn: &Connection, report: &mut CheckReport) -> Result<(), StoreError> {
         let failed = |error| self.failed("checking", error);
         let problems = &mut report.problems;
-        let mut found = Findings::new(problems, "foreign_key", FROM_BACKUP);
-        each_text(conn, FOREIGN, |detail| found.add(detail)).map_err(failed)?;
+        let mut found = Findings::new(problems, "schema", PLANTED);
+        let strangers = guard::strangers(conn, SCHEMA_VERSION).map_err(failed)?;
+        strangers.into_iter().for_each(|detail| found.add(detail));
         drop(found);
 
-        let mut found = Findings::new(problems, "count", REBUILD);
-        each_text(conn, COUNTS, |detail| found.add(detail)).map_err(failed)?;
+        let mut found = Findings::new(problems, "foreign_key", FROM_BACKUP);
+        each_text(conn, FOREIGN, |detail| found.add(detail)).map_err(failed)?;
         drop(found);
 
         let mut found = Findings::new(problems, "trace", LOST);
@@ -166,28 +184,26 @@ impl Store {
         drop(found);
 
         let found = Findings::new(problems, "seal", ALTERED);
-        let runs = chain::check(self.base(), found);
+        let runs = chain::check(self.base(), found, &mut report.remarks);
         report.runs = runs.map_err(|error| self.failed("checking seals", error))?;
+        report.head = self.head()?;
 
         let found = Findings::new(problems, "tally", REBUILD);
-        counted::check(conn, found).map_err(failed)
+        counted::check(conn, found).map_err(failed)?;
+        counted::in_one_view(conn, || derived::check(conn, &mut report.problems)).map_err(failed)
     }
 
     /// Makes everything anew that follows from other rows: counts by day and month, repairs, sums of
     /// measured values, words of notes, and of faults that have another number of occurrences than they
-    /// say, what follows from these. Runs, faults, events and traces stay as they are.
-    pub fn rebuild(&self) -> Result<(), StoreError> {
-        counted::rebuild(self)
+    /// say, what follows from these. Runs, faults, events and traces stay as they are, and so do their seals,
+    /// wrong or missing; what differed is put on record at this time and comes back.
+    pub fn rebuild(&self, at_us: i64) -> Result<Vec<String>, StoreError> {
+        counted::rebuild(self, at_us)
     }
 }
 
 const FOREIGN: &str = "SELECT coalesce('row ' || rowid, 'a row') || ' of ' || \"table\"
     || ' points at a missing row of ' || parent FROM pragma_foreign_key_check";
-
-const COUNTS: &str = "SELECT 'fault ' || lower(hex(f.id)) || ' says ' || f.occurrences
-    || ' occurrences, has ' || n
-    FROM (SELECT f.id, f.occurrences, (SELECT count(*) FROM fault_occurrence o WHERE o.fault = f.seq) n
-        FROM fault f) f WHERE f.occurrences <> n";
 
 fn each_text(conn: &Connection, sql: &str, mut take: impl FnMut(String)) -> rusqlite::Result<()> {
     let mut select = conn.prepare(sql)?;

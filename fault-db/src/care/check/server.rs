@@ -27,6 +27,8 @@ pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
         traces: 0,
         recordings: 0,
         problems: Vec::new(),
+        remarks: Vec::new(),
+        head: None,
     };
     let base = store.base();
     let mut found = Findings::new(&mut report.problems, "schema", GUARDS);
@@ -40,6 +42,7 @@ pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
     looked.map_err(|error| store.failed(DOING, error))?;
     drop(found);
     let found = Findings::new(&mut report.problems, "seal", SEALS);
-    report.runs = chain::check(base, found).map_err(|error| store.failed(DOING, error))?;
+    let checked = chain::check(base, found, &mut report.remarks);
+    report.runs = checked.map_err(|error| store.failed(DOING, error))?;
     Ok(report)
 }

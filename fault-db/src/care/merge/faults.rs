@@ -144,7 +144,8 @@ impl Merge<'_> {
         known: &mut Known,
     ) -> rusqlite::Result<()> {
         let mut select = self.theirs.prepare(
-            "SELECT id, fault, run, step_index, at_us, bench_us, message, freeze_json, trace, code, lru, line
+            "SELECT id, fault, run, step_index, at_us, bench_us, message, freeze_json, trace, code, lru, line,
+                code_name, severity
              FROM fault_occurrence",
         )?;
         let mut rows = select.query([])?;
@@ -152,7 +153,7 @@ impl Merge<'_> {
             if known.left_out.contains(&row.get(1)?) {
                 continue;
             }
-            let mut occurrence = values(row, 0..12)?;
+            let mut occurrence = values(row, 0..14)?;
             let fault = known.number(row.get(1)?);
             occurrence[1] = fault.map_or(Value::Null, Value::Integer);
             occurrence[2] = renumber(runs, row.get(2)?);
@@ -167,8 +168,8 @@ impl Merge<'_> {
                 continue;
             }
             let insert = "INSERT INTO fault_occurrence(id, fault, run, step_index, at_us, bench_us,
-                    message, freeze_json, trace, code, lru, line, unit)
-                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12,
+                    message, freeze_json, trace, code, lru, line, code_name, severity, unit)
+                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14,
                     (SELECT unit FROM fault WHERE seq = ?2))";
             let (seq, is_new) = self.find_or_insert(find, insert, &occurrence)?;
             if is_new {

@@ -18,8 +18,10 @@ use crate::error::StoreError;
 use crate::file::CACHE_KIB;
 use crate::id::Id;
 use crate::part::Part;
+use crate::seal::own_name;
+use crate::seal::parted::{Standing, standing};
 use crate::store::{OpenOptions, Store};
-use crate::sync::Different;
+use crate::sync::{Different, refusal};
 use rows::{MEASUREMENTS, RECORDINGS, SCRIPTS, STEPS};
 
 /// What a merge added, and what it did not.
@@ -47,6 +49,19 @@ pub struct MergeCounts {
     pub notes: usize,
     /// Runs that are over here and there and do not say the same; here they were left as they are.
     pub different: Vec<Different>,
+    /// The other file is a copy of a file whose chain of seals is known here.
+    pub copy: Option<CopyOf>,
+}
+
+/// What another file is a copy of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CopyOf {
+    /// The name both have.
+    pub file: Id,
+    /// The last entry of its chain of seals that both have.
+    pub after: i64,
+    /// It went on by itself after that; else it is from before.
+    pub went_on: bool,
 }
 
 impl Store {
@@ -79,13 +94,14 @@ impl Store {
     pub fn merge_from(&self, other: &Store) -> Result<MergeCounts, StoreError> {
         const DOING: &str = "merging";
         let theirs = other.file()?;
-        let file_id = self.file_id()?;
+        self.check_writable()?;
         let set_cache = |size: i32| {
             let set = self
                 .file()?
                 .execute_batch(&format!("PRAGMA cache_size = {size}"));
             set.map_err(|error| self.failed(DOING, error))
         };
+        let copy = self.copy_of(other)?;
         // One reading transaction, so that all tables are seen at the same moment.
         let begin = theirs.execute_batch("BEGIN");
         begin.map_err(|error| other.failed(DOING, error))?;
@@ -97,12 +113,15 @@ impl Store {
                     ours,
                     base: self.base(),
                     their_base: other.base(),
-                    counts: MergeCounts::default(),
+                    counts: MergeCounts {
+                        copy,
+                        ..MergeCounts::default()
+                    },
                     fresh_runs: BTreeSet::new(),
                     sealed_runs: BTreeSet::new(),
                     different_runs: BTreeSet::new(),
                 }
-                .all(file_id)
+                .all()
                 .map_err(|error| self.blame(other, error))
             })
         });
@@ -110,6 +129,40 @@ impl Store {
         // It costs memory only as long as this store is open.
         let _ = set_cache(-(CACHE_KIB as i32));
         merged
+    }
+
+    /// Holds the other file's chains of seals against what is known of them here.
+    ///
+    /// # Errors
+    /// Its history was rewritten.
+    fn copy_of(&self, other: &Store) -> Result<Option<CopyOf>, StoreError> {
+        const DOING: &str = "comparing seals";
+        let look = || -> SqlResult<_> {
+            let own = own_name(other.base())?;
+            let all = "SELECT DISTINCT origin FROM seal ORDER BY origin";
+            let origins = (other.base()).select(all, &[], |row| row.get::<Id>(0))?;
+            let compare = |origin| Ok((origin, standing(other.base(), self.base(), origin)?));
+            let stand: SqlResult<Vec<_>> = origins.into_iter().map(compare).collect();
+            Ok((own, stand?))
+        };
+        let (own, stand) = look().map_err(|error| other.failed(DOING, error))?;
+        let mut copy = None;
+        for (file, stands) in stand {
+            let (after, went_on) = match stands {
+                Standing::Rewritten { .. } => return Err(refusal(other.path(), &stands)),
+                Standing::Parted { after } => (after, true),
+                Standing::Behind { here, .. } => (here, false),
+                Standing::Continued { .. } => continue,
+            };
+            if own == Some(file) {
+                copy = Some(CopyOf {
+                    file,
+                    after,
+                    went_on,
+                });
+            }
+        }
+        Ok(copy)
     }
 
     /// Names the file that is to blame for what went wrong.
@@ -162,21 +215,22 @@ struct Merge<'a> {
 
 impl Merge<'_> {
     /// Parents before children, because children need their parents' new numbers.
-    fn all(mut self, file_id: Id) -> SqlResult<MergeCounts> {
+    fn all(mut self) -> SqlResult<MergeCounts> {
+        let before = self.before()?;
         let units = self.units()?;
         let runs = self.runs(&units)?;
         self.compare(&runs)?;
         self.counts.steps = self.children(&runs, &STEPS)?;
         self.counts.measurements = self.children(&runs, &MEASUREMENTS)?;
         self.children(&runs, &SCRIPTS)?;
-        // No part of what is sealed: it comes and goes with its traces.
+        // It comes and goes with its traces: a run's seal says what it was.
         self.counts.recordings = self.add(&runs, &RECORDINGS, &BTreeSet::new())?;
         self.notes(&runs)?;
         let channel_sets = self.channel_sets()?;
         let traces = self.traces(&runs, &channel_sets)?;
         self.faults(&units, &runs, &traces)?;
-        self.seals(&runs)?;
-        self.seal_the_rest(file_id)?;
+        self.seals(before)?;
+        self.seal_the_rest(before)?;
         Ok(self.counts)
     }
 }

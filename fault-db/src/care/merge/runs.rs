@@ -28,18 +28,20 @@ impl Merge<'_> {
         let mut select = self.theirs.prepare(
             "SELECT seq, id, unit, line, seed, operator, source, started_at_us, finished_at_us,
                 verdict, bench_time_us, wall_time_us, app_version, scripts_sha256,
-                unit_config_sha256, injected, owner, train FROM run",
+                unit_config_sha256, injected, owner, train, unit_kind, unit_config_name, sw_versions
+             FROM run",
         )?;
         let mut rows = select.query([])?;
         while let Some(row) = rows.next()? {
-            let mut run = values(row, 1..18)?;
+            let mut run = values(row, 1..21)?;
             run[1] = renumber(units, row.get(2)?);
             let known = "SELECT seq FROM run WHERE id = ?1";
             let insert = "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us,
                     finished_at_us, verdict, bench_time_us, wall_time_us, app_version,
-                    scripts_sha256, unit_config_sha256, injected, owner, train)
+                    scripts_sha256, unit_config_sha256, injected, owner, train, unit_kind,
+                    unit_config_name, sw_versions)
                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16,
-                    ?17)";
+                    ?17, ?18, ?19, ?20)";
             let (seq, is_new) = self.find_or_insert(known, insert, &run)?;
             self.counts.runs += usize::from(is_new);
             // It may have been copied earlier while it was still running.

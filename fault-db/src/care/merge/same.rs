@@ -6,7 +6,7 @@ use super::Merge;
 use super::rows::Numbers;
 use crate::base::{Base, SqlResult, values};
 use crate::id::Id;
-use crate::seal::digest;
+use crate::seal::{first, run_digest};
 use crate::sync::Different;
 
 impl Merge<'_> {
@@ -17,11 +17,14 @@ impl Merge<'_> {
                 continue;
             }
             // A file changed by hand has its old seals; one sealed anew may say what it likes.
-            let said = digest(self.base, *ours)?;
-            let mut here = sealed(self.base, *ours)?;
-            here.insert(said.to_vec());
-            let there = sealed(self.their_base, *theirs)?;
-            if digest(self.their_base, *theirs)? != said || !there.is_subset(&here) {
+            let (here, there) = (seals(self.base, *ours)?, seals(self.their_base, *theirs)?);
+            let same_said =
+                first::digest(self.their_base, *theirs)? == first::digest(self.base, *ours)?;
+            let mut fits = same_said;
+            for seal in &there {
+                fits &= here.contains(seal) || digest(self.base, *ours, seal)? == seal.digest[..];
+            }
+            if !fits {
                 self.different_runs.insert(*ours);
             }
         }
@@ -42,19 +45,38 @@ impl Merge<'_> {
 fn is_over(base: &Base, run: i64) -> SqlResult<bool> {
     let is_over = base.first(
         "SELECT 1 FROM run WHERE seq = ?1 AND (verdict IS NOT NULL
-            OR EXISTS (SELECT 1 FROM seal WHERE seal.run = run.seq))",
+            OR EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run'))",
         &values![run],
         |_| Ok(()),
     )?;
     Ok(is_over.is_some())
 }
 
-/// What a run is sealed as; files that shared it before there were seals have each sealed it.
-fn sealed(base: &Base, run: i64) -> SqlResult<BTreeSet<Vec<u8>>> {
+/// One of the seals of a run; files that shared it before there were seals have each sealed it.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Seal {
+    covers: i64,
+    says: String,
+    digest: Vec<u8>,
+}
+
+fn seals(base: &Base, run: i64) -> SqlResult<BTreeSet<Seal>> {
     let sealed = base.select(
-        "SELECT digest FROM seal WHERE run = ?1",
+        "SELECT s.covers, s.says, s.digest FROM run r JOIN seal s ON s.id = r.id AND s.what = 'run'
+         WHERE r.seq = ?1",
         &values![run],
-        |row| row.get(0),
+        |row| {
+            Ok(Seal {
+                covers: row.get(0)?,
+                says: row.get(1)?,
+                digest: row.get(2)?,
+            })
+        },
     )?;
     Ok(sealed.into_iter().collect())
+}
+
+/// What our run would be sealed as there.
+fn digest(base: &Base, run: i64, seal: &Seal) -> SqlResult<[u8; 32]> {
+    run_digest(base, run, seal.covers, &seal.says)
 }

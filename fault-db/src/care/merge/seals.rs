@@ -1,80 +1,164 @@
-//! The chain of runs, carried over as it is: that a run fits its seal, and a seal the one before, is for a
+//! The chains of seals, carried over as they are: that what they seal fits, and a seal the one before, is for a
 //! check to find.
 
 use rusqlite::{OptionalExtension, params};
 
 use super::Merge;
-use super::rows::Numbers;
 use crate::base::SqlResult;
 use crate::id::Id;
-use crate::seal::{chained, seal};
+use crate::seal::said::{event_digest, found_event, found_note, note_digest};
+use crate::seal::{BY_IMPORT, chained, found_run};
 
 /// A seal of theirs.
 struct Theirs {
     origin: Id,
     ordinal: i64,
-    run: i64,
+    what: String,
+    id: Id,
+    covers: i64,
+    says: String,
     digest: Vec<u8>,
     hash: Vec<u8>,
 }
 
+/// The last event and note that were here before the merge.
+#[derive(Clone, Copy)]
+pub(super) struct Before {
+    event: i64,
+    note: i64,
+}
+
 impl Merge<'_> {
-    /// Adds their seals. Where a copy of a file went on by itself, two runs have one place in the chain: ours
-    /// stays, and from there on theirs would fit nothing here. The same holds from a run on that is sealed there
-    /// as something else than it is here.
-    pub(super) fn seals(&self, runs: &Numbers) -> rusqlite::Result<()> {
+    /// What is here before anything is added.
+    pub(super) fn before(&self) -> rusqlite::Result<Before> {
+        let last = "SELECT coalesce((SELECT max(seq) FROM fault_event), 0),
+            coalesce((SELECT max(seq) FROM run_note), 0)";
+        self.ours.query_row(last, [], |row| {
+            Ok(Before {
+                event: row.get(0)?,
+                note: row.get(1)?,
+            })
+        })
+    }
+
+    /// Adds their seals. Where a copy of a file went on by itself, two entries have one place in the chain: ours
+    /// stays, and from there on theirs would fit nothing here. The same holds from an entry on that seals there
+    /// something else than is here.
+    pub(super) fn seals(&self, before_merge: Before) -> SqlResult<()> {
         let mut select = self.theirs.prepare(
-            "SELECT origin, ordinal, run, digest, hash FROM seal ORDER BY origin, ordinal",
+            "SELECT origin, ordinal, what, id, covers, says, digest, hash FROM seal ORDER BY origin, ordinal",
         )?;
         let mut known = self
             .ours
             .prepare("SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2")?;
         let mut insert = self.ours.prepare(
-            "INSERT INTO seal(origin, ordinal, run, digest, hash) VALUES (?1, ?2, ?3, ?4, ?5)",
+            "INSERT INTO seal(origin, ordinal, what, id, covers, says, digest, hash)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
         )?;
         let mut rows = select.query([])?;
-        let mut last: Option<Theirs> = None;
+        let mut last: Option<(Id, Vec<u8>)> = None;
         let mut parted = false;
         while let Some(row) = rows.next()? {
             let theirs = Theirs {
                 origin: row.get(0)?,
                 ordinal: row.get(1)?,
-                run: row.get(2)?,
-                digest: row.get(3)?,
-                hash: row.get(4)?,
+                what: row.get(2)?,
+                id: row.get(3)?,
+                covers: row.get(4)?,
+                says: row.get(5)?,
+                digest: row.get(6)?,
+                hash: row.get(7)?,
             };
-            let before = last.filter(|last| last.origin == theirs.origin);
+            let before = last.filter(|(origin, _)| *origin == theirs.origin);
             parted &= before.is_some();
             let place = params![theirs.origin, theirs.ordinal];
-            let run = runs.get(&theirs.run);
-            let is_different = run.is_some_and(|run| self.different_runs.contains(run));
             let ours: Option<Vec<u8>> = known.query_row(place, |row| row.get(0)).optional()?;
             match ours {
                 Some(ours) => {
-                    let before = before.as_ref().map(|before| &before.hash[..]);
+                    let before = before.as_ref().map(|(_, hash)| &hash[..]);
                     let fits = chained(before, &theirs.digest) == theirs.hash[..];
                     parted = ours != theirs.hash && (fits || parted);
                 }
-                None if parted || is_different => parted = true,
+                None if parted || self.says_otherwise(&theirs, before_merge)? => parted = true,
                 None => {
-                    let Theirs { digest, hash, .. } = &theirs;
-                    insert.execute(params![theirs.origin, theirs.ordinal, run, digest, hash])?;
+                    let Theirs {
+                        origin,
+                        ordinal,
+                        what,
+                        id,
+                        covers,
+                        says,
+                        digest,
+                        hash,
+                    } = &theirs;
+                    insert.execute(params![
+                        origin, ordinal, what, id, covers, says, digest, hash
+                    ])?;
                 }
             }
-            last = Some(theirs);
+            last = Some((theirs.origin, theirs.hash));
         }
         Ok(())
     }
 
-    /// Runs that came without a seal that fits here are sealed as they are found.
-    pub(super) fn seal_the_rest(&self, file_id: Id) -> SqlResult<()> {
+    /// What was here before the merge is something else than this seals there.
+    fn says_otherwise(&self, theirs: &Theirs, before: Before) -> SqlResult<bool> {
+        let seq = |sql: &str, last: i64| -> rusqlite::Result<Option<i64>> {
+            let mut find = self.ours.prepare_cached(sql)?;
+            find.query_row(params![theirs.id, last], |row| row.get(0))
+                .optional()
+        };
+        let digest = match &theirs.what[..] {
+            "run" => {
+                let run = seq("SELECT seq FROM run WHERE id = ?1 AND ?2 = 0", 0)?;
+                return Ok(run.is_some_and(|run| self.different_runs.contains(&run)));
+            }
+            "event" => seq(
+                "SELECT seq FROM fault_event WHERE id = ?1 AND seq <= ?2",
+                before.event,
+            )?
+            .map(|event| event_digest(self.base, event, &theirs.says)),
+            "note" => seq(
+                "SELECT seq FROM run_note WHERE id = ?1 AND seq <= ?2",
+                before.note,
+            )?
+            .map(|note| note_digest(self.base, note, &theirs.says)),
+            _ => None,
+        };
+        Ok(match digest {
+            Some(ours) => ours? != theirs.digest[..],
+            None => false,
+        })
+    }
+
+    /// Runs, events and notes that came without a seal that fits here are sealed as they are found.
+    pub(super) fn seal_the_rest(&self, before: Before) -> SqlResult<()> {
         let unsealed = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IS NOT NULL
-            AND NOT EXISTS (SELECT 1 FROM seal WHERE seal.run = run.seq)";
+            AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run')";
         for run in &self.fresh_runs {
             if self.ours.prepare_cached(unsealed)?.exists([run])? {
-                seal(self.base, file_id, *run)?;
+                found_run(self.base, *run, BY_IMPORT)?;
             }
         }
+        for event in self.unsealed(
+            "SELECT seq FROM fault_event e WHERE seq > ?1
+                AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = e.id AND s.what = 'event') ORDER BY seq",
+            before.event,
+        )? {
+            found_event(self.base, event, BY_IMPORT)?;
+        }
+        for note in self.unsealed(
+            "SELECT seq FROM run_note n WHERE seq > ?1
+                AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = n.id AND s.what = 'note') ORDER BY seq",
+            before.note,
+        )? {
+            found_note(self.base, note, BY_IMPORT)?;
+        }
         Ok(())
+    }
+
+    fn unsealed(&self, sql: &str, after: i64) -> rusqlite::Result<Vec<i64>> {
+        let mut select = self.ours.prepare(sql)?;
+        select.query_map([after], |row| row.get(0))?.collect()
     }
 }

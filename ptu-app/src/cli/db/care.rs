@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use clap::Args;
-use fault_db::{Different, MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
+use fault_db::{CopyOf, Different, MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
 use serde_json::{json, to_value};
 
+use super::check::sealed;
 use crate::cli::database::only_file;
 use crate::cli::{Database, print_json, print_out, since_argument};
 use crate::clock;
@@ -35,7 +36,14 @@ pub(super) struct PruneArguments {
 impl Database {
     pub(super) fn backup(&self, to: &Path) -> Result<Exit, Failure> {
         self.open_read_only()?.backup(only_file(to)?)?;
-        print_out(&format!("copied to {}", to.display()))
+        // Of the copy: somebody may have recorded more into the file meanwhile.
+        let head = fault_db::Store::open_read_only(to)?.head()?;
+        let head = head.map(|head| format!("\n{}", sealed(&head)));
+        print_out(&format!(
+            "copied to {}{}",
+            to.display(),
+            head.unwrap_or_default()
+        ))
     }
 
     pub(super) fn import(&self, from: &Path, json: bool) -> Result<Exit, Failure> {
@@ -66,16 +74,23 @@ impl Database {
             max_file_bytes: arguments.max_size,
             keep_unsent: !arguments.unsent_too,
             dry_run: arguments.dry_run,
+            at_us: clock::now_us(),
         };
         print_out(&pruned(&self.open()?.prune(&rule)?, arguments.dry_run))
     }
 
     pub(super) fn rebuild(&self) -> Result<Exit, Failure> {
-        self.open()?.rebuild()?;
-        print_out(
-            "counts by day and month, repairs, sums of measured values and search words made anew; \
-             runs, faults and traces are as they were",
-        )
+        let differed = self.open()?.rebuild(clock::now_us())?;
+        let mut said = "counts by day and month, repairs, sums of measured values and search words made anew; \
+             runs, faults, traces and seals are as they were"
+            .to_owned();
+        if !differed.is_empty() {
+            said += "\nuntil now, and on record from now on:";
+        }
+        for what in differed {
+            said += &format!("\n  {what}");
+        }
+        print_out(&said)
     }
 }
 
@@ -108,6 +123,9 @@ fn tell_merged(
         let rivals: String = conflicts.iter().map(rivals).collect();
         print_out(&(merged(counts) + &rivals))?;
     }
+    if let Some(copy) = &counts.copy {
+        eprintln!("{}", copied(copy));
+    }
     for Different { what, id } in &counts.different {
         eprintln!(
             "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
@@ -117,6 +135,22 @@ fn tell_merged(
         true => Exit::Passed,
         false => Exit::Bench,
     })
+}
+
+fn copied(copy: &CopyOf) -> String {
+    let file = copy.file.short();
+    match copy.went_on {
+        true => format!(
+            "it is a copy of database {file} that went on by itself after entry {} of its chain of seals; what is new \
+             in it is sealed here as it was found",
+            copy.after
+        ),
+        false => format!(
+            "it is a copy of database {file} from before: more of its chain of seals is known here than the {} entries \
+             in it",
+            copy.after
+        ),
+    }
 }
 
 fn merged(counts: &MergeCounts) -> String {

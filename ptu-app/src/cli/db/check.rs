@@ -1,6 +1,6 @@
 //! `ptu db check`: is the file whole, and does it say what was recorded?
 
-use fault_db::CheckReport;
+use fault_db::{CheckReport, SealHead};
 
 use crate::cli::{Database, print_json, print_out};
 use crate::failure::{Exit, Failure};
@@ -13,11 +13,13 @@ impl Database {
             print_json(&report)?;
         } else if report.problems.is_empty() {
             print_out(&format!(
-                "no damage; {} traces read, {} runs fit their seals",
-                report.traces, report.runs
+                "no damage; {} traces read, {} runs fit their seals{}",
+                report.traces,
+                report.runs,
+                besides(&report)
             ))?;
         } else {
-            print_out(&told(&report))?;
+            print_out(&(told(&report) + &besides(&report)))?;
         }
         Ok(if report.problems.is_empty() {
             Exit::Passed
@@ -25,6 +27,28 @@ impl Database {
             Exit::Bench
         })
     }
+}
+
+/// What is to be known besides, and where the chain of seals ends.
+fn besides(report: &CheckReport) -> String {
+    let remarks = report.remarks.iter().map(|remark| format!("\n{remark}"));
+    let head = report.head.as_ref().map(sealed);
+    remarks
+        .chain(head.map(|head| format!("\n{head}")))
+        .collect()
+}
+
+/// Where a chain of seals ends, to be written down and compared.
+pub(super) fn sealed(head: &SealHead) -> String {
+    let SealHead {
+        file,
+        entries,
+        seal,
+    } = head;
+    format!(
+        "chain of seals: {entries} entries of database {}, the last {seal}",
+        file.short()
+    )
 }
 
 /// All problems, and once for each kind what to do about it.

@@ -27,6 +27,9 @@ pub struct SyncArguments {
     /// Leave samples for a later sync
     #[arg(long)]
     no_traces: bool,
+    /// The file is a copy or a backup that is to be gone on with: it gets a name of its own
+    #[arg(long)]
+    as_copy: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -58,6 +61,7 @@ impl SyncArguments {
             &mut SyncOptions {
                 laptop: &laptop(),
                 traces: !self.no_traces,
+                as_copy: self.as_copy,
                 is_alive: &owner::is_alive,
                 now_us: &clock::now_us,
                 go_on: &mut |progress| {
@@ -139,9 +143,9 @@ fn warnings(outcome: &SyncOutcome) -> Vec<String> {
     }
     for different in &outcome.different {
         all.push(match different.what {
-            "seal" => format!(
-                "run {} follows another run than on the server: somebody recorded in a copy of this file; it was sent, but outside the chain",
-                different.id
+            "chain" => format!(
+                "of database {}, whose runs came here, the server knows another history: one of them is a copy that went on by itself; look with `ptu db check`",
+                different.id.short()
             ),
             what => format!(
                 "{what} {} does not say the same here and on the server; both were left as they are: look with `ptu db check`",

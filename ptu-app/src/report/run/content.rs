@@ -362,11 +362,29 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.wall_time, seconds(run.wall_time_us)),
         (report.program, format!("ptu {}", run.app_version)),
         (report.scripts_hash, run.scripts_sha256.clone()),
+        (report.seal, seal(sheet, words)),
     ];
     vec![
         Block::Heading(report.the_run.into()),
         Block::Facts(facts.map(|(name, value)| (sentence(name), value)).into()),
     ]
+}
+
+/// What the run is sealed as: whoever holds the paper can tell whether the database still says so.
+fn seal(sheet: &Sheet, words: &Words) -> String {
+    let report = &words.report;
+    let Some(seal) = &sheet.run.seal else {
+        return "–".into();
+    };
+    let (digits, file) = (seal.short(), seal.file.short());
+    let place: [(&str, &dyn std::fmt::Display); 3] =
+        [("digits", &digits), ("n", &seal.entry), ("file", &file)];
+    let said = fill(report.seal_of, &place);
+    match (seal.covers, &seal.found) {
+        (2.., None) => said,
+        (2.., Some(_)) => format!("{said} ({})", report.seal_found),
+        _ => format!("{said} ({})", report.seal_earlier),
+    }
 }
 
 fn all_steps(sheet: &Sheet, words: &Words) -> Vec<Block> {
