@@ -74,6 +74,59 @@ fn a_database_of_another_program_is_refused() {
     }
 }
 
+/// Goal: somebody's trigger that turns failed into passed is named, nothing is recorded into such a file, and it
+/// can still be looked at, with a warning.
+#[test]
+fn a_planted_trigger_is_named_and_nothing_is_recorded() {
+    let place = Place::new();
+    let db = changed(
+        &place,
+        "CREATE TRIGGER better AFTER UPDATE OF verdict ON run WHEN NEW.verdict = 'failed'
+         BEGIN UPDATE run SET verdict = 'passed' WHERE seq = NEW.seq; END",
+    );
+    let better = "the trigger \"better\" on run is not of this program";
+    let failing = [
+        "run",
+        "atp/overspeed",
+        "--inject",
+        "eb_relay.slow",
+        "--db",
+        &db,
+    ];
+    for arguments in [&failing[..], &["db", "rebuild", "--db", &db]] {
+        let said = place.ptu(arguments).exits(3);
+        said.explains(&["changed.db", better, "db check", "a backup"]);
+    }
+    let checked = place.ptu(&["db", "check", "--db", &db]).exits(3);
+    assert!(checked.out.contains(better), "{}", checked.all());
+    let shown = place.ptu(&["runs", "list", "--db", &db]).exits(0);
+    shown.explains(&["changed.db", "altered by hand", better]);
+}
+
+/// Goal: a run's seal, and that of the whole file, stand where they can be compared later.
+#[test]
+fn seals_are_told_where_they_can_be_compared() {
+    let place = Place::new();
+    let run = place.recorded_run();
+    let seal = place.json(&["runs", "show", &run, "--json"])["seal"].clone();
+    let whole = common::text(&seal["seal"]).to_owned();
+    assert_eq!((whole.len(), &seal["covers"]), (64, &serde_json::json!(2)));
+    let checked = place.json(&["db", "check", "--json"]);
+    assert_eq!(
+        checked["head"]["seal"], seal["seal"],
+        "the run is the last entry"
+    );
+    let copy = place.text_path("copy.db");
+    let copied = place.ptu(&["db", "backup", &copy]).exits(0);
+    assert!(copied.out.contains(&whole), "{}", copied.all());
+    for language in ["en", "ko"] {
+        let sheet = format!("sheet.{language}.html");
+        let arguments = ["runs", "show", &run, "--report", &sheet, "--lang", language];
+        place.ptu(&arguments).exits(0);
+        assert!(place.read(&sheet).contains(&whole[..16]), "{language}");
+    }
+}
+
 #[test]
 fn a_damaged_file_is_named_and_checked() {
     let place = Place::new();

@@ -69,8 +69,11 @@ fn append_as(
     Ok(())
 }
 
-/// The name of a file, which its own entries have.
+/// The name of a file, which its own entries have; a server has neither.
 pub(crate) fn own_name(base: &Base) -> SqlResult<Option<Id>> {
+    if let Base::Server(_) = base {
+        return Ok(None);
+    }
     let sql = "SELECT value FROM about WHERE key = 'file_id'";
     base.first(sql, &[], |row| row.get(0))
 }

@@ -10,7 +10,7 @@ use crate::id::Id;
 const STEPS: &[&str] = &[
     concat!(include_str!("schema.sql"), include_str!("views.sql")),
     include_str!("0002.sql"),
-    include_str!("seals.sql"),
+    include_str!("0003.sql"),
 ];
 
 /// The schema this crate reads and writes on a server.

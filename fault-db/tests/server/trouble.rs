@@ -167,7 +167,7 @@ fn a_reader_can_ask_and_not_write() {
         refused.to_string().contains("permission denied"),
         "{refused}"
     );
-    let needs_file = store.rebuild().expect_err("a server");
+    let needs_file = store.rebuild(0).expect_err("a server");
     assert!(
         needs_file.to_string().contains("needs a database file"),
         "{needs_file}"

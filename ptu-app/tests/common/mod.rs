@@ -14,7 +14,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// Keys that differ between two runs of one seed: identities, times of day, and wall time.
-const IDENTITIES: [&str; 2] = ["id", "trace_id"];
+const IDENTITIES: [&str; 3] = ["id", "trace_id", "seal"];
 const TIMES_OF_DAY: [&str; 4] = ["started_at", "finished_at", "first_at", "last_at"];
 const WALL_TIME: [&str; 1] = ["wall_time_s"];
 
