@@ -176,6 +176,29 @@ fn code_0_stops_a_train_by_the_service_brake_alone() {
     assert!(bench.has(Outputs::STANDSTILL) && !bench.braking());
 }
 
+/// Goal: a pulse too many does not hide that the service brake works. Method: a train that slows by 0.9 m/s²
+/// and once a second a pulse of 27 mm more in one tachometer, which for 100 ms is 0.27 m/s.
+#[test]
+fn a_spurious_pulse_while_the_service_brake_works_is_no_emergency() {
+    let mut bench = Bench::new(&[]);
+    bench.code("75");
+    bench.run(0.6);
+    bench.speed_kmh(70.0);
+    bench.code("0");
+    assert!(bench.until(2.0, |b| b.has(Outputs::FSB)).is_some());
+    let mut speed = bench.speeds[0];
+    for scan in 1.. {
+        speed -= 0.9 / 100.0;
+        if speed < 1.0 {
+            break;
+        }
+        let spurious = if scan % 100 == 0 { 2.7 } else { 0.0 };
+        bench.speeds = [speed, speed + spurious];
+        bench.scan();
+        assert!(!bench.braking(), "scan {scan}, {:?}", bench.status.eb_cause);
+    }
+}
+
 #[test]
 fn one_dead_tachometer_brakes_and_is_named() {
     let mut bench = Bench::new(&[]);

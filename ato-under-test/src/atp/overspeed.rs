@@ -37,6 +37,7 @@ pub struct Supervision {
     above_alarm: Lasting,
     above_service: Lasting,
     above_emergency: Lasting,
+    unproved: Lasting,
     alarm: bool,
     service: bool,
     service_since: Instant,
@@ -56,6 +57,7 @@ impl Supervision {
             above_alarm: Lasting::default(),
             above_service: Lasting::default(),
             above_emergency: Lasting::default(),
+            unproved: Lasting::default(),
             alarm: false,
             service: false,
             service_since: Instant::ZERO,
@@ -91,11 +93,13 @@ impl Supervision {
         }
         let proof = Duration::from_ms(u64::from(margins.brake_proof_ms));
         let proved = decel_mps2 >= margins.brake_proof_mps2;
+        let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
+        // A pulse too many in a tachometer hides a deceleration for as long as its speed window.
+        let unproved = self.unproved.update(now, !proved, delay);
         // Close to the limit, and to standstill, a deceleration is no longer to be measured.
         let well_over = speed.kmh() > limit.kmh() + margins.alarm_margin_kmh;
         let ineffective =
-            self.service && !proved && now.since(self.service_since) >= proof && well_over;
-        let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
+            self.service && unproved && now.since(self.service_since) >= proof && well_over;
         let in_grace = self.stepped_down && !ineffective && (proved || now < self.grace_until);
         let beyond = speed.kmh() > limit.kmh() + margins.eb_margin_kmh && !in_grace;
         let emergency = self.above_emergency.update(now, beyond, delay);
