@@ -21,6 +21,7 @@ mod care;
 mod conflicts;
 pub mod diagnosis;
 mod dictionaries;
+mod domain;
 mod error;
 mod fault_log;
 mod fault_state;
@@ -55,6 +56,7 @@ mod words;
 
 pub use care::{CheckReport, CopyOf, MergeCounts, Problem, PruneCounts, PruneRule};
 pub use conflicts::{RivalEvent, StateConflict};
+pub use domain::{Refusals, Refused};
 pub use error::StoreError;
 pub use fault_state::{FaultAction, FaultState, TransitionError};
 pub use id::{Id, IdSource};

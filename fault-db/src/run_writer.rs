@@ -98,8 +98,14 @@ impl<'a> RunWriter<'a> {
     /// Records a step that is over. It reaches the file with the next flush, fault or finish.
     ///
     /// After an error from writing the step still waits, and goes out when writing works again.
-    pub fn step(&mut self, step: StepRecord) -> Result<(), StoreError> {
+    pub fn step(&mut self, mut step: StepRecord) -> Result<(), StoreError> {
         self.check_unfinished()?;
+        // A limit that nothing reaches is none, and such a value was not measured.
+        for measured in &mut step.measurements {
+            for number in [&mut measured.value, &mut measured.low, &mut measured.high] {
+                *number = number.filter(|number| number.is_finite());
+            }
+        }
         if let Some(last) = self.last_index.filter(|last| step.index <= *last) {
             return Err(StoreError::StepOrder {
                 index: step.index,

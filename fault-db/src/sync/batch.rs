@@ -7,7 +7,8 @@ use super::ledger::Laptop;
 use super::outcome::{Different, SyncOutcome};
 use super::rows::Rows;
 use super::tables;
-use crate::base::{Base, Field, Server, SqlResult, values};
+use crate::base::{Base, Field, Server, SqlError, SqlResult, values};
+use crate::domain::{Refusals, shown_id};
 use crate::id::Id;
 use crate::seen_again::{Mark, open_again_of};
 use crate::server::said;
@@ -25,6 +26,8 @@ pub(super) struct Entry {
     pub what: What,
     pub row: i64,
     run: Option<(Id, BTreeSet<Vec<u8>>)>,
+    /// It is of a run whose id is none.
+    is_unnamed: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -47,12 +50,15 @@ pub(super) fn entries(file: &Base, after: i64) -> SqlResult<Vec<Entry>> {
                 "event" => What::Event,
                 _ => What::Note,
             };
-            let run: Option<Id> = row.get(3)?;
+            let id: Option<&[u8]> = row.get(3)?;
+            let named = id.and_then(|id| id.try_into().ok()).map(Id::from_bytes);
+            let is_unnamed = id.is_some() && named.is_none();
             Ok(Entry {
                 seq: row.get(0)?,
                 what,
                 row: row.get(2)?,
-                run: run.map(|id| (id, BTreeSet::new())),
+                run: named.map(|id| (id, BTreeSet::new())),
+                is_unnamed,
             })
         },
     )?;
@@ -94,6 +100,7 @@ pub(super) struct Batch<'a> {
     pub entries: u64,
     already_there: u64,
     different: Vec<Different>,
+    refused: Refusals,
 }
 
 impl<'a> Batch<'a> {
@@ -118,9 +125,10 @@ impl<'a> Batch<'a> {
             entries: 0,
             already_there: 0,
             different: Vec::new(),
+            refused: Refusals::default(),
         };
         for entry in entries {
-            batch.take(entry, &known)?;
+            batch.take_or_refuse(entry, &known)?;
             batch.through = entry.seq;
             batch.entries += 1;
             if batch.bytes() >= ENOUGH_BYTES {
@@ -130,8 +138,66 @@ impl<'a> Batch<'a> {
         Ok(batch)
     }
 
+    /// Takes an entry with all that belongs to it, or, if a row of that holds what none holds, nothing of it.
+    fn take_or_refuse(&mut self, entry: &Entry, known: &BTreeMap<Id, Known>) -> SqlResult<()> {
+        let marks: Vec<_> = self.rows().map(|rows| rows.mark()).collect();
+        let identities = (self.unit_numbers.clone(), self.fault_numbers.clone());
+        let taken = self
+            .take(entry, known)
+            .and_then(|()| self.check_identities(&identities));
+        let Err(SqlError::Value { reason, .. }) = taken else {
+            return taken;
+        };
+        for (rows, mark) in self.rows().zip(marks) {
+            rows.back_to(mark);
+        }
+        (self.unit_numbers, self.fault_numbers) = identities;
+        self.refuse(entry.what, entry.row, reason)
+    }
+
+    /// Names a row of the file that is not sent.
+    fn refuse(&mut self, what: What, row: i64, reason: String) -> SqlResult<()> {
+        let (word, table) = match what {
+            What::Run => ("run", "run"),
+            What::Event => ("event", "fault_event"),
+            What::Note => ("note", "run_note"),
+        };
+        let id = format!("SELECT id FROM {table} WHERE seq = ?1");
+        let id = (self.file).first(&id, &values![row], |row| row.get::<Vec<u8>>(0))?;
+        let shown = shown_id(&id.unwrap_or_default());
+        self.refused.add(format!("{word} {shown}"), reason);
+        Ok(())
+    }
+
+    /// All rows that are gathered entry by entry.
+    fn rows(&mut self) -> impl Iterator<Item = &mut Rows> {
+        let rest = [&mut self.runs, &mut self.events, &mut self.notes];
+        rest.into_iter().chain(&mut self.of_runs)
+    }
+
+    /// Looks at the units and faults that an entry brought.
+    fn check_identities(&self, (units, faults): &(BTreeSet<i64>, BTreeSet<i64>)) -> SqlResult<()> {
+        for unit in self.unit_numbers.difference(units) {
+            Rows::of(&tables::UNITS).read(self.file, *unit)?;
+        }
+        for fault in self.fault_numbers.difference(faults) {
+            Rows::of(&tables::FAULTS).read(self.file, *fault)?;
+            Rows::of(&tables::OTHER_IDS).read(self.file, *fault)?;
+            let of = "SELECT unit FROM fault WHERE seq = ?1";
+            let units = (self.file).select(of, &values![*fault], |row| row.get::<i64>(0))?;
+            for unit in units {
+                Rows::of(&tables::UNITS).read(self.file, unit)?;
+            }
+        }
+        Ok(())
+    }
+
     fn take(&mut self, entry: &Entry, known: &BTreeMap<Id, Known>) -> SqlResult<()> {
         match (entry.what, &entry.run) {
+            (What::Run, None) if entry.is_unnamed => Err(SqlError::Value {
+                column: 0,
+                reason: "id has not 16 bytes".to_owned(),
+            }),
             (What::Run, None) => Ok(()),
             (What::Run, Some((id, _))) => match known.get(id) {
                 Some(Known::Whole) => {
@@ -166,7 +232,17 @@ impl<'a> Batch<'a> {
         let notes = of_run("SELECT seq FROM run_note WHERE run = ?1 ORDER BY seq")?;
         self.unit_numbers.extend(units);
         self.fault_numbers.extend(faults);
-        notes.into_iter().try_for_each(|note| self.note(note))
+        notes.into_iter().try_for_each(|note| {
+            // A note is no part of what is sealed of a run.
+            let mark = self.notes.mark();
+            match self.note(note) {
+                Err(SqlError::Value { reason, .. }) => {
+                    self.notes.back_to(mark);
+                    self.refuse(What::Note, note, reason)
+                }
+                taken => taken,
+            }
+        })
     }
 
     fn event(&mut self, event: i64) -> SqlResult<()> {
@@ -242,6 +318,7 @@ impl<'a> Batch<'a> {
                 + there(&self.events, events),
             bytes: (self.bytes() + units.bytes + faults.bytes) as u64,
             different: self.different,
+            refused: self.refused,
             ..SyncOutcome::default()
         })
     }

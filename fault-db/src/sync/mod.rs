@@ -251,10 +251,12 @@ impl Sync<'_> {
     ) -> Result<u64, StoreError> {
         let mut after = Some(after);
         while let Some(from) = after {
-            let events = self.of_server(RECEIVING, |base| pull::events(base, asked, from))?;
-            after = pull::next(&events);
+            let batch = self.of_server(RECEIVING, |base| pull::events(base, asked, from))?;
+            after = batch.next;
+            self.outcome.refused.extend(batch.refused);
+            let events = batch.events;
             if events.is_empty() {
-                break;
+                continue;
             }
             let added = self.file.change(RECEIVING, |file| {
                 pull::add(file, &events).map_err(|error| self.file.failed(RECEIVING, error))
@@ -335,5 +337,6 @@ impl SyncOutcome {
         self.bytes += other.bytes;
         self.different.extend(other.different);
         self.damaged_traces.extend(other.damaged_traces);
+        self.refused.extend(other.refused);
     }
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::conflicts::StateConflict;
+use crate::domain::Refusals;
 use crate::id::Id;
 
 /// What a sync is told by its caller.
@@ -73,6 +74,8 @@ pub struct SyncOutcome {
     pub different: Vec<Different>,
     /// Traces of the file that no longer fit their checksum; they were not sent.
     pub damaged_traces: Vec<Id>,
+    /// Rows, here or there, that hold what no history holds: they were left where they are, and all else went on.
+    pub refused: Refusals,
     /// Faults of the file that people who did not know of each other brought to different states.
     pub conflicts: Vec<StateConflict>,
     /// Whether it was stopped before its end.

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::outcome::SyncOutcome;
-use crate::base::{Base, Server, SqlResult, values};
+use crate::base::{Base, Row, Server, SqlResult, values};
+use crate::domain::{Refusals, check, check_body, shown_id};
 use crate::id::Id;
 use crate::seal::BY_SYNC;
 use crate::seal::said::found_event;
@@ -14,7 +15,6 @@ const MOST_EVENTS: usize = 500;
 
 /// An event of the server, with the fault's id as the file knows it.
 pub(super) struct Event {
-    seq: i64,
     id: Id,
     fault: Id,
     kind: String,
@@ -47,8 +47,23 @@ pub(super) fn last(base: &Base) -> SqlResult<i64> {
     Ok(base.first(last, &[], |row| row.get(0))?.unwrap_or_default())
 }
 
+/// Some events.
+#[derive(Default)]
+pub(super) struct Events {
+    pub events: Vec<Event>,
+    /// Those that hold what none holds: a server of an earlier version took them.
+    pub refused: Refusals,
+    /// Where the next question goes on; none if these were the last.
+    pub next: Option<i64>,
+}
+
+/// An event's columns, in the order they are asked for.
+const COLUMNS: [&str; 11] = [
+    "seq", "id", "fault", "kind", "at_us", "who", "body", "state", "turn", "follows", "seen",
+];
+
 /// The next events after this one.
-pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Event>> {
+pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Events> {
     let fresh = if asked.fresh { "AND k.fresh > 0" } else { "" };
     let own = if asked.own {
         ""
@@ -62,9 +77,20 @@ pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Eve
          FROM fault_event e JOIN laptop_fault k ON k.fault = e.fault AND k.laptop = ?1 {fresh}
          WHERE e.seq > ?2 AND e.seq <= ?3 {own} ORDER BY e.seq, k.id DESC LIMIT {MOST_EVENTS}"
     );
-    base.select(&sql, &values![asked.laptop, after, asked.until], |row| {
-        Ok(Event {
-            seq: row.get(0)?,
+    let mut found = Events::default();
+    let mut count = 0;
+    base.each(&sql, &values![asked.laptop, after, asked.until], |row| {
+        count += 1;
+        let seq = row.get(0)?;
+        found.next = Some(seq);
+        if let Err(reason) = check_event(row) {
+            let id = row.get(1).map(shown_id).unwrap_or_default();
+            found
+                .refused
+                .add(format!("event {id} on the server"), reason);
+            return Ok(());
+        }
+        found.events.push(Event {
             id: row.get(1)?,
             fault: row.get(2)?,
             kind: row.get(3)?,
@@ -75,14 +101,23 @@ pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Vec<Eve
             turn: row.get(8)?,
             follows: row.get(9)?,
             seen: row.get(10)?,
-        })
-    })
+        });
+        Ok(())
+    })?;
+    found.next = found.next.filter(|_| count == MOST_EVENTS);
+    Ok(found)
 }
 
-/// Where the next question goes on; none if these were the last.
-pub(super) fn next(events: &[Event]) -> Option<i64> {
-    let full = events.len() == MOST_EVENTS;
-    events.last().filter(|_| full).map(|event| event.seq)
+/// Holds an event to its columns' domain.
+fn check_event(row: Row<'_>) -> Result<(), String> {
+    for (place, column) in COLUMNS.into_iter().enumerate() {
+        let field = row
+            .field(place)
+            .map_err(|_| format!("{column} cannot be read"))?;
+        check(column, field)?;
+    }
+    let text = |column| row.get::<&str>(column).unwrap_or_default();
+    check_body(text(3), text(6))
 }
 
 /// Adds events to the file and brings their faults in line; runs in the caller's transaction.

@@ -3,6 +3,7 @@
 use postgres::types::ToSql;
 
 use crate::base::{Base, Field, Row, Server, SqlError, SqlResult, values};
+use crate::domain::check;
 
 /// What a column holds.
 #[derive(Clone, Copy)]
@@ -75,7 +76,22 @@ impl Rows {
         Ok(())
     }
 
+    /// How far it is.
+    pub fn mark(&self) -> (usize, usize) {
+        (self.count, self.bytes)
+    }
+
+    /// Gives up what was taken since.
+    pub fn back_to(&mut self, (count, bytes): (usize, usize)) {
+        (self.count, self.bytes) = (count, bytes);
+        self.columns
+            .iter_mut()
+            .for_each(|column| column.truncate(count));
+    }
+
     fn push(&mut self, column: usize, field: Field<'_>) -> SqlResult<()> {
+        let (name, _) = self.table.columns[column];
+        check(name, field).map_err(|reason| SqlError::Value { column, reason })?;
         self.bytes += match &field {
             Field::Text(text) => 4 + text.len(),
             Field::Bytes(bytes) => 4 + bytes.len(),
@@ -133,6 +149,15 @@ impl Rows {
 }
 
 impl Column {
+    fn truncate(&mut self, count: usize) {
+        match self {
+            Self::Integer(all) => all.truncate(count),
+            Self::Real(all) => all.truncate(count),
+            Self::Text(all) => all.truncate(count),
+            Self::Bytes(all) => all.truncate(count),
+        }
+    }
+
     fn server_type(&self) -> &'static str {
         match self {
             Self::Integer(_) => "bigint",

@@ -15,7 +15,8 @@ pub(super) const UNITS: Table = Table {
         ("seen_at_us", Integer),
     ],
     read: "SELECT serial, kind, config_name, sw_versions,
-            coalesce((SELECT max(started_at_us) FROM run WHERE run.unit = unit.seq), 0)
+            coalesce((SELECT max(started_at_us) FROM run
+                WHERE run.unit = unit.seq AND started_at_us BETWEEN 0 AND 7258118400000000), 0)
          FROM unit WHERE seq = ?1",
     insert: &[
         "INSERT INTO unit(serial, kind, config_name, sw_versions)

@@ -9,7 +9,7 @@ use super::batch::{ENOUGH_BYTES, MOST_ENTRIES};
 use super::outcome::{Different, SyncOutcome};
 use super::rows::Rows;
 use super::tables;
-use crate::base::{Base, Server, SqlResult, values};
+use crate::base::{Base, Server, SqlError, SqlResult, values};
 use crate::id::Id;
 
 /// An entry of the outbox: a trace, if it was not pruned since.
@@ -17,6 +17,8 @@ pub(super) struct Entry {
     pub seq: i64,
     trace: i64,
     id: Option<Id>,
+    /// Its id is none.
+    is_unnamed: bool,
     sha256: Vec<u8>,
 }
 
@@ -27,10 +29,13 @@ pub(super) fn entries(file: &Base, after: i64, until: i64) -> SqlResult<Vec<Entr
          WHERE o.seq > ?1 AND o.seq <= ?2 AND o.what = 'trace' ORDER BY o.seq LIMIT ?3",
         &values![after, until, MOST_ENTRIES],
         |row| {
+            let id: Option<&[u8]> = row.get(2)?;
+            let named = id.and_then(|id| id.try_into().ok()).map(Id::from_bytes);
             Ok(Entry {
                 seq: row.get(0)?,
                 trace: row.get(1)?,
-                id: row.get(2)?,
+                id: named,
+                is_unnamed: id.is_some() && named.is_none(),
                 sha256: row.get::<Option<Vec<u8>>>(3)?.unwrap_or_default(),
             })
         },
@@ -77,7 +82,14 @@ impl Batch {
         for entry in entries {
             batch.through = entry.seq;
             batch.entries += 1;
-            let Some(id) = entry.id else { continue };
+            let Some(id) = entry.id else {
+                if entry.is_unnamed {
+                    let what = format!("trace {} of the file", entry.trace);
+                    let reason = "id has not 16 bytes".to_owned();
+                    batch.outcome.refused.add(what, reason);
+                }
+                continue;
+            };
             match known.get(&id) {
                 Some(theirs) if *theirs != entry.sha256 => {
                     batch
@@ -90,7 +102,14 @@ impl Batch {
                 None => batch.read(file, entry, id, &mut lists)?,
             }
             // An occurrence may have come after its trace.
-            batch.shown.read(file, entry.trace)?;
+            let mark = batch.shown.mark();
+            if let Err(SqlError::Value { reason, .. }) = batch.shown.read(file, entry.trace) {
+                batch.shown.back_to(mark);
+                batch
+                    .outcome
+                    .refused
+                    .add(format!("what trace {id} shows"), reason);
+            }
             if batch.traces.bytes >= ENOUGH_BYTES {
                 break;
             }
@@ -125,7 +144,15 @@ impl Batch {
             self.outcome.damaged_traces.push(id);
             return Ok(());
         }
-        self.traces.read(file, entry.trace)
+        let mark = self.traces.mark();
+        match self.traces.read(file, entry.trace) {
+            Err(SqlError::Value { reason, .. }) => {
+                self.traces.back_to(mark);
+                self.outcome.refused.add(format!("trace {id}"), reason);
+                Ok(())
+            }
+            read => read,
+        }
     }
 
     /// Adds all of it to the server; runs in the caller's transaction.

@@ -266,3 +266,29 @@ pub fn realistic_trace(rows: usize, seed: u64) -> TraceData {
         columns,
     }
 }
+
+/// Changes a file by hand, past its triggers, which stay as they are.
+pub fn change(path: &Path, sql: &str) {
+    let conn = rusqlite::Connection::open(path).expect("opens");
+    let triggers: Vec<(String, String)> = {
+        let all = "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'";
+        let mut select = conn.prepare(all).expect("triggers");
+        let rows = select.query_map([], |row| Ok((row.get(0)?, row.get(1)?)));
+        let rows = rows.expect("triggers").collect::<Result<_, _>>();
+        rows.expect("triggers")
+    };
+    let drop = triggers
+        .iter()
+        .map(|(name, _)| format!("DROP TRIGGER {name};"));
+    let all = format!(
+        "PRAGMA foreign_keys = OFF; BEGIN; {} {sql}",
+        drop.collect::<String>()
+    );
+    conn.execute_batch(&all)
+        .unwrap_or_else(|error| panic!("{sql}: {error}"));
+    for (_, sql) in triggers {
+        // Not on what is no table any more.
+        let _ = conn.execute_batch(&sql);
+    }
+    conn.execute_batch("COMMIT").expect("changed");
+}

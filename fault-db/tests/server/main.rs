@@ -11,6 +11,7 @@ mod proxy;
 mod answers;
 mod crash;
 mod guarded;
+mod hostile_rows;
 mod insert_only;
 mod rights;
 mod sealed;

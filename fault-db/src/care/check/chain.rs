@@ -46,7 +46,10 @@ struct Learnt {
 
 /// Runs that were looked at.
 pub(super) fn check(base: &Base, mut found: Findings<'_>, remarks: &mut Remarks) -> SqlResult<u32> {
-    let own = own_name(base)?;
+    let own = match base {
+        Base::File(_) => own_name(base)?,
+        Base::Server(_) => None,
+    };
     let mut learnt = Learnt::default();
     let mut last: Option<Seal> = None;
     loop {

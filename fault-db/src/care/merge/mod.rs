@@ -1,6 +1,7 @@
 //! One file's history into another's, as often as one likes: what is known by its id is not
 //! added again.
 
+mod examine;
 mod faults;
 mod rows;
 mod runs;
@@ -14,6 +15,7 @@ use rusqlite::{Connection, ErrorCode};
 use serde::Serialize;
 
 use crate::base::{Base, SqlError, SqlResult};
+use crate::domain::Refusals;
 use crate::error::StoreError;
 use crate::file::CACHE_KIB;
 use crate::id::Id;
@@ -51,6 +53,9 @@ pub struct MergeCounts {
     pub different: Vec<Different>,
     /// The other file is a copy of a file whose chain of seals is known here.
     pub copy: Option<CopyOf>,
+    /// Rows of the other file that hold what no history holds, and runs that do not fit their seals: they were
+    /// left out, with what hangs on them.
+    pub refused: Refusals,
 }
 
 /// What another file is a copy of.
@@ -74,9 +79,15 @@ impl Store {
                 path: from.to_path_buf(),
             });
         }
-        // Opening checks that its schema is the same as ours.
+        // Opening checks that its schema is the same as ours, and lets its own SQL do nothing.
         let other = Store::open_read_only(from)?;
-        self.merge_from(&other)
+        match other.strangers()?.into_iter().next() {
+            Some(what) => Err(StoreError::Altered {
+                path: from.to_path_buf(),
+                what,
+            }),
+            None => self.merge_from(&other),
+        }
     }
 
     /// Adds all that this file has to another one, which is created if need be.
@@ -101,12 +112,15 @@ impl Store {
                 .execute_batch(&format!("PRAGMA cache_size = {size}"));
             set.map_err(|error| self.failed(DOING, error))
         };
-        let copy = self.copy_of(other)?;
         // One reading transaction, so that all tables are seen at the same moment.
         let begin = theirs.execute_batch("BEGIN");
         begin.map_err(|error| other.failed(DOING, error))?;
-        // Indexes are filled all over at once; a larger part of them than usual has to be at hand.
-        let merged = set_cache(CACHE).and_then(|()| {
+        let aside = examine::put_aside(theirs, other.base(), self.base());
+        let aside = aside.map_err(|error| self.blame(other, error));
+        let merged = aside.and_then(|refused| {
+            let copy = self.copy_of(other)?;
+            // Indexes are filled all over at once; a larger part of them than usual has to be at hand.
+            set_cache(CACHE)?;
             self.write(DOING, |ours| {
                 Merge {
                     theirs,
@@ -115,6 +129,7 @@ impl Store {
                     their_base: other.base(),
                     counts: MergeCounts {
                         copy,
+                        refused,
                         ..MergeCounts::default()
                     },
                     fresh_runs: BTreeSet::new(),
@@ -125,6 +140,7 @@ impl Store {
                 .map_err(|error| self.blame(other, error))
             })
         });
+        let _ = examine::take_away(theirs);
         let _ = theirs.execute_batch("COMMIT");
         // It costs memory only as long as this store is open.
         let _ = set_cache(-(CACHE_KIB as i32));

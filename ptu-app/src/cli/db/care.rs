@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use clap::Args;
-use fault_db::{CopyOf, Different, MergeCounts, PruneCounts, PruneRule, StateConflict, StoreError};
+use fault_db::{
+    CopyOf, Different, MergeCounts, PruneCounts, PruneRule, Refusals, StateConflict, StoreError,
+};
 use serde_json::{json, to_value};
 
 use super::check::sealed;
@@ -131,10 +133,15 @@ fn tell_merged(
             "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
         );
     }
-    Ok(match counts.different.is_empty() {
-        true => Exit::Passed,
-        false => Exit::Bench,
-    })
+    for refused in told_refused(&counts.refused) {
+        eprintln!("{refused}");
+    }
+    Ok(
+        match counts.different.is_empty() && counts.refused.is_empty() {
+            true => Exit::Passed,
+            false => Exit::Bench,
+        },
+    )
 }
 
 fn copied(copy: &CopyOf) -> String {
@@ -154,10 +161,27 @@ fn copied(copy: &CopyOf) -> String {
 }
 
 fn merged(counts: &MergeCounts) -> String {
-    format!(
+    let mut text = format!(
         "added {} runs, {} steps, {} faults, {} occurrences, {} traces",
         counts.runs, counts.steps, counts.faults, counts.occurrences, counts.traces
-    )
+    );
+    if !counts.refused.is_empty() {
+        text += &format!("; refused {}", counts.refused.count);
+    }
+    text
+}
+
+/// What was not taken, each with its reason; no more than are read.
+pub(super) fn told_refused(refused: &Refusals) -> Vec<String> {
+    let named = refused.named.iter();
+    let mut all: Vec<_> = named
+        .map(|one| format!("refused {}: {}", one.what, one.reason))
+        .collect();
+    let more = refused.count - refused.named.len() as u64;
+    if more > 0 {
+        all.push(format!("refused {more} more"));
+    }
+    all
 }
 
 /// One line of a fault about which two people disagree.

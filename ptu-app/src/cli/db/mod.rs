@@ -40,7 +40,8 @@ enum Verb {
     /// Add everything of another database that is not here yet
     ///
     /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
-    /// code is 3.
+    /// code is 3; the same of a run that does not fit its seal, and of a row that holds what no history holds: it
+    /// is left out, and the rest comes.
     Import {
         /// The other file
         from: PathBuf,

@@ -8,7 +8,7 @@ use fault_db::{Address, Store, StoreError, SyncOptions, SyncOutcome, SyncPhase, 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use super::care::rivals;
+use super::care::{rivals, told_refused};
 use crate::cli::{Database, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::stop::Stop;
@@ -84,7 +84,10 @@ impl SyncArguments {
         }
         Ok(if outcome.stopped {
             Exit::Aborted
-        } else if outcome.different.is_empty() && outcome.damaged_traces.is_empty() {
+        } else if outcome.different.is_empty()
+            && outcome.damaged_traces.is_empty()
+            && outcome.refused.is_empty()
+        {
             Exit::Passed
         } else {
             Exit::Bench
@@ -158,6 +161,7 @@ fn warnings(outcome: &SyncOutcome) -> Vec<String> {
             "trace {trace} is damaged and was not sent; look with `ptu db check`"
         ));
     }
+    all.extend(told_refused(&outcome.refused));
     all.extend(
         outcome
             .conflicts
@@ -200,6 +204,7 @@ fn as_json(outcome: &SyncOutcome, server: &Store, took_s: f64) -> serde_json::Va
         "conflicts": outcome.conflicts,
         "different": outcome.different,
         "damaged_traces": outcome.damaged_traces,
+        "refused": outcome.refused,
         "stopped": outcome.stopped,
     })
 }

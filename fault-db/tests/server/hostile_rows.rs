@@ -1,0 +1,156 @@
+//! Rows that hold what no history holds, in a laptop's file or on a server of before: they stay where they are, are
+//! named, and stand in nobody's way.
+
+use crate::common::change;
+use crate::laptop::{Laptop, connect, day};
+use crate::private::{name_of, shared};
+
+/// Goal: what a laptop's file holds since an earlier version took it stays behind, and the rest goes.
+#[test]
+fn a_laptops_bad_rows_stay_behind_and_the_rest_goes() {
+    for (sql, named, runs, events) in [
+        (
+            "UPDATE run SET started_at_us = 9223372036854775807 WHERE seq = 1",
+            "run ",
+            1,
+            3,
+        ),
+        (
+            "UPDATE run SET id = x'0102' WHERE seq = 1",
+            "run of 2 bytes",
+            1,
+            3,
+        ),
+        (
+            "UPDATE measurement SET value = 9e999 WHERE run = 1",
+            "run ",
+            1,
+            3,
+        ),
+        (
+            "UPDATE fault_occurrence SET at_us = -1 WHERE run = 1",
+            "run ",
+            1,
+            3,
+        ),
+        ("UPDATE fault SET id = x'01' WHERE seq = 1", "run ", 1, 2),
+        (
+            "UPDATE fault_event SET at_us = 9223372036854775807 WHERE seq = 1",
+            "event ",
+            2,
+            2,
+        ),
+        (
+            "UPDATE fault_event SET id = x'01' WHERE seq = 1",
+            "event of 1 bytes",
+            2,
+            2,
+        ),
+        (
+            "UPDATE run_note SET text = printf('%02000000d', 1)",
+            "note ",
+            2,
+            3,
+        ),
+        (
+            "UPDATE trace SET t0_us = 9223372036854775807 WHERE seq = 1",
+            "trace ",
+            2,
+            3,
+        ),
+        ("UPDATE trace SET id = x'01' WHERE seq = 1", "trace ", 2, 3),
+    ] {
+        let address = shared().database();
+        let laptop = Laptop::new("poisoned");
+        laptop.run("U-1", day(0), &[101], true);
+        let run = laptop.run("U-2", day(1), &[102], true);
+        let store = laptop.open();
+        store
+            .add_run_note(run, "kim", "noted", day(2))
+            .expect("a note");
+        let fault = store.resolve_fault("latest").expect("a fault");
+        store
+            .add_note(fault, "kim", "seen", day(2))
+            .expect("a note");
+        drop(store);
+        change(&laptop.path(), sql);
+        let outcome = laptop.sync(&address);
+        let refused = &outcome.refused;
+        assert!(refused.count > 0, "{sql}");
+        assert!(
+            refused.named.iter().any(|one| one.what.starts_with(named)),
+            "{sql}: {refused:?}"
+        );
+        assert_eq!(
+            (outcome.runs, outcome.events, outcome.waiting),
+            (runs, events, 0),
+            "{sql}: {refused:?}"
+        );
+        // What comes later goes as ever.
+        laptop.run("U-3", day(3), &[103], true);
+        assert_eq!(laptop.sync(&address).runs, 1, "{sql}");
+    }
+}
+
+/// Goal: what a server of before took from one laptop blocks no other, nor what is said later.
+#[test]
+fn bad_rows_on_the_server_stand_in_nobodys_way() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
+    one.run("U-1", day(0), &[101], true);
+    one.sync(&address);
+    two.run("U-1", day(1), &[101], true);
+    two.sync(&address);
+    let mut owner = shared().client(name_of(&address));
+    owner
+        .batch_execute(
+            "ALTER TABLE fault_event DISABLE TRIGGER in_domain; ALTER TABLE fault_occurrence DISABLE TRIGGER in_domain;
+             ALTER TABLE run DISABLE TRIGGER in_domain; ALTER TABLE fault_alias DISABLE TRIGGER in_domain;
+             INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version, scripts_sha256,
+                unit_config_sha256, owner, train, laptop)
+             SELECT x'', 1, '', 0, '', '', 9223372036854775807, '', '', '', '', '', 1;
+             INSERT INTO fault_event(id, fault, kind, at_us, who, body, turn, follows, seen)
+             SELECT x.id, f.seq, 'note', x.at_us, '', '', 1, x.follows, 0
+             FROM (SELECT seq FROM fault LIMIT 1) f, (VALUES
+                (decode('0102', 'hex'), 5, decode('', 'hex')),
+                (decode(repeat('0a', 16), 'hex'), 9223372036854775807, decode('', 'hex')),
+                (decode(repeat('0b', 16), 'hex'), -9223372036854775808, decode('', 'hex')),
+                (decode(repeat('0c', 16), 'hex'), 5, decode('010203', 'hex'))) AS x(id, at_us, follows);
+             INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line)
+             SELECT x.id, f.seq, r.seq, x.at_us, 0, '', '{', f.unit, f.code, f.lru, ''
+             FROM (SELECT * FROM fault LIMIT 1) f, (SELECT seq FROM run WHERE id = x'') r, (VALUES
+                (decode('0102', 'hex'), 9223372036854775807),
+                (decode(repeat('0d', 16), 'hex'), -9223372036854775808)) AS x(id, at_us);
+             INSERT INTO fault_alias(id, fault) SELECT x'', seq FROM fault LIMIT 1;
+             ALTER TABLE fault_event ENABLE TRIGGER in_domain; ALTER TABLE fault_occurrence ENABLE TRIGGER in_domain;
+             ALTER TABLE run ENABLE TRIGGER in_domain; ALTER TABLE fault_alias ENABLE TRIGGER in_domain"
+                .replace("x''", "decode('', 'hex')")
+                .as_str(),
+        )
+        .expect("bad rows");
+    for laptop in [&one, &two] {
+        let outcome = laptop.sync(&address);
+        assert_eq!(
+            outcome.refused.count, 4,
+            "{}: {:?}",
+            laptop.name, outcome.refused
+        );
+        laptop.is_whole();
+    }
+    // The work goes on: what is done about that fault reaches both, and a repair that did not hold is found.
+    let desk = connect(&address).expect("a server");
+    let fault = desk.resolve_fault("latest").expect("a fault");
+    desk.acknowledge(fault, "lee", "on it", day(2))
+        .expect("acknowledged");
+    one.run("U-1", day(4), &[101], true);
+    for laptop in [&one, &two] {
+        assert!(laptop.sync(&address).events_received > 0, "{}", laptop.name);
+        laptop.is_whole();
+    }
+    // And it can be asked about, absurd rows and all.
+    for table in ["runs", "faults", "occurrences", "events"] {
+        let answer = desk.query_read_only(&format!("SELECT * FROM {table}"), 1_000);
+        answer.unwrap_or_else(|error| panic!("{table}: {error}"));
+    }
+    desk.conflicts().expect("asked");
+}
