@@ -4,7 +4,7 @@
 use protocol::{Duration, Instant, SCAN};
 use serde::{Deserialize, Serialize};
 
-use crate::procedure::{Driver, Refusal};
+use crate::procedure::{Driver, Evidence, Refusal};
 use crate::rig::Rig;
 use crate::stimulus::Stimulus;
 
@@ -105,6 +105,10 @@ impl Driver for Taping<'_> {
 
     fn safe(&self) -> bool {
         self.rig.safe()
+    }
+
+    fn evidence(&self) -> Evidence {
+        self.rig.evidence()
     }
 }
 

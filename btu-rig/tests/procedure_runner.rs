@@ -6,15 +6,15 @@ use std::sync::Arc;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{
-    Driver, EventSource, Poll, Procedure, PromptPolicy, Refusal, RunEvent, RunOptions, Runner,
-    StepResult, UnitEvent, Verdict,
+    Driver, EventSource, Evidence, LogState, Poll, Procedure, PromptPolicy, Refusal, RunEvent,
+    RunOptions, Runner, StepResult, UnitEvent, Verdict,
 };
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
-use protocol::event::Event;
+use protocol::event::{Event, LOG_ENTRIES};
 use protocol::line::Line;
-use protocol::message::{EbCause, Mode};
+use protocol::message::{EbCause, Mode, SelfTest};
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant, SCAN, Speed};
 
@@ -40,6 +40,7 @@ struct Fake {
     unsettled: bool,
     made_safe: u32,
     never_safe: bool,
+    evidence: Evidence,
 }
 
 impl Driver for Fake {
@@ -61,6 +62,10 @@ impl Driver for Fake {
 
     fn safe(&self) -> bool {
         !self.never_safe
+    }
+
+    fn evidence(&self) -> Evidence {
+        self.evidence
     }
 }
 
@@ -998,4 +1003,209 @@ fn an_effect_is_looked_for_in_a_sample_newer_than_its_stimulus() {
         world.sample.set_bit(Signal::Eb, world.scan >= 1)
     });
     assert_eq!(outcome.steps()[0].verdict, Verdict::Failed);
+}
+
+/// Goal: no step passes whose log is not known. Method: the log falls silent in the last step, for a while
+/// and for good.
+#[test]
+fn a_step_ends_when_the_log_of_its_time_is_read_and_is_an_error_if_it_cannot_be() {
+    let script = format!("{HEAD}step('a', do = wait(s(1)), expect = never_logs('twc_lost'))");
+    let silent = |world: &mut World<'_>, until_ms: u32| {
+        world.fake.evidence.log = match world.ms() {
+            ms if ms >= 500 && ms < until_ms => LogState::Unanswered,
+            _ => LogState::Read,
+        };
+    };
+    let outcome = run(&script, |world| {
+        silent(world, 4_000);
+        if world.ms() == 4_000 {
+            world.log(Event::TwcLost);
+        }
+    });
+    assert_eq!(
+        outcome.steps()[0].verdict,
+        Verdict::Failed,
+        "what came late counts"
+    );
+    let lost = "the unit's log could not be read: asked 69 times, no answer";
+    let outcome = run(&script, |world| {
+        silent(world, u32::MAX);
+        world.link_error = (world.ms() >= 6_000).then_some(lost);
+    });
+    let text = format!("link to the unit: {lost}");
+    assert_eq!(outcome.summary(), [("a", Verdict::Error, text.as_str())]);
+    assert_eq!(outcome.finished(), (Verdict::Error, text.as_str()));
+    let forever = run(&script, |world| silent(world, u32::MAX));
+    assert_eq!(forever.steps()[0].verdict, Verdict::Error, "nobody gave up");
+    assert_eq!(forever.finished().0, Verdict::Error);
+}
+
+#[test]
+fn an_awaited_event_is_not_missing_while_the_log_is_not_read() {
+    let script =
+        format!("{HEAD}step('a', do = wait(s(1)), expect = logs('twc_lost', within = s(1)))");
+    let outcome = run(&script, |world| {
+        world.fake.evidence.log = match world.ms() {
+            500..3_000 => LogState::Behind,
+            _ => LogState::Read,
+        };
+        if world.ms() == 2_900 {
+            world.log(Event::TwcLost);
+        }
+    });
+    assert_eq!(outcome.summary(), [("a", Verdict::Passed, "")]);
+    let in_vain = run(&script, |world| {
+        world.fake.evidence.log = LogState::Unanswered;
+        world.link_error = (world.ms() >= 6_000).then_some("no answer");
+    });
+    assert_eq!(in_vain.steps()[0].verdict, Verdict::Error);
+}
+
+#[test]
+fn a_procedure_ends_with_its_log_read() {
+    let script = format!("{HEAD}step('a', do = wait(s(1)))");
+    let behind_until = |until_ms: u32| {
+        run(&script, |world| {
+            world.fake.evidence.log = match world.ms() {
+                ms if ms >= 900 && ms < until_ms => LogState::Behind,
+                _ => LogState::Read,
+            };
+        })
+    };
+    let outcome = behind_until(3_000);
+    assert_eq!(
+        (outcome.finished().0, outcome.scans),
+        (Verdict::Passed, 300)
+    );
+    let message = "the unit's log was not read to its end within 25.000 s";
+    assert_eq!(behind_until(u32::MAX).finished(), (Verdict::Error, message));
+    let lost = run(&script, |world| {
+        if world.ms() >= 900 {
+            world.fake.evidence.log = LogState::Behind;
+        }
+        world.link_error = (world.ms() >= 2_000).then_some("no answer");
+    });
+    assert_eq!(
+        lost.finished(),
+        (Verdict::Error, "link to the unit: no answer")
+    );
+}
+
+/// Goal: what a bad line does is no fault of a part, and what a part does on a good line is one. Method: the
+/// same events, brake and missing reaction, with and without frames that did not come through.
+#[test]
+fn what_lost_frames_explain_is_an_error_and_no_fault() {
+    let script = format!("{HEAD}step('a', do = wait(s(2)))");
+    let expects =
+        format!("{HEAD}step('a', do = wait(s(2)), expect = becomes(alarm, True, within = s(1)))");
+    let came_to = |script: &str, harmed: u64, event: Option<Event>, brake: bool| {
+        let outcome = run(script, |world| {
+            world.sample.set(Signal::Alarm, 0.0);
+            if world.ms() == 500 {
+                world.fake.evidence.line.harmed = harmed;
+                world.fake.evidence.line.harmed_lately = harmed;
+                event.into_iter().for_each(|event| world.log(event));
+                if brake {
+                    world.sample.set(Signal::Eb, 1.0);
+                }
+            }
+        });
+        let faults = outcome.events.iter().filter(|event| {
+            matches!(
+                event,
+                RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
+            )
+        });
+        assert_eq!(outcome.finished().0, outcome.steps()[0].verdict);
+        (outcome.steps()[0].verdict, faults.count())
+    };
+    let (failed, error) = (Verdict::Failed, Verdict::Error);
+    for event in [
+        Event::TwcLost,
+        Event::TcmsLost,
+        Event::InputsLost,
+        Event::FramesRejected,
+    ] {
+        assert_eq!(
+            came_to(&script, 0, Some(event), false),
+            (failed, 1),
+            "{event:?}"
+        );
+        assert_eq!(
+            came_to(&script, 3, Some(event), false),
+            (error, 0),
+            "{event:?}"
+        );
+    }
+    assert_eq!(
+        came_to(&script, 3, Some(Event::EbRelayWelded), false),
+        (failed, 1)
+    );
+    assert_eq!(came_to(&script, 0, None, true), (failed, 1));
+    assert_eq!(came_to(&script, 3, None, true), (error, 0));
+    assert_eq!(came_to(&expects, 0, None, false).0, failed);
+    assert_eq!(came_to(&expects, 3, None, false).0, error);
+}
+
+#[test]
+fn a_failed_self_test_is_said_item_by_item_and_is_no_pass() {
+    let outcome = run(&format!("{HEAD}step('a', do = wait(s(1)))"), |world| {
+        world.fake.evidence.self_test = SelfTest::MEMORY | SelfTest::from_bits_retain(1 << 9);
+    });
+    let message = "the unit says its self-test failed: Memory pattern test; bit 9";
+    assert_eq!(outcome.summary(), [("a", Verdict::Passed, "")]);
+    assert_eq!(outcome.finished(), (Verdict::Failed, message));
+}
+
+#[test]
+fn events_without_end_are_reported_up_to_what_a_log_holds_and_counted_beyond() {
+    let outcome = run(&format!("{HEAD}step('a', do = wait(s(10)))"), |world| {
+        world.log(Event::TwcLost);
+        world.fake.evidence.not_kept = 1_000 + u64::from(world.scan);
+    });
+    let reported = outcome
+        .events
+        .iter()
+        .filter(|e| matches!(e, RunEvent::UnsolicitedEvent(_)));
+    assert_eq!(reported.count(), LOG_ENTRIES);
+    let step = outcome.steps()[0];
+    let said = step
+        .message
+        .strip_prefix("the unit logged twc_lost (400), which no step provoked (");
+    assert!(
+        said.is_some_and(|times| times.ends_with(" times)")),
+        "{}",
+        step.message
+    );
+    let (verdict, message) = outcome.finished();
+    assert_eq!(verdict, Verdict::Failed);
+    assert!(message.ends_with(" more entries, not stored"), "{message}");
+}
+
+#[test]
+fn a_check_that_failed_is_said_before_one_that_could_not_be_made() {
+    let two = format!(
+        "{HEAD}step('a', expect = becomes(eb, 'applied', within = s(1)))\n\
+         step('b', expect = becomes(alarm, True, within = s(1)))"
+    );
+    let outcome = run(&two, |_| {});
+    assert_eq!(outcome.steps()[0].verdict, Verdict::Failed);
+    assert_eq!(outcome.steps()[1].verdict, Verdict::Error);
+    assert_eq!(outcome.finished().0, Verdict::Failed);
+    let lost = run(&two, |world| {
+        world.link_error = (world.ms() >= 1_500).then_some("closed");
+    });
+    assert_eq!(
+        lost.finished().0,
+        Verdict::Error,
+        "then nothing is a verdict on the unit"
+    );
+}
+
+#[test]
+fn a_reason_stands_once_with_its_count() {
+    let until = "until(eb, 'applied', within = s(1))";
+    let script = format!("procedure(title = 'x', cleanup = [{until}, {until}])\nstep('a')");
+    let message = "clean-up: eb = applied did not come within 1.000 s (2 times)";
+    assert_eq!(run(&script, |_| {}).finished(), (Verdict::Error, message));
 }

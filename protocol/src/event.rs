@@ -2,6 +2,9 @@
 
 use crate::message::{AtoFailure, Channel, SelfTest};
 
+/// Entries a unit's log keeps: the oldest fall off.
+pub const LOG_ENTRIES: usize = 256;
+
 /// How bad an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {

@@ -42,6 +42,7 @@ pub struct Received {
 pub struct Counters {
     accepted: [u64; CHANNELS],
     gaps: [u64; CHANNELS],
+    out_of_place: [u64; CHANNELS],
     /// By reason, then by channel; the last place is for frames of no known channel.
     rejected: [[u64; CHANNELS + 1]; Reject::ALL.len()],
     garbage: u64,
@@ -63,6 +64,13 @@ impl Counters {
     /// Frames accepted.
     pub fn accepted_total(&self) -> u64 {
         self.accepted.iter().sum()
+    }
+
+    /// Frames refused on a channel for their sequence number or time stamp between two that followed
+    /// one another: repeated, delayed or exchanged on the way. Those of a sender that began anew are not
+    /// among them.
+    pub const fn out_of_place(&self, channel: Channel) -> u64 {
+        self.out_of_place[channel as usize]
     }
 
     /// Frames refused for a reason.
@@ -123,6 +131,7 @@ impl Link {
             counters: Counters {
                 accepted: [0; CHANNELS],
                 gaps: [0; CHANNELS],
+                out_of_place: [0; CHANNELS],
                 rejected: [[0; CHANNELS + 1]; Reject::ALL.len()],
                 garbage: 0,
             },
@@ -180,7 +189,15 @@ impl Link {
                     return Err(rejected(Reject::Address));
                 }
                 let receiver = &mut self.receivers[header.channel as usize];
-                let passage = Receiver::judge(receiver, now, &header).map_err(rejected)?;
+                let passage = match Receiver::judge(receiver, now, &header) {
+                    Ok(passage) => passage,
+                    Err(reason) => {
+                        if let Some(receiver) = receiver {
+                            receiver.out_of_place = receiver.out_of_place.saturating_add(1);
+                        }
+                        return Err(rejected(reason));
+                    }
+                };
                 let message = Message::decode(header.channel, payload).map_err(|error| {
                     self.last_error = Some(error);
                     rejected(Reject::Layout)
@@ -191,6 +208,8 @@ impl Link {
                 }
                 *receiver = Some(passage.receiver);
                 self.counters.gaps[header.channel as usize] += u64::from(passage.gap);
+                self.counters.out_of_place[header.channel as usize] +=
+                    u64::from(passage.out_of_place);
                 Ok(Received { header, message })
             });
             match checked {
@@ -241,12 +260,16 @@ struct Receiver {
     relaxed_at: Instant,
     /// When the first frame since the last accepted one came too late.
     late_since: Option<Instant>,
+    /// Frames refused for sequence or stamp since the last accepted one.
+    out_of_place: u32,
 }
 
-/// The state after a frame, should it be accepted, and the sequence numbers it passed over.
+/// The state after a frame, should it be accepted, the sequence numbers it passed over, and the frames refused
+/// before it although their sender went on.
 struct Passage {
     receiver: Receiver,
     gap: u16,
+    out_of_place: u32,
 }
 
 impl Receiver {
@@ -255,6 +278,7 @@ impl Receiver {
         let fresh = Passage {
             receiver: Self::first(now, header),
             gap: 0,
+            out_of_place: 0,
         };
         let Some(last) = slot else { return Ok(fresh) };
         let silent = now.since(last.heard_at) >= RESYNC;
@@ -295,10 +319,12 @@ impl Receiver {
             quickest_ms: if delay_ms < 0 { way_ms } else { quickest_ms },
             relaxed_at: last.relaxed_at + Duration::from_us(steps * RELAX.as_us()),
             late_since: None,
+            out_of_place: 0,
         };
         Ok(Passage {
             receiver,
             gap: ahead - 1,
+            out_of_place: last.out_of_place,
         })
     }
 
@@ -310,6 +336,7 @@ impl Receiver {
             quickest_ms: now.stamp_ms().wrapping_sub(header.stamp_ms),
             relaxed_at: now,
             late_since: None,
+            out_of_place: 0,
         }
     }
 }
@@ -410,5 +437,38 @@ mod tests {
         assert_eq!(bench.last_heard(Channel::Ptu), Some(now));
         assert_eq!(unit.counters().accepted(Channel::Ptu), 2);
         assert_eq!(unit.counters().rejected_total(), 0);
+    }
+
+    /// Goal: a line that gives frames twice is told from a sender that was started again. Method: each
+    /// frame twice, then another sender with the numbers and the clock of a fresh start.
+    #[test]
+    fn repeated_frames_are_out_of_place_and_those_of_a_new_start_are_not() {
+        let mut unit = Link::new(End::Unit);
+        let mut feed = |bench: &mut Link, now: Instant, times: usize| {
+            let mut frame = Vec::new();
+            bench.send(
+                now.back(Duration::from_ms(1)),
+                &Identify {}.into(),
+                &mut frame,
+            );
+            for _ in 0..times {
+                unit.push(&frame);
+                while unit.poll(now).is_some() {}
+            }
+            unit.counters().out_of_place(Channel::Ptu)
+        };
+        let (mut first, mut second) = (Link::new(End::Bench), Link::new(End::Bench));
+        let mut now = Instant::from_ms(70_000);
+        for _ in 0..10 {
+            now += Duration::from_ms(200);
+            feed(&mut first, now, 2);
+        }
+        now += Duration::from_ms(200);
+        assert_eq!(feed(&mut first, now, 1), 10);
+        for _ in 0..10 {
+            now += Duration::from_ms(200);
+            assert_eq!(feed(&mut second, now, 1), 10);
+        }
+        assert!(unit.counters().rejected(Reject::Sequence) > 12);
     }
 }

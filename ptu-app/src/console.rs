@@ -161,7 +161,7 @@ fn procedures(run: &RunDetail) -> Table {
         let time: i64 = mine.iter().map(|step| step.bench_time_us).sum();
         table.row([
             first.procedure.clone(),
-            worst(mine).into(),
+            worst(mine, run.run.verdict).into(),
             mine.len().to_string(),
             passed.to_string(),
             format!("{:.1} s", time as f64 / 1e6),
@@ -172,9 +172,15 @@ fn procedures(run: &RunDetail) -> Table {
 }
 
 /// The gravest verdict among steps.
-fn worst(steps: &[fault_db::StepDetail]) -> &'static str {
+/// What a procedure came to. One that was broken off is an error, as its run is; in any other run a check
+/// that failed is said before one that could not be made.
+fn worst(steps: &[fault_db::StepDetail], run: Option<fault_db::Verdict>) -> &'static str {
     use fault_db::Verdict::{Aborted, Error, Failed, Passed};
-    [Aborted, Error, Failed, Passed]
+    let order = match run {
+        Some(Error) => [Aborted, Error, Failed, Passed],
+        _ => [Aborted, Failed, Error, Passed],
+    };
+    order
         .into_iter()
         .find(|verdict| steps.iter().any(|step| step.verdict == *verdict))
         .map_or("skipped", |verdict| verdict.as_str())

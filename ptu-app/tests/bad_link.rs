@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 
 use common::served::Unit;
 use common::steady::steadily;
-use common::{Place, number, scripts, text};
+use common::{Place, list, number, scripts, text};
+use protocol::frame::{self, Decoder, Header};
 use protocol::link::{End, Link};
-use protocol::message::KeepAlive;
+use protocol::message::{Channel, KeepAlive, LogEntry, Message};
 
 /// Time in which `ptu` must have given up, with room for a busy machine.
 const GIVES_UP_WITHIN: Duration = Duration::from_secs(60);
@@ -257,4 +258,185 @@ fn a_unit_without_a_serial_number_is_shown_as_one() {
         let (_, report) = place.run(&["tcms/link", "--serial-no", "A\u{1b}[2J"]);
         assert_eq!(text(&report["run"]["unit_serial"]), "A\\x1b[2J");
     });
+}
+
+/// What a proxy does to the bytes of one direction.
+type Change = Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>;
+
+/// Stands between `ptu` and a served unit for one client; gives what `--unit` takes.
+fn proxy(unit: &Unit, mut to_unit: Change, mut from_unit: Change) -> String {
+    let port = unit.port.clone();
+    let address = peer(move |client| {
+        let unit = TcpStream::connect(port).expect("the unit");
+        let pass = |mut from: TcpStream, mut to: TcpStream, change: &mut Change| {
+            let mut chunk = [0; 4096];
+            while let Ok(count @ 1..) = from.read(&mut chunk) {
+                if to.write_all(&change(&chunk[..count])).is_err() {
+                    break;
+                }
+            }
+            let _ = to.shutdown(std::net::Shutdown::Both);
+        };
+        let ends = |stream: &TcpStream| stream.try_clone().expect("a clone");
+        std::thread::scope(|scope| {
+            let (client_in, unit_out) = (ends(&client), ends(&unit));
+            scope.spawn(|| pass(client_in, unit_out, &mut to_unit));
+            pass(ends(&unit), ends(&client), &mut from_unit);
+        });
+    });
+    format!("tcp:{address}")
+}
+
+fn unchanged() -> Change {
+    Box::new(<[u8]>::to_vec)
+}
+
+/// Changes whole frames of the tester's channel: what is pushed goes on in the place of each, with
+/// sequence numbers that leave no gap.
+fn frames(mut change: impl FnMut(Message, &mut Vec<Message>) + Send + 'static) -> Change {
+    let (mut decoder, mut next_seq) = (Decoder::new(), 0_u16);
+    let mut payload_out = Vec::new();
+    Box::new(move |bytes| {
+        let mut out = Vec::new();
+        decoder.push(bytes);
+        while let Some(frame) = decoder.next_frame() {
+            let Ok((header, payload)) = frame else {
+                continue;
+            };
+            let message = Message::decode(header.channel, payload).expect("a unit's message");
+            if header.channel != Channel::Ptu {
+                frame::encode(&header, payload, &mut out);
+                continue;
+            }
+            let mut messages = Vec::new();
+            change(message, &mut messages);
+            for message in messages {
+                payload_out.clear();
+                message.encode(&mut payload_out);
+                let header = Header {
+                    seq: next_seq,
+                    ..header
+                };
+                next_seq = next_seq.wrapping_add(1);
+                frame::encode(&header, &payload_out, &mut out);
+            }
+        }
+        out
+    })
+}
+
+/// Flips a bit in one byte of a hundred, once the unit has been brought up.
+fn flips(mut state: u32) -> Change {
+    let began = Instant::now();
+    Box::new(move |bytes| {
+        let flip = |byte: &u8| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let hit = state >> 16 < 655 && began.elapsed() > Duration::from_secs(8);
+            if hit { byte ^ 0x10 } else { *byte }
+        };
+        bytes.iter().map(flip).collect()
+    })
+}
+
+/// Runs what judges every channel behind a proxy: exit 3 with these words, an error without faults.
+#[track_caller]
+fn blames_nobody(address: &str, words: &[&str]) {
+    let place = Place::new();
+    place
+        .ptu(&["run", "twc/exchange", "--unit", address])
+        .exits(3)
+        .explains(words);
+    let run = place.json(&["runs", "show", "latest", "--json"]);
+    assert_eq!(run["run"]["verdict"], "error");
+    assert!(list(&run["faults"]).is_empty(), "{}", run["faults"]);
+}
+
+#[test]
+fn a_bad_line_is_an_error_of_the_line() {
+    steadily(|| {
+        let unit = Unit::on_tcp(&[]);
+        let address = proxy(&unit, flips(1), flips(2));
+        blames_nobody(
+            &address,
+            &["the line between tester and unit is bad", "check the cable"],
+        );
+    });
+}
+
+#[test]
+fn a_log_that_is_never_answered() {
+    steadily(|| {
+        let unit = Unit::on_tcp(&[]);
+        let mute = frames(|message, out| match message {
+            Message::LogEntry(_) | Message::LogEnd(_) => {}
+            other => out.push(other),
+        });
+        let address = proxy(&unit, unchanged(), mute);
+        blames_nobody(
+            &address,
+            &[
+                "the unit's log could not be read: asked ",
+                " times, no answer",
+            ],
+        );
+    });
+}
+
+#[test]
+fn another_unit_in_the_middle_of_a_run() {
+    steadily(|| {
+        let unit = Unit::on_tcp(&["--serial-no", "A-1"]);
+        let began = Instant::now();
+        let other = frames(move |message, out| {
+            out.push(match message {
+                Message::Identity(mut identity) if began.elapsed() > Duration::from_secs(8) => {
+                    identity.serial[0] = b'B';
+                    identity.into()
+                }
+                other => other,
+            });
+        });
+        let address = proxy(&unit, unchanged(), other);
+        blames_nobody(&address, &["another unit answers", "\"A-1\"", "\"B-1\""]);
+    });
+}
+
+/// Goal: a log without end costs neither the disk nor the time. Method: 4 000 entries a second beyond those
+/// of the unit.
+#[test]
+fn a_log_without_end_is_read_within_its_time_and_bounded() {
+    let unit = Unit::on_tcp(&[]);
+    let mut logged = 0;
+    let endless = frames(move |message, out| match message {
+        Message::Status(mut status) => {
+            let entries = (logged..logged + 200).map(|index| LogEntry {
+                index,
+                code: 221,
+                at_ms: index,
+                ..LogEntry::default()
+            });
+            out.extend(entries.map(Message::from));
+            logged += 200;
+            status.events = logged + 200;
+            out.push(status.into());
+        }
+        Message::LogEntry(_) | Message::LogEnd(_) => {}
+        other => out.push(other),
+    });
+    let address = proxy(&unit, unchanged(), endless);
+    let place = Place::new();
+    let began = Instant::now();
+    let said = place.ptu(&["faults", "import", "--unit", &address, "--json"]);
+    let took = began.elapsed();
+    let said = said.exits(3);
+    assert!(took < Duration::from_secs(70), "{took:?}");
+    let imported: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!(imported["complete"], false);
+    assert!(number(&imported["not_stored"]) >= 256.0, "{imported}");
+    assert!(
+        number(&imported["entries"]) <= 256.0 + 60.0 * 40.0,
+        "{imported}"
+    );
+    let id = text(&imported["run_id"]).to_owned();
+    assert_eq!(place.run_ids(), [id]);
 }

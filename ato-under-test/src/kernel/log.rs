@@ -7,7 +7,7 @@ use protocol::{Instant, Speed};
 use super::Ring;
 
 /// Entries kept; older ones fall off and their indices stay used.
-pub const LOG_CAPACITY: usize = 256;
+pub const LOG_CAPACITY: usize = protocol::event::LOG_ENTRIES;
 
 /// State of the unit that each entry freezes.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,9 +1,9 @@
 //! What the unit's log and its refusals say, in words.
 
 use protocol::event::Event;
-use protocol::message::{
-    AbsurdInputs, ArmRefusal, AtoFailure, Channel, Mode, Refusals, SelfTest, WordSpec,
-};
+use protocol::message::{AbsurdInputs, ArmRefusal, AtoFailure, Channel, Mode, Refusals, SelfTest};
+
+use crate::procedure::describe::meanings as set;
 
 /// Preconditions of automatic mode that do not hold.
 pub(super) fn refusals(bits: u16) -> String {
@@ -48,25 +48,6 @@ fn measured(what: &str, number: i32) -> String {
         Some((scale, unit)) => format!("{what} {:.2} {unit}", f64::from(number) * scale),
         None => format!("{what} {number} {unit}"),
     }
-}
-
-/// Meanings of the bits that are set.
-fn set(word: &WordSpec, bits: u16) -> String {
-    let meaning = |bit: u8| {
-        let known = word.entries.iter().find(|entry| entry.0 == bit);
-        known.map_or_else(
-            || format!("bit {bit}"),
-            |entry| entry.2.trim_end_matches('.').to_owned(),
-        )
-    };
-    let found: Vec<_> = (0..16)
-        .filter(|bit| bits & 1 << bit != 0)
-        .map(meaning)
-        .collect();
-    if found.is_empty() {
-        return "nothing".into();
-    }
-    found.join("; ")
 }
 
 /// A label as people write it.

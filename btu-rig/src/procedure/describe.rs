@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use protocol::message::WordSpec;
 use protocol::signal::{Kind, Sample, Signal};
 
 use super::plan::{
@@ -138,6 +139,25 @@ pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
         (_, true) => None,
         _ => Some(names.join(" + ")),
     }
+}
+
+/// What the bits that are set in a word of the wire mean.
+pub fn meanings(word: &WordSpec, bits: u16) -> String {
+    let meaning = |bit: u8| {
+        let known = word.entries.iter().find(|entry| entry.0 == bit);
+        known.map_or_else(
+            || format!("bit {bit}"),
+            |entry| entry.2.trim_end_matches('.').to_owned(),
+        )
+    };
+    let found: Vec<_> = (0..16)
+        .filter(|bit| bits & 1 << bit != 0)
+        .map(meaning)
+        .collect();
+    if found.is_empty() {
+        return "nothing".into();
+    }
+    found.join("; ")
 }
 
 /// An operand as the signal's reader knows it: a label, on or off, a number with its unit.

@@ -7,6 +7,7 @@ use super::action_run::{Problem, Scan};
 use super::condition::{Lack, Truth};
 use super::describe::bits_seen;
 use super::event_set::EventSet;
+use super::evidence::LogState;
 use super::plan::Expectation;
 
 /// What is known about an expectation so far.
@@ -25,7 +26,7 @@ impl Watch {
         expectation: &Expectation,
         scan: Scan<'_>,
         actions_end: Option<Instant>,
-        logged: EventSet,
+        (logged, log): (EventSet, LogState),
     ) {
         if self.decided {
             return;
@@ -65,7 +66,10 @@ impl Watch {
                 let name = event.definition().name;
                 if logged.contains(*event) {
                     self.decided = true;
-                } else if since_end.is_some_and(|waited| waited >= *within) {
+                } else if since_end.is_some_and(|waited| waited >= *within)
+                    // It may be among those that are not read yet.
+                    && log == LogState::Read
+                {
                     self.fail(Truth::No, || {
                         format!("{who} did not log {name} within {within}")
                     });

@@ -12,6 +12,7 @@ mod action_run;
 mod condition;
 pub mod describe;
 mod event_set;
+mod evidence;
 mod expectation_run;
 mod limit;
 pub mod loader;
@@ -27,6 +28,7 @@ use protocol::message::{EbCause, Mode};
 use protocol::{Instant, Speed};
 use thiserror::Error;
 
+pub use evidence::{Evidence, LineState, LogState};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
 pub use report::{Measurement, RunEvent, StepResult, Verdict};
@@ -53,6 +55,11 @@ pub trait Driver {
 
     /// Whether [`Driver::make_safe`] has taken effect.
     fn safe(&self) -> bool;
+
+    /// How far what it hears of the unit can be trusted.
+    fn evidence(&self) -> Evidence {
+        Evidence::default()
+    }
 }
 
 /// Why a stimulus was not carried out.

@@ -31,10 +31,11 @@ impl Verdict {
         }
     }
 
-    /// The verdict over two steps or procedures: aborted, then error, then failed outrank passed.
+    /// The verdict over two steps or procedures: aborted, then failed, then error outrank passed.
     ///
-    /// What was not tested must not hide behind what was, so an error outranks a failure; a skipped
-    /// part changes nothing, and only parts that are all skipped give `Skipped`.
+    /// A check that failed is said before one that could not be made: a faulty unit makes both, and the
+    /// first is the finding. A skipped part changes nothing, and only parts that are all skipped give
+    /// `Skipped`.
     pub const fn and(self, other: Self) -> Self {
         if self.rank() >= other.rank() {
             self
@@ -47,8 +48,8 @@ impl Verdict {
         match self {
             Self::Skipped => 0,
             Self::Passed => 1,
-            Self::Failed => 2,
-            Self::Error => 3,
+            Self::Error => 2,
+            Self::Failed => 3,
             Self::Aborted => 4,
         }
     }

@@ -5,6 +5,7 @@ use protocol::{CYCLE, Duration, Instant};
 
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
 use super::event_set::EventSet;
+use super::evidence::{Evidence, LogState, counted};
 use super::expectation_run::Watch;
 use super::measure_run::Taking;
 use super::plan::Step;
@@ -13,6 +14,8 @@ use super::{Driver, UnitEvent};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
 const TOO_LATE: Duration = CYCLE;
+/// A step waits no longer for the unit's log; whoever reads the log gives up before.
+const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
 /// A live step.
 #[derive(Debug)]
@@ -22,7 +25,8 @@ pub(super) struct StepRun {
     actions_done: Option<Instant>,
     watches: Vec<Watch>,
     takings: Vec<Taking>,
-    problems: Vec<Problem>,
+    /// Each once, with how often it came.
+    problems: Vec<(Problem, u32)>,
     logged: EventSet,
     /// Part that the first event nobody asked for names.
     blamed: Option<&'static str>,
@@ -32,6 +36,12 @@ pub(super) struct StepRun {
     broken_off: bool,
     /// How far the bench was behind at most.
     behind: Duration,
+    /// How far the unit's log is read.
+    log: LogState,
+    /// Since when the step waits for nothing but the unit's log.
+    awaits_log: Option<Instant>,
+    /// Frames that had not come through when the step began, and by now.
+    harmed: Option<(u64, u64)>,
 }
 
 /// How a step ended.
@@ -58,6 +68,9 @@ impl StepRun {
             given_up: false,
             broken_off: false,
             behind: Duration::ZERO,
+            log: LogState::Read,
+            awaits_log: None,
+            harmed: None,
         }
     }
 
@@ -78,32 +91,33 @@ impl StepRun {
     /// Holds an event nobody asked for against the step. Whoever logged it saw what happened, so the
     /// part it names counts for more than the one a failure of the step would point at.
     pub(super) fn blame_event(&mut self, entry: &UnitEvent) {
-        let event = Event::from_code(entry.code);
-        let name = event.map_or("unknown", |e| e.definition().name);
-        let car = entry.car().map_or(String::new(), |car| format!(", {car}"));
-        let text = format!(
-            "{} logged {name} ({}{car}), which no step provoked",
-            entry.source.who(),
-            entry.code
-        );
-        let part = event.map(|event| event.suspect(entry.parameter));
+        let part = Event::from_code(entry.code).map(|event| event.suspect(entry.parameter));
         self.blamed = self.blamed.or(part.filter(|part| *part != "-"));
-        let problem = Problem::Failed(text);
-        if !self.problems.contains(&problem) {
-            self.problems.push(problem);
-        }
+        self.hold(Problem::Failed(format!(
+            "{}, which no step provoked",
+            logged(entry)
+        )));
+    }
+
+    /// Something that frames lost between tester and unit may have caused: the step says nothing about
+    /// the unit.
+    pub(super) fn blame_line(&mut self, what: &str) {
+        self.hold(Problem::Bench(format!(
+            "{what} while frames between tester and unit did not come through: check the line and run this \
+             again"
+        )));
     }
 
     /// Holds an emergency brake nobody asked for against the step.
     pub(super) fn blame_brake(&mut self) {
-        self.problems.push(Problem::Failed(
+        self.hold(Problem::Failed(
             "the emergency brake was applied, which this step does not ask for".into(),
         ));
     }
 
     /// Ends the step as it stands, with a reason.
     pub(super) fn give_up(&mut self, problem: Problem) {
-        self.problems.push(problem);
+        self.hold(problem);
         self.given_up = true;
     }
 
@@ -116,6 +130,48 @@ impl StepRun {
     /// Takes note of how far the bench is behind the unit's clock.
     pub(super) fn note_behind(&mut self, by: Duration) {
         self.behind = self.behind.max(by);
+    }
+
+    /// Takes note of how far what is heard in this scan can be trusted.
+    pub(super) fn note_evidence(&mut self, evidence: &Evidence) {
+        self.log = evidence.log;
+        let harmed = evidence.line.harmed;
+        let (before, _) = self.harmed.unwrap_or((harmed, harmed));
+        self.harmed = Some((before, harmed));
+    }
+
+    fn hold(&mut self, problem: Problem) {
+        match self
+            .problems
+            .iter_mut()
+            .find(|(known, _)| *known == problem)
+        {
+            Some((_, times)) => *times += 1,
+            None => self.problems.push((problem, 1)),
+        }
+    }
+
+    fn has_failed(&self) -> bool {
+        self.problems
+            .iter()
+            .any(|(problem, _)| problem.is_failure())
+    }
+
+    /// Whether the step is held back until the unit's log is read: what it logged in the step's time is
+    /// not known before.
+    fn waits_for_log(&mut self, now: Instant) -> bool {
+        if self.log != LogState::Unanswered {
+            self.awaits_log = None;
+            return false;
+        }
+        let since = *self.awaits_log.get_or_insert(now);
+        if now.since(since) < LOG_WITHIN {
+            return true;
+        }
+        self.give_up(Problem::Bench(format!(
+            "the unit's log could not be read within {LOG_WITHIN}, so what it logged is not known"
+        )));
+        false
     }
 
     /// One scan; `true` when the step is over.
@@ -145,8 +201,11 @@ impl StepRun {
                 self.look(step, scan, self.actions_done);
             }
         }
-        if self.given_up || self.is_complete(step, scan.now) {
+        if self.given_up {
             return true;
+        }
+        if self.is_complete(step, scan.now) {
+            return !self.waits_for_log(scan.now);
         }
         if scan.now.since(self.started) >= step.time_limit {
             let what = self.waiting_for(step);
@@ -165,32 +224,51 @@ impl StepRun {
     pub(super) fn finish(mut self, step: &Step, scan: Scan<'_>, aborted: bool) -> StepEnd {
         let bench_time = scan.now.since(self.started);
         let complete = !self.given_up && !aborted;
-        let blamed = self.problems.iter().any(Problem::is_failure);
-        for (watch, expectation) in self.watches.into_iter().zip(&step.expectations) {
+        let blamed = self.has_failed();
+        for (watch, expectation) in std::mem::take(&mut self.watches)
+            .into_iter()
+            .zip(&step.expectations)
+        {
             let decided = complete || !watch.is_open(expectation);
-            self.problems
-                .extend(watch.finish(expectation).filter(|_| decided));
+            if let Some(problem) = watch.finish(expectation).filter(|_| decided) {
+                self.hold(problem);
+            }
         }
         let mut measurements = Vec::with_capacity(step.measures.len());
-        for (taking, measure) in self.takings.into_iter().zip(&step.measures) {
+        for (taking, measure) in std::mem::take(&mut self.takings)
+            .into_iter()
+            .zip(&step.measures)
+        {
             let (measurement, message) = match self.broken_off {
                 true => taking.untaken(measure, scan),
                 false => taking.finish(measure, scan),
             };
             match measurement.verdict {
                 Verdict::Passed => {}
-                Verdict::Failed => self.problems.push(Problem::Failed(message)),
-                _ if complete => self.problems.push(Problem::NoData(message)),
+                Verdict::Failed => self.hold(Problem::Failed(message)),
+                _ if complete => self.hold(Problem::NoData(message)),
                 _ => {}
             }
             measurements.push(measurement);
         }
-        // Events and brakes are as they are; what was judged by the bench's clock may be its delay.
-        if !blamed && self.behind > TOO_LATE && self.problems.iter().any(Problem::is_failure) {
-            self.problems.push(Problem::Bench(format!(
-                "the tester was {:.2} s behind, held up by its own computer: run this again",
-                self.behind.as_secs()
-            )));
+        // Events and brakes are as they are; what was judged by the bench's clock may be its delay, and what
+        // did not come about a frame that did not come through.
+        if !blamed && self.has_failed() {
+            if self.behind > TOO_LATE {
+                self.hold(Problem::Bench(format!(
+                    "the tester was {:.2} s behind, held up by its own computer: run this again",
+                    self.behind.as_secs()
+                )));
+            }
+            let lost = self
+                .harmed
+                .map_or(0, |(before, now)| now.saturating_sub(before));
+            if lost > 0 {
+                self.hold(Problem::Bench(format!(
+                    "{lost} frames between tester and unit did not come through meanwhile: check the line and \
+                     run this again"
+                )));
+            }
         }
         StepEnd {
             verdict: verdict(&self.problems, aborted),
@@ -203,7 +281,7 @@ impl StepRun {
 
     fn look(&mut self, step: &Step, scan: Scan<'_>, actions_end: Option<Instant>) {
         for (watch, expectation) in self.watches.iter_mut().zip(&step.expectations) {
-            watch.look(expectation, scan, actions_end, self.logged);
+            watch.look(expectation, scan, actions_end, (self.logged, self.log));
         }
         for (taking, measure) in self.takings.iter_mut().zip(&step.measures) {
             taking.look(measure, scan, self.started, actions_end);
@@ -228,8 +306,16 @@ impl StepRun {
     }
 }
 
-fn verdict(problems: &[Problem], aborted: bool) -> Verdict {
-    let any = |wanted: fn(&Problem) -> bool| problems.iter().any(wanted);
+/// What an entry of a log says, as the beginning of a sentence.
+pub(super) fn logged(entry: &UnitEvent) -> String {
+    let event = Event::from_code(entry.code);
+    let name = event.map_or("unknown", |e| e.definition().name);
+    let car = entry.car().map_or(String::new(), |car| format!(", {car}"));
+    format!("{} logged {name} ({}{car})", entry.source.who(), entry.code)
+}
+
+fn verdict(problems: &[(Problem, u32)], aborted: bool) -> Verdict {
+    let any = |wanted: fn(&Problem) -> bool| problems.iter().any(|(problem, _)| wanted(problem));
     if aborted {
         Verdict::Aborted
     } else if any(|p| matches!(p, Problem::Bench(_))) {
@@ -243,15 +329,15 @@ fn verdict(problems: &[Problem], aborted: bool) -> Verdict {
     }
 }
 
-fn message(problems: &[Problem], step: &Step, aborted: bool) -> String {
+fn message(problems: &[(Problem, u32)], step: &Step, aborted: bool) -> String {
     if problems.is_empty() && !aborted {
         return step.note.clone().unwrap_or_default();
     }
-    let mut texts: Vec<String> = Vec::new();
-    texts.extend(aborted.then(|| "stopped by the operator".to_owned()));
+    let mut texts: Vec<(String, u32)> = Vec::new();
+    texts.extend(aborted.then(|| ("stopped by the operator".to_owned(), 1)));
     // Measurements wait for the same thing more often than not: it is said once.
     let mut without_value: Vec<(&str, &str, usize)> = Vec::new();
-    for problem in problems {
+    for (problem, times) in problems {
         match problem.message().split_once(": ") {
             Some((name, reason)) if reason.starts_with("no value") => {
                 match without_value.iter_mut().find(|known| known.1 == reason) {
@@ -259,16 +345,16 @@ fn message(problems: &[Problem], step: &Step, aborted: bool) -> String {
                     None => without_value.push((name, reason, 0)),
                 }
             }
-            _ => texts.push(problem.message().to_owned()),
+            _ => texts.push((problem.message().to_owned(), *times)),
         }
     }
     texts.extend(
         without_value
             .into_iter()
             .map(|(name, reason, more)| match more {
-                0 => format!("{name}: {reason}"),
-                more => format!("{name} and {more} more: {reason}"),
+                0 => (format!("{name}: {reason}"), 1),
+                more => (format!("{name} and {more} more: {reason}"), 1),
             }),
     );
-    texts.join("; ")
+    counted(texts.iter().map(|(text, times)| (text.as_str(), *times)))
 }

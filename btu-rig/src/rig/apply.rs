@@ -2,7 +2,7 @@
 
 use protocol::Instant;
 
-use crate::procedure::Refusal;
+use crate::procedure::{Evidence, Refusal};
 use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition, WaysideCondition};
 use crate::train::TrainData;
 
@@ -358,5 +358,8 @@ impl crate::procedure::Driver for Rig {
     }
     fn safe(&self) -> bool {
         Self::safe(self)
+    }
+    fn evidence(&self) -> Evidence {
+        Self::evidence(self)
     }
 }

@@ -15,12 +15,17 @@ const FIRST_CONTACT: Duration = Duration::from_ms(3000);
 /// Silence that is an error: longer than the link takes to hear a unit again that was started anew.
 const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 
+/// Channels that are watched, by their names.
+const WATCHED: [(Channel, &str); 2] = [(Channel::Io, "I/O"), (Channel::Ptu, "PTU")];
+
 /// The watch.
 #[derive(Debug, Default)]
 pub struct LinkWatch {
     begun: Option<Instant>,
     bytes: u64,
     taken: Option<Taken>,
+    /// Frames refused until each of the watched channels was last heard.
+    refused: [u64; WATCHED.len()],
 }
 
 impl LinkWatch {
@@ -55,6 +60,14 @@ impl LinkWatch {
         self.begun.get_or_insert(now);
     }
 
+    /// Notes that a frame of a channel was taken.
+    pub fn note_frame(&mut self, channel: Channel, counters: &Counters) {
+        let place = WATCHED.iter().position(|(watched, _)| *watched == channel);
+        if let Some(refused) = place.and_then(|place| self.refused.get_mut(place)) {
+            *refused = counters.rejected_total();
+        }
+    }
+
     /// What is wrong, if anything; `asks_since` = since when the tester speaks.
     pub fn error(&self, now: Instant, link: &Link, asks_since: Option<Instant>) -> Option<String> {
         if let Some(why) = self.turned_away() {
@@ -68,16 +81,22 @@ impl LinkWatch {
         if !heard_any {
             return Some(self.no_contact(now.since(begun), link.counters()));
         }
-        let silent = |channel, since: Instant, name| {
-            let heard = link.last_heard(channel).unwrap_or(begun).max(since);
+        let since = [Some(begun), asks_since];
+        let mut watched = WATCHED.iter().zip(since).zip(self.refused);
+        watched.find_map(|((&(channel, name), since), refused_before)| {
+            let heard = link.last_heard(channel).unwrap_or(begun).max(since?);
             let silence = now.since(heard);
             (silence > SILENCE).then(|| {
                 let seconds = silence.as_secs();
-                format!("unit silent for {seconds:.1} s on the {name} channel")
+                let silent = format!("unit silent for {seconds:.1} s on the {name} channel");
+                match link.counters().rejected_total() - refused_before {
+                    0 => silent,
+                    refused => format!(
+                        "{silent}, while {refused} frames were refused — check the line between tester and unit"
+                    ),
+                }
             })
-        };
-        silent(Channel::Io, begun, "I/O")
-            .or_else(|| asks_since.and_then(|since| silent(Channel::Ptu, since, "PTU")))
+        })
     }
 
     fn no_contact(&self, waited: Duration, counters: &Counters) -> String {
@@ -88,20 +107,41 @@ impl LinkWatch {
             );
         }
         let bytes = self.bytes;
-        let most = Reject::ALL
-            .into_iter()
-            .map(|reason| (counters.rejected(reason), reason))
-            .max_by_key(|&(count, _)| count)
-            .filter(|&(count, _)| count > 0);
-        match most {
-            Some((count, Reject::Version)) => format!(
-                "{count} frames of another version of the wire — unit and bench programs differ"
-            ),
-            Some((count, reason)) => format!(
-                "garbage: {bytes} bytes, no valid frame, {count} refused for {} — wrong baud rate?",
+        let refused = |reason: &Reject| counters.rejected(*reason);
+        let most = Reject::ALL.into_iter().max_by_key(refused);
+        let garbage = match most.filter(|reason| refused(reason) > 0) {
+            Some(reason) => format!(
+                "garbage: {bytes} bytes, no valid frame, {} refused for {}",
+                refused(&reason),
                 reason.label()
             ),
-            None => format!("garbage: {bytes} bytes, no valid frame — wrong baud rate?"),
+            None => format!("garbage: {bytes} bytes, no valid frame"),
+        };
+        // A frame whose check sequence fits was read at the right rate.
+        let fitting = Reject::ALL
+            .into_iter()
+            .filter(|reason| !before_checksum(*reason));
+        match fitting
+            .max_by_key(refused)
+            .filter(|reason| refused(reason) > 0)
+        {
+            Some(Reject::Version) => format!(
+                "{} frames of another version of the wire — unit and bench programs differ",
+                counters.rejected(Reject::Version)
+            ),
+            Some(Reject::Address) => {
+                format!("{garbage} — the tester's own frames come back: is the unit on this port?")
+            }
+            Some(_) => format!("{garbage} — check the cable and what is connected to this port"),
+            None => format!("{garbage} — wrong baud rate?"),
         }
     }
+}
+
+/// Whether a frame refused for this may have had no check sequence that fits.
+fn before_checksum(reason: Reject) -> bool {
+    matches!(
+        reason,
+        Reject::TooShort | Reject::TooLong | Reject::Escape | Reject::Checksum
+    )
 }

@@ -56,6 +56,8 @@ impl LogSession {
         self.watch.note(bytes.len());
         self.link.push(bytes);
         while let Some(received) = self.link.poll(now) {
+            self.watch
+                .note_frame(received.header.channel, self.link.counters());
             match &received.message {
                 Message::Identity(identity) => {
                     self.identified_at = Some((now, identity.uptime_ms));
@@ -110,9 +112,16 @@ impl LogSession {
         self.watch.turned_away()
     }
 
-    /// What is wrong with the connection, after a time allowed for first contact.
+    /// Entries beyond what a log can hold: counted, and not among the events.
+    pub fn not_kept(&self) -> u64 {
+        self.tester.log().not_kept()
+    }
+
+    /// What is wrong with the connection, with who answers or with its log, after a time allowed for first
+    /// contact.
     pub fn link_error(&self, now: Instant) -> Option<String> {
         let speaks_since = self.begun.map(|begun| begun + HOLD_BACK);
-        self.watch.error(now, &self.link, speaks_since)
+        let link = self.watch.error(now, &self.link, speaks_since);
+        link.or_else(|| self.tester.error(now))
     }
 }

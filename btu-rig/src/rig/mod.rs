@@ -14,6 +14,7 @@ mod bench;
 mod codes_along;
 mod desk;
 mod exchange;
+mod line_watch;
 mod link_watch;
 mod log_reader;
 mod log_session;
@@ -46,7 +47,7 @@ use protocol::message::{Identity, IoInput, Message};
 use protocol::signal::{Sample, Signal};
 
 use crate::conditions::Conditions;
-use crate::procedure::UnitEvent;
+use crate::procedure::{Evidence, UnitEvent};
 use crate::stimulus::{TachoCondition, WaysideCondition};
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
@@ -59,6 +60,7 @@ pub use truth::{PairEfforts, Truth};
 
 use antenna::Antenna;
 use desk::Desk;
+use line_watch::LineWatch;
 use link_watch::LinkWatch;
 use markers::Markers;
 use rolling::weight_shares;
@@ -126,6 +128,7 @@ pub struct Rig {
     braking: bool,
     link: Link,
     watch: LinkWatch,
+    line_watch: LineWatch,
     recorder: Recorder,
     now: Instant,
     /// When a frame of the unit came last, and its stamp.
@@ -184,6 +187,7 @@ impl Rig {
             braking: false,
             link: Link::new(End::Bench),
             watch: LinkWatch::default(),
+            line_watch: LineWatch::new(config.link.rejected_per_10s),
             recorder: Recorder::default(),
             now: Instant::ZERO,
             unit_stamp: None,
@@ -202,6 +206,10 @@ impl Rig {
     pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.now = now;
         self.watch.step(now);
+        if self.wayside.condition() == WaysideCondition::Corrupt {
+            self.line_watch.note_on_purpose(now);
+        }
+        self.line_watch.step(now, self.link.counters());
         self.recorder.step(now);
         if self.quiescent {
             // The unit may ask for the holding brake a little longer: the next procedure knows nothing
@@ -234,6 +242,8 @@ impl Rig {
         self.link.push(bytes);
         while let Some(received) = self.link.poll(now) {
             self.unit_stamp = Some((now, received.header.stamp_ms));
+            self.watch
+                .note_frame(received.header.channel, self.link.counters());
             match &received.message {
                 Message::IoOutput(io) => self.recorder.hear_io(now, io),
                 Message::AtcToTcms(command) => {
@@ -247,13 +257,20 @@ impl Rig {
                     self.recorder.hear_twc(now, answer, self.wayside.answers());
                 }
                 Message::Taken(taken) => self.watch.note_taken(*taken),
-                message => {
-                    if let Message::Status(status) = message {
-                        self.recorder.hear_status(now, status);
-                    }
-                    self.tester.hear(now, message);
-                }
+                message => self.hear_tester(now, message),
             }
+        }
+    }
+
+    fn hear_tester(&mut self, now: Instant, message: &Message) {
+        let restarts = self.tester.restarts();
+        self.tester.hear(now, message);
+        if self.tester.restarts() != restarts {
+            self.line_watch.note_restart(now);
+        }
+        if let Message::Status(status) = message {
+            self.recorder.hear_status(now, status);
+            self.line_watch.hear_refused(now, status.rejected_frames);
         }
     }
 
@@ -307,10 +324,27 @@ impl Rig {
         self.tester.restarts()
     }
 
-    /// What is wrong with the connection, after a time allowed for first contact.
+    /// Why nothing that is heard can be judged, after a time allowed for first contact: what is wrong with
+    /// the connection, with who answers, or with reading the unit's log.
     pub fn link_error(&self) -> Option<String> {
-        self.watch
-            .error(self.now, &self.link, self.tester.speaks_since())
+        let line = self.line_watch.error(self.now);
+        let silence = || {
+            self.watch
+                .error(self.now, &self.link, self.tester.speaks_since())
+        };
+        line.or_else(silence)
+            .or_else(|| self.tester.error(self.now))
+            .or_else(|| self.tester.missed())
+    }
+
+    /// How far what is heard can be trusted.
+    pub fn evidence(&self) -> Evidence {
+        Evidence {
+            log: self.tester.log_state(self.now),
+            not_kept: self.tester.log().not_kept(),
+            line: self.line_watch.state(),
+            self_test: self.tester.self_test(),
+        }
     }
 
     /// Why the unit turned this bench away, if it did: another has it.

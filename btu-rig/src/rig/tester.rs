@@ -1,10 +1,12 @@
 //! The tester's session on the PTU channel: who the unit is, keep-alive, requests, event log.
 
 use protocol::link::Link;
-use protocol::message::{Identify, Identity, KeepAlive, Message, Status, StatusBits};
+use protocol::message::{
+    Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, Status, StatusBits,
+};
 use protocol::{Duration, Instant};
 
-use crate::procedure::{Refusal, UnitEvent};
+use crate::procedure::{LogState, Refusal, UnitEvent};
 
 use super::exchange::{Exchange, Request};
 use super::log_reader::LogReader;
@@ -28,6 +30,11 @@ pub struct Tester {
     keep_alive_due: Instant,
     identify_due: Instant,
     identity: Option<Identity>,
+    /// Who it was when it was first asked.
+    first: Option<Identity>,
+    /// What another unit said otherwise.
+    changed: Option<String>,
+    self_test: SelfTest,
     /// Count of events in the last status.
     logged: Option<u32>,
     events_at_contact: Option<u32>,
@@ -36,6 +43,10 @@ pub struct Tester {
     restarts: u32,
     exchange: Exchange,
     log: LogReader,
+    /// The log was to be cleared: what is gone from it then is gone on purpose.
+    clears_log: bool,
+    /// Entries logged since contact that were gone before they could be read.
+    missed: u64,
 }
 
 impl Tester {
@@ -48,12 +59,17 @@ impl Tester {
             keep_alive_due: Instant::ZERO,
             identify_due: Instant::ZERO,
             identity: None,
+            first: None,
+            changed: None,
+            self_test: SelfTest::empty(),
             logged: None,
             events_at_contact: None,
             leaves_old: false,
             restarts: 0,
             exchange: Exchange::new(session),
             log: LogReader::default(),
+            clears_log: false,
+            missed: 0,
         }
     }
 
@@ -93,17 +109,31 @@ impl Tester {
             Message::ArmState(state) => self.exchange.hear_arm_state(now, state),
             Message::StimulusAnswer(answer) => self.exchange.hear_answer(answer),
             Message::LogEntry(entry) => self.log.hear_entry(now, entry),
-            Message::LogEnd(end) => self.log.hear_end(end),
+            Message::LogEnd(end) => self.hear_log_end(now, end),
             _ => {}
         }
     }
 
+    fn hear_log_end(&mut self, now: Instant, end: &LogEnd) {
+        let wanted = self.log.next_index();
+        self.log.hear_end(now, end);
+        let since_contact = self.events_at_contact.unwrap_or(u32::MAX).max(wanted);
+        if !self.clears_log {
+            self.missed += u64::from(end.oldest_index.saturating_sub(since_contact));
+        }
+    }
+
     fn hear_identity(&mut self, now: Instant, identity: &Identity) {
+        let first = self.first.get_or_insert(*identity);
+        if self.changed.is_none() {
+            self.changed = difference(first, identity);
+        }
         let before = self.identity.replace(*identity);
         let fallen = before.map_or(0, |b| b.uptime_ms.saturating_sub(identity.uptime_ms));
         if fallen > 0 && fallen < UPTIME_WRAP_MS {
             self.hear_restart(now);
         }
+        self.self_test |= identity.self_test;
     }
 
     fn hear_status(&mut self, now: Instant, status: &Status) {
@@ -112,6 +142,7 @@ impl Tester {
             self.identity = None;
             self.hear_restart(now);
         }
+        self.self_test |= status.self_test;
         self.logged = Some(status.events);
         if self.events_at_contact.is_none() && self.leaves_old {
             self.log.begin_at(status.events);
@@ -127,6 +158,7 @@ impl Tester {
         self.logged = None;
         self.events_at_contact = Some(0);
         self.identify_due = now;
+        self.self_test = SelfTest::empty();
         self.exchange.hear_restart();
         self.log.restart();
     }
@@ -141,6 +173,9 @@ impl Tester {
                 "the tester is silent: let it speak first".to_owned(),
             ));
         }
+        if let Request::Stimulus { message, .. } = &request {
+            self.clears_log |= matches!(message, Message::ClearLog(_));
+        }
         self.exchange.push(request)
     }
 
@@ -151,6 +186,7 @@ impl Tester {
         }
         if self.silent && !silent {
             self.speaks_since = now;
+            self.log.pause();
         }
         self.silent = silent;
     }
@@ -226,4 +262,64 @@ impl Tester {
     pub fn log(&self) -> &LogReader {
         &self.log
     }
+
+    /// How far the log is read.
+    pub fn log_state(&self, now: Instant) -> LogState {
+        match self.log.state(now) {
+            // It is not asked for.
+            LogState::Unanswered if self.silent => LogState::Behind,
+            state => state,
+        }
+    }
+
+    /// Self-test items that failed, as the unit has said since it was started.
+    pub fn self_test(&self) -> SelfTest {
+        self.self_test
+    }
+
+    /// Why nothing that is heard can be judged: another unit answers, or the log cannot be read.
+    pub fn error(&self, now: Instant) -> Option<String> {
+        let unread = || self.log.error(now).filter(|_| !self.silent);
+        self.changed.clone().or_else(unread)
+    }
+
+    /// What the unit logged since contact and nobody knows.
+    pub fn missed(&self) -> Option<String> {
+        (self.missed > 0).then(|| {
+            format!(
+                "{} entries of the unit's log were overwritten before they could be read",
+                self.missed
+            )
+        })
+    }
+}
+
+/// What tells two units apart, in words.
+fn difference(first: &Identity, now: &Identity) -> Option<String> {
+    let told = |what: &str, was: String, is: String| {
+        (was != is).then(|| format!("its {what} was {was} and is {is}"))
+    };
+    let name = |field: &[u8; 16]| {
+        let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);
+        format!("\"{}\"", field[..end].escape_ascii())
+    };
+    let checksum = |crc: u32| format!("{crc:08x}");
+    let told: Vec<_> = [
+        told("serial number", name(&first.serial), name(&now.serial)),
+        told("unit configuration", name(&first.config), name(&now.config)),
+        told(
+            "configuration's checksum",
+            checksum(first.config_crc),
+            checksum(now.config_crc),
+        ),
+        told(
+            "track database's checksum",
+            checksum(first.tdb_crc),
+            checksum(now.tdb_crc),
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    (!told.is_empty()).then(|| format!("another unit answers: {}", told.join(", ")))
 }

@@ -21,6 +21,17 @@ const SILENCE: [Event; 4] = [
     Event::AtoFailed,
 ];
 
+/// Frames of several partners refused so close together, ms, were damaged on the line they share: the
+/// unit counts over ten seconds.
+const ONE_LINE_MS: u32 = 12_000;
+/// What a unit logs because frames do not reach it.
+const FRAMES_LOST: [Event; 4] = [
+    Event::FramesRejected,
+    Event::InputsLost,
+    Event::TcmsLost,
+    Event::TwcLost,
+];
+
 /// A log, judged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
@@ -44,6 +55,8 @@ pub struct LeftOut {
     pub tester: u32,
     /// Silence of a unit that nothing is connected to.
     pub alone: u32,
+    /// Frames lost on the one line that all partners of the unit share.
+    pub line: u32,
 }
 
 /// Judges entries, which are in order; `tested` are the spans, µs UTC, in which runs tested the unit.
@@ -71,6 +84,10 @@ pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) ->
             &mut left_out.tester
         } else if silence && within(&alone, place) {
             &mut left_out.alone
+        } else if FRAMES_LOST.iter().any(|event| is(&entry.event, *event))
+            && of_a_bad_line(&events, place)
+        {
+            &mut left_out.line
         } else {
             judged.faults.push(*entry);
             continue;
@@ -87,6 +104,22 @@ fn is(entry: &UnitEvent, event: Event) -> bool {
 /// Frames of a tester, refused: of its cable, or one that took over from another.
 fn of_testers_line(entry: &UnitEvent) -> bool {
     is(entry, Event::FramesRejected) && entry.parameter == i32::from(Channel::Ptu.code())
+}
+
+/// Whether frames of more than one partner were refused around this entry, in the same power-up: a part
+/// of the unit hurts one channel only.
+fn of_a_bad_line(events: &[UnitEvent], place: usize) -> bool {
+    let at_ms = events[place].at_ms;
+    let near = |entry: &&UnitEvent| {
+        !is(entry, Event::PowerUp) && entry.at_ms.abs_diff(at_ms) <= ONE_LINE_MS
+    };
+    let before = events[..place].iter().rev().take_while(near);
+    let after = events[place..].iter().take_while(near);
+    let mut refused = before
+        .chain(after)
+        .filter(|entry| is(entry, Event::FramesRejected));
+    let first = refused.next();
+    first.is_some_and(|first| refused.any(|other| other.parameter != first.parameter))
 }
 
 /// Spans of entries in which a tester had the unit armed. Arming whose beginning is not kept began
@@ -222,6 +255,42 @@ mod tests {
         let (found, left_out) = faults(&[Event::OverspeedEb; 6], &[(900_000, 2_100_000)]);
         assert_eq!(found, [0, 1, 5]);
         assert_eq!(left_out.under_test, 3);
+    }
+
+    /// Goal: what a bad line did is no fault of modems and boards, and what a bad modem did is one. Method:
+    /// frames refused on two channels at once, and on one.
+    #[test]
+    fn frames_of_several_partners_refused_at_once_are_the_lines() {
+        let refused = |channel: Channel, at_ms: u32| Entry {
+            event: UnitEvent {
+                parameter: i32::from(channel.code()),
+                ..event(0, Event::FramesRejected, at_ms)
+            },
+            at_us: None,
+        };
+        let lost = |at_ms| Entry {
+            event: event(0, Event::TwcLost, at_ms),
+            at_us: None,
+        };
+        let bad_line = [
+            refused(Channel::Twc, 1_000),
+            lost(3_000),
+            refused(Channel::Io, 6_000),
+        ];
+        let judged = judge(&bad_line, &[], None);
+        assert_eq!((judged.faults.len(), judged.left_out.line), (0, 3));
+        let bad_modem = [
+            refused(Channel::Twc, 1_000),
+            lost(3_000),
+            refused(Channel::Twc, 11_000),
+        ];
+        assert_eq!(judge(&bad_modem, &[], None).faults.len(), 3);
+        let long_before = [
+            refused(Channel::Io, 1_000),
+            lost(30_000),
+            refused(Channel::Twc, 31_000),
+        ];
+        assert_eq!(judge(&long_before, &[], None).faults.len(), 3);
     }
 
     #[test]

@@ -30,6 +30,8 @@ pub struct LogRead {
     pub entries: Vec<Entry>,
     /// Entries the unit had overwritten or cleared before.
     pub overwritten: u64,
+    /// Entries beyond what a log can hold: counted, and not among the entries.
+    pub not_kept: u64,
     /// Times the unit was started again meanwhile.
     pub restarts: u32,
     /// Its states at the end.
@@ -89,7 +91,8 @@ pub fn read_log<L: UnitLink>(
         if stop.presses() > 0 {
             break Some("stopped by the operator".to_owned());
         }
-        if now.since(from) > READ_WITHIN {
+        // By the clock: a unit that sends more than can be read in a scan holds the scans up.
+        if now.since(from) + pace.behind() > READ_WITHIN {
             break Some(format!("the log does not end within {READ_WITHIN}"));
         }
     };
@@ -101,6 +104,7 @@ pub fn read_log<L: UnitLink>(
         identity,
         entries,
         overwritten: session.overwritten(),
+        not_kept: session.not_kept(),
         restarts,
         status: session.status().unwrap_or(StatusBits::empty()),
         broken_off,
@@ -215,15 +219,19 @@ pub(super) mod tests {
         link: Link,
         entries: Vec<LogEntry>,
         uptime_ms: u32,
+        serial: [u8; 3],
         asked_from: Option<u32>,
         /// What happens at a time, ms.
         happens: Option<(u64, Happening)>,
+        /// Entries logged and sent in each scan, without end.
+        endless: u32,
     }
 
     #[derive(Clone, Copy, PartialEq)]
     enum Happening {
         CableOff,
         Restart,
+        OtherUnit,
     }
 
     impl Told {
@@ -239,8 +247,10 @@ pub(super) mod tests {
                 link: Link::new(End::Unit),
                 entries: entries.collect(),
                 uptime_ms: 1_000_000,
+                serial: *b"U-1",
                 asked_from: None,
                 happens: None,
+                endless: 0,
             }
         }
 
@@ -256,6 +266,18 @@ pub(super) mod tests {
             to_unit: &[u8],
             from_unit: &mut Vec<u8>,
         ) -> Result<(), LinkFailure> {
+            for _ in 0..self.endless {
+                let index = self.next_index();
+                let entry = LogEntry {
+                    index,
+                    code: 221,
+                    ..LogEntry::default()
+                };
+                self.entries = vec![entry];
+                if self.asked_from.is_some() {
+                    self.link.send(now, &entry.into(), from_unit);
+                }
+            }
             match self
                 .happens
                 .filter(|(at_ms, _)| now >= Instant::from_ms(*at_ms))
@@ -271,6 +293,7 @@ pub(super) mod tests {
                     self.uptime_ms = 100;
                     self.entries = Self::new([(0, 100, 0), (1, 222, 50)]).entries;
                 }
+                Some((_, Happening::OtherUnit)) => self.serial = *b"U-2",
                 None => {}
             }
             self.link.push(to_unit);
@@ -281,7 +304,7 @@ pub(super) mod tests {
                             uptime_ms: self.uptime_ms,
                             ..Identity::default()
                         };
-                        identity.serial[..3].copy_from_slice(b"U-1");
+                        identity.serial[..3].copy_from_slice(&self.serial);
                         self.link.send(now, &identity.into(), from_unit);
                     }
                     Message::ReadLog(asked) => self.asked_from = Some(asked.from_index),
@@ -354,6 +377,30 @@ pub(super) mod tests {
             (first.event.code, first.at_us),
             (221, Some(NOW_US - 100_000_000))
         );
+    }
+
+    /// Goal: what is kept of a log is bounded, whatever the unit sends, and the rest is counted. Method: units
+    /// that log and send one entry a scan, and a hundred.
+    #[test]
+    fn a_log_without_end_is_kept_up_to_what_a_unit_can_hold_and_send() {
+        for endless in [1, 100] {
+            let mut unit = Told::new([(0, 100, 0)]);
+            unit.endless = endless;
+            let log = read(&mut unit, Instant::ZERO).expect("a log");
+            assert!(log.broken_off.is_some());
+            let (kept, more) = (log.entries.len(), log.not_kept);
+            assert!(kept <= 256 + 60 * 40, "{endless}: {kept}");
+            assert_eq!(more >= 256, endless > 1, "{endless}: {more}");
+        }
+    }
+
+    #[test]
+    fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
+        let mut unit = Told::new((0..190).map(|index| (index, 221, 1)));
+        unit.happens = Some((2_000, Happening::OtherUnit));
+        let log = read(&mut unit, Instant::ZERO).expect("a log");
+        let why = log.broken_off.expect("broken off");
+        assert!(why.contains("was \"U-1\" and is \"U-2\""), "{why}");
     }
 
     #[test]

@@ -118,6 +118,16 @@ impl BenchSetup {
 
     /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
     pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimLink>> {
+        self.sim_session_by(procedure, stop, |link| link)
+    }
+
+    /// The same, reached by what `wired` makes of its link.
+    pub(super) fn sim_session_by<L: UnitLink>(
+        &self,
+        procedure: &str,
+        stop: &Stop,
+        wired: impl FnOnce(Delayed<SimLink>) -> L,
+    ) -> Session<L> {
         let seed = seed_for(self.seed, procedure);
         let setup = Setup {
             serial: self.serial.clone().unwrap_or(SIM_SERIAL.into()),
@@ -138,7 +148,7 @@ impl BenchSetup {
         } else {
             Pace::Virtual
         };
-        Session::new(Bench::new(rig, link), pace, stop.clone(), true)
+        Session::new(Bench::new(rig, wired(link)), pace, stop.clone(), true)
             .attended_by(self.attendant.clone())
     }
 }
@@ -278,7 +288,7 @@ fn run_on_fresh(
     run_task(&mut session, task, faults, Instant::ZERO, sink, go_on);
 }
 
-fn run_task<L: UnitLink>(
+pub(super) fn run_task<L: UnitLink>(
     session: &mut Session<L>,
     task: &Task,
     found: Vec<FaultSeen>,

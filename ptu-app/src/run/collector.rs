@@ -58,7 +58,6 @@ pub struct Collector<'a> {
     verdict: Verdict,
     /// Procedures that came to their end.
     finished: u32,
-    step_failed: bool,
     link_lost: bool,
 }
 
@@ -78,7 +77,6 @@ impl<'a> Collector<'a> {
             faults_before: 0,
             verdict: Verdict::Skipped,
             finished: 0,
-            step_failed: false,
             link_lost: false,
         }
     }
@@ -112,15 +110,12 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// A check that failed is said before one that could not be made: a faulty unit makes both, and
-    /// the first is the finding. A stop and a lost link outrank it.
+    /// That of its procedures. A stop outranks what they came to, and so does a lost link: what was not
+    /// tested then is no verdict on the unit.
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,
             _ if self.link_lost => Verdict::Error,
-            Verdict::Error if self.step_failed || !self.dates.is_empty() => Verdict::Failed,
-            // A fault that showed while a unit was brought up fails no step.
-            Verdict::Passed if !self.dates.is_empty() => Verdict::Failed,
             // Nothing ran: nothing was tested.
             Verdict::Skipped => Verdict::Error,
             verdict => verdict,
@@ -128,7 +123,6 @@ impl<'a> Collector<'a> {
     }
 
     fn step(&mut self, procedure: &Procedure, result: StepResult) {
-        self.step_failed |= result.verdict == Verdict::Failed;
         let index = self.steps;
         self.steps += 1;
         let measurement = |m: btu_rig::procedure::Measurement| MeasurementRecord {

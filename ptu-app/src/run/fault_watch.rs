@@ -1,9 +1,11 @@
 //! Turns what happens in a run into faults: events of the unit nobody provoked, a brake nobody
 //! asked for, a check that failed.
 
+use btu_rig::procedure::describe::meanings;
 use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
 use protocol::Instant;
 use protocol::event::{Event, Severity};
+use protocol::message::SelfTest;
 use protocol::signal::Sample;
 
 use super::recorder::freeze_frame;
@@ -68,6 +70,23 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
             entry.source.who().trim_start_matches("the "),
             f64::from(entry.at_ms) / 1000.0
         ),
+        freeze: freeze_frame(sample),
+    }
+}
+
+/// A unit that says its self-test failed, whenever that was.
+pub fn of_self_test(failed: SelfTest, at: Instant, sample: &Sample) -> FaultSeen {
+    let event = Event::SelfTestFailed;
+    let known = event.definition();
+    let items = meanings(&SelfTest::SPEC, failed.bits());
+    FaultSeen {
+        code: known.code,
+        name: known.name.to_owned(),
+        lru: part_or_unknown(event.suspect(i32::from(failed.bits()))),
+        severity: known.severity.label(),
+        at,
+        step: None,
+        message: format!("the unit says its self-test failed: {items}"),
         freeze: freeze_frame(sample),
     }
 }

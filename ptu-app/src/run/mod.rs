@@ -12,6 +12,8 @@ mod attendant;
 pub(crate) mod benches;
 mod choice;
 mod collector;
+#[cfg(test)]
+mod distrust;
 mod fault_watch;
 mod first_failure;
 mod made;

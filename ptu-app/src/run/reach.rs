@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::procedure::{EventSource, LogState, UnitEvent};
 use btu_rig::rig::Bench;
 use btu_rig::stimulus::Stimulus;
 use protocol::event::Event;
@@ -29,12 +29,14 @@ const CLOCKS_AGREE: RangeInclusive<f64> = 0.55..=1.8;
 const IN_STEP: RangeInclusive<f64> = 0.8..=1.25;
 const CLOCK_WATCHED: Duration = Duration::from_ms(1000);
 const CLOCK_DOUBTED: Duration = Duration::from_ms(10_000);
+/// Time in which the unit's log is answered or given up.
+const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 
 /// A unit on a port, ready.
 pub(super) struct Reached {
     pub session: Session<WireLink>,
     pub identity: Identity,
-    /// What TCMS found meanwhile.
+    /// What TCMS found meanwhile, and the unit in its own self-test.
     pub found: Vec<FaultSeen>,
 }
 
@@ -53,7 +55,10 @@ impl BenchSetup {
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found);
         if session.was_held_up() {
-            found.retain(|fault| Event::from_code(fault.code).is_some_and(Event::about_train));
+            found.retain(|fault| {
+                Event::from_code(fault.code)
+                    .is_some_and(|event| event.about_train() || event == Event::SelfTestFailed)
+            });
         }
         if stop.presses() > 0 {
             return Err(Failure {
@@ -76,8 +81,9 @@ impl BenchSetup {
         Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))
     }
 
-    /// Contact, identity, a brake left from before acknowledged, and the clocks compared. The unit's log has
-    /// a history, which is not read; the train is this bench's, and what TCMS finds goes to `found`.
+    /// Contact, identity, a brake left from before acknowledged, the clocks compared, its log answered and its
+    /// self-test asked for. The unit's log has a history, which is not read; the train is this bench's, and
+    /// what TCMS finds goes to `found`.
     fn bring_up(
         &self,
         session: &mut Session<WireLink>,
@@ -119,6 +125,18 @@ impl BenchSetup {
         // A brake latched since the last tester left needs its acknowledgement.
         let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
         self.check_clock(session, &mut seen)?;
+        session.idle(LOG_WITHIN, &mut seen, |bench| {
+            let rig = bench.rig();
+            rig.evidence().log == LogState::Read || rig.link_error().is_some()
+        });
+        if let Some(error) = session.link_error() {
+            return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
+        }
+        let failed = session.bench().rig().evidence().self_test;
+        if !failed.is_empty() {
+            let sample = session.bench().rig().sample().clone();
+            found.push(fault_watch::of_self_test(failed, session.now(), &sample));
+        }
         Ok(identity)
     }
 

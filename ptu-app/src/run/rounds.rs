@@ -73,14 +73,17 @@ impl Rounds {
         }
     }
 
-    /// The end of the procedure.
-    pub(super) fn finished(self, at: Instant) -> RunEvent {
+    /// The end of the procedure; `link_lost` = nothing could be judged any more, which is what it came to.
+    pub(super) fn finished(self, link_lost: bool, at: Instant) -> RunEvent {
         let mut messages = self.messages;
         if self.more > 0 {
             messages.push(format!("and {} more", self.more));
         }
         RunEvent::ProcedureFinished {
-            verdict: self.verdict,
+            verdict: match self.verdict {
+                Verdict::Failed | Verdict::Passed if link_lost => Verdict::Error,
+                verdict => verdict,
+            },
             message: messages.join("; "),
             at,
         }

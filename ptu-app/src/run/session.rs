@@ -35,7 +35,8 @@ pub enum SessionEvent {
     Trace(Box<Cut>),
     /// What was done to the bench in a procedure whose traces came before.
     Recording(Box<Taped>),
-    /// The unit cannot be reached any more.
+    /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
+    /// be read.
     LinkLost(String),
     /// Nothing more comes.
     Ended {
@@ -203,7 +204,8 @@ impl<L: UnitLink> Session<L> {
         self.link_error.as_deref()
     }
 
-    /// Why the unit cannot be reached, if so.
+    /// Why nothing can be judged, if so: the unit cannot be reached, another one answers, or its log cannot
+    /// be read.
     pub fn link_error(&self) -> Option<String> {
         self.link_error
             .clone()
@@ -295,6 +297,7 @@ impl<L: UnitLink> Session<L> {
             faults: 0,
         };
         for fault in found {
+            runner.found_before(&fault.name);
             self.report(fault, &mut progress, sink);
         }
         let mut presses = 0;
@@ -352,7 +355,9 @@ impl<L: UnitLink> Session<L> {
             }
             runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
         }
-        sink(SessionEvent::Run(rounds.finished(self.bench.now())));
+        sink(SessionEvent::Run(
+            rounds.finished(link_lost, self.bench.now()),
+        ));
         if traced.get() {
             sink(SessionEvent::Recording(Box::new(taped)));
         }
@@ -369,6 +374,8 @@ impl<L: UnitLink> Session<L> {
         progress.step = None;
         progress.step_began = self.bench.now();
         for fault in between_procedures(self) {
+            let found = format!("found before the next repetition: {}", fault.name);
+            rounds.note(Verdict::Failed, found);
             self.report(fault, progress, sink);
         }
         let stopped = self.stop.presses() > 0;

@@ -5,15 +5,18 @@ use std::sync::Arc;
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
-use super::{Phase, Runner};
+use super::{Phase, Runner, Stop};
 use crate::procedure::Driver;
 use crate::procedure::action_run::{Progress, Scan};
+use crate::procedure::evidence::{LogState, counted};
 use crate::procedure::plan::{TIME_LIMIT_MARGIN, total_worst_case};
 use crate::procedure::report::RunEvent;
 
 /// Time outputs have to become safe: a wheel at top speed comes to rest first, because one that
 /// stops at once would be an impossible wheel.
 pub const SAFE_WITHIN: Duration = Duration::from_ms(25_000);
+/// Time the rest of the unit's log has: as much as a whole one takes, four times over.
+const LOG_WITHIN: Duration = Duration::from_ms(25_000);
 /// Time clean-up has when the link to the unit is lost.
 pub const CLEANUP_WITHOUT_LINK: Duration = Duration::from_ms(2000);
 
@@ -65,10 +68,27 @@ impl Runner {
                 "outputs are not confirmed safe after {SAFE_WITHIN}"
             ));
         }
+        self.phase = Phase::ReadLog { since: now };
+    }
+
+    /// A procedure is over when all that the unit has logged meanwhile is read; nobody waits for that
+    /// after a stop, or where it cannot be.
+    pub(super) fn read_log(&mut self, now: Instant, since: Instant) {
+        let awaited = self.stop == Stop::No && !self.link_lost;
+        if awaited && self.evidence.log != LogState::Read {
+            if now.since(since) < LOG_WITHIN {
+                return;
+            }
+            self.fault(format!(
+                "the unit's log was not read to its end within {LOG_WITHIN}"
+            ));
+        }
         self.phase = Phase::Done;
+        self.conclude();
+        let messages = self.messages.iter().map(|text| (text.as_str(), 1));
         self.out.push(RunEvent::ProcedureFinished {
-            verdict: self.verdict,
-            message: self.messages.join("; "),
+            verdict: self.overall(),
+            message: counted(messages),
             at: now,
         });
     }

@@ -11,10 +11,11 @@ impl Runner {
     pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {
         self.link_lost = true;
         let text = format!("link to the unit: {error}");
-        if matches!(self.phase, Phase::CleanUp { .. }) {
-            self.fault(text);
-        } else {
-            self.break_off(now, sample, text);
+        match self.phase {
+            Phase::CleanUp { .. } | Phase::MakeSafe { .. } | Phase::ReadLog { .. } => {
+                self.fault(text);
+            }
+            _ => self.break_off(now, sample, text),
         }
     }
 
@@ -37,7 +38,11 @@ impl Runner {
                 };
                 self.skip_rest(now, &format!("not run, {text}"));
             }
-            Phase::NotStarted | Phase::CleanUp { .. } | Phase::MakeSafe { .. } | Phase::Done => {}
+            Phase::NotStarted
+            | Phase::CleanUp { .. }
+            | Phase::MakeSafe { .. }
+            | Phase::ReadLog { .. }
+            | Phase::Done => {}
         }
     }
 

@@ -13,7 +13,8 @@ mod unsolicited;
 
 use std::sync::Arc;
 
-use protocol::event::{Event, Severity};
+use protocol::event::{Event, LOG_ENTRIES, Severity};
+use protocol::message::SelfTest;
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
@@ -23,7 +24,9 @@ pub use schedule::{PromptPolicy, RunOptions};
 use schedule::{Turn, schedule};
 
 use super::action_run::{ActionRun, Operator, Progress, Scan};
+use super::describe::meanings;
 use super::event_set::EventSet;
+use super::evidence::Evidence;
 use super::plan::{Procedure, Step};
 use super::report::{RunEvent, Verdict};
 use super::step_run::StepRun;
@@ -45,6 +48,7 @@ enum Phase {
     Steps { next: usize, live: Option<StepRun> },
     CleanUp { actions: ActionRun, since: Instant },
     MakeSafe { since: Instant },
+    ReadLog { since: Instant },
     Done,
 }
 
@@ -73,6 +77,16 @@ pub struct Runner {
     link_lost: bool,
     /// Why nothing since the last scan can be judged.
     held_up: Option<String>,
+    /// How far what is heard can be trusted, as of the present scan.
+    evidence: Evidence,
+    /// Entries of the unit's log not kept before this procedure.
+    not_kept_before: Option<u64>,
+    /// Self-test items that failed, as the unit said while steps were run.
+    self_test: SelfTest,
+    /// Events nobody asked for that were reported.
+    reported: usize,
+    /// Those that were not, because there were too many.
+    not_reported: u64,
     leaving: bool,
     pause: Pause,
     verdict: Verdict,
@@ -96,6 +110,11 @@ impl Runner {
             answer: None,
             link_lost: false,
             held_up: None,
+            evidence: Evidence::default(),
+            not_kept_before: None,
+            self_test: SelfTest::empty(),
+            reported: 0,
+            not_reported: 0,
             leaving: false,
             pause: Pause::default(),
             verdict: Verdict::Skipped,
@@ -122,6 +141,14 @@ impl Runner {
     /// about the unit. The present step is an error with this reason, the others are not run.
     pub fn held_up(&mut self, reason: String) {
         self.held_up = Some(reason);
+    }
+
+    /// A fault was found while the unit was brought up, before any step.
+    pub fn found_before(&mut self, what: &str) {
+        self.note(
+            Verdict::Failed,
+            format!("found before the first step: {what}"),
+        );
     }
 
     /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
@@ -160,7 +187,8 @@ impl Runner {
 
     /// One I/O scan: what was seen since the last one comes in, the next stimuli go out.
     ///
-    /// `link_error` says that the unit cannot be reached any more.
+    /// `link_error` says that nothing can be judged any more: the unit cannot be reached, another one
+    /// answers, or its log cannot be read.
     pub fn advance(
         &mut self,
         now: Instant,
@@ -170,6 +198,7 @@ impl Runner {
         driver: &mut dyn Driver,
     ) -> Poll {
         self.begin(now);
+        self.take_evidence(driver.evidence());
         // First: what comes in with this scan is the hold-up's doing.
         if let Some(reason) = self.held_up.take() {
             self.break_off(now, sample, reason);
@@ -191,6 +220,9 @@ impl Runner {
         }
         if let Phase::MakeSafe { since } = self.phase {
             self.make_safe(now, since, driver);
+        }
+        if let Phase::ReadLog { since } = self.phase {
+            self.read_log(now, since);
         }
         self.answer = None;
         match self.phase {
@@ -238,6 +270,49 @@ impl Runner {
             let text = format!("setup: {}", problem.message());
             self.skip_rest(now, &format!("not run, {text}"));
             self.fault(text);
+        }
+    }
+
+    fn take_evidence(&mut self, evidence: Evidence) {
+        self.evidence = evidence;
+        self.not_kept_before.get_or_insert(evidence.not_kept);
+        match &mut self.phase {
+            Phase::Setup(_) => self.self_test |= evidence.self_test,
+            Phase::Steps { live, .. } => {
+                self.self_test |= evidence.self_test;
+                if let Some(live) = live {
+                    live.note_evidence(&evidence);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// What stands at the end beside the steps.
+    fn conclude(&mut self) {
+        if !self.self_test.is_empty() {
+            let items = meanings(&SelfTest::SPEC, self.self_test.bits());
+            let text = format!("the unit says its self-test failed: {items}");
+            self.note(Verdict::Failed, text);
+        }
+        let before = self.not_kept_before.unwrap_or_default();
+        let more = self.not_reported + self.evidence.not_kept.saturating_sub(before);
+        if more > 0 {
+            let text = format!(
+                "the unit logged more than {LOG_ENTRIES} events that no step provoked, and {more} more \
+                 entries, not stored"
+            );
+            self.note(Verdict::Failed, text);
+        }
+    }
+
+    /// Over all steps and what stands beside them. Where nothing could be judged any more, what was
+    /// judged before is no verdict on the unit.
+    fn overall(&self) -> Verdict {
+        match self.verdict {
+            Verdict::Aborted => Verdict::Aborted,
+            _ if self.link_lost => Verdict::Error,
+            verdict => verdict,
         }
     }
 

@@ -46,7 +46,9 @@ impl Runner {
                 None => self.pause.on && self.pause.said,
             },
             Phase::CleanUp { actions, .. } => actions.asks(&procedure.cleanup),
-            Phase::NotStarted | Phase::MakeSafe { .. } | Phase::Done => false,
+            Phase::NotStarted | Phase::MakeSafe { .. } | Phase::ReadLog { .. } | Phase::Done => {
+                false
+            }
         }
     }
 

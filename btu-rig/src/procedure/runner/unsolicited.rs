@@ -1,14 +1,15 @@
 //! What the unit does without having been asked: events and emergency brakes.
 
 use protocol::Instant;
-use protocol::event::{Event, Severity};
+use protocol::event::{Event, LOG_ENTRIES, Severity};
 use protocol::signal::{Sample, Signal};
 
 use super::{Phase, Runner};
 use crate::procedure::UnitEvent;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::plan::Step;
-use crate::procedure::report::RunEvent;
+use crate::procedure::report::{RunEvent, Verdict};
+use crate::procedure::step_run::logged;
 
 /// Events after which the emergency brake is applied.
 const BRAKING_EVENTS: [Event; 15] = [
@@ -47,8 +48,18 @@ impl Runner {
             let asked = known.is_some_and(|event| {
                 event.definition().severity <= Severity::Info || self.provoked.contains(event)
             });
-            if !asked {
-                self.out.push(RunEvent::UnsolicitedEvent(*entry));
+            if !asked && self.evidence.explains(known, entry.parameter) {
+                if let Some(step) = live.as_mut() {
+                    step.blame_line(&logged(entry));
+                }
+            } else if !asked {
+                self.verdict = self.verdict.and(Verdict::Failed);
+                if self.reported < LOG_ENTRIES {
+                    self.reported += 1;
+                    self.out.push(RunEvent::UnsolicitedEvent(*entry));
+                } else {
+                    self.not_reported += 1;
+                }
                 if let Some(event) = known.filter(|event| event.about_train()) {
                     let part = Some(event.suspect(entry.parameter));
                     self.train_part = self.train_part.or(part.filter(|part| *part != "-"));
@@ -73,10 +84,16 @@ impl Runner {
         } = &mut self.phase
         {
             let step = &self.procedure.steps[self.schedule[*next].index];
-            if !asks_for_brake(step) {
-                live.blame_brake();
-                self.out.push(RunEvent::UnsolicitedBrake { at: now });
+            if asks_for_brake(step) {
+                return;
             }
+            if self.evidence.line.harmed_lately > 0 {
+                live.blame_line("the emergency brake was applied");
+                return;
+            }
+            self.verdict = self.verdict.and(Verdict::Failed);
+            live.blame_brake();
+            self.out.push(RunEvent::UnsolicitedBrake { at: now });
         }
     }
 }

@@ -4,7 +4,7 @@ use protocol::Instant;
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmChallenge, ArmRefusal, ArmState, AtcToTcms, Channel, Identity, IoOutput, LogEnd,
-    LogEntry, Message, Outputs, Status, StatusBits, StimulusAnswer, TwcTrain,
+    LogEntry, Message, Outputs, SelfTest, Status, StatusBits, StimulusAnswer, TwcTrain,
 };
 
 use crate::rig::random::Random;
@@ -20,12 +20,22 @@ pub struct FakeUnit {
     pub reading: Option<u32>,
     pub log: Vec<LogEntry>,
     pub oldest: u32,
+    /// Who it says it is, its uptime aside.
+    pub identity: Identity,
+    /// What its status says of its self-test.
+    pub self_test: SelfTest,
+    /// Whether it answers when its log is asked for.
+    pub answers_log: bool,
+    /// Entries it sends in a cycle while its log is read.
+    pub entries_per_cycle: usize,
     /// Share of frames lost, both ways.
     pub loss: f64,
     pub refusal: ArmRefusal,
     pub answer: Answer,
     /// Channels on which nothing is sent or heard.
     pub dead: Vec<Channel>,
+    /// Bytes it sends in each scan beside its frames.
+    pub noise: &'static [u8],
     pub to_tcms: AtcToTcms,
     pub outputs: Outputs,
     /// Every accepted message but the cyclic ones.
@@ -44,10 +54,15 @@ impl Default for FakeUnit {
             reading: None,
             log: Vec::new(),
             oldest: 0,
+            identity: Identity::default(),
+            self_test: SelfTest::empty(),
+            answers_log: true,
+            entries_per_cycle: 2,
             loss: 0.0,
             refusal: ArmRefusal::None,
             answer: Answer::Accepted,
             dead: Vec::new(),
+            noise: b"",
             to_tcms: AtcToTcms::default(),
             outputs: Outputs::EB_RELAY,
             heard: Vec::new(),
@@ -98,7 +113,7 @@ impl FakeUnit {
             Message::Identify(_) => Some(
                 Identity {
                     uptime_ms: self.scan as u32 * 10,
-                    ..Identity::default()
+                    ..self.identity
                 }
                 .into(),
             ),
@@ -130,7 +145,7 @@ impl FakeUnit {
                 Some(disarmed(m.session, ArmRefusal::Disarmed))
             }
             Message::ReadLog(m) => {
-                self.reading = Some(m.from_index);
+                self.reading = self.answers_log.then_some(m.from_index);
                 None
             }
             Message::TwcWayside(m) => {
@@ -168,9 +183,10 @@ impl FakeUnit {
         let Some(from) = self.reading else { return };
         let from = from.max(self.oldest);
         let rest = &self.log[(from - self.oldest) as usize..];
-        replies.extend(rest.iter().take(2).map(|&entry| Message::from(entry)));
-        self.reading = Some(from + 2);
-        if rest.len() <= 2 {
+        let some = rest.iter().take(self.entries_per_cycle);
+        replies.extend(some.map(|&entry| Message::from(entry)));
+        self.reading = Some(from + self.entries_per_cycle as u32);
+        if rest.len() <= self.entries_per_cycle || self.entries_per_cycle == 0 {
             let (next_index, oldest_index) = (self.next_index(), self.oldest);
             replies.push(
                 LogEnd {
@@ -202,6 +218,8 @@ impl FakeUnit {
                 Status {
                     bits,
                     events: self.next_index(),
+                    rejected_frames: self.link.counters().rejected_total() as u16,
+                    self_test: self.self_test,
                     ..Status::default()
                 }
                 .into(),
@@ -246,6 +264,7 @@ impl UnitLink for FakeUnit {
                 from_unit.extend_from_slice(&frame);
             }
         }
+        from_unit.extend_from_slice(self.noise);
         Ok(())
     }
 }

@@ -7,6 +7,7 @@ mod session;
 mod tcms_events;
 mod train;
 mod train_faults;
+mod trust;
 mod wire;
 
 use protocol::config::UnitConfig;

@@ -201,8 +201,10 @@ impl Outcome {
             "left_out": {
                 "information": left_out.information, "too_old": left_out.too_old,
                 "under_test": left_out.under_test, "tester": left_out.tester, "alone": left_out.alone,
+                "line": left_out.line,
             },
             "overwritten": self.read.overwritten,
+            "not_stored": self.read.not_kept,
             "restarts": self.read.restarts,
             "faults": faults.collect::<Vec<_>>(),
             "warnings": self.warnings,
@@ -216,6 +218,12 @@ impl Outcome {
             self.source.endpoint,
             self.read.entries.len()
         )];
+        if self.read.not_kept > 0 {
+            lines.push(format!(
+                "and {} more entries, not stored",
+                self.read.not_kept
+            ));
+        }
         match self.imported.run {
             Some(run) => {
                 lines.push(format!(
@@ -242,6 +250,10 @@ impl Outcome {
                 "of a tester: made while it had the unit armed, or its own line",
             ),
             (left_out.alone, "silence of a unit with nothing connected"),
+            (
+                left_out.line,
+                "of a bad line: frames of several partners refused at once, and their silence",
+            ),
         ];
         let told = reasons.iter().filter(|(count, _)| *count > 0);
         lines.extend(told.map(|(count, reason)| format!("left out: {count} {reason}")));

@@ -1,0 +1,95 @@
+//! How far what the bench hears can be trusted: whether the unit's log is read, whether frames get
+//! through, and what the unit says of its own self-test.
+//!
+//! A verdict is about the unit only where nothing between it and the bench stands in the way. One byte
+//! stream carries all channels, so what a bad line does looks like faults of several parts at once:
+//! channels that lose frames, partners that fall silent. Two things tell them apart. A part hurts its
+//! own channel and nothing else: no part of a unit damages frames of the tester or of the I/O rack. And
+//! the unit counts frames that fail their checks on arrival, which only the line can have damaged: a
+//! modem that loses a frame loses it after those checks.
+
+use protocol::event::Event;
+use protocol::message::{AtoFailure, SelfTest};
+
+/// How far the unit's log is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LogState {
+    /// Every event the unit says it has logged.
+    #[default]
+    Read,
+    /// Some entries are on their way.
+    Behind,
+    /// Some entries were asked for more than once, and nothing came.
+    Unanswered,
+}
+
+/// Frames between tester and unit that did not get through as they were sent, either way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineState {
+    /// Since the bench began.
+    pub harmed: u64,
+    /// In the last seconds.
+    pub harmed_lately: u64,
+}
+
+/// What a driver knows of its own eyes and ears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Evidence {
+    /// The unit's log.
+    pub log: LogState,
+    /// Entries of the unit's log beyond what a log can hold: counted and not handed on.
+    pub not_kept: u64,
+    /// The line to the unit.
+    pub line: LineState,
+    /// Self-test items that failed, as the unit says.
+    pub self_test: SelfTest,
+}
+
+impl Default for Evidence {
+    /// Nothing stands in the way.
+    fn default() -> Self {
+        Self {
+            log: LogState::Read,
+            not_kept: 0,
+            line: LineState::default(),
+            self_test: SelfTest::empty(),
+        }
+    }
+}
+
+impl Evidence {
+    /// Whether frames that did not get through may be why the unit or TCMS logged this.
+    pub fn explains(&self, event: Option<Event>, parameter: i32) -> bool {
+        self.line.harmed_lately > 0
+            && event.is_some_and(|event| match event {
+                Event::InputsLost
+                | Event::FramesRejected
+                | Event::TwcLost
+                | Event::TcmsLost
+                | Event::AtcSilent
+                | Event::AtcFramesRefused
+                | Event::AtoInputAbsurd => true,
+                Event::AtoFailed => parameter == i32::from(AtoFailure::Inputs.code()),
+                _ => false,
+            })
+    }
+}
+
+/// Texts in the order they first came, each once, with how often it came.
+pub(super) fn counted<'a>(texts: impl IntoIterator<Item = (&'a str, u32)>) -> String {
+    let mut known: Vec<(&str, u32)> = Vec::new();
+    for (text, times) in texts {
+        match known.iter_mut().find(|(before, _)| *before == text) {
+            Some((_, count)) => *count += times,
+            None => known.push((text, times)),
+        }
+    }
+    let said: Vec<_> = known
+        .into_iter()
+        .map(|(text, times)| match times {
+            1 => text.to_owned(),
+            times => format!("{text} ({times} times)"),
+        })
+        .collect();
+    said.join("; ")
+}

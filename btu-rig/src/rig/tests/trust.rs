@@ -1,0 +1,313 @@
+//! What the rig may not believe: a log that is not answered or does not end, another unit, a bad line.
+
+use protocol::Instant;
+use protocol::link::{End, Link};
+use protocol::message::{Channel, IoInput, SelfTest};
+
+use super::{FakeUnit, bench, rig};
+use crate::procedure::{LineState, LogState};
+use crate::rig::random::Random;
+use crate::rig::{Bench, LinkFailure, UnitLink};
+use crate::stimulus::{Stimulus, WaysideCondition};
+
+/// What a bad line does to bytes, one in a hundred.
+#[derive(Clone, Copy, Debug)]
+enum Harm {
+    Flips,
+    Doubles,
+    /// Adds a hundred random bytes after each scan.
+    Floods,
+    /// Gives each scan's bytes twice.
+    Repeats,
+}
+
+/// A line that harms what passes, one way or both.
+struct BadLine {
+    unit: FakeUnit,
+    harm: Harm,
+    to_unit: bool,
+    from_unit: bool,
+    random: Random,
+}
+
+impl BadLine {
+    fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let random = &mut self.random;
+        let mut out = Vec::new();
+        for &byte in bytes {
+            let hit = random.unit() < 0.01;
+            match self.harm {
+                Harm::Flips if hit => out.push(byte ^ (1 << random.below(8))),
+                Harm::Doubles if hit => out.extend([byte, byte]),
+                _ => out.push(byte),
+            }
+        }
+        match self.harm {
+            Harm::Floods => out.extend((0..100).map(|_| random.below(256) as u8)),
+            Harm::Repeats => out.extend_from_slice(bytes),
+            Harm::Flips | Harm::Doubles => {}
+        }
+        out
+    }
+}
+
+impl UnitLink for BadLine {
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        let there = match self.to_unit {
+            true => self.pass(to_unit),
+            false => to_unit.to_vec(),
+        };
+        let mut back = Vec::new();
+        self.unit.exchange(now, &there, &mut back)?;
+        match self.from_unit {
+            true => from_unit.extend(self.pass(&back)),
+            false => from_unit.extend(back),
+        }
+        Ok(())
+    }
+}
+
+fn on_bad_line(harm: Harm, to_unit: bool, from_unit: bool) -> Bench<BadLine> {
+    let line = BadLine {
+        unit: FakeUnit::default(),
+        harm,
+        to_unit,
+        from_unit,
+        random: Random::new(5),
+    };
+    Bench::new(rig(1), line)
+}
+
+#[test]
+fn a_bad_line_is_told_as_the_lines_whichever_way_it_harms() {
+    for harm in [Harm::Flips, Harm::Doubles, Harm::Floods, Harm::Repeats] {
+        for (to_unit, from_unit) in [(true, false), (false, true), (true, true)] {
+            let mut bench = on_bad_line(harm, to_unit, from_unit);
+            for _ in 0..1_500 {
+                bench.tick().unwrap();
+            }
+            let error = bench.rig().link_error().unwrap_or_default();
+            let told = error.starts_with("the line between tester and unit is bad: within 10 s ");
+            assert!(told, "{harm:?} {to_unit} {from_unit}: \"{error}\"");
+            assert!(!error.contains("baud"), "{error}");
+        }
+    }
+}
+
+/// Goal: nothing that a unit or a bench does on a good line looks like a bad one. Method: everything that
+/// makes frames fail, fall silent or begin anew on purpose.
+#[test]
+fn on_a_good_line_nothing_is_harmed() {
+    let mut bench = bench(FakeUnit::default());
+    bench.run_ms(10_000);
+    bench.apply(Stimulus::Wayside(WaysideCondition::Corrupt));
+    bench.run_ms(20_000);
+    bench.apply(Stimulus::Wayside(WaysideCondition::Good));
+    bench.link_mut().dead = vec![Channel::Twc, Channel::Tcms];
+    bench.run_ms(10_000);
+    bench.link_mut().restart();
+    bench.run_ms(10_000);
+    bench.apply(Stimulus::PtuSilent { on: true });
+    bench.run_ms(5_000);
+    bench.apply(Stimulus::PtuSilent { on: false });
+    bench.run_ms(10_000);
+    assert_eq!(bench.rig().evidence().line, LineState::default());
+    assert_eq!(bench.rig().link_error(), None);
+}
+
+#[test]
+fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
+    let mut bench = bench(FakeUnit::default());
+    bench.run_ms(5_000);
+    assert_eq!(bench.rig().evidence().log, LogState::Read);
+    bench.link_mut().answers_log = false;
+    bench.link_mut().log_event(7);
+    bench.run_ms(1_000);
+    assert_eq!(bench.rig().evidence().log, LogState::Unanswered);
+    assert_eq!(bench.rig().link_error(), None, "not yet");
+    bench.run_ms(5_000);
+    let error = "the unit's log could not be read: asked 20 times, no answer";
+    assert_eq!(bench.rig().link_error().as_deref(), Some(error));
+    bench.link_mut().answers_log = true;
+    bench.run_ms(1_000);
+    assert_eq!(bench.rig().evidence().log, LogState::Read);
+    assert_eq!(bench.rig().link_error(), None);
+}
+
+/// Nothing is logged, and so nothing is there to be read; but that it could be is not known.
+#[test]
+fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
+    let mut bench = bench(FakeUnit {
+        answers_log: false,
+        ..FakeUnit::default()
+    });
+    bench.run_ms(2_000);
+    assert_eq!(bench.rig().evidence().log, LogState::Unanswered);
+    bench.run_ms(5_000);
+    let error = bench.rig().link_error().unwrap_or_default();
+    assert!(error.ends_with("times, no answer"), "{error}");
+}
+
+/// It says it has logged something, and answers with the end of the log alone.
+#[test]
+fn a_log_without_the_entries_it_should_have_is_an_error() {
+    let mut bench = bench(FakeUnit {
+        entries_per_cycle: 0,
+        ..FakeUnit::default()
+    });
+    bench.link_mut().log_event(7);
+    bench.run_ms(60_000);
+    let error = bench.rig().link_error().unwrap_or_default();
+    assert!(
+        error.ends_with("times for entry 0 of 1, which never came"),
+        "{error}"
+    );
+}
+
+/// Goal: a log without end costs neither memory nor time. Method: a unit that logs fifty events a scan and
+/// sends them as fast as they come.
+#[test]
+fn a_log_without_end_is_bounded_counted_and_an_error() {
+    let mut bench = bench(FakeUnit {
+        entries_per_cycle: 400,
+        ..FakeUnit::default()
+    });
+    let (mut taken, mut logged) = (0, 0_u64);
+    for _ in 0..1_000 {
+        for _ in 0..50 {
+            bench.link_mut().log_event(400);
+            logged += 1;
+        }
+        bench.run_ms(10);
+        taken += bench.rig_mut().take_events().len() as u64;
+    }
+    assert!(
+        (256..256 + 10 * 40 + 1).contains(&taken),
+        "{taken} of {logged}"
+    );
+    let not_kept = bench.rig().evidence().not_kept;
+    assert!(not_kept > 10_000, "{not_kept}");
+    let error = bench.rig().link_error().unwrap_or_default();
+    assert!(error.starts_with("the unit logs without end"), "{error}");
+}
+
+#[test]
+fn entries_that_were_gone_before_they_could_be_read_are_an_error_unless_they_are_history() {
+    let mut unit = FakeUnit {
+        oldest: 40,
+        ..FakeUnit::default()
+    };
+    unit.log_event(1);
+    let mut bench = bench(unit);
+    bench.run_ms(4_000);
+    assert_eq!(bench.rig().link_error(), None);
+    let unit = bench.link_mut();
+    unit.oldest += 300;
+    unit.log_event(1);
+    bench.run_ms(4_000);
+    let error = bench.rig().link_error().unwrap_or_default();
+    assert!(
+        error.contains("entries of the unit's log were overwritten"),
+        "{error}"
+    );
+}
+
+#[test]
+fn another_unit_on_the_same_line_is_an_error_from_then_on() {
+    type Change = fn(&mut protocol::message::Identity);
+    let changes: [(Change, &str); 4] = [
+        (
+            |i| i.serial[..3].copy_from_slice(b"B-2"),
+            "its serial number was \"A-1\" and is \"B-2\"",
+        ),
+        (
+            |i| i.config[0] = 0xFF,
+            "its unit configuration was \"\" and is \"\\xff\"",
+        ),
+        (
+            |i| i.config_crc = 0xBEEF,
+            "its configuration's checksum was 00000000 and is 0000beef",
+        ),
+        (
+            |i| i.tdb_crc = 1,
+            "its track database's checksum was 00000000 and is 00000001",
+        ),
+    ];
+    for (change, told) in changes {
+        let mut unit = FakeUnit::default();
+        unit.identity.serial[..3].copy_from_slice(b"A-1");
+        let mut bench = bench(unit);
+        bench.run_ms(4_000);
+        assert_eq!(bench.rig().link_error(), None);
+        let before = bench.link().identity;
+        change(&mut bench.link_mut().identity);
+        bench.run_ms(4_000);
+        let error = format!("another unit answers: {told}");
+        assert_eq!(bench.rig().link_error(), Some(error.clone()));
+        bench.link_mut().identity = before;
+        bench.run_ms(4_000);
+        assert_eq!(
+            bench.rig().link_error(),
+            Some(error),
+            "what was measured is of two units"
+        );
+    }
+}
+
+#[test]
+fn failed_self_test_items_are_known_from_identity_and_status() {
+    let mut bench = bench(FakeUnit::default());
+    bench.link_mut().self_test = SelfTest::TRA;
+    bench.link_mut().identity.self_test = SelfTest::MEMORY;
+    bench.run_ms(3_000);
+    let both = SelfTest::TRA | SelfTest::MEMORY;
+    assert_eq!(bench.rig().evidence().self_test, both);
+    // What it said before it was started again does not hold.
+    bench.link_mut().restart();
+    bench.run_ms(4_000);
+    assert_eq!(bench.rig().evidence().self_test, SelfTest::empty());
+}
+
+/// Sends one frame each scan that this end must refuse although it came through whole.
+struct Echo;
+
+impl UnitLink for Echo {
+    fn exchange(&mut self, now: Instant, _: &[u8], out: &mut Vec<u8>) -> Result<(), LinkFailure> {
+        Link::new(End::Bench).send(now, &IoInput::default().into(), out);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_wrong_baud_rate_is_suspected_only_where_no_check_sequence_fits() {
+    let mut bench = Bench::new(rig(1), Echo);
+    for _ in 0..301 {
+        bench.tick().unwrap();
+    }
+    let error = bench.rig().link_error().unwrap_or_default();
+    assert!(
+        error.contains("no valid frame") && error.contains("own frames come back"),
+        "{error}"
+    );
+    assert!(!error.contains("baud"), "{error}");
+}
+
+/// Bytes that hold no frame, where a unit was heard before.
+#[test]
+fn a_unit_that_is_drowned_by_noise_is_not_called_silent_alone() {
+    let mut bench = bench(FakeUnit::default());
+    bench.run_ms(4_000);
+    bench.link_mut().dead = Channel::ALL.to_vec();
+    bench.link_mut().noise = b"noise~";
+    bench.run_ms(2_000);
+    let error = bench.rig().link_error().unwrap_or_default();
+    assert!(
+        error.starts_with("the line between tester and unit is bad"),
+        "{error}"
+    );
+}
