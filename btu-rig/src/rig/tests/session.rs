@@ -148,6 +148,8 @@ fn a_bad_line_loses_nothing() {
         bench.run_ms(100);
         events.extend(bench.rig_mut().take_events());
     }
+    // TCMS misses the unit's frames, too, and says so in a log of its own.
+    events.retain(|event| event.source == EventSource::Unit);
     assert!(bench.rig().log_up_to_date());
     assert_eq!(
         events.iter().map(|e| e.index).collect::<Vec<_>>(),
