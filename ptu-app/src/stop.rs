@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::SyncSender;
 
 /// Counts the presses of stop; clones share the count.
 #[derive(Clone, Debug, Default)]
@@ -30,8 +31,9 @@ impl Stop {
         self.presses() == 0
     }
 
-    /// Listens to interrupt, termination and hang-up signals on a thread of its own. Without it (no runtime,
-    /// no signals) the process ends at once, and the unit's own time-out makes its outputs safe.
+    /// Listens to interrupt, termination and hang-up signals on a thread of its own, from before this returns.
+    /// Without it (no runtime, no signals) the process ends at once, and the unit's own time-out makes its
+    /// outputs safe.
     pub fn listen(&self) {
         self.listen_and(|| {});
     }
@@ -39,12 +41,15 @@ impl Stop {
     /// The same, and does something at each signal.
     pub fn listen_and(&self, then: impl Fn() + Send + 'static) {
         let stop = self.clone();
+        let (listens, heard) = std::sync::mpsc::sync_channel(1);
         let _ = std::thread::Builder::new()
             .name("signals".into())
-            .spawn(move || stop.wait(&then));
+            .spawn(move || stop.wait(listens, &then));
+        // Nothing comes from a thread that cannot listen, nor from one that could not be made.
+        let _ = heard.recv();
     }
 
-    fn wait(&self, then: &dyn Fn()) {
+    fn wait(&self, listens: SyncSender<()>, then: &dyn Fn()) {
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_io()
             .build();
@@ -60,6 +65,7 @@ impl Stop {
             let mut hang_up = heeds_hang_up()
                 .then(|| signal(SignalKind::hangup()).ok())
                 .flatten();
+            let _ = listens.send(());
             loop {
                 tokio::select! {
                     _ = interrupt.recv() => {}
