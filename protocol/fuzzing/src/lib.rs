@@ -1,0 +1,190 @@
+//! Feeds a reader of bytes from outside with damaged ones: no panic, no hang, bounded memory.
+//!
+//! What is damaged is a corpus: sound examples, and what once broke a reader, kept in
+//! `tests/corpus/NAME/` of the crate. Everything follows from a seed, so that what was found is found again.
+//!
+//! `FUZZ_RUNS` is the number of executions of each reader in place of the usual one, `FUZZ_SEED` another seed.
+
+mod mutate;
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use mutate::Mutator;
+
+/// Longer than this no reader may take for one input.
+const HANG: Duration = Duration::from_secs(10);
+/// From one look at the clock to the next.
+const LOOK: Duration = Duration::from_millis(500);
+/// More memory than this no process may have taken, kB.
+const MOST_MEMORY_KB: u64 = 512 << 10;
+/// Bytes of an input that are printed.
+const SHOWN: usize = 200;
+
+/// A reader under test.
+pub struct Fuzz {
+    name: String,
+    corpus: Vec<Vec<u8>>,
+    longest: usize,
+}
+
+impl Fuzz {
+    /// A reader called `name`, with sound examples of what it reads; `manifest` is the folder of the crate that
+    /// keeps what broke it, `env!("CARGO_MANIFEST_DIR")`.
+    ///
+    /// # Panics
+    /// There is no example, or a kept one cannot be read.
+    pub fn new(
+        name: &str,
+        manifest: &str,
+        examples: impl IntoIterator<Item = impl Into<Vec<u8>>>,
+    ) -> Self {
+        let mut corpus: Vec<Vec<u8>> = examples.into_iter().map(Into::into).collect();
+        assert!(!corpus.is_empty(), "{name} has no example");
+        let kept = Path::new(manifest).join("tests/corpus").join(name);
+        let entries = std::fs::read_dir(kept).into_iter().flatten().flatten();
+        let mut kept: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        kept.sort();
+        let read = |file| std::fs::read(file).expect("a kept input can be read");
+        corpus.extend(kept.iter().map(read));
+        let longest = corpus.iter().map(Vec::len).max().unwrap_or(0);
+        Self {
+            name: name.to_owned(),
+            corpus,
+            longest: 2 * longest + 64,
+        }
+    }
+
+    /// Feeds the reader: first the corpus as it is, then `runs` damaged ones.
+    ///
+    /// # Panics
+    /// The reader did, or took too much memory. Ends the process if it takes too long.
+    pub fn run(self, runs: u64, mut read: impl FnMut(&[u8])) {
+        let set = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+        let runs = set("FUZZ_RUNS").unwrap_or(runs);
+        let seed: u64 = set("FUZZ_SEED").unwrap_or(1);
+        let mut mutator = Mutator::new(seed, &self.name);
+        let watch = Watch::begin(&self.name);
+        let began = Instant::now();
+        let mut input = Vec::new();
+        let corpus = self.corpus.len() as u64;
+        for run in 0..corpus + runs {
+            match usize::try_from(run).ok().and_then(|at| self.corpus.get(at)) {
+                Some(example) => input.clone_from(example),
+                None => mutator.next(&self.corpus, self.longest, &mut input),
+            }
+            watch.begins(&input);
+            let fed = catch_unwind(AssertUnwindSafe(|| read(&input)));
+            watch.ends();
+            if let Err(panic) = fed {
+                eprintln!(
+                    "{} panicked on run {run} of seed {seed}: {}",
+                    self.name,
+                    keep(&self.name, &input)
+                );
+                resume_unwind(panic);
+            }
+        }
+        let seconds = began.elapsed().as_secs_f64();
+        let memory_kb = most_memory_kb();
+        let mb = memory_kb / 1024;
+        println!(
+            "{}: {runs} runs in {seconds:.1} s, at most {mb} MB in this process",
+            self.name
+        );
+        assert!(memory_kb <= MOST_MEMORY_KB, "{} took {mb} MB", self.name);
+    }
+}
+
+/// Keeps an input that broke a reader, and says where and what it is.
+fn keep(name: &str, input: &[u8]) -> String {
+    let file = std::env::temp_dir().join(format!("fuzz-{name}-{}.bin", std::process::id()));
+    let kept = match std::fs::write(&file, input) {
+        Ok(()) => format!(
+            "kept as {}, to be put into tests/corpus/{name}/",
+            file.display()
+        ),
+        Err(error) => format!("could not be kept: {error}"),
+    };
+    let shown = &input[..input.len().min(SHOWN)];
+    format!(
+        "{} bytes \"{}\"…; {kept}",
+        input.len(),
+        shown.escape_ascii()
+    )
+}
+
+/// Most memory this process has had, kB; 0 where the system does not tell.
+fn most_memory_kb() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let number = line.and_then(|line| line.split_whitespace().next());
+    number.and_then(|number| number.parse().ok()).unwrap_or(0)
+}
+
+/// Ends the process when an input takes too long, with the input: nothing else ends a loop that does not end.
+struct Watch {
+    current: Arc<Mutex<(Vec<u8>, Option<Instant>)>>,
+    /// Dropped with the watch, which ends its thread.
+    _ends: Sender<()>,
+}
+
+impl Watch {
+    fn begin(name: &str) -> Self {
+        let current = Arc::new(Mutex::new((Vec::new(), None)));
+        let (watched, name) = (Arc::clone(&current), name.to_owned());
+        let (sender, ended) = mpsc::channel::<()>();
+        std::thread::spawn(move || {
+            while ended.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+                let current = watched.lock().unwrap_or_else(PoisonError::into_inner);
+                let (input, since): &(Vec<u8>, Option<Instant>) = &current;
+                if since.is_some_and(|since| since.elapsed() > HANG) {
+                    eprintln!("{name} hangs: {}", keep(&name, input));
+                    std::process::abort();
+                }
+            }
+        });
+        Self {
+            current,
+            _ends: sender,
+        }
+    }
+
+    fn begins(&self, input: &[u8]) {
+        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
+        current.0.clear();
+        current.0.extend_from_slice(input);
+        current.1 = Some(Instant::now());
+    }
+
+    fn ends(&self) {
+        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
+        current.1 = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_breaks_a_reader_is_found_and_the_same_again() {
+        let found = || {
+            let fuzz = Fuzz::new("reader", "no folder", ["speed = 12", "limit = [1, 2]"]);
+            let mut runs = 0;
+            let broke = catch_unwind(AssertUnwindSafe(|| {
+                fuzz.run(100_000, |input| {
+                    runs += 1;
+                    assert!(!input.windows(2).any(|two| two == b"[["), "broken");
+                });
+            }));
+            (runs, broke.is_err())
+        };
+        let (runs, broke) = found();
+        assert!(broke && runs > 2, "{runs}");
+        assert_eq!(found(), (runs, broke));
+    }
+}
