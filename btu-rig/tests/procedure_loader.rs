@@ -64,6 +64,41 @@ fn good_scripts_give_the_plan_on_file() {
     );
 }
 
+/// Goal: what was loaded in one process is the same in another. Method: the shipped scripts and those on file,
+/// as JSON and back.
+#[test]
+fn a_plan_is_the_same_after_it_was_written_down() {
+    let mut texts = folder("good");
+    let shipped = root().join("../scripts");
+    let mut folders = vec![shipped.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "star") {
+                let name = path.strip_prefix(&shipped).unwrap().to_str().unwrap();
+                texts.insert(name.to_owned(), std::fs::read_to_string(&path).unwrap());
+            }
+        }
+    }
+    let loaded = load_all(&texts);
+    assert_eq!(loaded.errors, []);
+    assert!(loaded.procedures.len() > 20);
+    for procedure in &loaded.procedures {
+        let written = serde_json::to_string(&**procedure).unwrap();
+        let read: btu_rig::procedure::Procedure = serde_json::from_str(&written).unwrap();
+        assert_eq!(read, **procedure);
+        // Many of them are handed over together.
+        assert!(
+            written.len() < 200_000,
+            "{}: {}",
+            procedure.id,
+            written.len()
+        );
+    }
+}
+
 #[test]
 fn bad_scripts_are_refused_with_place_and_reason() {
     let scripts = folder("bad");

@@ -1,5 +1,7 @@
 //! The event dictionary: stable numbers, never reused, with severity and the part under suspicion.
 
+use serde::{Deserialize, Serialize};
+
 use crate::message::{AtoFailure, Channel, SelfTest};
 
 /// Entries a unit's log keeps: the oldest fall off.
@@ -52,8 +54,10 @@ pub struct Definition {
 macro_rules! events {
     ($( $variant:ident = $code:literal $name:literal $severity:ident $lru:literal $text:literal $ko:literal $parameter:literal; )*) => {
         /// Events the unit and TCMS log.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum Event { $( #[doc = $text] $variant ),* }
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
+        pub enum Event { $( #[doc = $text] #[serde(rename = $name)] $variant ),* }
 
         impl Event {
             /// All events by number.

@@ -1,5 +1,7 @@
 //! The catalogue of recorded signals: each has one definition of name, unit, kind and range.
 
+use serde::{Deserialize, Serialize};
+
 use crate::message::{AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode};
 
 /// What a signal's number means.
@@ -47,9 +49,11 @@ pub struct Definition {
 macro_rules! signals {
     ($( $variant:ident $name:literal $unit:literal $kind:expr, $low:literal ..= $high:literal, $origin:ident, $doc:literal; )*) => {
         /// Every recorded signal.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
         #[repr(u8)]
-        pub enum Signal { $( #[doc = $doc] $variant ),* }
+        pub enum Signal { $( #[doc = $doc] #[serde(rename = $name)] $variant ),* }
 
         impl Signal {
             /// All signals in recording order.

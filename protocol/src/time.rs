@@ -3,6 +3,8 @@
 use core::fmt;
 use core::ops::{Add, AddAssign, Sub};
 
+use serde::{Deserialize, Serialize};
+
 /// Control and communication cycle [S0 §2: 50 ms].
 pub const CYCLE: Duration = Duration::from_ms(50);
 /// I/O scan: ATP supervision, tachometer counts and marker edges.
@@ -12,8 +14,11 @@ pub const SCAN: Duration = Duration::from_ms(10);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Instant(u64);
 
-/// A span of virtual time in microseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// A span of virtual time in microseconds; stored as their number.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+#[serde(transparent)]
 pub struct Duration(u64);
 
 impl Instant {

@@ -1,9 +1,10 @@
 //! Conditions over signals: three-valued, so that missing data is never taken for an answer.
 
 use protocol::signal::{Kind, Sample, Signal};
+use serde::{Deserialize, Serialize};
 
 /// What a signal is compared with, or a limit: a number in the unit of the thing compared.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
     /// Written in the script.
     Literal(f64),
@@ -19,7 +20,7 @@ pub enum Operand {
 }
 
 /// How a signal is compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Comparison {
     /// The same recorded step.
     Equal,
@@ -52,7 +53,7 @@ impl Comparison {
 }
 
 /// A statement about signals that is true, false or cannot be told.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Condition {
     /// One signal against one operand.
     Compare {

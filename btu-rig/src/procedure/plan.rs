@@ -3,6 +3,7 @@
 use protocol::event::Event;
 use protocol::signal::Signal;
 use protocol::{Duration, Speed};
+use serde::{Deserialize, Serialize};
 
 pub use super::condition::{Comparison, Condition, Operand};
 use crate::stimulus::Stimulus;
@@ -17,7 +18,7 @@ const MOTION_MARGIN_S: f64 = 2.0;
 const TOP_SPEED: Speed = Speed::from_kmh(120.0);
 
 /// How the tester reaches the unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Connection {
     /// The bench drives every input of a unit alone.
     Btu,
@@ -26,7 +27,7 @@ pub enum Connection {
 }
 
 /// One check procedure: one script file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Procedure {
     /// Path under the scripts folder without `.star`, for instance `atp/overspeed`.
     pub id: String,
@@ -55,7 +56,7 @@ pub struct Procedure {
 }
 
 /// One step of a procedure.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// Name, unique in the procedure.
     pub name: String,
@@ -86,7 +87,7 @@ pub struct Step {
 }
 
 /// What happens after a step that did not pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OnFail {
     /// The next step is run.
     Continue,
@@ -95,7 +96,7 @@ pub enum OnFail {
 }
 
 /// One thing done by a step, setup or clean-up.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Action {
     /// Something is done to the unit.
     Stimulus(Stimulus),
@@ -123,7 +124,7 @@ pub enum Action {
 }
 
 /// What must be seen for a step to pass.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Expectation {
     /// True at the end of the actions or at some time after.
     Becomes {
@@ -159,7 +160,7 @@ pub enum Expectation {
 }
 
 /// From when a time is measured.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum TimeFrom {
     /// From the beginning of the step.
     StepStart,
@@ -170,7 +171,7 @@ pub enum TimeFrom {
 }
 
 /// What is measured.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum What {
     /// Time to the first scan in which a condition holds, ms.
     Time {
@@ -197,7 +198,7 @@ pub enum What {
 }
 
 /// A named value with limits.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measure {
     /// Name, unique in its step.
     pub name: String,

@@ -9,7 +9,7 @@ use super::check;
 use crate::tcms::TcmsData;
 
 /// Data of a train, checked when it comes from a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub enum TrainData {
     /// A point mass with ideal drive and brakes.
     Ideal(IdealData),

@@ -80,7 +80,7 @@ pub struct Section {
 }
 
 /// The track database of a line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// Name, for instance `line8`.
     pub name: String,

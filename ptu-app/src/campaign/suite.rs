@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use fault_db::diagnosis::{CheckName, Observation};
 use protocol::injection::FaultCatalogue;
@@ -13,7 +12,7 @@ use crate::diagnosis::{Gatherer, LINE, TRAIN, UNIT_CONFIG};
 use crate::drive::train::train;
 use crate::failure::Failure;
 use crate::link::Endpoint;
-use crate::run::{BenchSetup, SessionEvent, Task, run_here};
+use crate::run::{BenchSetup, SessionEvent, Task, loading, run_here};
 use crate::stop::Stop;
 
 /// All procedures of the default suite, and the bench they run on.
@@ -45,7 +44,7 @@ impl Suite {
         let line = directory.line(LINE)?;
         let train = train(directory, TRAIN)?;
         let texts = directory.procedures()?;
-        let loaded = load(&texts, &config.content, &line.content, &train);
+        let loaded = loading::load(&texts, &config.content, &line.content, &train)?;
         if let Some(error) = loaded.errors.first() {
             return Err(Failure::usage(format!(
                 "{error}; `ptu run --check` shows all errors"

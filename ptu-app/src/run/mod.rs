@@ -16,6 +16,7 @@ mod collector;
 mod distrust;
 mod fault_watch;
 mod first_failure;
+pub mod loading;
 mod made;
 mod reach;
 mod recorder;

@@ -93,7 +93,7 @@ fn under(root: &Path, name: &str) -> String {
 /// A script file outside the scripts directory.
 fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String), Failure> {
     let path = Path::new(name);
-    if path.is_file() {
+    if path.exists() {
         return Ok((name.to_owned(), data::read(path)?));
     }
     let known: Vec<_> = all

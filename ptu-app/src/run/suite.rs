@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
-use btu_rig::procedure::loader::{Loaded, load};
+use btu_rig::procedure::loader::Loaded;
 use protocol::injection::FaultCatalogue;
 
-use super::{BenchSetup, select};
+use super::{BenchSetup, loading, select};
 use crate::data::{ScriptsDirectory, sha256};
 use crate::failure::{Failure, did_you_mean};
 
@@ -44,12 +44,12 @@ impl Suite {
             errors,
             need_cars,
             printed,
-        } = load(
+        } = loading::load(
             &texts,
             &setup.config.content,
             &setup.line.content,
             &setup.train,
-        );
+        )?;
         let mut errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
         if errors.is_empty() {
             errors = wrong_suspects(&procedures, &directory.faults()?);

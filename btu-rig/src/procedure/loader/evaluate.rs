@@ -16,7 +16,7 @@ use super::handle::{Session, error};
 use super::item::Item;
 use super::nesting::too_deep;
 use super::suggest::hint;
-use super::{LoadError, MOST_STEPS, error_from, is_library};
+use super::{LoadError, MOST_STEPS, cut, error_from, is_library};
 
 /// Function calls and loop rounds a script may use.
 const MOST_TICKS: u64 = 500_000;
@@ -38,6 +38,8 @@ pub(super) struct Evaluation<'a> {
     pub predeclared: &'a BTreeMap<&'static str, Item>,
     pub names: &'a BTreeSet<String>,
     pub globals: &'a Globals,
+    /// Called with the path of each script whose evaluation begins or goes on.
+    evaluates: &'a dyn Fn(&str),
     libraries: RefCell<BTreeMap<String, Result<FrozenModule, ()>>>,
     /// Libraries being loaded, to find circles.
     loading: RefCell<Vec<String>>,
@@ -53,6 +55,7 @@ impl<'a> Evaluation<'a> {
         predeclared: &'a BTreeMap<&'static str, Item>,
         names: &'a BTreeSet<String>,
         globals: &'a Globals,
+        evaluates: &'a dyn Fn(&str),
     ) -> Self {
         Self {
             scripts,
@@ -60,6 +63,7 @@ impl<'a> Evaluation<'a> {
             predeclared,
             names,
             globals,
+            evaluates,
             libraries: RefCell::default(),
             loading: RefCell::default(),
             library_errors: RefCell::default(),
@@ -103,6 +107,7 @@ impl<'a> Evaluation<'a> {
         text: &str,
         library: bool,
     ) -> Result<(FrozenModule, Declared), Vec<LoadError>> {
+        (self.evaluates)(path);
         let one = |error: &starlark::Error| vec![error_from(path, error)];
         let ast = parse(path, text).map_err(|e| vec![e])?;
         let errors = check(&ast, self.context, self.predeclared, self.names);
@@ -168,7 +173,7 @@ impl PrintHandler for Evaluation<'_> {
     fn println(&self, text: &str) -> starlark::Result<()> {
         let mut printed = self.printed.borrow_mut();
         if printed.len() < MOST_PRINTED {
-            printed.push(text.to_owned());
+            printed.push(cut(text));
         } else if !self.printing_stopped.replace(true) {
             printed.push("… more was printed".into());
         }
@@ -194,9 +199,9 @@ impl FileLoader for Loader<'_> {
         if evaluation.loading.borrow().contains(&path) {
             return Err(error(format!("`{path}` loads itself in a circle")));
         }
-        evaluation
-            .library(&path)
-            .map_err(|()| error(format!("`{path}` has errors of its own")))
+        let library = evaluation.library(&path);
+        (evaluation.evaluates)(self.from);
+        library.map_err(|()| error(format!("`{path}` has errors of its own")))
     }
 }
 

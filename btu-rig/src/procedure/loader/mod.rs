@@ -25,11 +25,13 @@ mod verb;
 mod verbs;
 mod want;
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use protocol::config::UnitConfig;
 use protocol::line::Line;
+use serde::{Deserialize, Serialize};
 use starlark::codemap::FileSpan;
 use thiserror::Error;
 
@@ -45,9 +47,11 @@ pub type Scripts = BTreeMap<String, String>;
 pub const MOST_STEPS: usize = 10_000;
 /// Most errors reported for one file: the rest is usually a consequence.
 const MOST_ERRORS: usize = 50;
+/// Longest text of an error or a printed line, characters: a script may make it of anything.
+const LONGEST_TEXT: usize = 2000;
 
 /// What is wrong with a script, and where.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[error("{file}:{line}:{column}: {message}")]
 pub struct LoadError {
     /// Path under the scripts folder.
@@ -73,36 +77,93 @@ pub struct Loaded {
     pub printed: Vec<String>,
 }
 
+/// What is told while scripts are loaded.
+#[derive(Debug)]
+pub enum Told<'a> {
+    /// The script of this path is being evaluated from now on.
+    Evaluates(&'a str),
+    /// This procedure was loaded.
+    Loaded(Procedure),
+}
+
 /// Loads all `scripts` for a unit of type `unit` on `line` in `train`.
 ///
 /// Files whose names start with `_` are libraries for `load()`; every other is one procedure. One that
 /// cannot be read for a train that is a point mass, and can for a train of cars, needs cars: it is no error
 /// but is set apart.
+///
+/// Calls, loops and small values are bounded here; what one built-in word of the language makes of a few
+/// characters (`[0] * 10**9`) is not. Scripts that may be hostile are loaded in a process with limits.
 pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData) -> Loaded {
-    let mut loaded = load_for(scripts, unit, line, train);
+    let mut procedures = Vec::new();
+    let loaded = load_telling(scripts, unit, line, train, &mut |told| {
+        if let Told::Loaded(procedure) = told {
+            procedures.push(Arc::new(procedure));
+        }
+    });
+    Loaded {
+        procedures,
+        ..loaded
+    }
+}
+
+/// The same as [`load`], with each procedure told as soon as it is there instead of returned: many scripts
+/// take no more memory than one.
+pub fn load_telling(
+    scripts: &Scripts,
+    unit: &UnitConfig,
+    line: &Line,
+    train: &TrainData,
+    tell: &mut dyn FnMut(Told<'_>),
+) -> Loaded {
+    let mut loaded = load_for(scripts, unit, line, train, tell);
     if matches!(train, TrainData::Ideal(_)) && !loaded.errors.is_empty() {
-        let with_cars = load_for(scripts, unit, line, &TrainData::line6());
+        let mut readable = Vec::new();
+        let with_cars = load_for(
+            scripts,
+            unit,
+            line,
+            &TrainData::line6(),
+            &mut |told| match told {
+                Told::Evaluates(_) => tell(told),
+                Told::Loaded(procedure) => readable.push((procedure.path, procedure.id)),
+            },
+        );
         let wrong: BTreeSet<_> = with_cars.errors.iter().map(|e| e.file.as_str()).collect();
         let (errors, only_here): (Vec<_>, Vec<_>) = std::mem::take(&mut loaded.errors)
             .into_iter()
             .partition(|error| wrong.contains(error.file.as_str()));
         loaded.errors = errors;
         let files: BTreeSet<_> = only_here.into_iter().map(|error| error.file).collect();
-        let procedures = with_cars.procedures.iter();
-        loaded.need_cars = procedures
-            .filter(|procedure| files.contains(&procedure.path))
-            .map(|procedure| procedure.id.clone())
+        loaded.need_cars = (readable.into_iter())
+            .filter(|(path, _)| files.contains(path))
+            .map(|(_, id)| id)
             .collect();
     }
     loaded
 }
 
-fn load_for(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData) -> Loaded {
+fn load_for(
+    scripts: &Scripts,
+    unit: &UnitConfig,
+    line: &Line,
+    train: &TrainData,
+    tell: &mut dyn FnMut(Told<'_>),
+) -> Loaded {
+    let tell = RefCell::new(tell);
     let context = Context::new(unit.clone(), line.clone(), train.clone());
     let predeclared = globals::predeclared(&context);
     let globals = globals::build(&predeclared);
     let names = globals::names(&globals);
-    let evaluation = Evaluation::new(scripts, &context, &predeclared, &names, &globals);
+    let evaluates = |path: &str| tell.borrow_mut()(Told::Evaluates(path));
+    let evaluation = Evaluation::new(
+        scripts,
+        &context,
+        &predeclared,
+        &names,
+        &globals,
+        &evaluates,
+    );
     let mut loaded = Loaded::default();
     for (path, text) in scripts {
         if is_library(path) {
@@ -114,7 +175,7 @@ fn load_for(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData
             .procedure(path, text)
             .and_then(|declared| assemble::assemble(path, text, declared));
         match procedure {
-            Ok(procedure) => loaded.procedures.push(Arc::new(procedure)),
+            Ok(procedure) => tell.borrow_mut()(Told::Loaded(procedure)),
             Err(errors) => loaded.errors.extend(errors.into_iter().take(MOST_ERRORS)),
         }
     }
@@ -140,12 +201,20 @@ fn error_at(place: &FileSpan, message: String) -> LoadError {
         file: place.filename().to_owned(),
         line: begin.line as u32 + 1,
         column: begin.column as u32 + 1,
-        message,
+        message: cut(&message),
+    }
+}
+
+/// The text, or its beginning.
+fn cut(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_TEXT) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
     }
 }
 
 fn error_from(path: &str, error: &starlark::Error) -> LoadError {
-    let message = plain_words(&error.without_diagnostic().to_string());
+    let message = cut(&plain_words(&error.without_diagnostic().to_string()));
     match error.span() {
         Some(span) => error_at(span, message),
         None => LoadError {

@@ -1,0 +1,345 @@
+//! Scripts are loaded by a process of their own, which has hard limits: a few characters of the script language
+//! can ask for more time, memory or stack than any machine has, and must not take the program with them.
+//!
+//! The process is this program again, with [`WORD`] as its only argument: what to load comes on its standard
+//! input as JSON, and what was loaded goes out as lines of JSON.
+
+use std::borrow::Cow;
+use std::io::{BufRead as _, BufReader, BufWriter, Read, Write as _};
+use std::os::unix::process::ExitStatusExt as _;
+use std::path::PathBuf;
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use btu_rig::procedure::Procedure;
+use btu_rig::procedure::loader::{self, LoadError, Loaded, Scripts, Told};
+use btu_rig::train::TrainData;
+use protocol::config::UnitConfig;
+use protocol::line::Line;
+use rustix::process::{Resource, Rlimit, Signal, setrlimit};
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+
+/// The word that makes the program load scripts and nothing else.
+pub const WORD: &str = "load-scripts";
+
+/// Processor time that all scripts together may take, s: so much, and a second more for so many of them.
+const MOST_TIME_S: u64 = 9;
+/// See [`MOST_TIME_S`].
+const SCRIPTS_A_SECOND: u64 = 50;
+/// The same by the clock is so many times as much: the machine may have other work.
+const BUSY: u32 = 6;
+/// Memory that they may take, MiB.
+const MOST_MEMORY_MIB: u64 = 512;
+/// What they are evaluated on, bytes: as deep as scripts may nest and call takes a fraction of it.
+const STACK: usize = 16 << 20;
+/// Longest line of what is loaded, bytes: the plan of one procedure.
+const LONGEST_LINE: u64 = 8 << 20;
+/// All that may be loaded, bytes as lines.
+const MOST_LOADED: u64 = 256 << 20;
+/// Lines under way.
+const QUEUE: usize = 16;
+/// What is kept of the last words of a process that broke off, bytes.
+const LAST_WORDS: u64 = 64 << 10;
+
+/// What is to be loaded, for what.
+#[derive(Serialize, Deserialize)]
+struct Order<'a> {
+    scripts: Cow<'a, Scripts>,
+    unit: Cow<'a, UnitConfig>,
+    line: Cow<'a, Line>,
+    train: Cow<'a, TrainData>,
+}
+
+/// What the process says, a line each.
+#[derive(Serialize, Deserialize)]
+enum Said<'a> {
+    /// It evaluates the script of this path from now on.
+    Evaluates(Cow<'a, str>),
+    /// It has loaded this procedure.
+    Loaded(Box<Procedure>),
+    /// That is all.
+    Done {
+        errors: Vec<LoadError>,
+        need_cars: Vec<String>,
+        printed: Vec<String>,
+    },
+}
+
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// From now on scripts are loaded by a process of `program`, which calls [`serve`] when it is started with
+/// [`WORD`]. Until then they are loaded in this one, as is good for scripts that are known.
+pub fn load_apart(program: PathBuf) {
+    // Whoever was first has said the same.
+    let _ = PROGRAM.set(program);
+}
+
+/// Loads scripts as [`loader::load`] does. One that takes too much is an error at its first line, and the only
+/// answer then.
+///
+/// # Errors
+/// No process can be had.
+pub fn load(
+    scripts: &Scripts,
+    unit: &UnitConfig,
+    line: &Line,
+    train: &TrainData,
+) -> Result<Loaded, Failure> {
+    let Some(program) = PROGRAM.get() else {
+        return Ok(loader::load(scripts, unit, line, train));
+    };
+    let order = Order {
+        scripts: Cow::Borrowed(scripts),
+        unit: Cow::Borrowed(unit),
+        line: Cow::Borrowed(line),
+        train: Cow::Borrowed(train),
+    };
+    let cannot = |error: &dyn std::fmt::Display| {
+        Failure::bench(format!(
+            "cannot load scripts in a process of their own: {error}"
+        ))
+    };
+    let mut child = Command::new(program)
+        .arg(WORD)
+        .env("RUST_BACKTRACE", "0")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| cannot(&error))?;
+    let (Some(input), Some(output), Some(words)) =
+        (child.stdin.take(), child.stdout.take(), child.stderr.take())
+    else {
+        return Err(cannot(&"it has no standard streams"));
+    };
+    std::thread::scope(|scope| {
+        // A process that ends before it has read its order says why itself.
+        scope.spawn(move || serde_json::to_writer(BufWriter::new(input), &order));
+        let words = scope.spawn(move || last_words(words));
+        let (sender, lines) = sync_channel(QUEUE);
+        scope.spawn(move || read_lines(output, &sender));
+        let heard = listen(&lines, most_time_s(scripts));
+        drop(lines);
+        if heard.is_err() {
+            // It may have ended by itself.
+            let _ = child.kill();
+        }
+        let status = child.wait().map_err(|error| cannot(&error))?;
+        let words = words.join().unwrap_or_default();
+        match heard {
+            Ok(loaded) => Ok(loaded),
+            Err(Broken { at: None, .. }) => {
+                Err(cannot(&reason(status, &words, most_time_s(scripts))))
+            }
+            Err(Broken { at: Some(at), why }) => {
+                let most_s = most_time_s(scripts);
+                let message = why.unwrap_or_else(|| reason(status, &words, most_s));
+                Ok(Loaded {
+                    errors: vec![LoadError {
+                        file: at,
+                        line: 1,
+                        column: 1,
+                        message,
+                    }],
+                    ..Loaded::default()
+                })
+            }
+        }
+    })
+}
+
+/// A process that did not come to its end.
+struct Broken {
+    /// The script it was at.
+    at: Option<String>,
+    /// What it did wrong; none if it ended by itself.
+    why: Option<String>,
+}
+
+/// Takes what the process says until it is done.
+fn listen(lines: &Receiver<Option<Vec<u8>>>, most_s: u64) -> Result<Loaded, Broken> {
+    let until = Instant::now() + Duration::from_secs(most_s) * BUSY;
+    let mut loaded = Loaded::default();
+    let mut at = None;
+    let mut bytes = 0;
+    loop {
+        let broken = |at, why: &str| {
+            Err(Broken {
+                at,
+                why: Some(why.to_owned()),
+            })
+        };
+        let line = match lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
+            Ok(Some(line)) => line,
+            Ok(None) => return broken(at, "declares more than a procedure can hold"),
+            Err(RecvTimeoutError::Timeout) => return broken(at, &too_long(most_s)),
+            Err(RecvTimeoutError::Disconnected) => return Err(Broken { at, why: None }),
+        };
+        bytes += line.len() as u64;
+        if bytes > MOST_LOADED {
+            return broken(
+                at,
+                "the procedures up to here hold more than memory is meant for",
+            );
+        }
+        match serde_json::from_slice(&line) {
+            Ok(Said::Evaluates(path)) => at = Some(path.into_owned()),
+            Ok(Said::Loaded(procedure)) => loaded.procedures.push(Arc::new(*procedure)),
+            Ok(Said::Done {
+                errors,
+                need_cars,
+                printed,
+            }) => {
+                return Ok(Loaded {
+                    errors,
+                    need_cars,
+                    printed,
+                    ..loaded
+                });
+            }
+            Err(error) if error.to_string().starts_with("recursion limit") => {
+                return broken(at, "declares conditions within conditions too deeply");
+            }
+            // Numbers that are none.
+            Err(error) => return broken(at, &format!("what it declares cannot be used: {error}")),
+        }
+    }
+}
+
+/// Hands over line by line; nothing for one that is too long.
+fn read_lines(output: impl Read, lines: &SyncSender<Option<Vec<u8>>>) {
+    let mut output = BufReader::new(output);
+    loop {
+        let mut line = Vec::new();
+        let read = (&mut output)
+            .take(LONGEST_LINE)
+            .read_until(b'\n', &mut line);
+        let line = match read {
+            Ok(0) | Err(_) => return,
+            Ok(_) if line.ends_with(b"\n") => Some(line),
+            Ok(length) if length as u64 == LONGEST_LINE => None,
+            // It broke off within a line.
+            Ok(_) => return,
+        };
+        let is_last = line.is_none();
+        if lines.send(line).is_err() || is_last {
+            return;
+        }
+    }
+}
+
+fn last_words(mut words: impl Read) -> String {
+    let mut kept = Vec::new();
+    // What cannot be read says nothing.
+    let _ = (&mut words).take(LAST_WORDS).read_to_end(&mut kept);
+    // Nobody is held up because nobody listens.
+    let _ = std::io::copy(&mut words, &mut std::io::sink());
+    String::from_utf8_lossy(&kept).into_owned()
+}
+
+fn most_time_s(scripts: &Scripts) -> u64 {
+    MOST_TIME_S + scripts.len() as u64 / SCRIPTS_A_SECOND
+}
+
+fn too_long(most_s: u64) -> String {
+    format!("takes longer than {most_s} s to load; does a loop or a long text or list go too far?")
+}
+
+/// Why a process broke off.
+fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
+    if status.signal() == Some(Signal::XCPU.as_raw()) {
+        return too_long(most_s);
+    }
+    let said = |parts: &[&str]| parts.iter().any(|part| words.contains(part));
+    if said(&["overflowed its stack"]) {
+        return "holds values within values too deeply while it is loaded".into();
+    }
+    if said(&[
+        "memory allocation of",
+        "capacity overflow",
+        "out of memory",
+        "Out of memory",
+    ]) {
+        return format!(
+            "needs more than {MOST_MEMORY_MIB} MB of memory while it is loaded; does a text or a list \
+             go too far?"
+        );
+    }
+    // The line before what a panic says names a place in a program, which helps nobody here.
+    let mut lines = (words.lines()).filter(|line| !line.is_empty() && !line.starts_with("thread "));
+    let first = lines.next().unwrap_or("nothing was said");
+    format!("the script language broke off ({status}): {first}")
+}
+
+/// What the process does: loads what it is told on its standard input, within its limits.
+///
+/// # Errors
+/// It was told nothing that it understands, or nobody listens any more.
+pub fn serve() -> Result<(), Failure> {
+    let failed = |error: &dyn std::fmt::Display| Failure::bench(format!("{WORD}: {error}"));
+    let limit = |resource, current, maximum| {
+        let limit = Rlimit {
+            current: Some(current),
+            maximum: Some(maximum),
+        };
+        setrlimit(resource, limit).map_err(|error| failed(&error))
+    };
+    let most = MOST_MEMORY_MIB << 20;
+    limit(Resource::As, most, most)?;
+    limit(Resource::Core, 0, 0)?;
+    let order = serde_json::from_reader(BufReader::new(std::io::stdin().lock()));
+    let order: Order<'static> = order.map_err(|error| failed(&error))?;
+    let most_s = most_time_s(&order.scripts);
+    // The signal that tells what it was comes first, and one that cannot be ignored a second later.
+    limit(Resource::Cpu, most_s, most_s + 1)?;
+    let thread = std::thread::Builder::new().stack_size(STACK);
+    let done = thread.spawn(move || say_all(&order));
+    let done = done.map_err(|error| failed(&error))?;
+    match done.join() {
+        Ok(said) => said.map_err(|error| failed(&error)),
+        // The panic has said what it was.
+        Err(_) => Err(failed(&"it broke off")),
+    }
+}
+
+fn say_all(order: &Order<'_>) -> std::io::Result<()> {
+    let mut output = BufWriter::new(std::io::stdout().lock());
+    let mut say = |said: &Said<'_>, at_once: bool| -> std::io::Result<()> {
+        serde_json::to_writer(&mut output, said)?;
+        output.write_all(b"\n")?;
+        match at_once {
+            true => output.flush(),
+            false => Ok(()),
+        }
+    };
+    let mut went_well = Ok(());
+    let Order {
+        scripts,
+        unit,
+        line,
+        train,
+    } = order;
+    let loaded = loader::load_telling(scripts, unit, line, train, &mut |told| {
+        let done = match told {
+            // What comes next may be the last.
+            Told::Evaluates(path) => say(&Said::Evaluates(Cow::Borrowed(path)), true),
+            Told::Loaded(procedure) => say(&Said::Loaded(Box::new(procedure)), false),
+        };
+        if went_well.is_ok() {
+            went_well = done;
+        }
+    });
+    went_well?;
+    say(
+        &Said::Done {
+            errors: loaded.errors,
+            need_cars: loaded.need_cars,
+            printed: loaded.printed,
+        },
+        true,
+    )
+}
