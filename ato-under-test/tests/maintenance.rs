@@ -4,8 +4,8 @@ mod common;
 
 use common::Bench;
 use protocol::message::{
-    Answer, ArmConfirm, ArmRefusal, ArmRequest, ClearLog, Message, Outputs, TestCode, TestSpeed,
-    TrainLines,
+    Answer, ArmConfirm, ArmRefusal, ArmRequest, CATALOGUE, Channel, ClearLog, Message, Outputs,
+    TestCode, TestSpeed, TrainLines,
 };
 
 const SESSION: u32 = 0xBEEF;
@@ -156,5 +156,48 @@ fn a_cycle_stays_within_its_bytes() {
             bench.unit.step(bench.now, &mut bytes);
         }
         assert!(bytes.len() < 400, "{} bytes in 50 ms", bytes.len());
+    }
+}
+
+/// Goal: no bytes and no message make the unit panic or hang, in whatever state it is. Method: on a unit that is
+/// fresh, one in service and an armed one, damaged bytes come as they are and, where they are a message, in a frame
+/// that is sound; a scan follows each.
+#[test]
+fn bytes_and_messages_may_be_anything() {
+    let payloads = CATALOGUE.iter().map(|spec| {
+        let fields = (1..spec.payload_len()).map(|place| place as u8);
+        let head = [spec.channel.code(), spec.code];
+        head.into_iter().chain(fields).collect::<Vec<u8>>()
+    });
+    let payloads: Vec<_> = payloads.collect();
+    let states: [(&str, fn() -> Bench); 3] = [
+        ("unit-fresh", || Bench::unfed(&[])),
+        ("unit-in-service", || {
+            let mut bench = Bench::new(&[]);
+            bench.run(3.0);
+            bench
+        }),
+        ("unit-armed", armed),
+    ];
+    for (name, state) in states {
+        let mut bench = state();
+        let mut fed = 0;
+        let fuzz = fuzzing::Fuzz::new(name, env!("CARGO_MANIFEST_DIR"), payloads.iter().cloned());
+        fuzz.run(20_000, |bytes| {
+            fed += 1;
+            // Most of what is refused ends what it was about.
+            if fed % 500 == 0 {
+                bench = state();
+            }
+            let (channel, payload) = bytes.split_first().unwrap_or((&0, &[]));
+            let channel = Channel::from_code(*channel);
+            match channel.and_then(|channel| Message::decode(channel, payload).ok()) {
+                Some(message) => bench.send(message),
+                None => bench.unit.receive(bytes),
+            }
+            bench.scan();
+            bench.answers.clear();
+            bench.log.clear();
+        });
     }
 }
