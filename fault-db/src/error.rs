@@ -7,6 +7,7 @@ use rusqlite::ErrorCode;
 use crate::base::SqlError;
 use crate::fault_state::TransitionError;
 use crate::id::Id;
+use crate::query::QueryLimit;
 use crate::server::trouble;
 use crate::trace::TraceError;
 
@@ -237,6 +238,12 @@ pub enum StoreError {
     QueryFailed {
         /// What SQLite said.
         reason: String,
+    },
+    /// The answer would have taken more than it may.
+    #[error("the query was given up: {limit}")]
+    QueryExceeds {
+        /// More of what.
+        limit: QueryLimit,
     },
     /// What was asked needs a file, and this is a server.
     #[error("{} is a server, and this needs a database file; name one with --db, and bring it to the server with `db sync`", .path.display())]

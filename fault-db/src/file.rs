@@ -38,6 +38,12 @@ pub(crate) fn connect(
             reason,
         });
     }
+    // A pipe would be waited for.
+    if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
+        return Err(StoreError::NotADatabase {
+            path: path.to_path_buf(),
+        });
+    }
     let failed = |error| StoreError::from_sqlite(path, "opening", error);
     let conn = Connection::open_with_flags(name, flags).map_err(failed)?;
     conn.busy_timeout(std::time::Duration::from_millis(busy_timeout_ms.into()))

@@ -10,7 +10,8 @@
 //!    a file and a server together.
 //!
 //! No clock, no thread, no randomness and no file but the database: the caller gives times and an
-//! [`IdSource`]. Connecting to a server is the exception: it reads the password file and certificates
+//! [`IdSource`]. How files that people name are read ([`read_given`]) and replaced ([`Part`]) is here for all
+//! programs. Connecting to a server is the exception: it reads the password file and certificates
 //! that the address and the environment name, and gives up on a thread that takes too long.
 //!
 //! Names ending in `at_us` are microseconds since 1970 (UTC), `bench_us` is the bench's own clock,
@@ -27,6 +28,7 @@ mod fault_log;
 mod fault_state;
 mod file;
 mod functions;
+mod given;
 mod guard;
 mod id;
 mod insert;
@@ -59,12 +61,15 @@ pub use conflicts::{RivalEvent, StateConflict};
 pub use domain::{Refusals, Refused};
 pub use error::StoreError;
 pub use fault_state::{FaultAction, FaultState, TransitionError};
+pub use given::{open_given, read_given};
 pub use id::{Id, IdSource};
+pub use part::Part;
 pub use query::{
     DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
-    Occurrence, PartHistory, PartRepair, QueryResult, RunDetail, RunFault, RunFilter,
-    RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery, StepDetail,
-    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
+    Occurrence, PartHistory, PartRepair, QueryBounds, QueryLimit, QueryResult, RunDetail, RunFault,
+    RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
+    StepDetail, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit,
+    code_number,
 };
 pub use record::{
     FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,

@@ -1,5 +1,5 @@
-//! A copy of a file being made beside its place. It has its name only when it is complete: one cut short is
-//! worse than none.
+//! A file being made beside its place. It has its name only when it is complete: one cut short is worse than
+//! none, and the one that was there before is worth more.
 
 use std::hash::{BuildHasher as _, DefaultHasher, Hash as _, Hasher as _, RandomState};
 use std::io::ErrorKind;
@@ -12,23 +12,69 @@ use crate::error::StoreError;
 use crate::file::make_private;
 use crate::schema;
 
-/// Nobody works any more at a copy that nothing was written to for so long.
+/// Nobody works any more at a file that nothing was written to for so long.
 const GIVEN_UP: Duration = Duration::from_secs(3_600);
 
-/// A whole copy that has not got its name yet. Dropped without being published it is removed.
-pub(crate) struct Part {
+/// A file that has not got its name yet. Dropped before it is published or put in its place it is removed.
+#[derive(Debug)]
+pub struct Part {
     beside: PathBuf,
     to: PathBuf,
 }
 
 impl Part {
-    /// Copies a whole file, compacted, beside `to`, under a name that no other program takes. What a program
-    /// that was killed has left of a copy to the same place is removed.
-    pub fn copy(conn: &Connection, to: &Path, doing: &'static str) -> Result<Self, StoreError> {
-        for left in left_of(to) {
+    /// Begins a file that is to be called `to`: nothing is made yet but a name in the same folder that no other
+    /// program takes. What programs that were killed have left in that folder is removed.
+    pub fn begin(to: &Path) -> Self {
+        for left in left_in(folder_of(to)) {
+            // Whoever may not remove it may still write beside it.
             let _ = std::fs::remove_file(left);
         }
-        let part = Self::of(to);
+        Self::of(to)
+    }
+
+    /// Where it is made until it has its name.
+    pub fn path(&self) -> &Path {
+        &self.beside
+    }
+
+    /// Gives it its name, in place of what has it; readers see the one or the other, whole. What was written
+    /// must be on the disk already ([`std::fs::File::sync_all`]).
+    ///
+    /// # Errors
+    /// The disk's; what was there is still there then.
+    pub fn replace(self) -> std::io::Result<()> {
+        std::fs::rename(&self.beside, &self.to)?;
+        // The name, too, is to outlive a power cut; not every disk can hold folders to that.
+        if let Ok(folder) = std::fs::File::open(folder_of(&self.to)) {
+            let _ = folder.sync_all();
+        }
+        Ok(())
+    }
+
+    /// Gives it a name that nothing may have yet.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AlreadyExists`], or the disk's; it can be tried with another name then.
+    pub fn publish_as(&self, name: &Path) -> std::io::Result<()> {
+        match std::fs::hard_link(&self.beside, name) {
+            // Neither is there a name to give nor a file to give it to.
+            Err(error)
+                if !matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) =>
+            {
+                self.rename(name)
+            }
+            done => done,
+        }
+    }
+
+    /// Copies a whole file, compacted, beside `to`.
+    pub(crate) fn copy(
+        conn: &Connection,
+        to: &Path,
+        doing: &'static str,
+    ) -> Result<Self, StoreError> {
+        let part = Self::begin(to);
         let name = part.beside.to_str().ok_or_else(|| StoreError::CannotOpen {
             path: to.to_path_buf(),
             reason: "the name is not UTF-8".to_owned(),
@@ -45,7 +91,7 @@ impl Part {
     ///
     /// # Errors
     /// [`StoreError::CannotWrite`], with what the system says, as SQLite does not.
-    pub fn can_be_made(to: &Path) -> Result<(), StoreError> {
+    pub(crate) fn can_be_made(to: &Path) -> Result<(), StoreError> {
         let cannot = |reason| StoreError::CannotWrite {
             path: to.to_path_buf(),
             reason,
@@ -74,7 +120,7 @@ impl Part {
     }
 
     /// The schema version of what was copied.
-    pub fn version(&self) -> Result<i32, StoreError> {
+    pub(crate) fn version(&self) -> Result<i32, StoreError> {
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         Connection::open_with_flags(&self.beside, flags)
             .and_then(|copy| schema::user_version(&copy))
@@ -85,17 +131,9 @@ impl Part {
     ///
     /// # Errors
     /// Something has; or the disk's.
-    pub fn publish(self) -> Result<(), StoreError> {
-        let linked = match std::fs::hard_link(&self.beside, &self.to) {
-            // Neither is there a name to give nor a copy to give it to.
-            Err(error)
-                if !matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) =>
-            {
-                self.rename()
-            }
-            done => done,
-        };
-        linked.map_err(|error| match error.kind() {
+    pub(crate) fn publish(self) -> Result<(), StoreError> {
+        let published = self.publish_as(&self.to);
+        published.map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => StoreError::TargetExists {
                 path: self.to.clone(),
             },
@@ -107,11 +145,11 @@ impl Part {
     }
 
     /// The same on a disk without hard links, as memory sticks are: an empty file takes the name first.
-    fn rename(&self) -> std::io::Result<()> {
-        make_private(&self.to)?;
-        let renamed = std::fs::rename(&self.beside, &self.to);
+    fn rename(&self, name: &Path) -> std::io::Result<()> {
+        make_private(name)?;
+        let renamed = std::fs::rename(&self.beside, name);
         if renamed.is_err() {
-            let _ = std::fs::remove_file(&self.to);
+            let _ = std::fs::remove_file(name);
         }
         renamed
     }
@@ -124,32 +162,28 @@ impl Drop for Part {
     }
 }
 
-/// Copies to this place that nobody works at any more.
-fn left_of(to: &Path) -> Vec<PathBuf> {
-    let (Some(folder), Some(name)) = (to.parent(), to.file_name()) else {
-        return Vec::new();
-    };
-    let here = Path::new(".");
-    let folder = if folder == Path::new("") {
-        here
-    } else {
-        folder
-    };
+fn folder_of(file: &Path) -> &Path {
+    let folder = file.parent().filter(|folder| *folder != Path::new(""));
+    folder.unwrap_or(Path::new("."))
+}
+
+/// Files in the making that nobody works at any more.
+fn left_in(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let left = entries.filter(|entry| {
-        let entry_name = entry.file_name();
-        let end = (entry_name.as_encoded_bytes()).strip_prefix(name.as_encoded_bytes());
-        let maker = end.and_then(maker);
+        let maker = maker(entry.file_name().as_encoded_bytes());
         maker.is_some_and(|maker| is_gone(maker) || is_given_up(entry))
     });
     left.map(|entry| entry.path()).collect()
 }
 
-/// The process that makes a copy, by what follows the name it is to have: among which, and its number.
-fn maker(end: &[u8]) -> Option<(u32, u32)> {
-    let end = std::str::from_utf8(end).ok()?;
-    let end = end.strip_prefix('.')?.strip_suffix(".part")?;
-    let (process, name) = end.split_once('-')?;
+/// The process that makes a file, by what follows the name it is to have: among which, and its number.
+fn maker(name: &[u8]) -> Option<(u32, u32)> {
+    let name = name.strip_suffix(b".part")?;
+    let end = name.iter().rposition(|byte| *byte == b'.')?;
+    let (process, name) = std::str::from_utf8(&name[end + 1..])
+        .ok()?
+        .split_once('-')?;
     let is_ours = name.len() == 16 && name.bytes().all(|digit| digit.is_ascii_hexdigit());
     let among = is_ours.then(|| u32::from_str_radix(&name[..8], 16).ok())?;
     Some((among?, process.parse().ok()?))
@@ -193,19 +227,41 @@ mod tests {
     #[test]
     fn a_copy_is_left_by_a_process_of_this_computer_that_is_gone() {
         let dir = tempfile::tempdir().expect("a directory");
-        let to = dir.path().join("b.db");
-        let name = |process: u32, among: u32| {
-            let name = format!("b.db.{process}-{among:08x}01234567.part");
+        let name = |of: &str, process: u32, among: u32| {
+            let name = format!("{of}.{process}-{among:08x}01234567.part");
             let path = dir.path().join(name);
             std::fs::write(&path, "half").expect("written");
             path
         };
         let here = processes();
-        let dead = name(u32::MAX, here);
-        name(std::process::id(), here);
-        name(u32::MAX, here ^ 1);
-        let expected = if here == 0 { vec![] } else { vec![dead] };
-        assert_eq!(left_of(&to), expected);
+        let mut dead = [name("b.db", u32::MAX, here), name("a.pdf", u32::MAX, here)];
+        name("b.db", std::process::id(), here);
+        name("b.db", u32::MAX, here ^ 1);
+        std::fs::write(dir.path().join("mine.part"), "whole").expect("written");
+        let mut left = left_in(dir.path());
+        left.sort();
+        dead.sort();
+        let expected = if here == 0 { vec![] } else { dead.to_vec() };
+        assert_eq!(left, expected);
+    }
+
+    /// What takes the place of another is whole before it does; what is given up leaves the other.
+    #[test]
+    fn a_file_is_replaced_whole_or_not_at_all() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let to = dir.path().join("report.json");
+        let names = || std::fs::read_dir(dir.path()).expect("read").count();
+        let read = || std::fs::read_to_string(&to).expect("there");
+        std::fs::write(&to, "old").expect("written");
+        let given_up = Part::begin(&to);
+        std::fs::write(given_up.path(), "ne").expect("written");
+        drop(given_up);
+        assert_eq!((read(), names()), ("old".to_owned(), 1));
+        let whole = Part::begin(&to);
+        std::fs::write(whole.path(), "new").expect("written");
+        assert_eq!(read(), "old");
+        whole.replace().expect("replaced");
+        assert_eq!((read(), names()), ("new".to_owned(), 1));
     }
 
     /// On a disk without hard links, too, a name that is taken stays with the file that has it.
@@ -222,10 +278,11 @@ mod tests {
         };
         let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).expect("there");
         std::fs::write(dir.path().join("taken"), "old").expect("written");
-        let refused = part("taken").rename().expect_err("taken");
+        let rename = |name: &str| part(name).rename(&dir.path().join(name));
+        let refused = rename("taken").expect_err("taken");
         assert_eq!(refused.kind(), ErrorKind::AlreadyExists);
         assert_eq!(read("taken"), "old");
-        part("free").rename().expect("renamed");
+        rename("free").expect("renamed");
         assert_eq!(read("free"), "new");
         let names = std::fs::read_dir(dir.path()).expect("read").count();
         assert_eq!(names, 2, "nothing is left beside them");

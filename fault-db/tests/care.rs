@@ -6,8 +6,9 @@ use std::path::Path;
 
 use common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
 use fault_db::{
-    FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, RunFilter, RunState,
-    RunWriter, SqlValue, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
+    FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, QueryBounds, QueryLimit,
+    RunFilter, RunState, RunWriter, SqlValue, StatKey, StatQuery, Store, StoreError, TrendQuery,
+    Verdict,
 };
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -511,6 +512,37 @@ fn filters_stats_and_trends_answer() {
         error.to_string().contains("no measurement \"eb_reacton\""),
         "{error}"
     );
+}
+
+#[test]
+fn a_free_question_goes_on_as_long_as_it_may() {
+    let dir = tempdir().expect("a directory");
+    let (store, _) = opened(&dir.path().join("a.db"));
+    let bounds = QueryBounds {
+        rows: 10,
+        ..QueryBounds::default()
+    };
+    let endless =
+        "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
+    let mut looks = 0;
+    let goes_on = move || {
+        looks += 1;
+        looks < 5
+    };
+    let limit = |error| match error {
+        StoreError::QueryExceeds { limit } => limit,
+        other => panic!("{other}"),
+    };
+    let stopped = store
+        .query_within(endless, bounds, goes_on)
+        .expect_err("stopped");
+    assert_eq!(limit(stopped), QueryLimit::Stopped);
+    let long = "SELECT zeroblob(10000000)";
+    let refused = store.query_read_only(long, 10).expect_err("too long");
+    assert_eq!(limit(refused), QueryLimit::Row);
+    let answer = store.query_read_only(&format!("SELECT 1 UNION ALL {long}"), 10);
+    let answer = answer.expect("the first row");
+    assert!(answer.truncated && answer.rows == [[SqlValue::Integer(1)]]);
 }
 
 #[test]

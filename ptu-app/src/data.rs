@@ -2,22 +2,32 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::fs::OpenOptions;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use btu_rig::bench_scatter::BenchScatter;
+use fault_db::read_given;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::{self, Line};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, did_you_mean};
+use crate::new_file::{NewFile, cannot_write};
 use crate::private;
 
 /// Folder of unit configurations and the fault catalogue.
 const UNITS: &str = "units";
 /// The fault catalogue's name there.
 const FAULTS: &str = "faults";
+/// Longest script, data file or other text that is read, bytes.
+pub(crate) const LONGEST_FILE: u64 = 4 << 20;
+/// Longest all scripts together, bytes.
+const LONGEST_SCRIPTS: usize = 64 << 20;
+/// Most files and folders in the scripts directory.
+const MOST_ENTRIES: usize = 100_000;
+/// Folders within folders that are looked into.
+const DEEPEST_FOLDER: usize = 16;
 /// How good units, trains and benches differ, in the scripts directory.
 pub const BENCH_SCATTER: &str = "bench_scatter.toml";
 
@@ -79,9 +89,14 @@ impl ScriptsDirectory {
     /// # Errors
     /// A file or folder cannot be read.
     pub fn procedures(&self) -> Result<BTreeMap<String, String>, Failure> {
-        let mut texts = BTreeMap::new();
-        collect(&self.0, &self.0, &mut texts)?;
-        Ok(texts)
+        let mut collecting = Collecting {
+            root: &self.0,
+            texts: BTreeMap::new(),
+            bytes: 0,
+            entries: 0,
+        };
+        collecting.collect(&self.0, 0)?;
+        Ok(collecting.texts)
     }
 
     /// The unit configuration `units/NAME.toml`.
@@ -191,7 +206,7 @@ impl ScriptsDirectory {
         parse: impl FnOnce(&str) -> Result<T, E>,
     ) -> Result<DataFile<T>, Failure> {
         let file = self.0.join(folder).join(format!("{name}.toml"));
-        if !file.is_file() {
+        if !file.exists() {
             let known = self.names(folder);
             return Err(Failure::usage(format!(
                 "no {what} \"{name}\"{}; known: {}",
@@ -223,10 +238,20 @@ pub fn sha256(text: &str) -> String {
 /// Reads a file, or says which one could not be read.
 ///
 /// # Errors
-/// The file cannot be read or is not UTF-8.
+/// The file cannot be read, is longer than scripts and data files are, or is not UTF-8.
 pub fn read(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file)
-        .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))
+    read_within(file, LONGEST_FILE)
+}
+
+/// The same of a file of up to `most` bytes.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_within(file: &Path, most: u64) -> Result<String, Failure> {
+    let cannot =
+        |why: &dyn Display| Failure::usage(format!("cannot read {}: {why}", file.display()));
+    let bytes = read_given(file, most).map_err(|error| cannot(&error))?;
+    String::from_utf8(bytes).map_err(|_| cannot(&"it is not UTF-8"))
 }
 
 /// Finds out whether a file can be written, leaving what is there as it is.
@@ -234,58 +259,81 @@ pub fn read(file: &Path) -> Result<String, Failure> {
 /// # Errors
 /// It cannot, and why.
 pub fn check_writable(file: &Path) -> Result<(), Failure> {
-    let cannot = |why: String| Failure::usage(format!("cannot write {}: {why}", file.display()));
-    if file.is_dir() {
-        return Err(cannot("it is a folder".into()));
-    }
-    let folder = file
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        return Err(cannot(format!("there is no folder {}", folder.display())));
-    }
-    let existed = file.exists();
-    let opened = OpenOptions::new().create(true).append(true).open(file);
-    opened.map_err(|error| cannot(error.to_string()))?;
-    if !existed {
-        // Nothing is left behind should the run not come to its report.
-        std::fs::remove_file(file).map_err(|error| cannot(error.to_string()))?;
-    }
-    Ok(())
+    NewFile::begin(file).map(drop)
 }
 
-/// Writes a file, or says which one could not be written.
+/// Writes a file whole: until it is, what stood there stays. Says which one could not be written.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write(file: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
-    std::fs::write(file, content)
-        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
+    let mut new = NewFile::begin(file)?;
+    new.write_all(content.as_ref())
+        .map_err(|error| cannot_write(file, &error))?;
+    new.finish()
 }
 
-/// Keeps a value as JSON, beside first and then in its place: a full disk loses nothing that was there.
+/// Keeps a value as JSON in a file whose folder is made if need be: whole, or as it was.
 ///
 /// # Errors
 /// The file or its folder cannot be written.
-pub fn keep(file: &Path, value: &impl serde::Serialize) -> std::io::Result<()> {
+pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
+    let failed = |error: &dyn Display| cannot_write(file, error);
     if let Some(folder) = file.parent() {
-        private::folder(folder)?;
+        private::folder(folder).map_err(|error| failed(&error))?;
     }
-    let beside = file.with_extension("new");
-    std::fs::write(&beside, serde_json::to_vec_pretty(value)?)?;
-    std::fs::rename(beside, file)
+    write(
+        file,
+        serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?,
+    )
 }
 
-fn collect(root: &Path, folder: &Path, into: &mut BTreeMap<String, String>) -> Result<(), Failure> {
-    let cannot = |e| Failure::usage(format!("cannot read {}: {e}", folder.display()));
-    for entry in std::fs::read_dir(folder).map_err(cannot)? {
-        let path = entry.map_err(cannot)?.path();
-        if path.is_dir() {
-            collect(root, &path, into)?;
-        } else if path.extension().is_some_and(|ending| ending == "star") {
-            let name = path.strip_prefix(root).unwrap_or(&path);
-            into.insert(name.to_string_lossy().replace('\\', "/"), read(&path)?);
+/// The scripts under a directory.
+struct Collecting<'a> {
+    root: &'a Path,
+    texts: BTreeMap<String, String>,
+    bytes: usize,
+    entries: usize,
+}
+
+impl Collecting<'_> {
+    fn collect(&mut self, folder: &Path, depth: usize) -> Result<(), Failure> {
+        let cannot =
+            |why: &dyn Display| Failure::usage(format!("cannot read {}: {why}", folder.display()));
+        if depth > DEEPEST_FOLDER {
+            return Err(cannot(
+                &"too many folders within folders; does a link lead back?",
+            ));
         }
+        for entry in std::fs::read_dir(folder).map_err(|error| cannot(&error))? {
+            let path = entry.map_err(|error| cannot(&error))?.path();
+            self.entries += 1;
+            if self.entries > MOST_ENTRIES {
+                return Err(cannot(&format!(
+                    "the scripts directory holds more than {MOST_ENTRIES} files and folders"
+                )));
+            }
+            if path.is_dir() {
+                self.collect(&path, depth + 1)?;
+            } else if path.extension().is_some_and(|ending| ending == "star") {
+                self.take(&path)?;
+            }
+        }
+        Ok(())
     }
-    Ok(())
+
+    fn take(&mut self, path: &Path) -> Result<(), Failure> {
+        let text = read(path)?;
+        self.bytes += text.len();
+        if self.bytes > LONGEST_SCRIPTS {
+            return Err(Failure::usage(format!(
+                "the scripts in {} are longer than {LONGEST_SCRIPTS} bytes together",
+                self.root.display()
+            )));
+        }
+        let name = path.strip_prefix(self.root).unwrap_or(path);
+        let name = name.to_string_lossy().replace('\\', "/");
+        self.texts.insert(name, text);
+        Ok(())
+    }
 }

@@ -83,6 +83,7 @@ impl From<StoreError> for Failure {
             | StoreError::SameFile { .. }
             | StoreError::QueryRefused { .. }
             | StoreError::QueryFailed { .. }
+            | StoreError::QueryExceeds { .. }
             | StoreError::Trace {
                 source: TraceError::UnknownChannel { .. },
                 ..

@@ -29,6 +29,7 @@ pub mod fonts;
 pub mod gui;
 pub mod limits;
 pub mod link;
+mod new_file;
 mod owner;
 mod pool;
 mod private;

@@ -248,6 +248,134 @@ fn a_script_that_never_ends_is_stopped() {
     );
 }
 
+/// Goal: what a few characters of the script language ask for is refused in bounded time, memory and stack, with
+/// the script, by all that reads scripts. Method: built-ins that no count of steps sees into.
+#[test]
+fn a_script_that_asks_for_more_than_a_machine_has_is_refused() {
+    let deep = "    x = []\n    for i in range(200000):\n        x = [x]\n    return str(x)\n";
+    let double = "    x = \"x\"\n    for i in range(60):\n        x = x + x\n    return x\n";
+    let conditions = "    c = is_(alarm, True)\n    for i in range(300):\n        c = any_of(c, c)\n    return c\n";
+    for (body, words) in [
+        ("x = [0] * 1000000000\n", "needs more than 512 MB of memory"),
+        ("x = list(range(2000000000))\n", "wrong.star:1:1: "),
+        (
+            &format!("def f():\n{double}x = f()\n"),
+            "needs more than 512 MB of memory",
+        ),
+        (
+            &format!("def f():\n{deep}x = f()\n"),
+            "holds values within values too deeply",
+        ),
+        (
+            &format!("def f():\n{conditions}step(\"a\", expect = becomes(f()))\n"),
+            "wrong.star:1:1: ",
+        ),
+    ] {
+        does_not_load(body, &[words]);
+        let place = Place::new();
+        place.write("wrong.star", &format!("{HEAD}{body}"));
+        let list = place.ptu(&["run", "--list", "wrong.star"]);
+        list.exits(2).explains(&["wrong.star:1:1: ", words]);
+    }
+    let place = Place::new();
+    let square = "def f():\n    x = 3\n    for i in range(40):\n        x = x * x\nf()\n";
+    place.write("wrong.star", &format!("{HEAD}{square}"));
+    let began = std::time::Instant::now();
+    let said = place.ptu(&["run", "--check", "wrong.star"]);
+    said.exits(2)
+        .explains(&["wrong.star:1:1: takes longer than 9 s to load"]);
+    // By the clock of a machine that has other work.
+    assert!(began.elapsed() < std::time::Duration::from_secs(70));
+}
+
+/// Nothing is opened that is no file: nobody writes to these pipes, and who opens one waits for that.
+#[test]
+fn pipes_and_devices_are_refused_wherever_a_file_is_named() {
+    let place = Place::new();
+    place.recorded_run();
+    let pipe = |name: &str| {
+        let made = std::process::Command::new("mkfifo")
+            .arg(place.path(name))
+            .status();
+        assert!(made.expect("mkfifo starts").success());
+    };
+    for name in ["p.star", "p.toml", "p.json", "p.csv", "p.mcap"] {
+        pipe(name);
+    }
+    std::fs::create_dir(place.path("scripts")).expect("a folder");
+    for name in ["units", "lines", "trains"] {
+        let to = place.path("scripts").join(name);
+        std::os::unix::fs::symlink(scripts().join(name), to).expect("linked");
+    }
+    pipe("scripts/p.star");
+    for arguments in [
+        &["run", "p.star"][..],
+        &["run", "--check", "--scripts", "scripts"],
+        &["run", "--train", "p.toml"],
+        &["run", "--scatter=p.toml", "tcms/link"],
+        &["drive", "--manual", "p.toml"],
+        &["drive", "--train", "p.toml"],
+        &["diagnose", "--matrix", "p.json"],
+        &["diagnose", "--matrix", "/dev/zero"],
+    ] {
+        place.ptu(arguments).exits(2).explains(&["no regular file"]);
+    }
+    pipe("p.db");
+    let said = place.ptu(&["runs", "list", "--db", "p.db"]);
+    said.exits(3).explains(&["p.db is not a database"]);
+    let looped = std::os::unix::fs::symlink(".", place.path("scripts/again"));
+    looped.expect("linked");
+    std::fs::remove_file(place.path("scripts/p.star")).expect("there");
+    let said = place.ptu(&["run", "--check", "--scripts", "scripts"]);
+    said.exits(2).explains(&["again", "does a link lead back?"]);
+}
+
+/// Goal: a question to the database ends within its bounds, whichever it exceeds, and says how to allow more.
+#[test]
+fn a_question_that_takes_too_much_is_given_up() {
+    let place = Place::new();
+    place.recorded_run();
+    let endless =
+        "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
+    let many = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n LIMIT 400000) \
+        SELECT count(*) FROM (SELECT DISTINCT hex(x) FROM n)";
+    // One step of SQLite's from begin to end.
+    let one_function = "SELECT instr(hex(zeroblob(10000000)), hex(zeroblob(5000000)) || '1')";
+    for (options, sql, way_out) in [
+        (
+            ["--max-time", "1"],
+            endless,
+            "longer than 1 s; ask for less, or allow more with --max-time",
+        ),
+        (
+            ["--max-time", "1"],
+            one_function,
+            "or allow more with --max-time",
+        ),
+        (
+            ["--max-memory", "64"],
+            "SELECT length(hex(zeroblob(100000000)))",
+            "allow more with --max-memory",
+        ),
+        (
+            ["--max-disk", "1"],
+            many,
+            "more than 1 MB of temporary disk; ask for less, or allow more with --max-disk",
+        ),
+    ] {
+        let said = place.ptu(&["db", "query", options[0], options[1], sql]);
+        said.exits(2)
+            .explains(&["the question was given up", way_out]);
+    }
+    let long = "SELECT hex(zeroblob(20000000))";
+    place
+        .ptu(&["db", "query", long])
+        .exits(2)
+        .explains(&["a row is longer than", "substr()"]);
+    let answer = place.json(&["db", "query", "--json", many]);
+    assert_eq!(answer["rows"][0][0], 400_000);
+}
+
 #[test]
 fn a_part_that_is_none_cannot_be_suspected() {
     let place = Place::new();

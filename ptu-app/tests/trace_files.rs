@@ -433,3 +433,127 @@ fn files_that_are_wrong_are_told_with_the_place() {
         .exits(2)
         .explains(&["--shift"]);
 }
+
+/// An MCAP file: each message on a topic of its own with so many fields, all of other names.
+fn wide_mcap(messages: usize, fields: usize, name: &str) -> Vec<u8> {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut writer = mcap::WriteOptions::new().create(&mut file).expect("begun");
+    for topic in 0..messages {
+        let field = |n: usize| format!("\"{name}{n}\":{n}");
+        let message = (0..fields).map(field).collect::<Vec<_>>().join(",");
+        let channel = writer.add_channel(0, &format!("t{topic}"), "json", &BTreeMap::new());
+        let header = mcap::records::MessageHeader {
+            channel_id: channel.expect("a channel"),
+            sequence: 0,
+            log_time: T0_US as u64 * 1000,
+            publish_time: 0,
+        };
+        let message = format!("{{{message}}}");
+        writer
+            .write_to_known_channel(&header, message.as_bytes())
+            .expect("written");
+    }
+    writer.finish().expect("finished");
+    drop(writer);
+    file.into_inner()
+}
+
+/// Goal: a small file with very much in it is refused at once by what it has altogether, not by topic.
+#[test]
+fn a_file_of_very_many_signals_is_refused_at_once() {
+    let place = Place::new();
+    kept(&place, &trace(600));
+    let write =
+        |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
+    write("wide.mcap", &wide_mcap(1, 60_000, "f"));
+    write("topics.mcap", &wide_mcap(5_000, 1, "f"));
+    write("long.mcap", &wide_mcap(1, 1, &"f".repeat(300)));
+    let headings: Vec<_> = (0..150_000).map(|n| format!("{n}")).collect();
+    write("wide.csv", format!("{}\n", headings.join(",")).as_bytes());
+    for (file, told) in [
+        ("wide.mcap", "it has more than 4096 signals"),
+        ("topics.mcap", "it has more than 4096 signals"),
+        ("long.mcap", "is longer than 256 bytes"),
+        ("wide.csv", "it has more than 4096 signals"),
+    ] {
+        let began = std::time::Instant::now();
+        let said = place.ptu(&["trace", "diff", "latest", file]);
+        said.exits(2).explains(&[file, told]);
+        assert!(
+            began.elapsed() < std::time::Duration::from_secs(10),
+            "{file}"
+        );
+    }
+    // As many as are allowed are no trouble either.
+    write("some.mcap", &wide_mcap(1, 4_000, "f"));
+    let began = std::time::Instant::now();
+    let said = place.ptu(&["trace", "diff", "latest", "some.mcap"]);
+    said.exits(2)
+        .explains(&["none of its signals", "and 3990 more"]);
+    assert!(began.elapsed() < std::time::Duration::from_secs(10));
+}
+
+/// `ptu` where no file may grow longer than so much, with the shell's words before it.
+fn short_of_disk(place: &Place, before: &str, arguments: &[&str]) -> common::Said {
+    let ptu = place.command(arguments);
+    let mut command = Command::new("sh");
+    // Blocks of 512 bytes; what SQLite keeps beside an open file takes 64 of them.
+    let script = format!("{before} ulimit -f 80; exec \"$0\" \"$@\"");
+    command
+        .arg("-c")
+        .arg(script)
+        .arg(ptu.get_program())
+        .args(ptu.get_args());
+    for (name, value) in ptu.get_envs() {
+        command.env(name, value.unwrap_or_default());
+    }
+    let output = command
+        .current_dir(ptu.get_current_dir().expect("its place"))
+        .output();
+    output.expect("sh starts").into()
+}
+
+/// Goal: what a file held before is there, whole, until the new one is; a program that is killed halfway leaves
+/// only what the next one that writes into the folder takes away. Method: a limit on the length of files, which
+/// kills or fails a write halfway.
+#[test]
+fn a_file_that_breaks_off_leaves_the_one_before_it() {
+    let place = Place::new();
+    kept(&place, &trace(40_000));
+    place
+        .ptu(&["runs", "show", "latest", "--report", "s.html"])
+        .exits(0);
+    let export = |to: &'static str| ["trace", "export", "latest", "--force", "--to", to];
+    let names = |place: &Place| {
+        let entries = std::fs::read_dir(place.path("")).expect("read");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let names: Vec<_> = names
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect();
+        names
+            .into_iter()
+            .filter(|name| name.ends_with(".part"))
+            .count()
+    };
+    for to in ["t.csv", "t.parquet", "t.mcap"] {
+        place.write(to, "old");
+        let said = short_of_disk(&place, "trap '' XFSZ;", &export(to)).exits(3);
+        said.explains(&["cannot write", to]);
+        assert_eq!(
+            (place.read(to), names(&place)),
+            ("old".to_owned(), 0),
+            "{to}"
+        );
+        let killed = short_of_disk(&place, "", &export(to));
+        assert_eq!(killed.code, None, "{}", killed.all());
+        assert_eq!(place.read(to), "old");
+        assert!(names(&place) > 0, "{to}");
+    }
+    place.write("s.csv", "old");
+    let report = ["runs", "show", "latest", "--report", "s.csv"];
+    place.ptu(&report).exits(0);
+    assert_ne!(place.read("s.csv"), "old");
+    assert_eq!(names(&place), 0, "what was killed is cleaned");
+    place.ptu(&export("t.csv")).exits(0);
+    assert_eq!(place.read("t.csv").lines().count(), 40_001);
+}

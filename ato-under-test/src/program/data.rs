@@ -11,6 +11,9 @@ use protocol::line::Line;
 
 use super::Arguments;
 
+/// Longest file that is read, bytes.
+const LONGEST_FILE: u64 = 4 << 20;
+
 /// The user asked for something that is not there.
 #[derive(Debug)]
 pub struct UsageError(String);
@@ -78,8 +81,17 @@ fn faults(scripts: &Path, names: &[String]) -> Result<Vec<FaultMode>> {
 }
 
 fn read(file: &Path) -> Result<String, UsageError> {
-    std::fs::read_to_string(file)
-        .map_err(|error| UsageError(format!("cannot read {}: {error}", file.display())))
+    let cannot =
+        |why: &dyn fmt::Display| UsageError(format!("cannot read {}: {why}", file.display()));
+    let about = std::fs::metadata(file).map_err(|error| cannot(&error))?;
+    // A pipe would be waited for, a device may never end.
+    if !about.is_file() {
+        return Err(cannot(&"it is no regular file"));
+    }
+    if about.len() > LONGEST_FILE {
+        return Err(cannot(&format!("it is longer than {LONGEST_FILE} bytes")));
+    }
+    std::fs::read_to_string(file).map_err(|error| cannot(&error))
 }
 
 fn wrong(file: &Path, error: &dyn fmt::Display) -> UsageError {

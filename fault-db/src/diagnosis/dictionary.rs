@@ -14,7 +14,7 @@ use crate::packed::{pack, unpack};
 /// Compression of a packed dictionary: read often, written seldom.
 const ZSTD_LEVEL: i32 = 15;
 /// A dictionary unpacks to at most this many bytes.
-const MAX_BYTES: u64 = 256 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// What a dictionary was made of. Made of anything else it may be wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -217,5 +217,34 @@ impl Dictionary {
             .map(|mode| mode.name.lru.as_str())
             .collect();
         all.into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is packed well may still be anything.
+    #[test]
+    fn a_packed_text_may_be_anything() {
+        let mode = ModeName {
+            id: "eb_relay.slow".into(),
+            lru: "eb_relay".into(),
+            text: "drops late".into(),
+            kind: "degraded".into(),
+            unsafe_: true,
+            weight: 0.75,
+        };
+        let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], Vec::new());
+        dictionary.add(&mode, "0.4".into(), &[Observation::default()]);
+        let json = serde_json::to_vec(&dictionary).expect("JSON");
+        let fuzz = fuzzing::Fuzz::new("dictionary", env!("CARGO_MANIFEST_DIR"), [json]);
+        fuzz.run(20_000, |json| {
+            let packed = pack(json, 1).expect("packed");
+            if let Ok(read) = Dictionary::from_bytes(&packed) {
+                let again = read.to_bytes().expect("packed");
+                assert_eq!(Dictionary::from_bytes(&again), Ok(read));
+            }
+        });
     }
 }

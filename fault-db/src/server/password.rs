@@ -4,6 +4,10 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::address::Address;
+use crate::given::read_given;
+
+/// A longer password file is none, bytes.
+const LONGEST_FILE: u64 = 1 << 20;
 
 /// A password, and a file that was not looked into, in words.
 #[derive(Default, PartialEq, Eq)]
@@ -90,8 +94,10 @@ fn read(file: &Path) -> Result<String, String> {
             ));
         }
     }
-    std::fs::read_to_string(file)
-        .map_err(|error| format!("the password file {shown} cannot be read ({error})"))
+    let cannot =
+        |why: &dyn std::fmt::Display| format!("the password file {shown} cannot be read ({why})");
+    let bytes = read_given(file, LONGEST_FILE).map_err(|error| cannot(&error))?;
+    String::from_utf8(bytes).map_err(|error| cannot(&error))
 }
 
 /// The password of a line `host:port:database:user:password`, if the line is for this one.
@@ -173,5 +179,20 @@ mod tests {
         let told = |name: &str| (name == "PGPASSWORD").then(|| OsString::from("told"));
         let found = find(&address, "kim", "history", &told);
         assert_eq!(found.secret.as_deref(), Some("told"));
+    }
+
+    #[test]
+    fn lines_of_a_password_file_may_be_anything() {
+        let lines = [
+            "localhost:5432:history:kim:s\\:ecret",
+            "*:*:*:*:x",
+            "# no",
+            "a\\\\:1:b",
+        ];
+        let fuzz = fuzzing::Fuzz::new("pgpass", env!("CARGO_MANIFEST_DIR"), lines);
+        fuzz.run(100_000, |bytes| {
+            let line = String::from_utf8_lossy(bytes);
+            let _ = matching(&line, ["localhost", "5432", "history", "kim"]);
+        });
     }
 }

@@ -7,54 +7,70 @@ use postgres::error::SqlState;
 use super::trouble;
 use crate::base::{Field, Row, Server, SqlError};
 use crate::error::StoreError;
-use crate::query::{MOST_BYTES, QueryResult, SqlValue};
+use crate::query::{MOST_BYTES, QueryBounds, QueryLimit, QueryResult, SqlValue, exceeds};
 
 const DOING: &str = "answering a query";
 
-/// Rows that are fetched together.
+/// Most rows that are fetched together: first one, then ever more, because they come whole however long they are.
 const ROWS_AT_ONCE: i32 = 200;
 
-/// Answers one question; of a long answer the first `max_rows`.
+/// Answers one question; of a long answer the first rows.
 pub(crate) fn answer(
     server: &Server,
     path: &Path,
     sql: &str,
-    max_rows: usize,
+    bounds: QueryBounds,
+    goes_on: &mut dyn FnMut() -> bool,
 ) -> Result<QueryResult, StoreError> {
     if sql.trim().trim_end_matches(';').is_empty() {
         return Err(refused("it is empty"));
     }
     let found = server.with_client(|client| {
         let mut transaction = client.build_transaction().read_only(true).start()?;
+        if let Some(most_ms) = bounds.server_ms {
+            transaction.batch_execute(&format!("SET LOCAL statement_timeout = {most_ms}"))?;
+        }
         let statement = transaction.prepare(sql)?;
         let columns: Vec<_> = (statement.columns().iter())
             .map(|column| column.name().to_owned())
             .collect();
         if columns.is_empty() {
-            return Ok(None);
+            return Ok(Answered::Otherwise);
         }
         let portal = transaction.bind(&statement, &[])?;
         let (mut rows, mut bytes, mut truncated) = (Vec::new(), 0, false);
+        let mut at_once = 1;
         loop {
-            let some = transaction.query_portal(&portal, ROWS_AT_ONCE)?;
-            let is_last = some.len() < ROWS_AT_ONCE as usize;
+            // The server's limit is for each part of the answer.
+            if !goes_on() {
+                return Ok(Answered::TooMuch(QueryLimit::Stopped));
+            }
+            let some = transaction.query_portal(&portal, at_once)?;
+            let is_last = some.len() < at_once as usize;
+            at_once = (at_once * 2).min(ROWS_AT_ONCE);
             for row in &some {
-                truncated = rows.len() == max_rows || bytes > MOST_BYTES;
+                let values = values(row, columns.len());
+                bytes += values.iter().flatten().map(SqlValue::bytes).sum::<usize>();
+                if bytes > MOST_BYTES && rows.is_empty() {
+                    return Ok(Answered::TooMuch(QueryLimit::Row));
+                }
+                truncated = rows.len() == bounds.rows || bytes > MOST_BYTES;
                 if truncated {
                     break;
                 }
-                let values = values(row, columns.len());
-                bytes += values.iter().flatten().map(SqlValue::bytes).sum::<usize>();
                 rows.push(values);
             }
             if truncated || is_last {
-                return Ok(Some((columns, rows, truncated)));
+                return Ok(Answered::Rows(columns, rows, truncated));
             }
         }
     });
     let found = found.map_err(|error| sorted(path, error))?;
-    // What has no columns does something instead of answering.
-    let (columns, rows, truncated) = found.ok_or_else(|| refused("it would do more than read"))?;
+    let (columns, rows, truncated) = match found {
+        Answered::Rows(columns, rows, truncated) => (columns, rows, truncated),
+        Answered::Otherwise => return Err(refused("it would do more than read")),
+        Answered::TooMuch(limit) => return Err(exceeds(limit)),
+    };
     let rows = rows.into_iter().collect::<Result<_, _>>();
     let rows = rows.map_err(|error| match error {
         SqlError::Value { column, reason } => StoreError::QueryFailed {
@@ -67,6 +83,16 @@ pub(crate) fn answer(
         rows,
         truncated,
     })
+}
+
+/// What came of a question.
+enum Answered {
+    /// Names of columns, rows, and whether there are more.
+    Rows(Vec<String>, Vec<Result<Vec<SqlValue>, SqlError>>, bool),
+    /// What has no columns does something instead of answering.
+    Otherwise,
+    /// More than it may take.
+    TooMuch(QueryLimit),
 }
 
 fn values(row: &postgres::Row, columns: usize) -> Result<Vec<SqlValue>, SqlError> {
@@ -85,6 +111,9 @@ fn refused(reason: &str) -> StoreError {
 fn sorted(path: &Path, error: postgres::Error) -> StoreError {
     if error.code() == Some(&SqlState::READ_ONLY_SQL_TRANSACTION) {
         return refused("it would do more than read");
+    }
+    if error.code() == Some(&SqlState::QUERY_CANCELED) {
+        return exceeds(QueryLimit::Stopped);
     }
     match trouble::sorted(path, DOING, error) {
         StoreError::Server { source, .. } => match source.as_db_error() {

@@ -13,6 +13,10 @@ use rustls::{
 use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::address::{Address, Guard};
+use crate::given::read_given;
+
+/// Certificates of all issuers of the world take less, bytes.
+const LONGEST_FILE: u64 = 16 << 20;
 
 /// How to make connections to this address; the error says which certificates cannot be had.
 pub(super) fn connector(address: &Address) -> Result<MakeRustlsConnect, String> {
@@ -47,7 +51,7 @@ fn trusted(file: Option<&Path>) -> Result<RootCertStore, String> {
     };
     let shown = file.display();
     let bad = |error: &dyn std::fmt::Display| format!("sslrootcert {shown}: {error}");
-    let text = std::fs::read(file).map_err(|error| bad(&error))?;
+    let text = read_given(file, LONGEST_FILE).map_err(|error| bad(&error))?;
     for certificate in CertificateDer::pem_slice_iter(&text) {
         let certificate = certificate.map_err(|error| bad(&error))?;
         roots.add(certificate).map_err(|error| bad(&error))?;

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use fault_db::{
-    FaultFilter, FaultState, RecordingRecord, RepairRecord, RunFilter, RunWriter, StatKey,
-    StatQuery, Store, StoreError, TrendQuery, Verdict,
+    FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairRecord, RunFilter,
+    RunWriter, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
 };
 
 use crate::common;
@@ -497,6 +497,22 @@ fn a_question_in_sql_is_answered_and_cannot_change_anything() {
     ] {
         let refused = writer.query_read_only(sql, 10).expect_err(sql).to_string();
         assert!(refused.contains(words), "{sql}: {refused}");
+    }
+    let sleeps = "SELECT CAST(pg_sleep(600) AS TEXT)";
+    for (sql, server_ms, limit) in [
+        (sleeps, Some(200), QueryLimit::Stopped),
+        ("SELECT repeat('x', 20000000)", None, QueryLimit::Row),
+    ] {
+        let bounds = QueryBounds {
+            rows: 10,
+            server_ms,
+            ..QueryBounds::default()
+        };
+        let stopped = writer.query_within(sql, bounds, || true).expect_err(sql);
+        assert!(
+            matches!(stopped, StoreError::QueryExceeds { limit: found } if found == limit),
+            "{stopped}"
+        );
     }
     assert_eq!(
         writer

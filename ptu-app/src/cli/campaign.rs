@@ -87,9 +87,7 @@ impl CampaignArguments {
         store.put_dictionary(&outcome.dictionary, clock::now_us())?;
         if let Some(file) = &self.save {
             let bytes = outcome.dictionary.to_bytes().map_err(Failure::bench)?;
-            std::fs::write(file, bytes).map_err(|error| {
-                Failure::bench(format!("cannot write {}: {error}", file.display()))
-            })?;
+            crate::data::write(file, bytes)?;
         }
         let figures = figures(&outcome.assessments, &outcome.good);
         let redundancy = redundancy(&outcome.dictionary);

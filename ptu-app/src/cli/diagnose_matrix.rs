@@ -10,11 +10,14 @@ use fault_db::diagnosis::matrix::{
 };
 
 use super::print_out;
+use crate::data::read_within;
 use crate::failure::{Exit, Failure, did_you_mean};
 use crate::table::Table;
 
 /// States a table shows; JSON has all.
 const SHOWN_STATES: usize = 20;
+/// Longest file of a matrix or of outcomes, bytes.
+const LONGEST_FILE: u64 = 64 << 20;
 
 /// What is asked of a matrix.
 #[derive(Debug, Args)]
@@ -71,8 +74,7 @@ pub(super) fn diagnose_matrix(
 }
 
 fn read(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file)
-        .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))
+    read_within(file, LONGEST_FILE)
 }
 
 fn wrong(place: &impl Display, error: &MatrixError) -> Failure {

@@ -29,6 +29,7 @@ use serde::Serialize;
 use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Exit, Failure, did_you_mean_number};
+use crate::run::loading;
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///
@@ -67,6 +68,9 @@ enum Verb {
     Db(db::DbArguments),
     /// List serial ports
     Ports(ports::PortsArguments),
+    /// Load scripts for another process of this program
+    #[command(name = loading::WORD, hide = true)]
+    LoadScripts,
 }
 
 impl Cli {
@@ -93,6 +97,8 @@ impl Cli {
     /// # Errors
     /// With a message for a person and an exit code.
     pub fn run(self) -> Result<Exit, Failure> {
+        // The running program, also where its file was replaced since.
+        loading::load_apart("/proc/self/exe".into());
         let Some(verb) = self.verb else {
             return gui::GuiArguments::usual()?.run();
         };
@@ -109,6 +115,7 @@ impl Cli {
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
+            Verb::LoadScripts => loading::serve().map(|()| Exit::Passed),
         }
     }
 }

@@ -5,9 +5,10 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, FromArgMatches};
+use fault_db::read_given;
 
 use super::{Cli, print_out};
-use crate::data;
+use crate::data::{self, LONGEST_FILE};
 use crate::failure::{Exit, Failure, did_you_mean};
 use crate::table::Table;
 
@@ -186,12 +187,12 @@ fn usual_file() -> Result<PathBuf, Failure> {
 }
 
 fn load(file: &Path) -> Result<Questions, Failure> {
-    let text = match std::fs::read_to_string(file) {
+    let text = match read_given(file, LONGEST_FILE) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Questions::new()),
         other => other
             .map_err(|error| Failure::bench(format!("cannot read {}: {error}", file.display())))?,
     };
-    serde_json::from_str(&text).map_err(|error| {
+    serde_json::from_slice(&text).map_err(|error| {
         Failure::bench(format!(
             "{} is damaged ({error}); mend or delete it",
             file.display()
@@ -201,7 +202,6 @@ fn load(file: &Path) -> Result<Questions, Failure> {
 
 fn store(file: &Path, questions: &Questions) -> Result<(), Failure> {
     data::keep(file, questions)
-        .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
 }
 
 #[cfg(test)]
@@ -239,5 +239,22 @@ mod tests {
                 "{more}"
             );
         }
+    }
+
+    #[test]
+    fn a_file_of_questions_may_be_anything() {
+        let folder = tempfile::tempdir().expect("folder");
+        let file = folder.path().join("questions.json");
+        let kept = r#"{"worst":["faults","stats","--by=lru","--when","90d"],"a b":[]}"#;
+        let fuzz = fuzzing::Fuzz::new("questions", env!("CARGO_MANIFEST_DIR"), [kept]);
+        fuzz.run(5_000, |bytes| {
+            std::fs::write(&file, bytes).expect("written");
+            if let Ok(questions) = load(&file) {
+                list(&questions);
+                for words in questions.values() {
+                    without_rivals(words, &["--when=7d".to_owned(), "--csv".to_owned()]);
+                }
+            }
+        });
     }
 }

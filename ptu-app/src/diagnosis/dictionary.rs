@@ -1,8 +1,8 @@
 //! Which dictionary a run is held against: one made by a campaign on this machine, or the one that
 //! comes with the scripts.
 
-use fault_db::Store;
 use fault_db::diagnosis::{Basis, Dictionary};
+use fault_db::{Store, read_given};
 
 use super::basis;
 use crate::data::ScriptsDirectory;
@@ -10,6 +10,8 @@ use crate::failure::Failure;
 
 /// The dictionary that comes with the scripts, in their directory.
 const SHIPPED: &str = "dictionary.zst";
+/// Longest dictionary, packed, bytes.
+const LONGEST_PACKED: u64 = 64 << 20;
 
 /// Where a dictionary is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,11 +90,11 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
 
 fn shipped(directory: &ScriptsDirectory) -> Result<Option<Dictionary>, Failure> {
     let file = directory.path().join(SHIPPED);
-    if !file.is_file() {
+    if !file.exists() {
         return Ok(None);
     }
     let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
-    let packed = std::fs::read(&file).map_err(|error| wrong(error.to_string()))?;
+    let packed = read_given(&file, LONGEST_PACKED).map_err(|error| wrong(error.to_string()))?;
     Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
 }
 

@@ -120,6 +120,11 @@ impl App {
         &self.units
     }
 
+    /// Questions to the database and to files, likewise.
+    pub fn library(&self) -> &Library {
+        &self.library
+    }
+
     /// It is closed: every run recorded, every unit disarmed.
     pub fn is_closed(&self) -> bool {
         self.closed

@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use fault_db::read_given;
 use serde::{Deserialize, Serialize};
 
 use super::Page;
 use super::units::UnitChoice;
+use crate::data::LONGEST_FILE;
+use crate::failure::Failure;
 use crate::words::Language;
 
 /// Everything is at least and at most so large.
@@ -64,8 +67,8 @@ impl Settings {
 
     /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
     pub fn load(file: &Path) -> Self {
-        let text = std::fs::read_to_string(file).unwrap_or_default();
-        let mut settings: Self = serde_json::from_str(&text).unwrap_or_default();
+        let text = read_given(file, LONGEST_FILE).unwrap_or_default();
+        let mut settings: Self = serde_json::from_slice(&text).unwrap_or_default();
         settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
         settings
     }
@@ -74,7 +77,7 @@ impl Settings {
     ///
     /// # Errors
     /// The file or its folder cannot be written.
-    pub fn save(&self, file: &Path) -> std::io::Result<()> {
+    pub fn save(&self, file: &Path) -> Result<(), Failure> {
         crate::data::keep(file, self)
     }
 }

@@ -10,6 +10,7 @@ mod junit;
 pub(crate) mod plot;
 pub mod run;
 
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use fault_db::{RunDetail, Store};
@@ -19,6 +20,7 @@ pub(crate) use plot::round_step;
 
 use crate::data::{self, ScriptsDirectory};
 use crate::failure::Failure;
+use crate::new_file::{NewFile, cannot_write};
 use crate::words::Language;
 use run::Sheet;
 
@@ -97,6 +99,26 @@ pub fn write(
         )?;
     }
     Ok(())
+}
+
+/// Writes one to a file begun for it, under a name beside it where that is taken; which it was.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_beside(
+    target: &Target,
+    mut file: NewFile,
+    store: &Store,
+    directory: &ScriptsDirectory,
+    run: &RunDetail,
+    language: Language,
+) -> Result<PathBuf, Failure> {
+    let gather = || Sheet::gather(store, Some(directory), run.run.id);
+    let sheet = target.is_sheet().then(gather).transpose()?;
+    let content = content(target, run, sheet.as_ref(), language)?;
+    let written = file.write_all(&content);
+    written.map_err(|error| cannot_write(&target.path, &error))?;
+    file.finish_beside()
 }
 
 fn content(

@@ -1,6 +1,8 @@
 //! Signals of a file laid at the times of a stored trace's rows.
 
-use fault_db::{Channel, TraceData};
+use std::collections::BTreeSet;
+
+use fault_db::TraceData;
 
 use super::series::Import;
 use crate::failure::Failure;
@@ -15,6 +17,8 @@ pub struct Laid {
     pub trace: TraceData,
     /// The file's signals, at the same rows.
     pub imported: TraceData,
+    /// Names of the file's signals that the trace does not have: nothing is laid beside nothing.
+    pub unknown: Vec<String>,
     /// Seconds from the trigger to the first and last row both have.
     pub window_s: (f64, f64),
     /// Whether the file's samples came at the trace's own rows.
@@ -52,6 +56,8 @@ pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, 
     let rows = trace.rows();
     let (mut first, mut end, mut is_row_by_row) = (rows, 0, true);
     let span_us = span_us(&import);
+    let known: BTreeSet<&str> = trace.channels.iter().map(|c| c.name.as_str()).collect();
+    let (mut names, mut unknown) = (BTreeSet::new(), Vec::new());
     for table in import.tables {
         let held = Held::new(&table.times_us, later_us, rows, row_us);
         first = first.min(held.rows.start);
@@ -59,7 +65,18 @@ pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, 
         is_row_by_row &= held.is_row_by_row;
         // Each column goes as soon as it is laid: a large file is in memory once.
         for (channel, column) in table.channels.into_iter().zip(table.columns) {
-            add(&mut imported, channel, held.column(&column))?;
+            if !names.insert(channel.name.clone()) {
+                return Err(Failure::usage(format!(
+                    "signal \"{}\" comes twice in the file",
+                    channel.name
+                )));
+            }
+            if known.contains(channel.name.as_str()) {
+                imported.channels.push(channel);
+                imported.columns.push(held.column(&column));
+            } else {
+                unknown.push(channel.name);
+            }
         }
     }
     if first >= end {
@@ -74,21 +91,10 @@ pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, 
     Ok(Laid {
         trace,
         imported,
+        unknown,
         window_s: (at_s(first), at_s(end - 1)),
         is_row_by_row,
     })
-}
-
-fn add(imported: &mut TraceData, channel: Channel, column: Vec<f64>) -> Result<(), Failure> {
-    if imported.column(&channel.name).is_some() {
-        return Err(Failure::usage(format!(
-            "signal \"{}\" comes twice in the file",
-            channel.name
-        )));
-    }
-    imported.channels.push(channel);
-    imported.columns.push(column);
-    Ok(())
 }
 
 /// Which of a table's rows stands at each row of a trace.

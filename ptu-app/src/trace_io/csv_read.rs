@@ -1,16 +1,17 @@
 //! Comma-separated values as signals: our own exports, and any table with times in its first column.
 
-use std::fs::File;
+use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use fault_db::{Channel, ChannelKind};
+use fault_db::{Channel, ChannelKind, open_given, read_given};
 use serde_json::Value;
 
 use super::about::About;
 use super::csv::heading;
 use super::export::beside;
-use super::series::{Import, Table, plain, wrong};
+use super::series::{Import, Table, check_size, plain, wrong};
+use crate::data::LONGEST_FILE;
 use crate::failure::Failure;
 
 /// A longer line is none of a table of signals.
@@ -20,7 +21,7 @@ const MAX_LINE: u64 = 1 << 20;
 /// tab.
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let about = about(file)?;
-    let opened = File::open(file);
+    let opened = open_given(file);
     let opened = opened
         .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))?;
     let mut lines = Lines {
@@ -41,7 +42,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
 /// What stands in the description beside, if there is one.
 fn about(file: &Path) -> Result<Option<About>, Failure> {
     let beside = beside(file);
-    let text = match std::fs::read_to_string(&beside) {
+    let text = match read_given(&beside, LONGEST_FILE) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => {
@@ -50,7 +51,7 @@ fn about(file: &Path) -> Result<Option<About>, Failure> {
         }
     };
     let document: Value =
-        serde_json::from_str(&text).map_err(|error| wrong(&beside, &error.to_string()))?;
+        serde_json::from_slice(&text).map_err(|error| wrong(&beside, &error.to_string()))?;
     // Another program's description says nothing of what is asked here.
     let note = document.get("notes").and_then(|notes| notes.get(0));
     Ok(note.and_then(|note| serde_json::from_value(note.clone()).ok()))
@@ -120,12 +121,14 @@ fn read_table<R: BufRead>(
         let what = "headings are missing: times, then a column a signal";
         return Err(lines.wrong(what));
     }
+    check_size(file, headings.len() - 1, 0)?;
     let channels: Vec<Channel> = headings[1..]
         .iter()
         .map(|heading| channel(heading, known))
         .collect();
+    let mut names = BTreeSet::new();
     for (place, channel) in channels.iter().enumerate() {
-        if channels[..place].iter().any(|c| c.name == channel.name) {
+        if !names.insert(channel.name.as_str()) {
             return Err(lines.wrong_cell(place + 1, &headings[place + 1], "it comes twice"));
         }
     }
@@ -157,7 +160,7 @@ fn read_table<R: BufRead>(
             let wrong = |what: String| lines.wrong_cell(place + 1, &headings[place + 1], &what);
             table.columns[place].push(sample.map_err(wrong)?);
         }
-        table.check_size(file)?;
+        check_size(file, table.columns.len(), table.samples())?;
     }
 }
 

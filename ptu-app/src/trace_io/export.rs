@@ -8,9 +8,9 @@ use std::str::FromStr;
 use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 
 use super::about::About;
-use super::new_file::{NewFile, cannot_write};
 use super::{csv, mcap_write, parquet};
 use crate::failure::Failure;
+use crate::new_file::{NewFile, cannot_write};
 
 /// Rows that are in memory at once, of all signals.
 const ROWS_AT_ONCE: usize = 4096;
@@ -199,15 +199,22 @@ fn chosen(head: &TraceHead, signals: &[String]) -> Result<Vec<Channel>, Failure>
 /// The file cannot be written, or the trace cannot be read.
 pub fn export(chosen: &Chosen<'_>, to: &Path, force: bool) -> Result<(), Failure> {
     let format = Format::of(to)?;
-    let mut file = NewFile::begin(to, force)?;
+    let begin = match force {
+        true => NewFile::begin,
+        false => NewFile::begin_new,
+    };
+    let mut file = begin(to)?;
     match format {
         Format::Csv => {
             let beside = beside(to);
-            let mut description = NewFile::begin(&beside, force)?;
+            let mut description = begin(&beside)?;
             let name = to.file_name().unwrap_or_default().to_string_lossy();
             let document = csv::description(&name, &chosen.about);
             writeln!(description, "{document:#}").map_err(|error| cannot_write(&beside, &error))?;
             put_csv(&mut file, chosen, to)?;
+            // Both are whole before the first of them takes its place.
+            description.settle()?;
+            file.settle()?;
             description.finish()?;
         }
         Format::Parquet => parquet::put(&mut file, chosen, to)?,

@@ -1,22 +1,30 @@
 //! MCAP files as signals: our own exports, and any messages in JSON.
 
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fmt::Display;
 use std::io::Read;
 use std::path::Path;
 
-use fault_db::Channel;
+use fault_db::{Channel, open_given};
 use mcap::McapError;
 use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
 use super::about::{About, NAME};
-use super::series::{Import, Table, plain, wrong};
+use super::series::{Import, Table, check_size, plain, wrong};
 use crate::failure::Failure;
 
 /// A longer record, or piece of compressed messages, is refused instead of being held in memory.
 const MAX_RECORD: usize = 32 << 20;
+/// All records together, unpacked: several times what the samples allowed take as text.
+const MAX_BYTES: usize = 512 << 20;
+/// A longer message is none of signals, bytes.
+const MAX_MESSAGE: usize = 1 << 20;
+/// A longer name is none of a topic or a signal, bytes.
+const MAX_NAME: usize = 256;
+/// A longer description is none of ours, bytes.
+const MAX_ABOUT: usize = 4 << 20;
 /// Fields within fields are looked at this deep.
 const MAX_DEPTH: usize = 8;
 
@@ -26,6 +34,17 @@ struct Topic {
     table: Table,
     /// Place of a field's column, by its path.
     places: BTreeMap<String, usize>,
+    /// So many names of signals are known to be short enough.
+    checked: usize,
+}
+
+fn check_name(file: &Path, name: &str) -> Result<(), Failure> {
+    if name.len() <= MAX_NAME {
+        return Ok(());
+    }
+    let begin: String = name.chars().take(20).collect();
+    let what = format!("the name \"{begin}…\" is longer than {MAX_NAME} bytes");
+    Err(wrong(file, &what))
 }
 
 /// Reads a file. Each number, bit or null in a message is a sample of the signal its field names; what is
@@ -33,7 +52,7 @@ struct Topic {
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let cannot =
         |error: std::io::Error| Failure::usage(format!("cannot read {}: {error}", file.display()));
-    let mut input = File::open(file).map_err(cannot)?;
+    let mut input = open_given(file).map_err(cannot)?;
     let options = LinearReaderOptions::default()
         .with_record_length_limit(MAX_RECORD)
         .with_prevalidate_chunk_crcs(true);
@@ -44,8 +63,10 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
         topics: BTreeMap::new(),
         about: None,
         messages: 0,
+        signals: 0,
+        samples: 0,
     };
-    let mut bytes = 0;
+    let (mut bytes, mut unpacked) = (0, 0);
     while let Some(event) = reader.next_event() {
         let damaged = |error: McapError| {
             let why = told(&error);
@@ -61,6 +82,11 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
                 bytes += read;
             }
             LinearReadEvent::Record { opcode, data } => {
+                unpacked += data.len();
+                if unpacked > MAX_BYTES {
+                    let what = format!("it unpacks to more than {MAX_BYTES} bytes");
+                    return Err(wrong(file, &what));
+                }
                 reading.take(mcap::parse_record(opcode, data).map_err(damaged)?)?;
             }
         }
@@ -86,16 +112,22 @@ struct Reading<'a> {
     topics: BTreeMap<u16, Topic>,
     about: Option<About>,
     messages: usize,
+    /// Of all topics.
+    signals: usize,
+    /// Of all topics.
+    samples: usize,
 }
 
 impl Reading<'_> {
     fn take(&mut self, record: Record<'_>) -> Result<(), Failure> {
         match record {
             Record::Channel(channel) if channel.message_encoding == "json" => {
+                check_name(self.file, &channel.topic)?;
                 self.topics.entry(channel.id).or_insert_with(|| Topic {
                     name: channel.topic.trim_start_matches('/').to_owned(),
                     table: Table::default(),
                     places: BTreeMap::new(),
+                    checked: 0,
                 });
             }
             Record::Message { header, data } => {
@@ -103,17 +135,28 @@ impl Reading<'_> {
                 let Some(topic) = self.topics.get_mut(&header.channel_id) else {
                     return Ok(());
                 };
-                let message: Value = serde_json::from_slice(&data).map_err(|error| {
-                    let (number, topic) = (self.messages, &topic.name);
-                    let what = format!("message {number}, topic \"{topic}\": {error}");
+                let (number, name) = (self.messages, &topic.name);
+                let wrong = |what: &dyn Display| {
+                    let what = format!("message {number}, topic \"{name}\": {what}");
                     wrong(self.file, &what)
-                })?;
+                };
+                if data.len() > MAX_MESSAGE {
+                    return Err(wrong(&format!("it is longer than {MAX_MESSAGE} bytes")));
+                }
+                let message: Value =
+                    serde_json::from_slice(&data).map_err(|error| wrong(&error))?;
                 let at_us = i64::try_from(header.log_time / 1000).unwrap_or(i64::MAX);
+                self.signals -= topic.table.columns.len();
+                self.samples -= topic.table.samples();
                 topic.take(at_us, &message, self.known);
-                topic.table.check_size(self.file)?;
+                self.signals += topic.table.columns.len();
+                self.samples += topic.table.samples();
+                check_size(self.file, self.signals, self.samples)?;
+                topic.check_names(self.file)?;
             }
             Record::Metadata(metadata) if metadata.name == NAME => {
                 let about = metadata.metadata.get("about");
+                let about = about.filter(|about| about.len() <= MAX_ABOUT);
                 self.about = about.and_then(|about| serde_json::from_str(about).ok());
             }
             _ => {}
@@ -132,6 +175,10 @@ impl Reading<'_> {
             return Err(wrong(self.file, &what));
         }
         let mut is_utc = true;
+        let own: BTreeMap<&str, &Channel> = (self.about.iter())
+            .flat_map(|about| &about.channels)
+            .map(|channel| (channel.name.as_str(), channel))
+            .collect();
         for table in &mut tables {
             in_order(table);
             if let Some(about) = &self.about {
@@ -141,9 +188,8 @@ impl Reading<'_> {
                     *time_us = time_us.saturating_sub(trigger_us);
                 }
                 for channel in &mut table.channels {
-                    let own = about.channels.iter().find(|own| own.name == channel.name);
-                    if let Some(own) = own {
-                        *channel = own.clone();
+                    if let Some(own) = own.get(channel.name.as_str()) {
+                        *channel = (*own).clone();
                     }
                 }
             }
@@ -164,6 +210,15 @@ impl Topic {
         for column in &mut self.table.columns {
             column.resize(rows, f64::NAN);
         }
+    }
+
+    /// Refuses names that are none; called after each message, so that one has brought them.
+    fn check_names(&mut self, file: &Path) -> Result<(), Failure> {
+        while self.checked < self.table.channels.len() {
+            check_name(file, &self.table.channels[self.checked].name)?;
+            self.checked += 1;
+        }
+        Ok(())
     }
 
     fn fields(&mut self, path: &mut String, value: &Value, depth: usize, known: &[Channel]) {

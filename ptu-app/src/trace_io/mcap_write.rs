@@ -14,8 +14,8 @@ use serde_json::{Map, Value, json};
 
 use super::about::{About, NAME};
 use super::export::Chosen;
-use super::new_file::cannot_write;
 use crate::failure::Failure;
+use crate::new_file::cannot_write;
 
 /// The topic of all messages.
 const TOPIC: &str = "trace";

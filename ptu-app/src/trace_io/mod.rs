@@ -13,7 +13,6 @@ mod csv_read;
 mod export;
 mod mcap_read;
 mod mcap_write;
-mod new_file;
 mod parquet;
 mod series;
 

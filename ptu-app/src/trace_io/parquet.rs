@@ -19,8 +19,8 @@ use parquet::schema::types::Type;
 
 use super::about::NAME;
 use super::export::Chosen;
-use super::new_file::cannot_write;
 use crate::failure::Failure;
+use crate::new_file::cannot_write;
 
 /// Rows of a row group; one column of a group is in memory at once.
 const GROUP_ROWS: usize = 1 << 16;

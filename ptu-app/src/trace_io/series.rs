@@ -9,6 +9,9 @@ use super::about::About;
 use super::{csv_read, mcap_read};
 use crate::failure::Failure;
 
+/// A file has at most so many signals; a trace of ours has a few hundred.
+const MOST_SIGNALS: usize = 4096;
+
 /// Signals that were sampled together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
@@ -53,18 +56,25 @@ pub fn import(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
 }
 
 impl Table {
-    /// Refuses what memory is not meant for.
-    pub(super) fn check_size(&self, file: &Path) -> Result<(), Failure> {
-        // The times are a column, too.
-        let samples = self.times_us.len().saturating_mul(self.columns.len() + 1);
-        if samples > MAX_SAMPLES {
-            return Err(wrong(
-                file,
-                &format!("it has more than {MAX_SAMPLES} samples; export a part of it"),
-            ));
-        }
-        Ok(())
+    /// Samples in it: the times are a column, too.
+    pub(super) fn samples(&self) -> usize {
+        self.times_us.len().saturating_mul(self.columns.len() + 1)
     }
+}
+
+/// Refuses a file that memory is not meant for, by what it has so far.
+pub(super) fn check_size(file: &Path, signals: usize, samples: usize) -> Result<(), Failure> {
+    let more = if signals > MOST_SIGNALS {
+        format!("{MOST_SIGNALS} signals")
+    } else if samples > MAX_SAMPLES {
+        format!("{MAX_SAMPLES} samples")
+    } else {
+        return Ok(());
+    };
+    Err(wrong(
+        file,
+        &format!("it has more than {more}; export a part of it"),
+    ))
 }
 
 /// A number of unknown kind, as which a signal is taken that no trace has.

@@ -5,6 +5,7 @@ mod check;
 mod query;
 mod server;
 mod sync;
+mod watch;
 
 use std::path::PathBuf;
 

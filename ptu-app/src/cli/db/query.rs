@@ -1,9 +1,12 @@
 //! `ptu db query`: a question in SQL.
 
+use std::time::Duration;
+
 use clap::Args;
-use fault_db::{QueryResult, SqlValue};
+use fault_db::{QueryBounds, QueryLimit, QueryResult, SqlValue, StoreError};
 use serde_json::{Map, Value, json};
 
+use super::watch::{Watch, too_long};
 use crate::cli::output::Output;
 use crate::cli::{Database, print_json};
 use crate::failure::{Exit, Failure};
@@ -11,26 +14,50 @@ use crate::table::Table;
 
 /// Rows a query prints at most.
 const MAX_ROWS: usize = 10_000;
+/// Bytes of a megabyte.
+const MEGABYTE: u64 = 1_000_000;
 
 /// Ask the database in SQL, reading only; `ptu db schema` says about what
 ///
 /// Examples:
 ///   ptu db query "SELECT unit, count(*) FROM faults WHERE state = 'open' GROUP BY unit"
+///   ptu db query --max-time 600 "SELECT …"    a question that takes long
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct QueryArguments {
     /// The question
     #[arg(value_name = "SELECT …")]
     sql: String,
+    /// Give the question up after so many seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    max_time: u32,
+    /// Memory it may take in a file, MB
+    #[arg(long, value_name = "MB", default_value_t = 256, value_parser = clap::value_parser!(u32).range(32..=1_000_000))]
+    max_memory: u32,
+    /// Temporary disk it may take in a file, MB
+    #[arg(long, value_name = "MB", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    max_disk: u32,
     #[command(flatten)]
     output: Output,
 }
 
 impl QueryArguments {
     pub fn query(&self, database: &Database) -> Result<Exit, Failure> {
-        let answer = database
-            .open_read_only()?
-            .query_read_only(&self.sql, MAX_ROWS)?;
+        let store = database.open_read_only()?;
+        let watch = Watch::begin(
+            Duration::from_secs(self.max_time.into()),
+            u64::from(self.max_disk) * MEGABYTE,
+        );
+        let bounds = QueryBounds {
+            rows: MAX_ROWS,
+            memory_bytes: Some(u64::from(self.max_memory) * MEGABYTE),
+            server_ms: Some(self.max_time * 1000),
+        };
+        let answer = watch.over(|goes_on| store.query_within(&self.sql, bounds, goes_on));
+        let answer = answer.map_err(|error| match error {
+            StoreError::QueryExceeds { limit } => self.exceeded(limit, watch.stopped_by_disk()),
+            other => other.into(),
+        })?;
         self.output.save()?;
         if self.output.is_json() {
             return print_json(&answer);
@@ -42,6 +69,32 @@ impl QueryArguments {
         let columns: Vec<_> = columns.iter().map(String::as_str).collect();
         self.output
             .print(&columns, &rows(&answer, &columns), || table(&answer))
+    }
+}
+
+impl QueryArguments {
+    /// Which bound it was, and how to allow more.
+    fn exceeded(&self, limit: QueryLimit, disk: bool) -> Failure {
+        let Self {
+            max_time,
+            max_memory,
+            max_disk,
+            ..
+        } = self;
+        Failure::usage(match limit {
+            QueryLimit::Stopped if disk => format!(
+                "the question was given up: it takes more than {max_disk} MB of temporary disk; ask for less, or \
+                 allow more with --max-disk MB"
+            ),
+            QueryLimit::Stopped => too_long(max_time.to_owned().into()),
+            QueryLimit::Memory => format!(
+                "the question was given up: it takes more than {max_memory} MB of memory; ask for less, or \
+                 allow more with --max-memory MB"
+            ),
+            QueryLimit::Row => {
+                format!("the question was given up: {limit}; ask for less of it, as with substr()")
+            }
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use clap::Args;
-use fault_db::{Channel, Id, Store, TraceData};
+use fault_db::{Id, Store, TraceData};
 use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
@@ -13,6 +13,9 @@ use crate::cli::{ScriptsOption, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use crate::trace_io::{import, is_importable, lay};
+
+/// Names that are told of a file that has none of the trace's signals.
+const SHOWN_NAMES: usize = 10;
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
@@ -81,6 +84,9 @@ impl DiffArguments {
         if let Some(window_s) = sides.window_s {
             comparison.window_s = window_s;
         }
+        let is_asked = |name: &String| self.signals.is_empty() || self.signals.contains(name);
+        let unknown = sides.unknown.iter().filter(|name| is_asked(name));
+        comparison.missing.extend(unknown.cloned());
         if self.json {
             return print_json(&json!({
                 "a": a.to_string(), "b": sides.name,
@@ -101,19 +107,19 @@ impl DiffArguments {
     ) -> Result<Sides, Failure> {
         let import = import(file, &came.channels)?;
         let laid = lay(import, came, (self.shift * 1e6) as i64)?;
-        let is_known = |channel: &Channel| laid.trace.column(&channel.name).is_some();
         // Nothing compared must not look like nothing that differs.
-        if !laid.imported.channels.iter().any(is_known) {
-            let names: Vec<_> = laid
-                .imported
-                .channels
-                .iter()
-                .map(|c| c.name.as_str())
+        if laid.imported.channels.is_empty() {
+            let more = match laid.unknown.len().saturating_sub(SHOWN_NAMES) {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            let shown: Vec<_> = (laid.unknown.iter().take(SHOWN_NAMES))
+                .map(String::as_str)
                 .collect();
             return Err(Failure::usage(format!(
-                "{}: none of its signals is one of the trace's: {}",
+                "{}: none of its signals is one of the trace's: {}{more}",
                 file.display(),
-                names.join(", ")
+                shown.join(", ")
             )));
         }
         let rule = if laid.is_row_by_row {
@@ -126,6 +132,7 @@ impl DiffArguments {
             came: laid.trace,
             expected: laid.imported,
             rule,
+            unknown: laid.unknown,
             window_s: Some(laid.window_s),
         })
     }
@@ -138,6 +145,8 @@ struct Sides {
     came: TraceData,
     expected: TraceData,
     rule: Rule,
+    /// Signals of B that A does not have, which were not laid beside it.
+    unknown: Vec<String>,
     /// Seconds from the trigger, where the rows say more than is known.
     window_s: Option<(f64, f64)>,
 }
@@ -149,6 +158,7 @@ impl Sides {
             came,
             expected,
             rule,
+            unknown: Vec::new(),
             window_s: None,
         }
     }

@@ -10,7 +10,7 @@ mod run_note;
 mod share_bar;
 
 pub use chip::{chip, verdict_chip};
-pub use file::{cannot_write, new_file, usual_folder};
+pub use file::usual_folder;
 pub use limit_bar::{limit_bar, value_text};
 pub use named::named_combo;
 pub use run_list::RunList;

@@ -6,7 +6,8 @@ use fault_db::Id;
 
 use crate::failure::Failure;
 use crate::gui::library::Shelf;
-use crate::gui::parts::{new_file, usual_folder};
+use crate::gui::parts::usual_folder;
+use crate::new_file::NewFile;
 use crate::owner;
 use crate::report::{self, Target};
 use crate::words::Language;
@@ -43,20 +44,11 @@ pub fn write(
     wanted: &Path,
     language: Language,
 ) -> Result<PathBuf, Failure> {
-    let target = |path: &Path| -> Result<Target, Failure> {
-        path.to_string_lossy().parse().map_err(Failure::usage)
-    };
-    target(wanted)?.check()?;
+    let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
+    let file = NewFile::begin(wanted)?;
     let store = shelf.read()?;
     let detail = store.run(run, &owner::is_alive)?;
-    let (_, path) = new_file(wanted)?;
-    let scripts = Some(&shelf.scripts);
-    let written = report::write(&[target(&path)?], &store, scripts, &detail, language);
-    if written.is_err() {
-        // An empty file would pass for a report.
-        let _ = std::fs::remove_file(&path);
-    }
-    written.map(|()| path)
+    report::write_beside(&target, file, &store, &shelf.scripts, &detail, language)
 }
 
 #[cfg(test)]

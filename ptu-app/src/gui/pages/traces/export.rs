@@ -1,7 +1,7 @@
 //! The view as a picture or a table.
 
-use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
@@ -9,11 +9,10 @@ use eframe::egui::{Button, ColorImage, Rect, TextEdit, Ui};
 use fault_db::Id;
 
 use super::signals::name_input;
-use crate::data;
-use crate::failure::Failure;
 use crate::gui::Desk;
 use crate::gui::library::Pending;
-use crate::gui::parts::{cannot_write, new_file, usual_folder};
+use crate::gui::parts::usual_folder;
+use crate::new_file::{NewFile, cannot_write};
 use crate::trace_view::csv::csv;
 use crate::trace_view::{Kind, Scene};
 use crate::words::fill;
@@ -70,9 +69,10 @@ impl Export {
             let name = self.name.clone();
             let question = move |_: &_| {
                 let part = image.region(&rect, Some(scale));
-                let (file, path) = create(&name, "png")?;
-                encode(&part, file).map_err(|error| cannot_write(&path, &error))?;
-                Ok(path)
+                let place = with_ending(&name, "png");
+                let mut file = NewFile::begin(&place)?;
+                encode(&part, &mut file).map_err(|error| cannot_write(&place, &error))?;
+                file.finish_beside()
             };
             self.writing.push(desk.library.ask(question));
         }
@@ -101,9 +101,11 @@ impl Export {
         let name = self.name.clone();
         let question = move |_: &_| {
             let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
-            let (_, path) = create(&name, "csv")?;
-            data::write(&path, text)?;
-            Ok(path)
+            let place = with_ending(&name, "csv");
+            let mut file = NewFile::begin(&place)?;
+            let written = file.write_all(text.as_bytes());
+            written.map_err(|error| cannot_write(&place, &error))?;
+            file.finish_beside()
         };
         self.writing.push(desk.library.ask(question));
     }
@@ -115,14 +117,14 @@ pub fn usual_name(id: Id) -> String {
     file.display().to_string()
 }
 
-/// A new file of this name with this ending, which may have been typed with it.
-fn create(name: &str, ending: &str) -> Result<(File, PathBuf), Failure> {
+/// The name with this ending, which may have been typed with it.
+fn with_ending(name: &str, ending: &str) -> PathBuf {
     let name = name.trim();
     let name = name.strip_suffix(&format!(".{ending}")).unwrap_or(name);
-    new_file(Path::new(&format!("{name}.{ending}")))
+    format!("{name}.{ending}").into()
 }
 
-fn encode(image: &ColorImage, file: File) -> Result<(), png::EncodingError> {
+fn encode(image: &ColorImage, file: impl Write) -> Result<(), png::EncodingError> {
     let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
     let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
     encoder.set_color(png::ColorType::Rgba);
@@ -133,15 +135,14 @@ fn encode(image: &ColorImage, file: File) -> Result<(), png::EncodingError> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+
     use super::*;
 
     #[test]
     fn an_ending_that_was_typed_is_not_doubled() {
-        let folder = tempfile::tempdir().expect("folder");
         for (typed, made) in [("a", "a.csv"), (" b.csv ", "b.csv"), ("c.v2", "c.v2.csv")] {
-            let name = format!("{}/{}", folder.path().display(), typed.trim_start());
-            let (_, path) = create(&name, "csv").expect("made");
-            assert_eq!(path, folder.path().join(made));
+            assert_eq!(with_ending(typed, "csv"), PathBuf::from(made));
         }
     }
 

@@ -1,0 +1,98 @@
+//! How long a question to the database may take, and how much temporary disk.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use crate::failure::{Exit, Failure};
+
+/// From one look at the temporary files to the next.
+const LOOK: Duration = Duration::from_millis(50);
+/// A function of SQL that is at work when the time is over is not waited for longer than this.
+const GRACE: Duration = Duration::from_secs(1);
+/// What SQLite calls its temporary files.
+const TEMPORARY: &str = "etilqs_";
+
+/// The bounds of one question.
+pub struct Watch {
+    until: Instant,
+    most_time: Duration,
+    most_disk: u64,
+    disk: Arc<AtomicBool>,
+}
+
+impl Watch {
+    /// Time runs from now on.
+    pub fn begin(most_time: Duration, most_disk: u64) -> Self {
+        Self {
+            until: Instant::now() + most_time,
+            most_time,
+            most_disk,
+            disk: Arc::default(),
+        }
+    }
+
+    /// Asks with something that says whether it may go on. Ends the program should it not come back: a question
+    /// only reads, and what it has of the disk has no name.
+    pub fn over<T>(&self, ask: impl FnOnce(Box<dyn FnMut() -> bool + Send>) -> T) -> T {
+        let (until, most_time) = (self.until, self.most_time);
+        let (done, waits) = mpsc::channel::<()>();
+        std::thread::spawn(move || {
+            let left = (until + GRACE).saturating_duration_since(Instant::now());
+            if waits.recv_timeout(left) == Err(mpsc::RecvTimeoutError::Timeout) {
+                let failure = Failure::usage(too_long(most_time.as_secs()));
+                eprintln!("ptu: {failure}");
+                std::process::exit(Exit::Usage.code().into());
+            }
+        });
+        let answer = ask(self.goes_on());
+        drop(done);
+        answer
+    }
+
+    fn goes_on(&self) -> Box<dyn FnMut() -> bool + Send> {
+        let (until, most_disk) = (self.until, self.most_disk);
+        let disk = Arc::clone(&self.disk);
+        let mut look = Instant::now() + LOOK;
+        Box::new(move || {
+            let now = Instant::now();
+            if now >= look {
+                look = now + LOOK;
+                if temporary_bytes() > most_disk {
+                    disk.store(true, Ordering::Relaxed);
+                    return false;
+                }
+            }
+            now < until
+        })
+    }
+
+    /// It was the disk, not the time.
+    pub fn stopped_by_disk(&self) -> bool {
+        self.disk.load(Ordering::Relaxed)
+    }
+}
+
+/// What is said of a question that takes too long.
+pub fn too_long(seconds: u64) -> String {
+    format!(
+        "the question was given up: it takes longer than {seconds} s; ask for less, or allow more with \
+         --max-time SECONDS"
+    )
+}
+
+/// Size of SQLite's temporary files that are open in this process; they have no name any more.
+fn temporary_bytes() -> u64 {
+    let open = std::fs::read_dir("/proc/self/fd").into_iter().flatten();
+    let sizes = open.flatten().filter_map(|entry| {
+        let path = entry.path();
+        let name = std::fs::read_link(&path).ok()?;
+        let is_temporary = Path::new(&name)
+            .file_name()
+            .is_some_and(|name| name.as_encoded_bytes().starts_with(TEMPORARY.as_bytes()));
+        is_temporary.then(|| std::fs::metadata(&path).map_or(0, |about| about.len()))
+    });
+    sizes.sum()
+}
