@@ -66,7 +66,9 @@ impl Rounds {
     pub(super) fn note(&mut self, verdict: Verdict, message: String) {
         self.verdict = self.verdict.and(verdict);
         if message.is_empty() || self.messages.contains(&message) {
-        } else if self.messages.len() < MESSAGES {
+            return;
+        }
+        if self.messages.len() < MESSAGES {
             self.messages.push(message);
         } else {
             self.more += 1;

@@ -217,7 +217,11 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
     let (over, setup) = (AtomicBool::new(false), setup());
     std::thread::scope(|scope| {
         for _ in 0..crate::pool::cores() {
-            scope.spawn(|| while !over.load(Ordering::Relaxed) {});
+            scope.spawn(|| {
+                while !over.load(Ordering::Relaxed) {
+                    std::hint::spin_loop();
+                }
+            });
         }
         for turn in 0..2 * TIMES {
             plan.jobs = [1, 3][turn % 2];
