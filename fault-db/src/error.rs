@@ -16,7 +16,7 @@ use crate::trace::TraceError;
 #[non_exhaustive]
 pub enum StoreError {
     /// Another connection holds the file for longer than the busy timeout.
-    #[error("{} is locked by another program; close it or choose another file with --db", .path.display())]
+    #[error("database busy: {} is locked by another program; close it or choose another file with --db", .path.display())]
     Locked {
         /// The database file.
         path: PathBuf,

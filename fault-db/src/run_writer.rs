@@ -42,6 +42,9 @@ pub struct RunWriter<'a> {
     /// Made of what is recorded, as it comes.
     pub(crate) seal: RunSeal,
     last_index: Option<u32>,
+    /// It records what a file that was busy for too long did not take: the run is whole, and sealed, where it
+    /// is brought together.
+    is_rest: bool,
     finished: bool,
 }
 
@@ -61,8 +64,11 @@ pub struct FaultStored {
 impl<'a> RunWriter<'a> {
     /// Begins a run and commits it.
     pub fn begin(store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
+        Self::begin_as(store.mint()?, store, record)
+    }
+
+    fn begin_as(id: Id, store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
         const DOING: &str = "beginning a run";
-        let id = store.mint()?;
         let sw_versions = json(&record.unit.sw_versions);
         let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
         let seal = RunSeal::begin(id, record, &sw_versions);
@@ -81,8 +87,32 @@ impl<'a> RunWriter<'a> {
             waiting,
             seal,
             last_index: None,
+            is_rest: false,
             finished: false,
         })
+    }
+
+    /// The file it writes to.
+    pub fn path(&self) -> &std::path::Path {
+        self.store.path()
+    }
+
+    /// Goes on with the same run in another file, with the steps that wait: this one does not take them. An
+    /// import of that file completes the run here.
+    ///
+    /// # Errors
+    /// The other file does not take the run; the steps wait here.
+    pub fn go_on_in<'b>(
+        &mut self,
+        store: &'b Store,
+        record: &RunRecord,
+    ) -> Result<RunWriter<'b>, StoreError> {
+        let mut rest = RunWriter::begin_as(self.id, store, record)?;
+        rest.waiting = std::mem::take(&mut self.waiting);
+        rest.last_index = self.last_index;
+        rest.is_rest = true;
+        self.finished = true;
+        Ok(rest)
     }
 
     /// The run's id.
@@ -193,6 +223,7 @@ impl<'a> RunWriter<'a> {
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
         let (unit, id, known_events) = (self.unit, self.id, self.known_events);
         let (says, digest) = self.seal.end(end);
+        let is_rest = self.is_rest;
         store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
@@ -204,7 +235,10 @@ impl<'a> RunWriter<'a> {
                 } = end;
                 let values = params![run, verdict, finished_at_us, bench_time_us, wall_time_us];
                 conn.prepare_cached(SQL)?.execute(values)?;
-                seal::append(store.base(), "run", id, &says, digest)
+                match is_rest {
+                    true => Ok(()),
+                    false => seal::append(store.base(), "run", id, &says, digest),
+                }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
             store.verify_proven((unit, run, id), known_events, end)

@@ -1,29 +1,49 @@
 //! The operator's stop: Ctrl-C, a polite kill or a terminal that closes, counted.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, OnceLock};
 
 /// Counts the presses of stop; clones share the count.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<AtomicU32>);
+pub struct Stop(Arc<Presses>);
+
+#[derive(Debug, Default)]
+struct Presses {
+    count: AtomicU32,
+    /// Why the tester itself pressed, and nobody else before it.
+    because: OnceLock<String>,
+}
 
 impl Stop {
     /// One more press.
     pub fn press(&self) {
-        self.0.fetch_add(1, Ordering::Relaxed);
+        self.0.count.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Pressed, if it was not: a second press would cut clean-up short.
     pub fn press_once(&self) {
-        let _ = self
-            .0
-            .compare_exchange(0, 1, Ordering::Relaxed, Ordering::Relaxed);
+        let (count, relaxed) = (&self.0.count, Ordering::Relaxed);
+        let _ = count.compare_exchange(0, 1, relaxed, relaxed);
+    }
+
+    /// Pressed by the tester itself, which cannot go on, unless somebody has pressed: a second press would cut
+    /// clean-up short.
+    pub fn press_because(&self, reason: String) {
+        // The reason first: who sees the press asks for it.
+        if self.presses() == 0 && self.0.because.set(reason).is_ok() {
+            self.press_once();
+        }
+    }
+
+    /// Why the tester itself ended what is under way; none if somebody did.
+    pub fn reason(&self) -> Option<&str> {
+        self.0.because.get().map(String::as_str)
     }
 
     /// Presses so far.
     pub fn presses(&self) -> u32 {
-        self.0.load(Ordering::Relaxed)
+        self.0.count.load(Ordering::Relaxed)
     }
 
     /// Whether another procedure may begin.

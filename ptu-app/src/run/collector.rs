@@ -59,6 +59,8 @@ pub struct Collector<'a> {
     /// Procedures that came to their end.
     finished: u32,
     link_lost: bool,
+    /// The tester itself could not go on.
+    broken_off: bool,
 }
 
 impl<'a> Collector<'a> {
@@ -78,6 +80,7 @@ impl<'a> Collector<'a> {
             verdict: Verdict::Skipped,
             finished: 0,
             link_lost: false,
+            broken_off: false,
         }
     }
 
@@ -115,7 +118,7 @@ impl<'a> Collector<'a> {
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,
-            _ if self.link_lost => Verdict::Error,
+            _ if self.link_lost || self.broken_off => Verdict::Error,
             // Nothing ran: nothing was tested.
             Verdict::Skipped => Verdict::Error,
             verdict => verdict,
@@ -188,14 +191,18 @@ impl<'a> Collector<'a> {
         });
     }
 
-    /// The end of all streams; `stopped` = somebody pressed stop.
+    /// The end of all streams; `stopped` = what that makes of what was still due: somebody pressed stop, or the
+    /// tester itself could not go on.
     ///
     /// What was still due is not tested then, so that what came before it is no verdict on the unit. A run
     /// that was over when stop was pressed is none of that: nothing after a failure is due where that ends it.
-    pub fn finish(mut self, id: Id, stopped: bool) -> (RunStore, Outcome) {
-        if stopped && self.finished < self.ordinal {
-            self.verdict = self.verdict.and(Verdict::Aborted);
+    pub fn finish(mut self, id: Id, stopped: Option<Verdict>) -> (RunStore, Outcome) {
+        if let Some(verdict) = stopped
+            && self.finished < self.ordinal
+        {
+            self.verdict = self.verdict.and(verdict);
         }
+        self.broken_off = stopped == Some(Verdict::Error) && self.verdict == Verdict::Error;
         let verdict = self.overall();
         let exit = match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,

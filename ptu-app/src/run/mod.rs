@@ -34,7 +34,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
-use btu_rig::procedure::{Procedure, RunOptions};
+use btu_rig::procedure::{self, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
@@ -149,7 +149,7 @@ pub fn run_on(
             }
         });
     }));
-    let (run_store, outcome) = collector.finish(id, stop.presses() > 0);
+    let (run_store, outcome) = collector.finish(id, left_out(stop));
     let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
@@ -160,6 +160,15 @@ pub fn run_on(
         )));
     }
     Ok((run_store.finish(end)?, outcome))
+}
+
+/// The verdict on what was still due when stop was pressed.
+fn left_out(stop: &Stop) -> Option<procedure::Verdict> {
+    let verdict = match stop.reason() {
+        Some(_) => procedure::Verdict::Error,
+        None => procedure::Verdict::Aborted,
+    };
+    (stop.presses() > 0).then_some(verdict)
 }
 
 /// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than

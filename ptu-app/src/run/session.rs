@@ -310,7 +310,12 @@ impl<L: UnitLink> Session<L> {
                 self.make_up(&mut cut, &mut |_, _, _| {});
             }
             let pressed = self.stop.presses();
-            (presses..pressed).for_each(|_| runner.stop());
+            for press in presses..pressed {
+                match self.stop.reason().filter(|_| press == 0) {
+                    Some(reason) => runner.held_up(reason.to_owned()),
+                    None => runner.stop(),
+                }
+            }
             presses = pressed;
             if let Some(behind) = self.held_up.take() {
                 runner.held_up(held_up(behind));
