@@ -282,10 +282,11 @@ pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
     if let Some(folder) = file.parent() {
         private::folder(folder).map_err(|error| failed(&error))?;
     }
-    write(
-        file,
-        serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?,
-    )
+    let content = serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?;
+    let mut new = NewFile::begin(file)?;
+    new.keep_to_owner()?;
+    new.write_all(&content).map_err(|error| failed(&error))?;
+    new.finish()
 }
 
 /// The scripts under a directory.

@@ -78,6 +78,21 @@ impl NewFile {
         Self::begin(place)
     }
 
+    /// Lets nobody but its owner read or write it.
+    ///
+    /// # Errors
+    /// The disk's.
+    pub fn keep_to_owner(&self) -> Result<(), Failure> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+            let mode = std::fs::Permissions::from_mode(0o600);
+            let set = self.file.get_ref().set_permissions(mode);
+            set.map_err(|error| cannot_write(&self.place, &error))?;
+        }
+        Ok(())
+    }
+
     /// Holds what was written so far to be on the disk: nothing but its name is missing then.
     ///
     /// # Errors

@@ -232,6 +232,13 @@ fn history_and_settings_are_for_their_owner_alone() {
         assert_eq!(mode(file), "600", "{file}");
     }
     assert_eq!(mode("ptu"), "700");
+    let kept = std::fs::read_dir(place.path("ptu"))
+        .expect("a folder")
+        .flatten();
+    for file in kept.filter(|file| file.path().is_file()) {
+        let name = format!("ptu/{}", file.file_name().to_string_lossy());
+        assert_eq!(mode(&name), "600", "{name}");
+    }
     // While it is open, what SQLite keeps beside it.
     let store = rusqlite::Connection::open(place.path("ptu/history.db")).expect("opens");
     store
@@ -253,4 +260,50 @@ fn history_and_settings_are_for_their_owner_alone() {
     assert_eq!(mode("ptu/history.db"), "644");
     let said = ptu("db backup second.db").exits(0);
     assert_eq!(mode("second.db"), "600", "{}", said.err);
+}
+
+/// Goal: of somebody else's file comes what fits, and the rest is named, with the exit code that says so.
+#[test]
+fn what_does_not_fit_its_seal_is_named_and_left_out_of_an_import() {
+    let place = Place::new();
+    let (theirs, ours) = (place.text_path("theirs.db"), place.text_path("ours.db"));
+    for _ in 0..2 {
+        place.ptu(&["run", "tcms/link", "--db", &theirs]).exits(0);
+    }
+    let runs = place.json(&["runs", "list", "--json", "--db", &theirs]);
+    let id = text(&list(&runs)[0]["id"]).to_owned();
+    let conn = rusqlite::Connection::open(&theirs).expect("opens");
+    let change = "UPDATE step SET message = 'x' WHERE run = (SELECT max(seq) FROM run)";
+    conn.execute_batch(change).expect("changed");
+    drop(conn);
+    let said = place
+        .ptu(&["db", "import", &theirs, "--db", &ours])
+        .exits(3);
+    assert!(
+        said.out.contains("added 1 runs") && said.out.contains("refused 1"),
+        "{}",
+        said.out
+    );
+    said.explains(&[&format!("refused run {id}"), "changed after it was sealed"]);
+    let said = place
+        .ptu(&["db", "import", &theirs, "--json", "--db", &ours])
+        .exits(3);
+    let told: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!(told["refused"]["count"], 1, "{told}");
+    place.ptu(&["db", "check", "--db", &ours]).exits(0);
+    // A view in the place of a table is looked at, and not asked.
+    let conn = rusqlite::Connection::open(&theirs).expect("opens");
+    conn.execute_batch(
+        "DROP TABLE run_note; CREATE VIEW run_note AS WITH RECURSIVE n(id, run, at_us, who, text) AS
+            (SELECT randomblob(16), 1, 1, '', '' UNION ALL SELECT randomblob(16), 1, 1, '', '' FROM n)
+         SELECT * FROM n",
+    )
+    .expect("changed");
+    drop(conn);
+    let begun = std::time::Instant::now();
+    (place
+        .ptu(&["db", "import", &theirs, "--db", &ours])
+        .exits(3))
+    .explains(&["theirs.db was altered by hand"]);
+    assert!(begun.elapsed().as_secs() < 20);
 }

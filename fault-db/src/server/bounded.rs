@@ -248,7 +248,7 @@ mod tests {
     fn message(letter: u8, length: u32) -> Vec<u8> {
         let mut bytes = vec![letter];
         bytes.extend(length.to_be_bytes());
-        bytes.resize(1 + length.min(1000) as usize, 0);
+        bytes.resize(1 + length.clamp(4, 1000) as usize, 0);
         bytes
     }
 
