@@ -169,6 +169,16 @@ pub enum StoreError {
         /// What was asked.
         asked: String,
     },
+    /// A text is longer than what is kept.
+    #[error("{what} has {length} characters, and at most {most} are kept; shorten it")]
+    TextTooLong {
+        /// Which text, as "the note".
+        what: &'static str,
+        /// Its length in characters.
+        length: usize,
+        /// The most that is kept.
+        most: usize,
+    },
     /// The fault is not in a state that allows it.
     #[error("fault {fault}: {source}")]
     Transition {

@@ -4,6 +4,7 @@ use crate::base::{Base, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
+use crate::limits;
 use crate::record::RepairRecord;
 use crate::seal;
 use crate::server::said;
@@ -33,6 +34,7 @@ impl Store {
         note: &str,
         at_us: i64,
     ) -> Result<FaultState, StoreError> {
+        limits::note("the note", note)?;
         self.act(fault, FaultAction::Acknowledge, None, who, note, at_us)
     }
 
@@ -45,6 +47,7 @@ impl Store {
         note: &str,
         at_us: i64,
     ) -> Result<FaultState, StoreError> {
+        limits::note("the note", note)?;
         self.act(fault, FaultAction::towards(state), None, who, note, at_us)
     }
 
@@ -56,6 +59,7 @@ impl Store {
         who: &str,
         at_us: i64,
     ) -> Result<FaultState, StoreError> {
+        repair.check()?;
         // Strings only: cannot fail.
         let body = serde_json::to_string(repair).unwrap_or_default();
         self.act(fault, FaultAction::Repair, Some(REPAIR), who, &body, at_us)
@@ -64,6 +68,8 @@ impl Store {
     /// Adds a note; the state stays.
     pub fn add_note(&self, fault: Id, who: &str, note: &str, at_us: i64) -> Result<(), StoreError> {
         const DOING: &str = "storing a note";
+        limits::name("the name of who says it", who)?;
+        limits::note("the note", note)?;
         let id = self.mint()?;
         self.change(DOING, |base| {
             let (seq, _) = self.fault_row(fault)?;
@@ -89,6 +95,7 @@ impl Store {
         at_us: i64,
     ) -> Result<FaultState, StoreError> {
         const DOING: &str = "changing a fault's state";
+        limits::name("the name of who says it", who)?;
         let id = self.mint()?;
         self.change(DOING, |base| {
             let (seq, from) = self.fault_row(fault)?;

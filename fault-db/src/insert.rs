@@ -1,11 +1,14 @@
 //! The rows a run adds, inside a transaction the caller holds.
 
+use std::borrow::Cow;
+
 use rusqlite::{Connection, params};
 
 use crate::base::{Base, SqlError, SqlResult, values};
 use crate::fault_log::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
+use crate::limits;
 use crate::record::{FaultRecord, MeasurementRecord, RunRecord, StepRecord, UnitRecord};
 use crate::run_writer::FaultStored;
 use crate::seal;
@@ -137,6 +140,17 @@ pub(crate) fn insert_fault(
     ids: FaultIds,
     record: &FaultRecord,
 ) -> SqlResult<(FaultStored, [u8; 32])> {
+    let cut;
+    let record = match limits::cut(&record.message) {
+        Cow::Borrowed(_) => record,
+        Cow::Owned(message) => {
+            cut = FaultRecord {
+                message,
+                ..record.clone()
+            };
+            &cut
+        }
+    };
     let known = base.first(
         "SELECT seq, id, state FROM fault
          WHERE unit = ?1 AND code = ?2 AND lru = ?3 AND state <> 'closed'

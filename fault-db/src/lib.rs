@@ -32,6 +32,7 @@ mod given;
 mod guard;
 mod id;
 mod insert;
+pub mod limits;
 mod lookup;
 mod packed;
 mod part;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::base::{Base, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::limits;
 use crate::seal;
 use crate::server::said;
 use crate::store::Store;
@@ -33,6 +34,8 @@ impl Store {
         at_us: i64,
     ) -> Result<(), StoreError> {
         const DOING: &str = "storing a note on a run";
+        limits::name("the name of who says it", who)?;
+        limits::note("the note", text)?;
         let id = self.mint()?;
         self.change(DOING, |base| {
             let seq: Option<i64> = self.first(

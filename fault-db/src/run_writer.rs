@@ -5,12 +5,15 @@
 //! returns. Steps wait in memory and go out many at a time, in short transactions: one commit
 //! costs milliseconds, and a transaction held open would lock out every other run on the file.
 
+use std::borrow::Cow;
+
 use rusqlite::params;
 
 use crate::base::SqlError;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
+use crate::limits;
 use crate::query::LOG_SOURCE;
 use crate::record::{FaultRecord, RunEnd, RunRecord, StepRecord};
 use crate::seal;
@@ -69,6 +72,7 @@ impl<'a> RunWriter<'a> {
 
     fn begin_as(id: Id, store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
         const DOING: &str = "beginning a run";
+        record.check()?;
         let sw_versions = json(&record.unit.sw_versions);
         let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
         let seal = RunSeal::begin(id, record, &sw_versions);
@@ -130,6 +134,7 @@ impl<'a> RunWriter<'a> {
     /// After an error from writing the step still waits, and goes out when writing works again.
     pub fn step(&mut self, mut step: StepRecord) -> Result<(), StoreError> {
         self.check_unfinished()?;
+        step.check()?;
         // A limit that nothing reaches is none, and such a value was not measured.
         for measured in &mut step.measurements {
             for number in [&mut measured.value, &mut measured.low, &mut measured.high] {
@@ -150,6 +155,9 @@ impl<'a> RunWriter<'a> {
             });
         }
         self.last_index = Some(step.index);
+        if let Cow::Owned(cut) = limits::cut(&step.message) {
+            step.message = cut;
+        }
         self.seal.step(&step);
         self.waiting.push(step);
         if self.waiting.len() >= FLUSH_AT_STEPS {

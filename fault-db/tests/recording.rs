@@ -4,9 +4,10 @@
 mod common;
 
 use common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
+use fault_db::limits::{MOST_NAME, MOST_TEXT};
 use fault_db::{
-    FaultFilter, FaultState, OpenOptions, RepairRecord, RunFilter, RunState, RunWriter, Store,
-    StoreError, Synchronous, Verdict,
+    FaultFilter, FaultState, OpenOptions, RepairRecord, RunFilter, RunRecord, RunState, RunWriter,
+    StepRecord, Store, StoreError, Synchronous, Verdict,
 };
 use tempfile::tempdir;
 
@@ -330,4 +331,61 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
         1,
         "rolled back"
     );
+}
+
+/// Goal: one door for every text that people and scripts bring. Method: each a letter too long, and what was
+/// there is as it was.
+#[test]
+fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let (name, note) = ("이".repeat(MOST_NAME + 1), "이".repeat(MOST_TEXT + 1));
+    let refused = |result: Result<(), StoreError>, word: &str| match result {
+        Err(StoreError::TextTooLong { what, length, most }) => {
+            assert!(what.contains(word) && length == most + 1, "{what}");
+        }
+        other => panic!("{word}: {other:?}"),
+    };
+    for (word, change) in [
+        (
+            "operator",
+            (|run, name| run.operator = name) as fn(&mut RunRecord, String),
+        ),
+        ("train", |run, name| run.train = name),
+        ("serial", |run, name| run.unit.serial = name),
+        ("line", |run, name| run.line = name),
+    ] {
+        let mut record = run_record("ATC-7");
+        change(&mut record, name.clone());
+        refused(RunWriter::begin(&store, &record).map(drop), word);
+    }
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let long = StepRecord {
+        message: note.clone(),
+        ..step(0)
+    };
+    writer.step(long).expect("kept");
+    let fault = writer.fault(&fault(7, T0_US)).expect("stored").fault;
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let run = writer.id();
+    let kept = &store.run(run, NOBODY_LIVES).expect("there").steps[0].message;
+    assert!(kept.chars().count() == MOST_TEXT && kept.ends_with('…'));
+    refused(store.add_run_note(run, "kim", &note, 1), "note");
+    refused(store.add_run_note(run, &name, "short", 1), "who says it");
+    refused(store.add_note(fault, "kim", &note, 1), "note");
+    refused(
+        store.acknowledge(fault, &name, "", 1).map(drop),
+        "who says it",
+    );
+    refused(store.acknowledge(fault, "kim", &note, 1).map(drop), "note");
+    let repair = RepairRecord {
+        part: "relay".into(),
+        serial_old: Some(name),
+        serial_new: None,
+        note: String::new(),
+    };
+    let repaired = store.record_repair(fault, &repair, "kim", 1);
+    refused(repaired.map(drop), "serial number");
+    let detail = store.fault(fault).expect("there");
+    assert_eq!(detail.events.len(), 1, "opened, and nothing else");
 }

@@ -5,6 +5,11 @@ use super::item::Item;
 use super::quantity::Dimension;
 use super::suggest::hint;
 
+/// Longest text of a script that people read, in characters.
+const LONGEST_TEXT: usize = 2_000;
+/// Longest name of a step, a measurement or a procedure, in characters.
+const LONGEST_NAME: usize = 200;
+
 /// What a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Want {
@@ -14,6 +19,8 @@ pub(super) enum Want {
     Int(i64, i64),
     Bool,
     Text,
+    /// A text that names something.
+    Name,
     Choice(&'static [&'static str]),
     Signal,
     /// A signal that is compared, or a whole condition.
@@ -46,7 +53,8 @@ impl Want {
             Self::Number => "a number".into(),
             Self::Int(low, high) => format!("a whole number {low} to {high}"),
             Self::Bool => "True or False".into(),
-            Self::Text => "a text in quotes".into(),
+            Self::Text => format!("a text in quotes, at most {LONGEST_TEXT} characters"),
+            Self::Name => format!("a name in quotes, at most {LONGEST_NAME} characters"),
             Self::Choice(words) => format!("one of \"{}\"", words.join("\", \"")),
             Self::Signal | Self::Subject => "a signal such as eb or speed".into(),
             Self::Condition => "a condition such as is_(eb, \"applied\")".into(),
@@ -77,7 +85,8 @@ impl Want {
             Self::Number => item.number().is_some_and(f64::is_finite),
             Self::Int(low, high) => matches!(item, Item::Int(n) if (low..=high).contains(n)),
             Self::Bool => matches!(item, Item::Bool(_)),
-            Self::Text => matches!(item, Item::Text(_)),
+            Self::Text => return text(item, LONGEST_TEXT),
+            Self::Name => return text(item, LONGEST_NAME),
             Self::Choice(words) => match item {
                 Item::Text(word) if words.contains(&word.as_str()) => true,
                 Item::Text(word) => {
@@ -122,6 +131,15 @@ impl Want {
             Self::Conditions => return every(item, |i| matches!(i, Item::Condition(_))),
         };
         if fits { Ok(()) } else { Err(item.found()) }
+    }
+}
+
+/// Whether it is a text that is no longer than this.
+fn text(item: &Item, longest: usize) -> Result<(), String> {
+    match item {
+        Item::Text(text) if text.chars().count() <= longest => Ok(()),
+        Item::Text(text) => Err(format!("one of {}", text.chars().count())),
+        other => Err(other.found()),
     }
 }
 

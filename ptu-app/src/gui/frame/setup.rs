@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 
 use crate::gui::library::Asked;
-use crate::gui::parts::named_combo;
+use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::units::UnitChoice;
 use crate::gui::{Desk, Palette};
 use crate::link::ports;
@@ -159,11 +159,11 @@ impl Setup {
                 of(|names| &names.trains),
             );
             let label = ui.label(frame.serial);
-            ui.add(TextEdit::singleline(&mut choice.serial).desired_width(140.0))
+            ui.add(name_edit(&mut choice.serial, 140.0))
                 .labelled_by(label.id);
             ui.end_row();
             let label = ui.label(words.common.train_no);
-            ui.add(TextEdit::singleline(&mut choice.train_no).desired_width(140.0))
+            ui.add(name_edit(&mut choice.train_no, 140.0))
                 .labelled_by(label.id);
             ui.end_row();
             if choice.is_simulated() {

@@ -1,6 +1,7 @@
 //! What several pages use: small widgets, and files a person asks for.
 
 mod chip;
+mod edit;
 mod file;
 pub mod lane;
 mod limit_bar;
@@ -10,6 +11,7 @@ mod run_note;
 mod share_bar;
 
 pub use chip::{chip, verdict_chip};
+pub use edit::{name_edit, note_edit};
 pub use file::usual_folder;
 pub use limit_bar::{limit_bar, value_text};
 pub use named::named_combo;

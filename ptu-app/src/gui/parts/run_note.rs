@@ -1,11 +1,12 @@
 //! A note on a run, written by the one who tests.
 
-use eframe::egui::{Button, TextEdit, Ui};
+use eframe::egui::{Button, Ui};
 use fault_db::Id;
 
 use crate::clock::now_us;
 use crate::gui::desk::Messages;
 use crate::gui::library::{Asked, Library};
+use crate::gui::parts::note_edit;
 use crate::words::Words;
 
 /// Room for the button, points.
@@ -51,7 +52,7 @@ impl RunNoteForm {
         }
         let label = ui.label(words.report.note_field);
         let wide = (ui.available_width() - BUTTON).max(BUTTON);
-        ui.add(TextEdit::singleline(&mut self.text).desired_width(wide))
+        ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
         let may = !who.is_empty() && !text.is_empty() && self.under_way.is_not();

@@ -235,7 +235,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "code",
-        params: &[needs("name", Want::Text)],
+        params: &[needs("name", Want::Name)],
         make: |args| args.context.code(args.text("name").unwrap_or_default()),
     },
 ];

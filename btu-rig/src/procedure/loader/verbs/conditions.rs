@@ -92,7 +92,7 @@ pub(super) static VERBS: &[Verb] = &[
     }),
     Verb {
         name: "logs",
-        params: &[needs("event", Want::Text), takes("within", TIME)],
+        params: &[needs("event", Want::Name), takes("within", TIME)],
         make: |args| {
             Ok(Item::Expectation(Expectation::Logs {
                 event: event(args.text("event").unwrap_or_default())?,
@@ -102,7 +102,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "never_logs",
-        params: &[needs("event", Want::Text)],
+        params: &[needs("event", Want::Name)],
         make: |args| {
             Ok(Item::Expectation(Expectation::NeverLogs {
                 event: event(args.text("event").unwrap_or_default())?,
@@ -111,7 +111,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "measured",
-        params: &[needs("name", Want::Text)],
+        params: &[needs("name", Want::Name)],
         make: |args| {
             let name = args.text("name").unwrap_or_default();
             Ok(Item::Measured(name.to_owned(), None))

@@ -15,11 +15,11 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "procedure",
         params: &[
-            needs("title", Want::Text),
-            takes("title_ko", Want::Text),
+            needs("title", Want::Name),
+            takes("title_ko", Want::Name),
             takes("needs", Want::Choice(&["btu", "ptu"])),
             takes("on_request", Want::Bool),
-            takes("suspect", Want::Text),
+            takes("suspect", Want::Name),
             takes("setup", Want::Actions),
             takes("cleanup", Want::Actions),
         ],
@@ -41,7 +41,7 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "step",
         params: &[
-            needs("name", Want::Text),
+            needs("name", Want::Name),
             takes("do", Want::Actions),
             takes("expect", Want::Expectations),
             takes("measure", Want::Measures),
@@ -50,7 +50,7 @@ pub(super) static VERBS: &[Verb] = &[
             takes("repeat", Want::Int(1, MOST_REPETITIONS)),
             takes("on_fail", Want::Choice(&["continue", "stop"])),
             takes("limit", Want::Amount(Dimension::Time)),
-            takes("suspect", Want::Text),
+            takes("suspect", Want::Name),
             takes("note", Want::Text),
         ],
         make: step,

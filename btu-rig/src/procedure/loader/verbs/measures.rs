@@ -23,7 +23,7 @@ macro_rules! of_signal {
         Verb {
             name: $name,
             params: &[
-                needs("name", Want::Text),
+                needs("name", Want::Name),
                 needs("signal", Want::Signal),
                 takes("low", Want::Value),
                 takes("high", Want::Value),
@@ -37,7 +37,7 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "time",
         params: &[
-            needs("name", Want::Text),
+            needs("name", Want::Name),
             needs("to", Want::Condition),
             takes("from_", Want::TimeFrom),
             takes("low", Want::Value),
@@ -61,7 +61,7 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "at",
         params: &[
-            needs("name", Want::Text),
+            needs("name", Want::Name),
             needs("signal", Want::Signal),
             needs("when", Want::Condition),
             takes("low", Want::Value),

@@ -1,10 +1,11 @@
 //! What a person does to a fault: states, repairs, notes.
 
-use eframe::egui::{Button, RichText, TextEdit, Ui};
+use eframe::egui::{Button, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
 use crate::clock::now_us;
 use crate::gui::library::Asked;
+use crate::gui::parts::{name_edit, note_edit};
 use crate::gui::{Desk, Palette};
 use crate::words::Words;
 
@@ -73,10 +74,10 @@ impl Change {
         }
         ui.horizontal(|ui| {
             let label = ui.label(words.common.operator);
-            ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(110.0))
+            ui.add(name_edit(&mut desk.settings.operator, 110.0))
                 .labelled_by(label.id);
             let label = ui.label(words.common.note);
-            ui.add(TextEdit::singleline(&mut self.form.note).desired_width(f32::INFINITY))
+            ui.add(note_edit(&mut self.form.note, f32::INFINITY))
                 .labelled_by(label.id);
         });
         let who = desk.settings.operator.trim().to_owned();
@@ -87,8 +88,7 @@ impl Change {
                     (words.faults.serial_new, &mut self.form.serial_new),
                 ] {
                     let label = ui.label(name);
-                    ui.add(TextEdit::singleline(text).desired_width(90.0))
-                        .labelled_by(label.id);
+                    ui.add(name_edit(text, 90.0)).labelled_by(label.id);
                 }
             });
         }

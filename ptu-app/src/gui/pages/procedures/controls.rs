@@ -1,9 +1,10 @@
 //! Run, pause, single step, stop.
 
-use eframe::egui::{Button, DragValue, RichText, TextEdit, Ui};
+use eframe::egui::{Button, DragValue, RichText, Ui};
 
 use super::ProceduresPage;
 use crate::gui::library::Asked;
+use crate::gui::parts::name_edit;
 use crate::gui::units::Unit;
 use crate::gui::{Desk, Palette};
 use crate::station::Phase;
@@ -56,7 +57,7 @@ impl ProceduresPage {
         );
         ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
         let label = ui.label(words.operator);
-        ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(120.0))
+        ui.add(name_edit(&mut desk.settings.operator, 120.0))
             .labelled_by(label.id);
         if phase != Phase::Idle {
             ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));

@@ -5,7 +5,7 @@ use fault_db::Id;
 
 use super::{ReportPage, Shown, file};
 use crate::gui::library::{Asked, Shelf};
-use crate::gui::parts::named_combo;
+use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::{Desk, Go};
 use crate::words::{Language, Words, fill};
 
@@ -29,7 +29,7 @@ impl ReportPage {
         ui.horizontal(|ui| self.files(ui, desk, run, language));
         ui.horizontal(|ui| {
             let label = ui.label(words.common.operator);
-            ui.add(TextEdit::singleline(&mut desk.settings.operator).desired_width(NAME))
+            ui.add(name_edit(&mut desk.settings.operator, NAME))
                 .labelled_by(label.id);
             let who = &desk.settings.operator;
             self.note.show(ui, words, desk.library, who, run);
