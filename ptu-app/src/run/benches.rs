@@ -1,7 +1,6 @@
 //! Benches for a run: a fresh embedded unit for each procedure, or the one unit on a port.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::SyncSender;
+use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
@@ -27,6 +26,8 @@ use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
 use crate::stop::Stop;
 
+/// Procedures that may be begun before those in front of them have ended; each keeps room for its events.
+const STREAMS_AHEAD: usize = 32;
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
@@ -176,65 +177,65 @@ impl Connected {
     }
 }
 
-/// Starts the workers; each procedure and its stream, in the order of the tasks.
+/// Starts the workers; each procedure and its stream, in the order of the tasks, when it is begun or due.
 pub(super) fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
     connected: &'scope mut Connected,
     first_failure: &'scope FirstFailure,
     stop: &'scope Stop,
-) -> Vec<ProcedureStream> {
-    let (senders, receivers): (Vec<_>, Vec<_>) = plan.tasks.iter().map(|_| stream()).unzip();
+) -> Receiver<ProcedureStream> {
+    let (procedures, receiver) = mpsc::sync_channel(STREAMS_AHEAD);
+    let work = Arc::new(Mutex::new(Work {
+        tasks: plan.tasks.iter().enumerate(),
+        procedures,
+    }));
     let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
     match connected {
         connected @ Connected::Port(..) => {
             scope.spawn(move || {
                 let mut worker = Worker::new(connected, stop);
-                for (place, (task, sender)) in plan.tasks.iter().zip(senders).enumerate() {
-                    if !may_begin(place) {
-                        break;
-                    }
+                // What is due and not begun ends without a word.
+                while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
                     first_failure.watch(place, sender, |sink, go_on| worker.run(task, sink, go_on));
                 }
             });
         }
         Connected::Sim(setup) => {
-            let work = Arc::new(Work {
-                next: AtomicUsize::new(0),
-                senders: Mutex::new(senders.into_iter().map(Some).collect()),
-            });
             for _ in 0..plan.jobs.clamp(1, plan.tasks.len().max(1)) {
                 let work = work.clone();
                 let setup: &'scope BenchSetup = setup;
                 scope.spawn(move || {
-                    while let Some((place, sender)) =
-                        work.take().filter(|(next, _)| may_begin(*next))
+                    while let Some((place, task, sender)) =
+                        take(&work).filter(|due| may_begin(due.0))
                     {
                         first_failure.watch(place, sender, |sink, go_on| {
-                            run_on_fresh(setup, &plan.tasks[place], stop, sink, go_on);
+                            run_on_fresh(setup, task, stop, sink, go_on);
                         });
                     }
                 });
             }
         }
     }
-    let procedures = plan.tasks.iter().map(|task| task.procedure.clone());
-    procedures.zip(receivers).collect()
+    receiver
 }
 
-/// Tasks not begun yet.
-struct Work {
-    next: AtomicUsize,
-    senders: Mutex<Vec<Option<SyncSender<SessionEvent>>>>,
+/// Tasks not begun yet, and where their streams go.
+struct Work<'a> {
+    tasks: std::iter::Enumerate<std::slice::Iter<'a, Task>>,
+    procedures: SyncSender<ProcedureStream>,
 }
 
-impl Work {
-    /// The next task's place and stream.
-    fn take(&self) -> Option<(usize, SyncSender<SessionEvent>)> {
-        let place = self.next.fetch_add(1, Ordering::Relaxed);
-        let sender = self.senders.lock().ok()?.get_mut(place)?.take()?;
-        Some((place, sender))
-    }
+/// The next task, its place and its stream, which is handed on in the order of the tasks: a worker that is
+/// too far ahead of those before it waits here.
+fn take<'a>(work: &Mutex<Work<'a>>) -> Option<(usize, &'a Task, SyncSender<SessionEvent>)> {
+    let mut work = work.lock().ok()?;
+    let (place, task) = work.tasks.next()?;
+    let (sender, events) = stream();
+    work.procedures
+        .send((task.procedure.clone(), events))
+        .ok()?;
+    Some((place, task, sender))
 }
 
 /// Procedures one after the other: each on an embedded unit made for it, or all on the one on a port.
@@ -417,6 +418,40 @@ mod tests {
             "seed {}: {not_passed:#?}",
             setup.seed
         );
+    }
+
+    /// Goal: a run of thousands of procedures keeps room for the events of a few. Method: nobody takes any.
+    #[test]
+    fn procedures_are_begun_only_so_far_ahead_of_who_takes_them() {
+        const JOBS: usize = 3;
+        let (directory, setup) = line6_bench();
+        let procedures = loaded(&directory, &setup);
+        let mut named = procedures.iter();
+        let link = named.find(|p| p.id == "tcms/link").expect("it");
+        let task = || Task {
+            procedure: link.clone(),
+            options: RunOptions::default(),
+        };
+        let plan = RunPlan {
+            tasks: (0..5_000).map(|_| task()).collect(),
+            jobs: JOBS,
+            stop_on_fail: false,
+            operator: String::new(),
+            train: String::new(),
+            scripts_sha256: String::new(),
+            adaptive: None,
+        };
+        let stop = Stop::default();
+        let first_failure = FirstFailure::new(false);
+        let mut connected = Connected::Sim(Box::new(setup));
+        let begun = std::thread::scope(|scope| {
+            let procedures = start(scope, &plan, &mut connected, &first_failure, &stop);
+            let first = procedures.recv().expect("the first");
+            assert!(first.1.into_iter().count() > 0, "it is run");
+            stop.press();
+            procedures.into_iter().count()
+        });
+        assert!((1..=STREAMS_AHEAD + 2 * JOBS).contains(&begun), "{begun}");
     }
 
     /// A controller that breaks while no procedure runs is found all the same.

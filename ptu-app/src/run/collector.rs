@@ -8,7 +8,7 @@ use protocol::Duration;
 use super::made::BenchMade;
 use super::recorder::Cut;
 use super::session::{SessionEvent, Taped};
-use super::store_thread::RunStore;
+use super::store_thread::{RunStore, Speaker};
 use super::{FaultSeen, Task};
 use crate::clock;
 use crate::failure::Exit;
@@ -17,6 +17,16 @@ use crate::failure::Exit;
 pub trait Listener {
     /// Something happened in `procedure`.
     fn hear(&mut self, procedure: &Procedure, event: &SessionEvent);
+
+    /// What is to be said of it once all that was recorded up to then is in the file.
+    fn line(&self, _procedure: &Procedure, _event: &SessionEvent) -> Option<String> {
+        None
+    }
+
+    /// Who says it.
+    fn speaker(&self) -> Option<Speaker> {
+        None
+    }
 }
 
 /// What a run came to.
@@ -98,6 +108,7 @@ impl<'a> Collector<'a> {
             return;
         };
         self.listener.hear(&procedure, &event);
+        let line = self.listener.line(&procedure, &event);
         match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
             SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
@@ -110,6 +121,9 @@ impl<'a> Collector<'a> {
             SessionEvent::Trace(cut) => self.trace(*cut),
             SessionEvent::Recording(taped) => self.recording(&procedure.id, &taped),
             SessionEvent::Ended { bench_time } => self.before += bench_time,
+        }
+        if let Some(line) = line {
+            self.store.say(line);
         }
     }
 

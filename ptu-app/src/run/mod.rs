@@ -57,6 +57,7 @@ use crate::stop::Stop;
 use collector::Collector;
 use first_failure::FirstFailure;
 use store_thread::RunStore;
+pub use store_thread::Speaker;
 
 /// Events of one procedure that may wait for the collector.
 const QUEUE: usize = 4096;
@@ -102,6 +103,7 @@ pub fn run(
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
     let began = Began::now();
+    run_record(plan, &setup, setup.expected_serial(), began.at_us).check()?;
     match setup.connect(stop) {
         Ok(mut connected) => run_on(&mut connected, &began, plan, &setup, store, stop, listener),
         Err(failure) => {
@@ -111,7 +113,7 @@ pub fn run(
                 Exit::Aborted => Verdict::Aborted,
                 _ => Verdict::Error,
             };
-            RunStore::begin(store, record, stop)?.finish(began.end(verdict, 0))?;
+            RunStore::begin(store, record, None, stop)?.finish(began.end(verdict, 0))?;
             Err(failure)
         }
     }
@@ -132,7 +134,7 @@ pub fn run_on(
 ) -> Result<(Store, Outcome), Failure> {
     connected.heed(stop);
     let record = run_record(plan, setup, connected.serial(), began.at_us);
-    let run_store = RunStore::begin(store, record, stop)?;
+    let run_store = RunStore::begin(store, record, listener.speaker(), stop)?;
     let id = run_store.id;
     let made = BenchMade::of(setup, connected.serial());
     let mut collector = Collector::new(run_store, listener, made);

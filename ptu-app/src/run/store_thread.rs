@@ -1,4 +1,5 @@
-//! The writer: one thread owns the database and takes what is to be recorded, in order.
+//! The writer: one thread owns the database and takes what is to be recorded, in order, and what is to be
+//! said of it, which is said when it is in the file.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
@@ -43,7 +44,30 @@ enum Entry {
     Trace(Vec<usize>, TraceData),
     /// What the traces since the last recording came from.
     Recording(RecordingRecord),
+    /// Something to say once all before it is in the file.
+    Say(String),
     Finish(RunEnd),
+}
+
+/// Says a line, without ever waiting for anybody.
+pub type Speaker = Box<dyn FnMut(String) + Send>;
+
+/// Lines that wait until what they tell of is in the file.
+#[derive(Default)]
+struct Lines {
+    speaker: Option<Speaker>,
+    waiting: Vec<String>,
+}
+
+impl Lines {
+    /// All that was recorded so far is in the file.
+    fn stored(&mut self) {
+        for line in self.waiting.drain(..) {
+            if let Some(speaker) = &mut self.speaker {
+                speaker(line);
+            }
+        }
+    }
 }
 
 /// The sending end.
@@ -55,19 +79,25 @@ pub struct RunStore {
 }
 
 impl RunStore {
-    /// Begins the run: its row is on the disk when this returns. Should writing fail later, `stop` is pressed
-    /// at once: nobody drives a unit for a run that is not kept.
+    /// Begins the run: its row is on the disk when this returns. What is to be said goes to `speaker`. Should
+    /// writing fail later, `stop` is pressed at once: nobody drives a unit for a run that is not kept.
     ///
     /// # Errors
     /// The database does not take it.
-    pub fn begin(store: Store, record: RunRecord, stop: &Stop) -> Result<Self, Failure> {
-        Self::begin_with(PATIENCE, store, record, stop)
+    pub fn begin(
+        store: Store,
+        record: RunRecord,
+        speaker: Option<Speaker>,
+        stop: &Stop,
+    ) -> Result<Self, Failure> {
+        Self::begin_with(PATIENCE, store, record, speaker, stop)
     }
 
     fn begin_with(
         patience: Patience,
         store: Store,
         record: RunRecord,
+        speaker: Option<Speaker>,
         stop: &Stop,
     ) -> Result<Self, Failure> {
         let (entries, receiver) = mpsc::sync_channel(QUEUE);
@@ -76,7 +106,9 @@ impl RunStore {
         let thread = std::thread::Builder::new()
             .name("store".into())
             .spawn(move || {
-                let result = write(&store, &record, &receiver, &begun, (patience, &stop));
+                let mut kept = Kept::default();
+                kept.lines.speaker = speaker;
+                let result = write(&store, &record, &receiver, kept, &begun, (patience, &stop));
                 (store, result)
             })
             .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
@@ -113,6 +145,11 @@ impl RunStore {
         self.send(Entry::Recording(recording));
     }
 
+    /// Has something said as soon as all that was recorded before is in the file.
+    pub fn say(&self, line: String) {
+        self.send(Entry::Say(line));
+    }
+
     /// A send fails only after the writer has ended with an error, which `finish` returns.
     fn send(&self, entry: Entry) {
         let _ = self.entries.send(entry);
@@ -137,6 +174,7 @@ fn write(
     store: &Store,
     record: &RunRecord,
     entries: &Receiver<Entry>,
+    mut kept: Kept,
     begun: &SyncSender<Id>,
     (patience, stop): (Patience, &Stop),
 ) -> Result<(), Failure> {
@@ -144,7 +182,6 @@ fn write(
     let mut writer = RunWriter::begin(store, record)?;
     store.set_busy_timeout_ms(patience.stops_ms)?;
     let _ = begun.send(writer.id());
-    let mut kept = Kept::default();
     let result = write_entries(&mut writer, &mut kept, entries, (patience, stop));
     let Err((error, at_hand)) = result else {
         return Ok(());
@@ -176,6 +213,8 @@ struct Kept {
     /// So many of them are in another file.
     before: usize,
     traces: Vec<Id>,
+    /// What is to be said of it.
+    lines: Lines,
 }
 
 /// Records all that comes. An entry that was not taken comes back with the error.
@@ -187,19 +226,24 @@ fn write_entries(
 ) -> Result<(), (StoreError, Option<Entry>)> {
     let mut flushed = Instant::now();
     loop {
-        let entry = match entries.recv_timeout(FLUSH) {
+        let entry = match entries.recv_timeout(FLUSH.saturating_sub(flushed.elapsed())) {
             Ok(entry) => Some(entry),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
-                return patiently(patience, stop, |_| writer.flush())
-                    .map_err(|error| (error, None));
+                let done = patiently(patience, stop, |_| writer.flush());
+                done.map_err(|error| (error, None))?;
+                kept.lines.stored();
+                return Ok(());
             }
         };
         if let Some(entry) = entry {
             let is_end = matches!(entry, Entry::Finish(_));
             let done = patiently(patience, stop, |again| keep(writer, kept, &entry, again));
             match done {
-                Ok(()) if is_end => return Ok(()),
+                Ok(()) if is_end => {
+                    kept.lines.stored();
+                    return Ok(());
+                }
                 Ok(()) => {}
                 Err(error) => return Err((error, Some(entry))),
             }
@@ -208,6 +252,9 @@ fn write_entries(
             let done = patiently(patience, stop, |_| writer.flush());
             done.map_err(|error| (error, None))?;
             flushed = Instant::now();
+        }
+        if writer.waiting_steps() == 0 {
+            kept.lines.stored();
         }
     }
 }
@@ -258,6 +305,10 @@ fn keep(
             kept.traces.clear();
             Ok(())
         }
+        Entry::Say(line) => {
+            kept.lines.waiting.push(line.clone());
+            Ok(())
+        }
         Entry::Finish(end) => writer.finish(end),
     }
 }
@@ -288,6 +339,7 @@ fn keep_rest(
         }
     }
     rest.flush().ok()?;
+    kept.lines.stored();
     drop(rest);
     store.close().ok()?;
     Some(path)
@@ -385,7 +437,7 @@ mod tests {
         let options = OpenOptions::new(clock::ids()).busy_timeout_ms(1);
         let store = Store::open(&file, options).expect("a database");
         let stop = Stop::default();
-        let run = RunStore::begin_with(patience, store, record(), &stop).expect("begun");
+        let run = RunStore::begin_with(patience, store, record(), None, &stop).expect("begun");
         let other = Connection::open(&file).expect("the database");
         let wait = other.busy_timeout(Duration::from_secs(60));
         wait.expect("it waits for the writer");
