@@ -2,6 +2,11 @@
 //! late, S2's run, and any input whatsoever. How the servo stops stands with the whole unit; everything
 //! else is asked of it, too.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 mod plant;
 
 use ato_under_test::ato::controller::{Fuzzy, Pi, Situation, controller};

@@ -1,6 +1,11 @@
 //! The standard EMU's modules (S4) against oracles that know nothing of their code: every combination of
 //! inputs. `cargo test -p btu-rig --test tcms_exhaustive -- --nocapture` shows how many.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 use btu_rig::tcms::{
     BrakeInputs, BrakeOutputs, DrivingInputs, DrivingOutputs, EbSources, LineInputs, TcmsData,
     driving_control, emergency_line, full_service_brake,

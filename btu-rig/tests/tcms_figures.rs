@@ -1,6 +1,11 @@
 //! Figures of S3 as tests: its table derived anew from masses, and effort as the train gives it.
 //! `cargo test -p btu-rig --test tcms_figures -- --nocapture` prints them beside the printed ones.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 use btu_rig::conditions::Conditions;
 use btu_rig::tcms::{Consist, Demands, Effort, Order};
 use btu_rig::train::{CarSet, CarsData, Train, TrainData, TrainInputs, TrainState};

@@ -4,6 +4,12 @@
 //! 100000` makes it. Each question is asked of another unit or another year each time; median and 99th
 //! percentile are printed, or with `--json` for `benches/against_duckdb.py`.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a benchmark or an example is for"
+)]
+
 use std::path::Path;
 use std::time::Instant;
 

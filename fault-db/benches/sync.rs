@@ -2,6 +2,12 @@
 //! long that took: `cargo bench -p fault-db --bench sync`. `PTU_BENCH_RUNS` asks for another number,
 //! `PTU_BENCH_FILE` for the history in a file, which then remembers the sync.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a benchmark or an example is for"
+)]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 #[path = "../tests/server/private.rs"]

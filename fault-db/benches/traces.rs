@@ -3,6 +3,12 @@
 //! 600 rows of 40 channels, 24 000 samples of realistic signals; an hour has 72 000 rows of them. Times
 //! of commits depend on the disk under the system's temporary directory.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a benchmark or an example is for"
+)]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 

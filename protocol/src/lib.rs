@@ -7,7 +7,8 @@
 //! * [`signal`], [`event`]: the catalogue of recorded signals and of unit events;
 //! * [`Backlog`]: what a program does with bytes that waited while it was held up;
 //! * [`config`], [`mod@line`], [`injection`]: unit configuration, track database and fault modes as
-//!   checked data.
+//!   checked data;
+//! * [`shown`]: text that others wrote, as people may be shown it.
 //!
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
 //! units straight. `no_std` with `alloc`: no clock, no thread, no file.
@@ -23,6 +24,7 @@ pub mod injection;
 pub mod line;
 pub mod link;
 pub mod message;
+pub mod shown;
 pub mod signal;
 mod speed;
 mod time;

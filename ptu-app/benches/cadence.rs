@@ -5,6 +5,12 @@
 //! cargo bench -p ptu-app --bench cadence
 //! ```
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a benchmark or an example is for"
+)]
+
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};

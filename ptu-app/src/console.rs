@@ -1,84 +1,135 @@
 //! The console: progress while a run goes on, and its verdict table.
 
-use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use btu_rig::procedure::{Procedure, RunEvent, Verdict};
 use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
+use protocol::shown;
 
-use crate::run::{Listener, RunPlan, SessionEvent, steps_of};
-use crate::table::Table;
+use crate::failure::Failure;
+use crate::run::{Listener, RunPlan, SessionEvent, Speaker, steps_of};
+use crate::table::{Table, cell};
+use crate::tell;
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
+/// What may wait for a terminal that takes nothing, as one that was halted: more is left out.
+const WAITING: usize = 4096;
+/// Widest wording beside the bar, in columns.
+const BESIDE_BAR: usize = 100;
 
-/// Shows progress on stderr: a bar on a terminal, a line a procedure elsewhere.
+/// Shows progress on stderr: a bar on a terminal, a line a procedure elsewhere. It has a thread of its own:
+/// neither the bench nor the store waits for whoever reads.
 pub struct Console {
-    bar: Option<ProgressBar>,
+    shown: SyncSender<Shown>,
+    /// Lines that nobody took.
+    left_out: Arc<AtomicUsize>,
+    thread: JoinHandle<()>,
+}
+
+/// Something to show.
+enum Shown {
+    /// What is under way, beside the bar.
+    Present(String),
+    /// One more step is over.
+    StepDone,
+    /// A line.
+    Line(String),
 }
 
 impl Console {
     /// For a run of this plan.
-    pub fn new(plan: &RunPlan) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let bar =
-                ProgressBar::new(steps_of(&plan.tasks) as u64).with_message("bringing the unit up");
-            bar.enable_steady_tick(TICK);
-            let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
-            bar.with_style(
-                ProgressStyle::with_template(style)
-                    .unwrap_or_else(|_| ProgressStyle::default_bar()),
-            )
-        });
-        Self { bar }
+    ///
+    /// # Errors
+    /// There is no thread to be had.
+    pub fn new(plan: &RunPlan) -> Result<Self, Failure> {
+        let steps = steps_of(&plan.tasks) as u64;
+        let (shown, all) = mpsc::sync_channel(WAITING);
+        let thread = std::thread::Builder::new()
+            .name("console".into())
+            .spawn(move || show(&all, bar(steps).as_ref()));
+        let thread =
+            thread.map_err(|error| Failure::bench(format!("cannot start the console: {error}")))?;
+        Ok(Self {
+            shown,
+            left_out: Arc::default(),
+            thread,
+        })
     }
 
-    /// The run is over.
-    pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+    /// The run is over; returns when all is shown.
+    pub fn finish(self) {
+        drop(self.shown);
+        // What it showed is no reason for a run to fail.
+        let _ = self.thread.join();
+        let left_out = self.left_out.load(Ordering::Relaxed);
+        if left_out > 0 {
+            tell::note(&format!(
+                "{left_out} lines were left out because nothing took them; `ptu runs show latest` has all"
+            ));
         }
     }
+}
 
-    fn say(&self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(line),
-            None => eprintln!("{line}"),
+fn bar(steps: u64) -> Option<ProgressBar> {
+    tell::draws().then(|| {
+        let bar = ProgressBar::new(steps).with_message("bringing the unit up");
+        bar.enable_steady_tick(TICK);
+        let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
+        bar.with_style(
+            ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+        )
+    })
+}
+
+fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
+    for shown in all {
+        match (shown, bar) {
+            (Shown::Present(what), Some(bar)) => bar.set_message(what),
+            (Shown::StepDone, Some(bar)) => bar.inc(1),
+            (Shown::Line(line), Some(bar)) => bar.println(shown::line(&line)),
+            (Shown::Line(line), None) => tell::note(&shown::line(&line)),
+            (Shown::Present(_) | Shown::StepDone, None) => {}
         }
+    }
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
     }
 }
 
 impl Listener for Console {
     fn hear(&mut self, procedure: &Procedure, event: &SessionEvent) {
-        match event {
-            SessionEvent::Run(RunEvent::StepStarted { name, .. }) => {
-                if let Some(bar) = &self.bar {
-                    bar.set_message(format!("{}: {name}", procedure.id));
-                }
-            }
+        let present =
+            |what: String| Shown::Present(cell(&format!("{}: {what}", procedure.id), BESIDE_BAR));
+        let shown = match event {
+            SessionEvent::Run(RunEvent::StepStarted { name, .. }) => present(name.clone()),
             SessionEvent::Run(RunEvent::Waiting { what, left }) => {
-                if let Some(bar) = &self.bar {
-                    bar.set_message(format!(
-                        "{}: {what}, {:.0} s left",
-                        procedure.id,
-                        left.as_secs()
-                    ));
-                }
+                present(format!("{what}, {:.0} s left", left.as_secs()))
             }
-            SessionEvent::Run(RunEvent::StepFinished(result)) => {
-                if let Some(bar) = &self.bar {
-                    bar.inc(1);
-                }
-                if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) {
-                    self.say(&format!(
-                        "{:<7} {}: {}: {}",
-                        result.verdict.label(),
-                        procedure.id,
-                        result.name,
-                        result.message
-                    ));
-                }
+            SessionEvent::Run(RunEvent::StepFinished(_)) => Shown::StepDone,
+            _ => return,
+        };
+        // Beside a terminal that takes nothing this is missed.
+        let _ = self.shown.try_send(shown);
+    }
+
+    fn line(&self, procedure: &Procedure, event: &SessionEvent) -> Option<String> {
+        match event {
+            SessionEvent::Run(RunEvent::StepFinished(result))
+                if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) =>
+            {
+                Some(format!(
+                    "{:<7} {}: {}: {}",
+                    result.verdict.label(),
+                    procedure.id,
+                    result.name,
+                    result.message
+                ))
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict, message, ..
@@ -88,16 +139,23 @@ impl Listener for Console {
                 } else {
                     format!(": {message}")
                 };
-                self.say(&format!("{:<7} {}{more}", verdict.label(), procedure.id));
+                Some(format!("{:<7} {}{more}", verdict.label(), procedure.id))
             }
-            SessionEvent::Fault(fault) => {
-                self.say(&format!(
-                    "fault   {} → {}: {}",
-                    fault.name, fault.lru, fault.message
-                ));
-            }
-            _ => {}
+            SessionEvent::Fault(fault) => Some(format!(
+                "fault   {} → {}: {}",
+                fault.name, fault.lru, fault.message
+            )),
+            _ => None,
         }
+    }
+
+    fn speaker(&self) -> Option<Speaker> {
+        let (shown, left_out) = (self.shown.clone(), self.left_out.clone());
+        Some(Box::new(move |line| {
+            if shown.try_send(Shown::Line(line)).is_err() {
+                left_out.fetch_add(1, Ordering::Relaxed);
+            }
+        }))
     }
 }
 
@@ -192,7 +250,7 @@ fn summary(run: &RunDetail) -> String {
     format!(
         "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s",
         run.run.id.short(),
-        run.run.unit_serial,
+        shown::line(&run.run.unit_serial),
         run.steps.len(),
         run.faults.len(),
         run.run

@@ -4,6 +4,8 @@ use std::fmt;
 
 use fault_db::{StoreError, TraceError};
 
+use crate::tell;
+
 /// Exit codes of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
@@ -59,6 +61,13 @@ impl Failure {
     }
 }
 
+impl Failure {
+    /// Tells it to whoever called the program.
+    pub fn tell(&self) {
+        tell::note(&format!("ptu: {self}"));
+    }
+}
+
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
@@ -75,6 +84,7 @@ impl From<StoreError> for Failure {
             | StoreError::Ambiguous { .. }
             | StoreError::BadId { .. }
             | StoreError::NoWords { .. }
+            | StoreError::TextTooLong { .. }
             | StoreError::NotAFile { .. }
             | StoreError::NotAServer { .. }
             | StoreError::BadAddress { .. }

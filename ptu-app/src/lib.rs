@@ -41,6 +41,7 @@ mod sparkline;
 pub mod station;
 pub mod stop;
 mod table;
+mod tell;
 pub mod trace_io;
 pub mod trace_view;
 pub mod words;

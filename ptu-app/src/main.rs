@@ -8,7 +8,7 @@ fn main() -> ExitCode {
     match Cli::asked().and_then(Cli::run) {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {
-            eprintln!("ptu: {failure}");
+            failure.tell();
             ExitCode::from(failure.exit.code())
         }
     }

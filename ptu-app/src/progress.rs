@@ -1,8 +1,8 @@
 //! Progress of many runs on stderr: a bar on a terminal, a line each tenth elsewhere.
 
-use std::io::IsTerminal;
-
 use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::tell;
 
 /// Lines told where there is no terminal.
 const LINES: usize = 10;
@@ -18,7 +18,7 @@ pub struct Progress {
 impl Progress {
     /// Of `count` runs, called `what`.
     pub fn new(count: usize, what: String) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
+        let bar = tell::draws().then(|| {
             let style = "{bar:30} {pos}/{len} runs  {elapsed} (left {eta})  {msg}";
             ProgressBar::new(count as u64)
                 .with_message(what.clone())
@@ -44,7 +44,7 @@ impl Progress {
         let tenth = done * LINES / self.count.max(1);
         if tenth > self.told {
             self.told = tenth;
-            eprintln!("{}: {done} of {} runs", self.what, self.count);
+            tell::note(&format!("{}: {done} of {} runs", self.what, self.count));
         }
     }
 }

@@ -1,10 +1,14 @@
 //! Database files that do not serve: the file is named, the next move is said, exit 3, and what was
 //! recorded before stays.
 
+#![allow(clippy::print_stderr, reason = "says why a test proves nothing here")]
+
 mod common;
 
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 use common::{Place, Said};
 use rusqlite::Connection;
@@ -348,4 +352,130 @@ fn absurd_times_are_shown_without_delay() {
         assert!(said.out.contains("no date"), "{arguments:?}: {}", said.out);
         assert!(begun.elapsed().as_secs() < 20, "{arguments:?}");
     }
+}
+
+/// A script of which every step fails, with names as long as they may be.
+fn all_fail(place: &Place, steps: usize) {
+    let name = "이름".repeat(95);
+    let mut script = String::from("procedure(title = \"Alarm\", suspect = \"-\")\n");
+    for step in 0..steps {
+        script += &format!(
+            "step(\"{step} {name}\", expect = [becomes(alarm, True, within = ms(100))])\n"
+        );
+    }
+    place.write("fails.star", &script);
+}
+
+/// Goal: a program that was killed told nothing that is lost. Method: killed right after a line, in virtual
+/// time, many lines before the end.
+#[test]
+fn a_line_on_the_console_is_in_the_database_before_it_is_told() {
+    const TOLD: usize = 20;
+    let place = Place::new();
+    all_fail(&place, 10 * TOLD);
+    let mut command = place.command(&["run", "fails.star"]);
+    let mut run = command.stderr(Stdio::piped()).spawn().expect("ptu starts");
+    let lines = BufReader::new(run.stderr.take().expect("its notes")).lines();
+    let told = lines.map_while(Result::ok);
+    let failed = told.filter(|line| line.starts_with("failed  fails: "));
+    assert_eq!(failed.take(TOLD).count(), TOLD);
+    run.kill().expect("killed");
+    run.wait().expect("over");
+    let file = Connection::open(place.path("history.db")).expect("the database");
+    let failed = "SELECT count(*) FROM step WHERE verdict = 'failed'";
+    let stored = file.query_row(failed, [], |row| row.get::<_, usize>(0));
+    let stored = stored.expect("an answer");
+    assert!(stored >= TOLD, "{stored}");
+}
+
+/// Goal: neither bench nor store waits for whoever reads. Method: notes into a pipe that nobody reads, more
+/// than it takes.
+#[test]
+fn a_run_goes_on_while_nobody_reads_its_notes() {
+    let place = Place::new();
+    all_fail(&place, 100);
+    let mut command = place.command(&["run", "fails.star"]);
+    let run = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let run = run.expect("ptu starts");
+    let began = Instant::now();
+    loop {
+        assert!(began.elapsed() < Duration::from_secs(120), "it waits");
+        let runs = place.ptu(&["runs", "list", "--json"]);
+        if runs.code == Some(0) && runs.out.contains("\"finished\"") {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let said = Said::from(run.wait_with_output().expect("its notes")).exits(1);
+    assert!(
+        said.err.len() > 64 << 10,
+        "a pipe takes less: {}",
+        said.err.len()
+    );
+    assert!(said.err.contains("failed  fails: 99 "), "{}", said.err);
+}
+
+/// Somewhere that takes nothing: a full disk, or a reader that has gone away.
+fn takes_nothing(full: bool) -> Stdio {
+    if full {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+        return full.expect("/dev/full").into();
+    }
+    let (_, writer) = std::io::pipe().expect("a pipe");
+    writer.into()
+}
+
+#[test]
+fn a_run_ends_as_it_is_whatever_becomes_of_what_it_tells() {
+    let place = Place::new();
+    for full in [true, false] {
+        for (inject, exit, verdict) in [(None, 0, "passed"), (Some("eb_relay.slow"), 1, "failed")] {
+            let mut arguments = vec!["run", "atp/overspeed", "--report", "report.json"];
+            arguments.extend(inject.iter().flat_map(|fault| ["--inject", fault]));
+            let mut command = place.command(&arguments);
+            command
+                .stdout(takes_nothing(full))
+                .stderr(takes_nothing(full));
+            let status = command.status().expect("ptu starts");
+            assert_eq!(status.code(), Some(exit), "{full} {verdict}");
+            assert_eq!(place.read_json("report.json")["run"]["verdict"], verdict);
+            let stored = place.json(&["runs", "show", "latest", "--json"]);
+            assert_eq!(stored["run"]["verdict"], verdict);
+        }
+    }
+}
+
+/// An answer that is not there is told and no success; a reader that has gone away has had enough.
+#[test]
+fn an_answer_that_cannot_be_written_is_no_answer() {
+    let place = Place::new();
+    place.recorded_run();
+    let answer = |arguments: &str, full: bool| {
+        let mut command = place.command(&arguments.split(' ').collect::<Vec<_>>());
+        command.stdout(takes_nothing(full)).stderr(Stdio::piped());
+        let output = command.spawn().expect("ptu starts").wait_with_output();
+        Said::from(output.expect("its notes"))
+    };
+    for arguments in [
+        "runs list",
+        "runs list --json",
+        "runs show latest",
+        "catalog faults --json",
+        "db check --json",
+        "db schema",
+        "faults stats --by lru --csv",
+        "drive --line line8 --section 61 --json",
+        "--help",
+    ] {
+        let said = answer(arguments, true).exits(3);
+        assert!(said.err.contains("cannot write the "), "{}", said.err);
+        assert!(said.err.contains("No space left"), "{}", said.err);
+        let said = answer(arguments, false).exits(0);
+        assert!(!said.err.contains("cannot"), "{}", said.err);
+    }
+    // What is wrong anyway is said as ever.
+    answer("runs show 00000000", true).exits(2);
 }

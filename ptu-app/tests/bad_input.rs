@@ -4,6 +4,7 @@
 mod common;
 
 use common::{Place, list, scripts, text};
+use protocol::shown::is_unseen;
 
 const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
 
@@ -36,6 +37,119 @@ fn does_not_load(body: &str, words: &[&str]) {
             .explains(&["wrong.star:", "1 error in the scripts; nothing was driven"]);
     }
     assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
+}
+
+#[test]
+fn a_text_longer_than_is_kept_is_refused_before_anything_is_driven() {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    let (name, note) = (&*"가".repeat(256), &*"a".repeat(4_001));
+    for (arguments, words) in [
+        (
+            ["run", "tcms/link", "--operator", name],
+            ["the operator's name has 256", "at most 255"],
+        ),
+        (
+            ["run", "tcms/link", "--train-no", name],
+            ["the train's name has 256", "shorten it"],
+        ),
+        (
+            ["runs", "note", "latest", note],
+            ["the note has 4001", "at most 4000"],
+        ),
+        (
+            ["faults", "list", "--save", name],
+            ["the question's name has 256", "at most 255"],
+        ),
+    ] {
+        place.ptu(&arguments).exits(2).explains(&words);
+    }
+    assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
+    let name = "n".repeat(201);
+    let step = format!("step(\"{name}\", do = [wait(ms(100))])\n");
+    does_not_load(&step, &["at most 200 characters", "found one of 201"]);
+}
+
+/// Goal: nothing that a person, a script or a file says acts on a terminal. Method: control characters
+/// wherever a text comes in, and every way out.
+#[test]
+fn what_others_wrote_acts_on_no_terminal() {
+    const ACTS: &str = "\u{1b}]0;x\u{7}\u{9b}31m\u{7f}\u{202e}";
+    const SHOWN: &str = "\\x1b]0;x\\x07\\x9b31m\\x7f\\u{202e}";
+    let place = Place::new();
+    // A unit's has ASCII only.
+    let serial = "SN\u{1b}[31m\u{7f}\u{7}";
+    place.write(
+        "says.star",
+        &format!(
+            "procedure(title = \"Says {ACTS}\", suspect = \"-\")\nprint(\"{ACTS}\")\n\
+             step(\"alarm {ACTS}\", expect = [becomes(alarm, True, within = ms(100))], note = \"{ACTS}\")\n"
+        ),
+    );
+    let reports = ["r.html", "r.csv", "r.json", "r.junit.xml"];
+    let reports: Vec<_> = reports.iter().flat_map(|file| ["--report", file]).collect();
+    let run = [
+        "run",
+        "says.star",
+        "--serial-no",
+        serial,
+        "--operator",
+        ACTS,
+    ];
+    let all = &[&run[..], &["--train-no", ACTS], &reports].concat();
+    let said = place.ptu(all).exits(1);
+    assert!(
+        said.err.contains(SHOWN) && said.out.contains(SHOWN),
+        "{}",
+        said.all()
+    );
+    let mut told = vec![said.out, said.err];
+    for file in ["r.html", "r.csv", "r.json", "r.junit.xml"] {
+        told.push(place.read(file));
+    }
+    let fault = place.json(&["faults", "list", "--json"]);
+    let fault = text(&list(&fault)[0]["id"]).to_owned();
+    let two_lines = format!("first{ACTS}\nsecond");
+    let sql = format!("SELECT serial AS \"head{ACTS}\", char(27, 155, 127, 8238) FROM unit");
+    let questions: &[(&[&str], i32)] = &[
+        (&["faults", "note", &fault, &two_lines, "--who", ACTS], 0),
+        (&["runs", "note", "latest", &two_lines, "--who", ACTS], 0),
+        (
+            &[
+                "faults", "repair", &fault, "--part", ACTS, "--old", ACTS, "--who", ACTS,
+            ],
+            0,
+        ),
+        (&["runs", "list"], 0),
+        (&["runs", "list", "--json"], 0),
+        (&["runs", "show", "latest"], 0),
+        (&["runs", "show", "latest", "--json"], 0),
+        (&["faults", "list"], 0),
+        (&["faults", "list", "--csv"], 0),
+        (&["faults", "show", &fault], 0),
+        (&["faults", "show", &fault, "--json"], 0),
+        (&["db", "query", &sql, "--save", ACTS], 0),
+        (&["db", "query", &sql, "--csv"], 0),
+        (&["db", "query", &sql, "--json"], 0),
+        (&["saved"], 0),
+        (&["saved", serial], 2),
+        (&["runs", "list", "--unit", ACTS], 0),
+        (&["run", "--list", "says.star"], 0),
+        (&["run", "--line", ACTS], 2),
+        (&["trace", "diff", "latest", ACTS], 2),
+        (&[ACTS], 2),
+        (&["diagnose", "latest"], 0),
+    ];
+    for (arguments, exit) in questions {
+        let said = place.ptu(arguments).exits(*exit);
+        told.extend([said.out, said.err]);
+    }
+    let acts = |letter: char| is_unseen(letter) && letter != '\n';
+    for said in &told {
+        assert!(!said.contains(acts), "{said:?}");
+    }
+    let json = place.json(&["runs", "show", "latest", "--json"]);
+    assert_eq!(json["run"]["operator"], ACTS, "JSON has every letter");
 }
 
 #[test]

@@ -1,6 +1,11 @@
 //! The figures the unit is held to, beside those the papers print: each from one `ptu drive`, through
 //! frames, unit and train, as on the bench.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 mod common;
 
 use common::{Place, list, number, text};

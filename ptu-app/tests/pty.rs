@@ -3,6 +3,8 @@
 //!
 //! The first test takes about four minutes on a quiet machine, all others together less; they run beside it.
 
+#![allow(clippy::print_stderr, reason = "says why a test proves nothing here")]
+
 mod common;
 
 use std::time::{Duration, Instant};

@@ -1,5 +1,7 @@
 //! Questions about the history as a depot asks them, from the first fault to the closed one.
 
+#![allow(clippy::print_stderr, reason = "says why a test proves nothing here")]
+
 mod common;
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -554,6 +556,55 @@ fn a_question_is_saved_and_asked_again() {
     place.ptu(&["saved", "worst"]).exits(0);
     place.ptu(&["saved", "--forget", "worst"]).exits(0);
     place.ptu(&["saved", "worst"]).exits(2);
+}
+
+/// Who writes the file of questions may have one ask another, but not itself.
+#[test]
+fn a_saved_question_that_asks_itself_is_refused_with_its_circle() {
+    let place = Place::new();
+    place.recorded_run();
+    place.ptu(&["faults", "list", "--save", "all"]).exits(0);
+    let file = place.path(".config/ptu/questions.json");
+    let questions = r#"{
+        "all": ["faults", "list"], "once more": ["saved", "all"], "me": ["saved", "me"],
+        "in": ["saved", "a"], "a": ["saved", "b"], "b": ["saved", "c", "--json"], "c": ["saved", "a"]
+    }"#;
+    std::fs::write(&file, questions).expect("the file of questions");
+    let all = place.ptu(&["saved", "all"]).exits(0).out;
+    assert_eq!(place.ptu(&["saved", "once more"]).exits(0).out, all);
+    for (name, circle) in [
+        ("me", "me → me"),
+        ("a", "a → b → c → a"),
+        ("in", "a → b → c → a"),
+    ] {
+        let said = place.ptu(&["saved", name]).exits(2);
+        said.explains(&["asks itself: ", circle, "questions.json", "--forget"]);
+    }
+    place.ptu(&["saved", "--forget", "c"]).exits(0);
+    place
+        .ptu(&["saved", "a"])
+        .exits(2)
+        .explains(&["no question \"c\""]);
+}
+
+/// A terminal shows the beginning of a long text; JSON and CSV have all of it.
+#[test]
+fn a_cell_of_any_length_is_answered() {
+    let place = Place::new();
+    place.recorded_run();
+    let sql = "SELECT hex(zeroblob(40000)) AS zeros, 1 AS one, hex(zeroblob(40000)) AS more";
+    let table = place.ptu(&["db", "query", sql]).exits(0).out;
+    let row = table.lines().nth(1).expect("a row");
+    assert!(
+        row.contains("000…    1  000") && row.ends_with("0…"),
+        "{row}"
+    );
+    assert!(row.len() < 10_000, "{}", row.len());
+    let all = "0".repeat(80_000);
+    let json = place.json(&["db", "query", sql, "--json"]);
+    assert_eq!(json["rows"][0][0], all.as_str());
+    let csv = place.ptu(&["db", "query", sql, "--csv"]).exits(0).out;
+    assert_eq!(csv.lines().nth(1), Some(format!("{all},1,{all}").as_str()));
 }
 
 #[test]

@@ -1,6 +1,11 @@
 //! The window on a real display: a private X server, keys as a keyboard sends them, and a picture of
 //! every page in both languages, kept in the target directory to be looked at.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 mod common;
 
 use std::cell::Cell;

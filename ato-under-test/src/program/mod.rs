@@ -2,6 +2,7 @@
 
 mod data;
 mod tcp;
+mod tell;
 mod wire;
 
 use std::path::PathBuf;
@@ -13,6 +14,7 @@ use protocol::{Backlog, Duration, Instant, SCAN};
 use rustix::time::{ClockId, Timespec};
 
 pub use data::UsageError;
+pub use tell::note;
 use wire::Wire;
 
 const NANOS_PER_SECOND: i64 = 1_000_000_000;
@@ -66,10 +68,10 @@ pub struct Arguments {
 pub fn serve(arguments: &Arguments) -> Result<()> {
     let setup = data::setup(arguments)?;
     let mut wire = Wire::open(arguments)?;
-    eprintln!(
+    tell::note(&format!(
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name
-    );
+    ));
     run(Unit::new(setup), &mut wire, arguments.slower)
 }
 

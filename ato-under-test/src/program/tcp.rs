@@ -10,6 +10,8 @@ use protocol::message::Taken;
 use protocol::{Duration, Instant};
 use socket2::{SockRef, TcpKeepalive};
 
+use super::tell;
+
 /// A client of which no frame was accepted for so long is let go.
 const SILENT: Duration = Duration::from_ms(10_000);
 /// A connection on which nothing comes is probed after this time, and as often again.
@@ -54,8 +56,7 @@ impl Server {
         let listener =
             TcpListener::bind(address).with_context(|| format!("listening on {address}"))?;
         listener.set_nonblocking(true)?;
-        println!("{}", listener.local_addr()?);
-        io::stdout().flush()?;
+        tell::place(&listener.local_addr()?.to_string())?;
         Ok(Self {
             listener,
             client: None,

@@ -9,8 +9,8 @@ use rustix::fs::{Mode, OFlags};
 use rustix::pty::OpenptFlags;
 use rustix::termios::OptionalActions;
 
-use super::Arguments;
 use super::tcp::Server;
+use super::{Arguments, tell};
 
 /// Baud rate of a serial port when none is given.
 const BAUD: u32 = 115_200;
@@ -49,8 +49,7 @@ impl Wire {
         raw.make_raw();
         rustix::termios::tcsetattr(&slave, OptionalActions::Now, &raw)?;
         rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
-        println!("{}", name.to_string_lossy());
-        io::stdout().flush()?;
+        tell::place(&name.to_string_lossy())?;
         Ok(Self::Pty {
             master: File::from(master),
             _slave: File::from(slave),
@@ -70,7 +69,7 @@ impl Wire {
             .timeout(std::time::Duration::ZERO)
             .open()
             .with_context(|| format!("opening serial port {path}"))?;
-        println!("{path}");
+        tell::place(path)?;
         Ok(Self::Serial(port))
     }
 

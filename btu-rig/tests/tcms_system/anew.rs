@@ -1,5 +1,10 @@
 //! A train put on the track anew knows nothing of its last drive.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 use btu_rig::conditions::Conditions;
 use btu_rig::lever::Lever;
 use btu_rig::rig::Rig;

@@ -1,5 +1,10 @@
 //! Each condition that cuts powering, made alone (S3: effort 0; S4).
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 use btu_rig::conditions::Conditions;
 use btu_rig::lever::Lever;
 use btu_rig::tcms::PowerCuts;

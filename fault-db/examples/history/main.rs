@@ -10,6 +10,12 @@
 //! and are tested again. All of it goes through the calls the program itself uses. The same seed makes
 //! the same history, ids included.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a benchmark or an example is for"
+)]
+
 mod bench;
 mod catalogue;
 mod chance;

@@ -2,6 +2,11 @@
 //! commit; then the next sync takes it up. Goal: afterwards the server has every row once, and the file
 //! knows it. Method: a wire that sees the commits pass, and a client that is a program of its own.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "figures, for whoever asks with --nocapture"
+)]
+
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;

@@ -4,6 +4,12 @@
 //! The trace is one hour of 40 signals, a row each 50 ms. `PTU_HOUR_DB=FILE` writes a database with it and
 //! benches nothing, so that it can be looked at in the real window.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a benchmark or an example is for"
+)]
+
 mod hour;
 
 use std::path::{Path, PathBuf};

@@ -14,6 +14,7 @@ use crate::pool::cores;
 use crate::progress::Progress;
 use crate::report::campaign::{campaign_json, campaign_text};
 use crate::stop::Stop;
+use crate::tell;
 
 /// Make a fault dictionary: run the suite against every fault mode, and say what the dictionary is worth
 ///
@@ -81,7 +82,7 @@ impl CampaignArguments {
         })?;
         drop(progress);
         let Some(outcome) = outcome else {
-            eprintln!("stopped; no dictionary was made");
+            tell::note("stopped; no dictionary was made");
             return Ok(Exit::Aborted);
         };
         store.put_dictionary(&outcome.dictionary, clock::now_us())?;

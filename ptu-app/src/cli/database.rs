@@ -7,7 +7,7 @@ use fault_db::{Address, Store, StoreError};
 
 use crate::clock;
 use crate::failure::Failure;
-use crate::private;
+use crate::{private, tell};
 
 /// Names a history for all commands that are given none.
 const VARIABLE: &str = "PTU_DB";
@@ -99,7 +99,7 @@ impl Database {
             private::folder_of(&path)?;
         }
         if let Some(told) = private::told_if_shared(&path) {
-            eprintln!("{told}");
+            tell::note(&told);
         }
         Ok(Store::open(&path, clock::open_options())?)
     }

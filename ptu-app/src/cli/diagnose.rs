@@ -9,6 +9,7 @@ use super::{Database, ScriptsOption, print_json, print_out};
 use crate::diagnosis::diagnose_run;
 use crate::failure::{Exit, Failure};
 use crate::report::diagnosis::{diagnosis_json, diagnosis_text};
+use crate::tell;
 
 /// Find the part that failed, why it is that one, and the next best check
 ///
@@ -52,7 +53,7 @@ impl DiagnoseArguments {
         let id = store.resolve_run(&self.run.unwrap_or_default())?;
         let answer = diagnose_run(&store, &self.scripts.find()?, id)?;
         for warning in &answer.warnings {
-            eprintln!("{warning}");
+            tell::note(warning);
         }
         if self.json {
             print_json(&diagnosis_json(&answer))

@@ -12,7 +12,9 @@ use fault_db::diagnosis::matrix::{
 use super::print_out;
 use crate::data::read_within;
 use crate::failure::{Exit, Failure, did_you_mean};
+use crate::report::json_safe;
 use crate::table::Table;
+use crate::tell;
 
 /// States a table shows; JSON has all.
 const SHOWN_STATES: usize = 20;
@@ -68,7 +70,8 @@ pub(super) fn diagnose_matrix(
         let text = plan
             .to_json(&matrix, &known)
             .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
-        return print_out(&text);
+        tell::document(&json_safe(&text))?;
+        return Ok(Exit::Passed);
     }
     print_out(&text(&matrix, &known, &plan, options.outcomes.is_some()))
 }

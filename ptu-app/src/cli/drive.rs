@@ -7,7 +7,7 @@ use btu_rig::drive::{Ending, Scatter, manual as manual_drive};
 use clap::Args;
 use protocol::config::ControllerKind;
 
-use super::{ScriptsOption, print_json, print_out};
+use super::{ScriptsOption, answered, print_json, print_out};
 use crate::data::{ScriptsDirectory, check_writable, read, write};
 use crate::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use crate::drive::{
@@ -17,6 +17,7 @@ use crate::failure::{Exit, Failure, did_you_mean};
 use crate::pool::cores;
 use crate::report::drive::{self as report, Outcomes, Report, Results, Target, manual};
 use crate::stop::Stop;
+use crate::tell;
 
 /// Drive from station to station and measure the stop, or drive by hand
 ///
@@ -177,28 +178,27 @@ impl DriveArguments {
             case.play()
         };
         let run = ManualRun { case, outcome };
-        if self.json {
-            print_json(&run.json())?;
-        } else {
-            print_out(&manual::text(&run))?;
-        }
+        let told = match self.json {
+            true => print_json(&run.json()),
+            false => print_out(&manual::text(&run)),
+        };
         for target in &self.report {
             target.write(&run)?;
         }
         match &self.save {
-            Some(_) if run.outcome.done.is_empty() => eprintln!("nothing was done: nothing saved"),
+            Some(_) if run.outcome.done.is_empty() => tell::note("nothing was done: nothing saved"),
             Some(file) => write(file, run.sequence().to_toml())?,
             None => {}
         }
         if stop.presses() > 0 {
-            return Ok(Exit::Aborted);
+            return answered(told, Exit::Aborted);
         }
         match &run.outcome.ending {
             ending @ (manual_drive::Ending::LinkLost(_) | manual_drive::Ending::Refused(_)) => {
                 Err(Failure::bench(ending.to_string()))
             }
-            _ if run.passed() => Ok(Exit::Passed),
-            _ => Ok(Exit::Failed),
+            _ if run.passed() => answered(told, Exit::Passed),
+            _ => answered(told, Exit::Failed),
         }
     }
 
@@ -233,22 +233,20 @@ impl DriveArguments {
     }
 
     fn answer(&self, results: &Results, stop: &Stop) -> Result<Exit, Failure> {
-        if self.json {
-            print_json(&report::json(results))?;
-        } else {
-            print_out(&report::text(results))?;
-        }
+        let told = match self.json {
+            true => print_json(&report::json(results)),
+            false => print_out(&report::text(results)),
+        };
         for target in &self.report {
             target.write(results)?;
         }
-        if stop.presses() > 0 {
-            return Ok(Exit::Aborted);
-        }
-        match &results.outcomes {
-            Outcomes::Many(many) if many.iter().all(|one| one.passed()) => Ok(Exit::Passed),
-            Outcomes::Many(_) => Ok(Exit::Failed),
-            Outcomes::Single(runs) => verdict(runs),
-        }
+        let exit = match &results.outcomes {
+            _ if stop.presses() > 0 => Exit::Aborted,
+            Outcomes::Many(many) if many.iter().all(|one| one.passed()) => Exit::Passed,
+            Outcomes::Many(_) => Exit::Failed,
+            Outcomes::Single(runs) => verdict(runs)?,
+        };
+        answered(told, exit)
     }
 }
 

@@ -29,7 +29,9 @@ use serde::Serialize;
 use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Exit, Failure, did_you_mean_number};
+use crate::report::json_text;
 use crate::run::loading;
+use crate::tell;
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///
@@ -88,8 +90,18 @@ impl Cli {
                  here",
             ));
         }
-        let matches = help::flowing(Self::command()).get_matches();
-        Ok(Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()))
+        let matches = help::flowing(Self::command()).try_get_matches();
+        Ok(matches
+            .and_then(|matches| Self::from_arg_matches(&matches))
+            .unwrap_or_else(|error| std::process::exit(told(&error).code().into())))
+    }
+
+    /// The saved question that is asked for, or all as it was.
+    fn saved(self) -> Result<saved::SavedArguments, Box<Self>> {
+        match self.verb {
+            Some(Verb::Saved(arguments)) => Ok(arguments),
+            verb => Err(Box::new(Self { verb })),
+        }
     }
 
     /// Does what was asked.
@@ -117,6 +129,21 @@ impl Cli {
             Verb::Ports(arguments) => arguments.run(),
             Verb::LoadScripts => loading::serve().map(|()| Exit::Passed),
         }
+    }
+}
+
+/// Tells help, or why a command line cannot be read.
+fn told(error: &clap::Error) -> Exit {
+    if error.use_stderr() {
+        tell::note(error.render().to_string().trim_end());
+        return Exit::Usage;
+    }
+    match error.print() {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Failure::bench(format!("cannot write the help: {error}")).tell();
+            Exit::Bench
+        }
+        _ => Exit::Passed,
     }
 }
 
@@ -149,20 +176,26 @@ fn unknown_unit(store: &Store, serial: &str, said: &str) -> Result<Option<String
 
 /// Prints one JSON document.
 fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
-    print_out(&text)
+    tell::document(&json_text(value)?)?;
+    Ok(Exit::Passed)
 }
 
-/// Prints text and a line end; a reader that has gone away (`| head`) is no error.
+/// Prints text for people.
 fn print_out(text: &str) -> Result<Exit, Failure> {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::bench(format!("cannot write the answer: {error}")))
+    tell::answer(text)?;
+    Ok(Exit::Passed)
+}
+
+/// The exit code of what was done when its answer went out, or did not: an answer that is missing spoils what
+/// passed, and hides nothing that did not.
+fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure> {
+    match told {
+        Ok(_) => Ok(exit),
+        Err(failure) if exit == Exit::Passed => Err(failure),
+        Err(failure) => {
+            failure.tell();
+            Ok(exit)
         }
-        _ => Ok(Exit::Passed),
     }
 }
 

@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::{print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::report::csv::Cell;
+use crate::tell;
 
 /// How an answer is printed.
 #[derive(Clone, Debug, Args)]
@@ -50,7 +51,8 @@ impl Output {
         if self.json {
             print_json(&rows)
         } else if self.csv {
-            print_out(&csv(columns, rows))
+            tell::document(&csv(columns, rows))?;
+            Ok(Exit::Passed)
         } else {
             print_out(&table())
         }

@@ -20,6 +20,7 @@ use crate::link::Endpoint;
 use crate::report::diagnosis::diagnosis_text;
 use crate::run::{self, BenchSetup, Choice, Outcome, RunPlan, Suite, Task, select};
 use crate::stop::Stop;
+use crate::tell;
 
 /// Run check procedures; by default all under scripts/ but those on request only
 ///
@@ -130,13 +131,9 @@ impl RunArguments {
             sha256: scripts_sha256,
             ..
         } = Suite::load(&directory, &self.procedures, &setup)?;
-        for line in &printed {
-            eprintln!("{line}");
-        }
+        printed.iter().for_each(|line| tell::note(line));
         if !errors.is_empty() {
-            for error in &errors {
-                eprintln!("{error}");
-            }
+            errors.iter().for_each(|error| tell::note(error));
             let what = if errors.len() == 1 { "error" } else { "errors" };
             return Err(Failure::usage(format!(
                 "{} {what} in the scripts; nothing was driven",
@@ -152,7 +149,7 @@ impl RunArguments {
             if procedures.is_empty() {
                 return Err(Failure::usage(why));
             }
-            eprintln!("left out: {why}");
+            tell::note(&format!("left out: {why}"));
         }
         if self.check {
             let steps: usize = procedures
@@ -215,7 +212,7 @@ impl RunArguments {
             procedures = run;
             let names: Vec<_> = left_out.iter().map(|p: &Arc<_>| p.id.as_str()).collect();
             if !names.is_empty() {
-                eprintln!("run only when named: {}", names.join(", "));
+                tell::note(&format!("run only when named: {}", names.join(", ")));
             }
         }
         procedures
@@ -288,13 +285,17 @@ impl RunArguments {
         }
         let stop = Stop::default();
         stop.listen();
-        let mut console = Console::new(plan);
+        let mut console = Console::new(plan)?;
         let result = run::run(plan, setup, store, &stop, &mut console);
         console.finish();
         let (store, outcome) = result?;
         let detail = store.run(outcome.id, &crate::owner::is_alive)?;
-        print_out(&verdict_table(&detail))?;
-        self.say_diagnosis(&store, directory, &outcome)?;
+        // The database and the reports have it: what a terminal does not take changes no verdict.
+        let said = print_out(&verdict_table(&detail))
+            .and_then(|_| self.say_diagnosis(&store, directory, &outcome));
+        if let Err(failure) = said {
+            failure.tell();
+        }
         self.reports.write(&store, Some(directory), &detail)?;
         store.close()?;
         Ok(outcome.exit)
@@ -310,9 +311,10 @@ impl RunArguments {
     ) -> Result<(), Failure> {
         if self.adaptive {
             let answer = diagnose_run(store, directory, outcome.id)?;
-            for warning in &answer.warnings {
-                eprintln!("{warning}");
-            }
+            answer
+                .warnings
+                .iter()
+                .for_each(|warning| tell::note(warning));
             print_out(&format!("\n{}", diagnosis_text(&answer)))?;
         } else if outcome.exit == Exit::Failed
             && let Ok(answer) = diagnose_run(store, directory, outcome.id)

@@ -172,7 +172,7 @@ fn notes(notes: &[RunNote]) -> String {
         table.row([
             clock::local(note.at_us),
             note.who.clone(),
-            note.text.replace('\n', " "),
+            note.text.clone(),
         ]);
     }
     format!("\n\n{}", table.render())

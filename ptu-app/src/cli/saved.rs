@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, FromArgMatches};
-use fault_db::read_given;
+use fault_db::{limits, read_given};
 
 use super::{Cli, print_out};
 use crate::data::{self, LONGEST_FILE};
@@ -44,42 +44,63 @@ type Questions = BTreeMap<String, Vec<String>>;
 
 impl SavedArguments {
     /// Asks, lists or forgets.
-    pub fn run(self) -> Result<Exit, Failure> {
+    pub fn run(mut self) -> Result<Exit, Failure> {
         let file = usual_file()?;
         let mut questions = load(&file)?;
-        if let Some(name) = self.forget {
-            let known = question(&questions, &name)?.0.to_owned();
-            questions.remove(&known);
-            store(&file, &questions)?;
-            return print_out(&format!("\"{name}\" is forgotten"));
-        }
-        let Some(name) = self.name else {
-            return print_out(&list(&questions));
-        };
-        if self
-            .more
-            .iter()
-            .any(|word| word == "--save" || word.starts_with("--save="))
-        {
-            return Err(Failure::usage(format!(
-                "\"{name}\" is saved already; ask it in full to save it under another name"
-            )));
-        }
-        let (_, words) = question(&questions, &name)?;
-        let words = ["ptu".to_owned()]
-            .into_iter()
-            .chain(without_rivals(words, &self.more))
-            .chain(self.more);
-        let matches = Cli::command()
-            .args_override_self(true)
-            .try_get_matches_from(words);
-        match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
-            Ok(cli) => cli.run(),
-            Err(error) => Err(Failure::usage(format!(
-                "the saved question \"{name}\" cannot be asked so: {error}"
-            ))),
+        // Questions on the way to the one that is asked: whoever writes the file may have one ask another.
+        let mut way: Vec<String> = Vec::new();
+        loop {
+            if let Some(name) = self.forget.take() {
+                let known = question(&questions, &name)?.0.to_owned();
+                questions.remove(&known);
+                store(&file, &questions)?;
+                return print_out(&format!("\"{name}\" is forgotten"));
+            }
+            let Some(name) = self.name.take() else {
+                return print_out(&list(&questions));
+            };
+            if let Some(circle) = way.iter().position(|before| *before == name) {
+                return Err(Failure::usage(format!(
+                    "the saved question \"{name}\" asks itself: {} → {name}; mend {} or forget one with --forget",
+                    way[circle..].join(" → "),
+                    file.display()
+                )));
+            }
+            let cli = asked_for(&questions, &name, self.more)?;
+            way.push(name);
+            match cli.saved() {
+                Ok(next) => self = next,
+                Err(other) => return other.run(),
+            }
         }
     }
+}
+
+/// The command line that a question stands for, with the options that were added.
+fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli, Failure> {
+    if more
+        .iter()
+        .any(|word| word == "--save" || word.starts_with("--save="))
+    {
+        return Err(Failure::usage(format!(
+            "\"{name}\" is saved already; ask it in full to save it under another name"
+        )));
+    }
+    let (_, words) = question(questions, name)?;
+    let words = ["ptu".to_owned()]
+        .into_iter()
+        .chain(without_rivals(words, &more))
+        .chain(more);
+    let matches = Cli::command()
+        .args_override_self(true)
+        .try_get_matches_from(words);
+    matches
+        .and_then(|matches| Cli::from_arg_matches(&matches))
+        .map_err(|error| {
+            Failure::usage(format!(
+                "the saved question \"{name}\" cannot be asked so: {error}"
+            ))
+        })
 }
 
 /// Keeps the question of this command line under a name.
@@ -92,14 +113,17 @@ pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Fai
             "\"{name}\" is no name for a question"
         )));
     }
+    limits::name("the question's name", name)?;
     let readable = words
         .map(OsString::into_string)
         .collect::<Result<Vec<_>, _>>();
     let words = readable
         .map_err(|word| Failure::usage(format!("{} is no text to save", word.display())))?;
+    let words = asked(words.into_iter());
+    limits::list("the question", &words.join(" "))?;
     let file = usual_file()?;
     let mut questions = load(&file)?;
-    questions.insert(name.to_owned(), asked(words.into_iter()));
+    questions.insert(name.to_owned(), words);
     store(&file, &questions)
 }
 

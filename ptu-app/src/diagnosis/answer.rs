@@ -13,6 +13,7 @@ use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::owner;
 use crate::run::Adaptive;
+use crate::tell;
 
 /// What decides what a healthy unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +130,7 @@ pub fn adaptive(
         )));
     }
     for warning in &chosen.warnings {
-        eprintln!("{warning}");
+        tell::note(warning);
     }
     let settings = settings(directory)?;
     let history = OwnHistory::up_to_now(serial, store, &settings)?;

@@ -1,8 +1,10 @@
 //! A run as CSV (RFC 4180): a line each measurement, and one for a step that measured nothing.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 
 use fault_db::{MeasurementRecord, RunDetail, StepDetail};
+use protocol::shown;
 
 use crate::clock::rfc3339;
 
@@ -73,16 +75,26 @@ fn cells(run: &RunDetail, step: &StepDetail, measured: Option<&MeasurementRecord
 }
 
 impl Cell {
-    /// As it stands in the file. A spreadsheet takes a text that begins like a formula for one; an
-    /// apostrophe before it says that it is none.
+    /// As it stands in the file, where a text acts on nothing: no formula, no control characters but line
+    /// feeds and tabs.
     pub fn written(self) -> String {
         match self {
             Self::Number(number) => number,
-            Self::Text(text) if text.starts_with(['=', '+', '-', '@', '\t', '\r']) => {
-                quoted(&format!("'{text}"))
-            }
-            Self::Text(text) => quoted(&text),
+            Self::Text(text) => quoted(&shown::lines(&no_formula(&text))),
         }
+    }
+}
+
+/// A spreadsheet takes a text that begins like a formula for one; an apostrophe before it says that it is
+/// none.
+pub fn no_formula(text: &str) -> Cow<'_, str> {
+    // Some pass over what has no width.
+    let begins = text.trim_start_matches(|letter| letter == ' ' || shown::is_unseen(letter));
+    match text.starts_with(['\t', '\r', '\n'])
+        || begins.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠'])
+    {
+        true => Cow::Owned(format!("'{text}")),
+        false => Cow::Borrowed(text),
     }
 }
 
@@ -106,12 +118,25 @@ mod tests {
     }
 
     #[test]
+    fn a_text_acts_on_no_terminal_that_shows_the_file() {
+        let written = Cell::Text("\x1b[2J\u{9b}31m\u{202e}\tone\ntwo".into()).written();
+        assert_eq!(written, "\"\\x1b[2J\\x9b31m\\u{202e}\tone\ntwo\"");
+    }
+
+    #[test]
     fn a_text_that_begins_like_a_formula_is_marked_and_a_number_is_not() {
         let text = |text: &str| Cell::Text(text.into()).written();
         assert_eq!(text("=1+1"), "'=1+1");
         assert_eq!(text("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");
         assert_eq!(text("-"), "'-");
         assert_eq!(text("eb=1"), "eb=1");
+        assert_eq!(text(" =1+1"), "' =1+1");
+        assert_eq!(
+            text("\u{feff}=cmd|'/C calc'!A0"),
+            "'\\u{feff}=cmd|'/C calc'!A0"
+        );
+        assert_eq!(text("＝1+1"), "'＝1+1");
+        assert_eq!(text("\r=1"), "'\\r=1");
         assert_eq!(Cell::Number("-0.5".into()).written(), "-0.5");
     }
 }

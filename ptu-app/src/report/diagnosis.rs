@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use fault_db::Id;
+use protocol::shown;
 use serde_json::{Value, json};
 
 use crate::diagnosis::Answer;
@@ -47,7 +48,7 @@ pub fn diagnosis_text(answer: &Answer) -> String {
     let mut text = format!(
         "run {}  unit {}  {} steps, {} not passed, {} faults\n\n{}\n",
         run.id.short(),
-        run.unit_serial,
+        shown::line(&run.unit_serial),
         run.steps,
         run.steps_not_passed,
         run.faults,

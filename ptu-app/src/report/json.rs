@@ -1,9 +1,15 @@
 //! The JSON shapes of runs and faults.
 
+use std::borrow::Cow;
+use std::fmt::Write as _;
+
 use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepDetail};
+use protocol::shown;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::clock::rfc3339;
+use crate::failure::Failure;
 
 /// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {
@@ -118,7 +124,54 @@ pub fn fault_json(fault: &FaultSummary) -> Value {
     })
 }
 
+/// A value as one document, indented.
+///
+/// # Errors
+/// It is none that JSON can say.
+pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+    Ok(json_safe(&text).into_owned())
+}
+
+/// A JSON document in which every letter that acts on a terminal, or hides, is spelled `\u202e`: whoever
+/// reads it has each letter as it was.
+pub fn json_safe(text: &str) -> Cow<'_, str> {
+    // What is below is spelled so already, or stands between values.
+    let is_spelled = |letter: char| letter >= '\u{7f}' && shown::is_unseen(letter);
+    if !text.contains(is_spelled) {
+        return Cow::Borrowed(text);
+    }
+    let mut safe = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        if is_spelled(letter) {
+            for unit in letter.encode_utf16(&mut [0; 2]) {
+                // Writing to a text cannot fail.
+                let _ = write!(safe, "\\u{unit:04x}");
+            }
+        } else {
+            safe.push(letter);
+        }
+    }
+    Cow::Owned(safe)
+}
+
 /// Microseconds as seconds.
 fn seconds(us: i64) -> f64 {
     us as f64 / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_in_a_document_acts_and_every_letter_comes_back() {
+        let text = "\x1b]0;x\x07 \x7f \u{9b}31m \u{202e} \u{e0041} \u{feff} 한 é \"\\ \n";
+        let written = json_text(&json!({ text: [text] })).expect("JSON");
+        let acts = |letter: char| shown::is_unseen(letter) && letter != '\n';
+        assert!(!written.contains(acts), "{written:?}");
+        let read: Value = serde_json::from_str(&written).expect("JSON");
+        assert_eq!(read, json!({ text: [text] }));
+    }
 }

@@ -1,6 +1,7 @@
 //! JUnit XML, for whoever reads test results of many tools.
 
 use fault_db::{RunDetail, StepDetail, Verdict};
+use protocol::shown;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::failure::Failure;
@@ -19,7 +20,7 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
             }
             begun = Some((
                 step.procedure.clone(),
-                TestSuite::new(step.procedure.as_str()),
+                TestSuite::new(&*shown::line(&step.procedure)),
             ));
         }
         if let Some((_, suite)) = &mut begun {
@@ -41,8 +42,8 @@ fn case(step: &StepDetail) -> TestCase {
         Verdict::Failed => failed(NonSuccessKind::Failure, &step.message),
         Verdict::Error | Verdict::Aborted => failed(NonSuccessKind::Error, &step.message),
     };
-    let mut case = TestCase::new(step.name.as_str(), status);
-    case.set_classname(step.procedure.as_str());
+    let mut case = TestCase::new(&*shown::line(&step.name), status);
+    case.set_classname(&*shown::line(&step.procedure));
     case.set_time(std::time::Duration::from_micros(
         step.bench_time_us.max(0) as u64
     ));
@@ -57,13 +58,13 @@ fn case(step: &StepDetail) -> TestCase {
         })
         .collect();
     if !lines.is_empty() {
-        case.set_system_out(lines.join("\n"));
+        case.set_system_out(&*shown::lines(&lines.join("\n")));
     }
     case
 }
 
 fn failed(kind: NonSuccessKind, message: &str) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(kind);
-    status.set_message(message);
+    status.set_message(&*shown::lines(message));
     status
 }

@@ -14,8 +14,10 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use fault_db::{RunDetail, Store};
+use maud::Markup;
+use protocol::shown;
 
-pub use json::{FAULT_KEYS, fault_json, run_json, run_summary_json};
+pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
 pub(crate) use plot::round_step;
 
 use crate::data::{self, ScriptsDirectory};
@@ -121,6 +123,11 @@ pub fn write_beside(
     file.finish_beside()
 }
 
+/// A page as it stands in its file: nothing in it acts on a terminal or turns the order of what is read.
+fn page_text(page: Markup) -> String {
+    shown::lines(&page.into_string()).into_owned()
+}
+
 fn content(
     target: &Target,
     run: &RunDetail,
@@ -134,8 +141,7 @@ fn content(
         // Whoever asks for a sheet has gathered it.
         (Format::Html | Format::Pdf, None) => String::new(),
         (Format::Csv, _) => csv::csv(run),
-        (Format::Json, _) => serde_json::to_string_pretty(&run_json(run))
-            .map_err(|error| Failure::bench(format!("cannot make the report: {error}")))?,
+        (Format::Json, _) => json_text(&run_json(run))?,
         (Format::Junit, _) => junit::junit(run)?,
     };
     Ok(text.into_bytes())

@@ -8,9 +8,11 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use fault_db::{Channel, ChannelKind};
+use protocol::shown;
 use serde_json::{Value, json};
 
 use super::about::About;
+use crate::report::csv::no_formula;
 
 /// Heading of the column of times.
 pub const TIME: &str = "time_s";
@@ -37,7 +39,8 @@ pub fn put_headings<'a>(
         write!(out, ",{heading}")?;
     }
     for channel in channels {
-        write!(out, ",{}", quoted(&heading(channel)))?;
+        let heading = heading(channel);
+        write!(out, ",{}", quoted(&shown::line(&no_formula(&heading))))?;
     }
     out.write_all(b"\n")
 }

@@ -5,6 +5,8 @@
 //! nothing. Unit, tester and the system's own part of a pseudo-terminal run on different ones, so that
 //! neither end can tell that the other was held up. One thread on each processor can.
 
+#![allow(clippy::print_stderr, reason = "says why a test proves nothing here")]
+
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Mutex, OnceLock};
 use std::thread::{available_parallelism, sleep};

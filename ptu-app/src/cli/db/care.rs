@@ -10,9 +10,10 @@ use serde_json::{json, to_value};
 
 use super::check::sealed;
 use crate::cli::database::only_file;
-use crate::cli::{Database, print_json, print_out, since_argument};
+use crate::cli::{Database, answered, print_json, print_out, since_argument};
 use crate::clock;
 use crate::failure::{Exit, Failure};
+use crate::tell;
 
 /// Which traces may go; those of faults that are not closed never do.
 #[derive(Debug, Args)]
@@ -117,31 +118,30 @@ fn tell_merged(
     conflicts: &[StateConflict],
     json: bool,
 ) -> Result<Exit, Failure> {
-    if json {
+    let told = if json {
         let mut all = to_value(counts).map_err(|error| Failure::bench(error.to_string()))?;
         all["conflicts"] = json!(conflicts);
-        print_json(&all)?;
+        print_json(&all)
     } else {
         let rivals: String = conflicts.iter().map(rivals).collect();
-        print_out(&(merged(counts) + &rivals))?;
-    }
+        print_out(&(merged(counts) + &rivals))
+    };
     if let Some(copy) = &counts.copy {
-        eprintln!("{}", copied(copy));
+        tell::note(&copied(copy));
     }
     for Different { what, id } in &counts.different {
-        eprintln!(
+        tell::note(&format!(
             "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
-        );
+        ));
     }
     for refused in told_refused(&counts.refused) {
-        eprintln!("{refused}");
+        tell::note(&refused);
     }
-    Ok(
-        match counts.different.is_empty() && counts.refused.is_empty() {
-            true => Exit::Passed,
-            false => Exit::Bench,
-        },
-    )
+    let exit = match counts.different.is_empty() && counts.refused.is_empty() {
+        true => Exit::Passed,
+        false => Exit::Bench,
+    };
+    answered(told, exit)
 }
 
 fn copied(copy: &CopyOf) -> String {

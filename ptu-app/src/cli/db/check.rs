@@ -2,30 +2,30 @@
 
 use fault_db::{CheckReport, SealHead};
 
-use crate::cli::{Database, print_json, print_out};
+use crate::cli::{Database, answered, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::table::Table;
 
 impl Database {
     pub(super) fn check(&self, json: bool) -> Result<Exit, Failure> {
         let report = self.open_read_only()?.check()?;
-        if json {
-            print_json(&report)?;
+        let told = if json {
+            print_json(&report)
         } else if report.problems.is_empty() {
             print_out(&format!(
                 "no damage; {} traces read, {} runs fit their seals{}",
                 report.traces,
                 report.runs,
                 besides(&report)
-            ))?;
+            ))
         } else {
-            print_out(&(told(&report) + &besides(&report)))?;
-        }
-        Ok(if report.problems.is_empty() {
-            Exit::Passed
-        } else {
-            Exit::Bench
-        })
+            print_out(&(text(&report) + &besides(&report)))
+        };
+        let exit = match report.problems.is_empty() {
+            true => Exit::Passed,
+            false => Exit::Bench,
+        };
+        answered(told, exit)
     }
 }
 
@@ -52,7 +52,7 @@ pub(super) fn sealed(head: &SealHead) -> String {
 }
 
 /// All problems, and once for each kind what to do about it.
-fn told(report: &CheckReport) -> String {
+fn text(report: &CheckReport) -> String {
     let mut table = Table::new(&["KIND", "WHAT"]);
     let mut advice: Vec<(&str, &str)> = Vec::new();
     for problem in &report.problems {

@@ -11,6 +11,7 @@ use crate::cli::output::Output;
 use crate::cli::{Database, print_json};
 use crate::failure::{Exit, Failure};
 use crate::table::Table;
+use crate::tell;
 
 /// Rows a query prints at most.
 const MAX_ROWS: usize = 10_000;
@@ -63,7 +64,9 @@ impl QueryArguments {
             return print_json(&answer);
         }
         if answer.truncated && !self.output.is_table() {
-            eprintln!("only the first {MAX_ROWS} rows; add LIMIT, or ask for less");
+            tell::note(&format!(
+                "only the first {MAX_ROWS} rows; add LIMIT, or ask for less"
+            ));
         }
         let columns = columns(&answer);
         let columns: Vec<_> = columns.iter().map(String::as_str).collect();

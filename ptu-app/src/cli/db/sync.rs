@@ -1,6 +1,5 @@
 //! `ptu db sync`: this laptop's history and a server's.
 
-use std::io::IsTerminal as _;
 use std::time::Instant;
 
 use clap::Args;
@@ -9,10 +8,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use super::care::{rivals, told_refused};
-use crate::cli::{Database, print_json, print_out};
+use crate::cli::{Database, answered, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::stop::Stop;
-use crate::{clock, owner};
+use crate::{clock, owner, tell};
 
 /// Bring this laptop's history to a server, and what others said about its faults back
 ///
@@ -74,15 +73,14 @@ impl SyncArguments {
         let outcome = outcome?;
         file.close()?;
         let took_s = begun.elapsed().as_secs_f64();
-        if self.json {
-            print_json(&as_json(&outcome, &server, took_s))?;
-        } else {
-            print_out(&text(&outcome, &server, took_s))?;
-        }
+        let told = match self.json {
+            true => print_json(&as_json(&outcome, &server, took_s)),
+            false => print_out(&text(&outcome, &server, took_s)),
+        };
         for warning in warnings(&outcome) {
-            eprintln!("{warning}");
+            tell::note(&warning);
         }
-        Ok(if outcome.stopped {
+        let exit = if outcome.stopped {
             Exit::Aborted
         } else if outcome.different.is_empty()
             && outcome.damaged_traces.is_empty()
@@ -91,7 +89,8 @@ impl SyncArguments {
             Exit::Passed
         } else {
             Exit::Bench
-        })
+        };
+        answered(told, exit)
     }
 }
 
@@ -236,8 +235,8 @@ impl Shown {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
-        if !std::io::stderr().is_terminal() {
-            eprintln!("{what}");
+        if !tell::draws() {
+            tell::note(what);
             return;
         }
         let style = match progress.total {

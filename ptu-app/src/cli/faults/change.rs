@@ -6,6 +6,7 @@ use fault_db::{FaultState, RepairRecord, Store};
 use crate::cli::print_out;
 use crate::clock::now_us;
 use crate::failure::{Exit, Failure, did_you_mean};
+use crate::tell;
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed
 #[derive(Debug, Args)]
@@ -79,7 +80,7 @@ impl RepairArguments {
         };
         let state = store.record_repair(id, &repair, &self.who, now_us())?;
         if let Some(note) = note {
-            eprintln!("{note}");
+            tell::note(&note);
         }
         print_out(&format!("fault {} is {}", id.short(), state.as_str()))
     }

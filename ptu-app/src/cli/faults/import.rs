@@ -1,7 +1,7 @@
 //! `ptu faults import`: a unit's own event log.
 
 use clap::Args;
-use fault_db::{FaultRecord, Store};
+use fault_db::{FaultRecord, Store, limits};
 use protocol::Instant;
 use protocol::message::Identity;
 use serde_json::{Value, json};
@@ -78,13 +78,12 @@ impl ImportArguments {
         }
         let outcome = self.outcome(&store)?;
         store.close()?;
-        if self.json {
-            print_json(&outcome.json())?;
-        } else {
-            print_out(&outcome.text())?;
-        }
+        let told = match self.json {
+            true => print_json(&outcome.json()),
+            false => print_out(&outcome.text()),
+        };
         match &outcome.read.broken_off {
-            None => Ok(Exit::Passed),
+            None => told,
             Some(why) => Err(Failure::bench(format!(
                 "{why}; the log was not read to its end, what was read is kept; read it again"
             ))),
@@ -92,6 +91,8 @@ impl ImportArguments {
     }
 
     fn outcome(&self, store: &Store) -> Result<Outcome, Failure> {
+        limits::name("the operator's name", &self.operator)?;
+        limits::name("the train's name", &self.train_no)?;
         let directory = self.scripts.find()?;
         let config = directory.unit_config(&self.unit_config)?;
         let line = directory.line(&self.line)?;

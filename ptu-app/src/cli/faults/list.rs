@@ -10,6 +10,7 @@ use crate::clock::local;
 use crate::failure::{Exit, Failure};
 use crate::report::{FAULT_KEYS, fault_json};
 use crate::table::Table;
+use crate::tell;
 
 /// List faults, last seen first
 ///
@@ -44,7 +45,7 @@ impl ListArguments {
             return print_out(&self.filter.nothing(store)?);
         }
         if more && !self.output.is_table() {
-            eprintln!("only the first {}; see --limit", self.limit);
+            tell::note(&format!("only the first {}; see --limit", self.limit));
         }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
         self.output.print(&FAULT_KEYS, &rows, || {

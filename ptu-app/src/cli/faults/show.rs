@@ -1,6 +1,7 @@
 //! `ptu faults show`: one fault with all that belongs to it.
 
 use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
+use protocol::shown::line;
 use serde_json::{Value, json};
 
 use crate::cli::{print_json, print_out};
@@ -53,10 +54,10 @@ fn detail(detail: &FaultDetail) -> String {
         "fault {}  {} {}  {}\nunit {}  part {}  {}  seen {}\n",
         fault.id,
         fault.code,
-        fault.code_name,
-        fault.severity,
-        fault.unit_serial,
-        fault.lru,
+        line(&fault.code_name),
+        line(&fault.severity),
+        line(&fault.unit_serial),
+        line(&fault.lru),
         fault.state.as_str(),
         times(fault),
     );

@@ -3,14 +3,18 @@
 use std::fmt::Write as _;
 
 use fault_db::{Id, TraceData};
+use unicode_width::UnicodeWidthStr as _;
 
 use super::words::named;
 use crate::clock::local;
+use crate::table::{cell, padded};
 
 /// Characters of a plotted line.
 const PLOT_WIDTH: usize = 60;
 /// Signals shown side by side.
 const LANES: usize = 12;
+/// Widest name of a signal, in columns.
+const WIDEST_NAME: usize = 60;
 /// Heights of a plotted line.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
@@ -33,17 +37,17 @@ pub fn plot(id: Id, trace: &TraceData) -> String {
         local(trace.t0_us),
         if trace.partial { ", cut short" } else { "" }
     );
-    let width = trace
+    let names = trace
         .channels
         .iter()
-        .map(|c| c.name.len())
-        .max()
-        .unwrap_or(0);
+        .map(|channel| cell(&channel.name, WIDEST_NAME));
+    let names: Vec<_> = names.collect();
+    let width = names.iter().map(|name| name.width()).max().unwrap_or(0);
     if let Some(row) = trigger {
         let mark = row * PLOT_WIDTH / rows.max(1);
         let _ = writeln!(text, "{:width$}  {:mark$}▼", "", "");
     }
-    for (channel, column) in trace.channels.iter().zip(&trace.columns) {
+    for ((channel, name), column) in trace.channels.iter().zip(&names).zip(&trace.columns) {
         let known = || column.iter().copied().filter(|v| !v.is_nan());
         let (low, high) = (
             known().fold(f64::MAX, f64::min),
@@ -58,8 +62,8 @@ pub fn plot(id: Id, trace: &TraceData) -> String {
         };
         let _ = writeln!(
             text,
-            "{:width$}  {}  {range}",
-            channel.name,
+            "{}  {}  {range}",
+            padded(name, width),
             bars(column, low, high)
         );
     }
@@ -87,7 +91,8 @@ fn bars(column: &[f64], low: f64, high: f64) -> String {
 pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
     let rows = came.rows();
     let trigger = came.trigger_row.unwrap_or(0) as usize;
-    let width = names.iter().map(|name| name.len()).max().unwrap_or(0);
+    let shown = names.iter().map(|name| cell(name, WIDEST_NAME).width());
+    let width = shown.max().unwrap_or(0);
     let mark = trigger * PLOT_WIDTH / rows.max(1);
     let mut text = format!("{:width$}           {:mark$}▼\n", "", "");
     for name in names.iter().take(LANES) {
@@ -113,7 +118,8 @@ pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
         let range = format!("{} .. {}", named(channel, low), named(channel, high));
         let _ = writeln!(
             text,
-            "{name:width$}  came     {}  {range}",
+            "{}  came     {}  {range}",
+            padded(&cell(name, WIDEST_NAME), width),
             bars(ours, low, high)
         );
         let _ = writeln!(text, "{:width$}  expected {}", "", bars(&theirs, low, high));

@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 
 use btu_rig::rig::check_places;
 use clap::Args;
+use fault_db::limits;
 use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
-use crate::cli::{Database, ScriptsOption, print_json, print_out};
+use crate::cli::{Database, ScriptsOption, answered, print_json, print_out};
 use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
 use crate::replay::{Likeness, Original, Rerun, Rerunning, rerun};
@@ -58,6 +59,7 @@ impl ReplayArguments {
             ));
         }
         self.reports.check()?;
+        limits::name("the operator's name", &self.operator)?;
         // A trace that is not there must not make a database.
         let store = database.open_read_only()?;
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
@@ -74,14 +76,13 @@ impl ReplayArguments {
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
         let detail = store.run(rerun.run_id, &crate::owner::is_alive)?;
-        if self.json {
-            print_json(&rerun_json(&original, &rerun))?;
-        } else {
-            print_out(&text(&original, &rerun))?;
-        }
+        let told = match self.json {
+            true => print_json(&rerun_json(&original, &rerun)),
+            false => print_out(&text(&original, &rerun)),
+        };
         self.reports.write(&store, Some(&directory), &detail)?;
         store.close()?;
-        Ok(rerun.exit)
+        answered(told, rerun.exit)
     }
 }
 

@@ -9,6 +9,7 @@ use super::terminal::Terminal;
 use crate::failure::Failure;
 use crate::link::Pace;
 use crate::stop::Stop;
+use crate::tell;
 
 /// The status line changes every so many scans: 100 ms.
 const SHOWN_EVERY: u64 = 10;
@@ -19,7 +20,7 @@ const SHOWN_EVERY: u64 = 10;
 /// There is no terminal.
 pub fn drive_by_hand(case: &ManualCase, stop: &Stop) -> Result<Outcome, Failure> {
     let terminal = Terminal::open()?;
-    eprintln!("{HELP}");
+    tell::note(HELP);
     terminal.show("the unit starts …");
     let mut bench = case.bench.fresh(case.seed);
     let mut player = Player::new(case.plan.clone());

@@ -1,18 +1,18 @@
 //! The terminal while somebody drives by keys: bytes as they are typed, and one line that is written
 //! over and over.
 
-use std::io::{IsTerminal, Write, stderr, stdin};
+use std::io::{IsTerminal, stdin};
 
 use rustix::termios::{
     LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcgetwinsize, tcsetattr,
 };
 
 use crate::failure::Failure;
+use crate::table::cut;
+use crate::tell;
 
 /// Width of a terminal that does not say, columns.
 const USUAL_COLUMNS: usize = 80;
-/// What clears the line from its beginning.
-const CLEAR: &str = "\r\x1b[K";
 /// A special character that no key makes.
 const NONE: u8 = 0;
 
@@ -28,7 +28,7 @@ impl Terminal {
     /// # Errors
     /// There is no terminal.
     pub fn open() -> Result<Self, Failure> {
-        if !stdin().is_terminal() || !stderr().is_terminal() {
+        if !stdin().is_terminal() || !tell::draws() {
             return Err(Failure::usage(
                 "--manual keys needs a terminal; drive a sequence instead, as --manual figure5",
             ));
@@ -56,17 +56,16 @@ impl Terminal {
 
     /// Writes a line in place of the last, as far as it fits.
     pub fn show(&self, line: &str) {
-        let columns = tcgetwinsize(stderr()).map_or(0, |size| usize::from(size.ws_col));
+        let columns = tcgetwinsize(tell::stderr()).map_or(0, |size| usize::from(size.ws_col));
         let columns = if columns == 0 { USUAL_COLUMNS } else { columns };
-        let line: String = line.chars().take(columns - 1).collect();
         // What cannot be shown does not stop the train.
-        let _ = write!(stderr(), "{CLEAR}{line}").and_then(|()| stderr().flush());
+        tell::redraw(&cut(line, columns - 1));
     }
 }
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        let _ = write!(stderr(), "{CLEAR}");
+        tell::redraw("");
         let _ = tcsetattr(stdin(), OptionalActions::Now, &self.before);
     }
 }

@@ -8,6 +8,7 @@ use super::figures::FIGURES;
 use super::{Outcomes, Results};
 use crate::drive::Driven;
 use crate::drive::monte_carlo::MonteCarlo;
+use crate::report::csv::Cell;
 
 /// A number of a row.
 type Of = fn(&Row) -> f64;
@@ -85,7 +86,8 @@ fn trials(many: &[MonteCarlo]) -> String {
             // Writing to a text cannot fail.
             let _ = writeln!(
                 text,
-                "{section},{controller},{seed},\"{ending}\",{}",
+                "{section},{controller},{seed},{},{}",
+                Cell::Text(ending.to_string()).written(),
                 cells.join(",")
             );
         }

@@ -8,6 +8,7 @@ use super::plots::plots;
 use super::{Outcomes, Results, html_many};
 use crate::clock;
 use crate::drive::{Case, Driven};
+use crate::report::page_text;
 
 /// The page.
 pub fn html(results: &Results) -> String {
@@ -49,7 +50,7 @@ pub fn page(heading: &str, body: &Markup) -> String {
             }
         }
     };
-    page.into_string()
+    page_text(page)
 }
 
 /// Runs of the same section together: its controllers side by side.

@@ -23,6 +23,7 @@ use crate::data;
 use crate::drive::Driven;
 use crate::drive::monte_carlo::MonteCarlo;
 use crate::failure::Failure;
+use crate::report::json_text;
 
 /// What was driven, and how JSON tells it.
 pub struct Results {
@@ -111,7 +112,7 @@ impl Target {
     pub fn write(&self, report: &impl Report) -> Result<(), Failure> {
         let text = match self.format {
             Format::Html => report.html(),
-            Format::Json => format!("{:#}\n", report.json()),
+            Format::Json => json_text(&report.json())? + "\n",
             Format::Csv => report.csv(),
         };
         data::write(&self.path, &text)

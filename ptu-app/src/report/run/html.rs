@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use super::{Sheet, blocks};
+use crate::report::page_text;
 use crate::words::Words;
 
 /// The page.
@@ -26,7 +27,7 @@ pub fn html(sheet: &Sheet, words: &Words) -> String {
             }
         }
     };
-    page.into_string()
+    page_text(page)
 }
 
 fn drawn(block: &Block) -> Markup {

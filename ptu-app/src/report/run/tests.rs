@@ -5,11 +5,13 @@ use fault_db::{
     RunRecord, RunWriter, ScriptRecord, StepRecord, Store, TraceData, UnitRecord, Verdict,
 };
 
+use protocol::shown;
+
 use super::pdf::{HEIGHT, PageItem, WIDTH, laid_out};
 use super::{Sheet, html, pdf};
 use crate::words::Language;
 
-const HOSTILE: &str = "<script>alert(\"1\")</script>&'";
+const HOSTILE: &str = "<script>alert(\"1\")</script>&'\u{1b}[31m\u{9b}2J\u{202e}";
 
 /// A store and the folder it is in.
 struct Stored {
@@ -178,6 +180,11 @@ fn what_is_hostile_in_the_store_is_words_in_the_page() {
     let (store, id) = stored(4, true);
     let page = html(&sheet(&store, id), Language::English.words());
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
+    let acts = |letter: char| shown::is_unseen(letter) && letter != '\n';
+    assert!(!page.contains(acts) && page.contains("\\x1b[31m\\x9b2J\\u{202e}"));
+    for page in laid_out(&sheet(&store, id), Language::English.words()) {
+        assert!(!words_of(&page).contains(shown::is_unseen));
+    }
     assert!(page.contains("472") && page.contains("640") && page.contains("Failed"));
     assert_eq!(
         page.matches("<figure").count(),

@@ -1,6 +1,7 @@
 //! The widths of letters, and lines of words that fit.
 
 use krilla::text::{GlyphId, KrillaGlyph};
+use protocol::shown;
 use ttf_parser::Face;
 
 use crate::failure::Failure;
@@ -52,10 +53,11 @@ impl Letters {
         (u32::from(id.0), f32::from(advance) / self.per_em)
     }
 
-    /// The text in lines no wider than `width`: broken at spaces, and words wider than a line anywhere.
+    /// The text in lines no wider than `width`: broken at spaces, and words wider than a line anywhere. What
+    /// cannot be seen is spelled.
     pub fn lines(&self, text: &str, size: f32, width: f32) -> Vec<String> {
         let mut lines = Vec::new();
-        for paragraph in text.lines() {
+        for paragraph in shown::lines(text).replace('\t', " ").lines() {
             let mut line = String::new();
             for word in paragraph.split_inclusive(' ') {
                 // The space after a word may hang over the edge.

@@ -1,5 +1,7 @@
 //! What stands on a page of paper, and where. Points (1/72 inch) from its upper left corner.
 
+use protocol::shown;
+
 /// Width of A4.
 pub const WIDTH: f32 = 595.28;
 /// Height of A4.
@@ -74,7 +76,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// A line of words.
+    /// A line of words; what cannot be seen is spelled.
     pub fn text(x: f32, y: f32, size: f32, ink: Ink, text: &str) -> Self {
         Self::Text {
             x,
@@ -83,7 +85,7 @@ impl Item {
             ink,
             strong: false,
             turned: false,
-            text: text.to_owned(),
+            text: shown::line(text).into_owned(),
         }
     }
 

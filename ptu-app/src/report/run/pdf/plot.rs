@@ -1,5 +1,7 @@
 //! A plot on paper, from the same marks as on a page.
 
+use protocol::shown;
+
 use super::font::Letters;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
 use crate::report::plot::{Anchor, Mark, Plot, Role};
@@ -58,7 +60,7 @@ fn items(mark: &Mark, scale: f32, letters: &Letters) -> Vec<Item> {
                 ink: ink(*role),
                 strong: *role == Role::Title,
                 turned: *turned,
-                text: text.clone(),
+                text: shown::line(text).into_owned(),
             }]
         }
         Mark::Line { role, pieces } => {

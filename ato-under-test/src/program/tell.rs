@@ -1,0 +1,28 @@
+//! All that the program tells: where the unit is on standard output, everything else on standard error.
+//! Text that others wrote acts on no terminal here.
+
+use std::io::{self, ErrorKind, Write};
+
+use anyhow::{Context, Result};
+use protocol::shown;
+
+/// Tells where the unit can be reached; somebody who has gone away knows it.
+///
+/// # Errors
+/// Standard output does not take it.
+#[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
+pub fn place(place: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{}", shown::line(place)).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(error).context("telling where the unit is")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Tells something beside; whoever does not listen misses it.
+#[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
+pub fn note(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", shown::lines(text));
+}

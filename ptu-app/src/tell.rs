@@ -1,0 +1,87 @@
+//! All that the program tells: answers on standard output, everything else on standard error.
+//!
+//! Nobody else writes to either. Text that others wrote acts on no terminal here, and what cannot be told
+//! stops nothing: a run goes on without anybody who listens.
+
+use std::io::{self, ErrorKind, IsTerminal, Write};
+
+use protocol::shown;
+
+use crate::failure::Failure;
+use crate::table::cut;
+
+/// Widest line, in columns: nobody reads on.
+const WIDEST: usize = 10_000;
+
+/// Answers with text for people. A reader that has gone away (`| head`) has read enough.
+///
+/// # Errors
+/// Standard output does not take it.
+pub fn answer(text: &str) -> Result<(), Failure> {
+    document(&readable(text))
+}
+
+/// Answers with a whole document, JSON or CSV, as it stands.
+///
+/// # Errors
+/// Standard output does not take it.
+pub fn document(text: &str) -> Result<(), Failure> {
+    let mut out = stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::bench(format!(
+            "cannot write the answer: {error}; make room on standard output or send it elsewhere"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Tells people something beside the answer. Whoever does not listen misses it.
+pub fn note(text: &str) {
+    let _ = writeln!(stderr().lock(), "{}", readable(text));
+}
+
+/// Progress can be drawn: notes go to a terminal.
+pub fn draws() -> bool {
+    stderr().is_terminal()
+}
+
+/// Puts a line on the terminal in place of the one before; whoever drives by it looks at it.
+pub fn redraw(line: &str) {
+    let mut terminal = stderr().lock();
+    let _ = write!(terminal, "{CLEAR}{}", shown::line(line)).and_then(|()| terminal.flush());
+}
+
+/// What clears the line from its beginning.
+const CLEAR: &str = "\r\x1b[K";
+
+/// The text with nothing in it that acts, no line wider than [`WIDEST`].
+fn readable(text: &str) -> String {
+    let text = shown::lines(text);
+    let lines: Vec<_> = text.split('\n').map(|line| cut(line, WIDEST)).collect();
+    lines.join("\n")
+}
+
+/// Standard output, for this file.
+#[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
+fn stdout() -> io::Stdout {
+    io::stdout()
+}
+
+/// Standard error, for this file and for what asks the terminal behind it about itself.
+#[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
+pub fn stderr() -> io::Stderr {
+    io::stderr()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_acts_on_no_terminal_and_ends() {
+        assert_eq!(readable("a\x1b[2J\nb\u{202e}"), "a\\x1b[2J\nb\\u{202e}");
+        let wide = readable(&"\u{ac00}".repeat(100_000));
+        assert!(wide.ends_with('…'));
+        assert_eq!(wide.chars().count(), WIDEST / 2);
+    }
+}
