@@ -110,10 +110,10 @@ impl Database {
             Place::File(path) => {
                 let store = Store::open_read_only(&path)?;
                 for stranger in store.strangers()? {
-                    eprintln!(
+                    tell::note(&format!(
                         "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
                         path.display()
-                    );
+                    ));
                 }
                 store
             }
