@@ -43,7 +43,7 @@ impl Watch {
             let left = (until + GRACE).saturating_duration_since(Instant::now());
             if waits.recv_timeout(left) == Err(mpsc::RecvTimeoutError::Timeout) {
                 let failure = Failure::usage(too_long(most_time.as_secs()));
-                eprintln!("ptu: {failure}");
+                failure.tell();
                 std::process::exit(Exit::Usage.code().into());
             }
         });
