@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use common::served::{Observer, Running, Unit};
 use common::steady::{self, steadily};
+use common::terminal::{Terminal, ended};
 use common::{Place, Said, list, number, text};
 use protocol::message::{Message, Outputs, StatusBits};
 use serde_json::Value;
@@ -340,6 +341,47 @@ fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
             .map(|step| text(&step["verdict"]))
             .collect();
         assert_eq!(verdicts, ["passed", "aborted", "skipped"]);
+    });
+}
+
+/// Goal: a terminal that is closed ends a run as Ctrl-C does. Method: its own terminal goes, and all it could
+/// say goes nowhere.
+#[test]
+fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
+    steadily(|| {
+        let unit = Unit::on_pty(&[]);
+        let place = Place::new();
+        let terminal = Terminal::open();
+        let arguments = ["run", "--unit", &unit.address, "atp/ptu_overspeed"];
+        let mut run = terminal.start(&place.command(&arguments));
+        let begun = Instant::now();
+        let armed = |place: &Place| {
+            let shown = place.ptu(&["runs", "show", "latest", "--json"]);
+            let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
+            run["steps"]
+                .as_array()
+                .is_some_and(|steps| !steps.is_empty())
+        };
+        while !armed(&place) {
+            assert!(
+                begun.elapsed() < ENDS_WITHIN,
+                "no step within {ENDS_WITHIN:?}"
+            );
+            terminal.read();
+        }
+        drop(terminal);
+        // It ends by itself. What with, nobody is there to see.
+        assert_ne!(ended(&mut run, || {}), None);
+        let mut observer = Observer::on(&unit);
+        observer.wait(SLACK, "a status", |message| {
+            if let Message::Status(status) = message {
+                assert!(released(message), "{status:?}");
+            }
+            matches!(message, Message::Status(_))
+        });
+        let run = &place.json(&["runs", "list", "--json"])[0];
+        assert_eq!(run["verdict"], "aborted", "{run}");
+        assert_eq!(run["state"], "finished", "{run}");
     });
 }
 
