@@ -306,7 +306,6 @@ fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
 /// Goal: whatever a row says, a change of it is found, and no `rebuild` takes the finding away.
 #[test]
 fn every_row_that_says_something_is_covered() {
-    let note = "door 3 rattles";
     for (sql, expected) in [
         ("UPDATE run_note SET text = 'all fine'", "note"),
         ("UPDATE run_note SET who = 'lee'", "note"),
@@ -424,7 +423,6 @@ fn every_row_that_says_something_is_covered() {
         let all = problems(&store);
         let named = |all: &[Problem]| all.iter().any(|found| found.detail.contains(expected));
         assert!(named(&all), "{sql}: {all:#?}");
-        let _ = note;
         store.rebuild(T0_US).expect("counted anew");
         let stays = store.check().expect("checked");
         let told = stays.remarks.join("; ").contains("counted anew at");

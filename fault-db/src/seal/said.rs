@@ -127,9 +127,12 @@ pub(crate) fn found_note(base: &Base, note: i64, found: &str) -> SqlResult<()> {
     }
 }
 
+/// The digest of the row with this number, with what its entry says.
+type DigestOf = fn(&Base, i64, &str) -> SqlResult<[u8; 32]>;
+
 /// Of all events or notes up to one, as they lie there: what was not sealed before the fifth schema.
 pub(crate) fn earlier(base: &Base, what: Earlier, last: i64) -> SqlResult<EarlierSays> {
-    let (seqs, digest): (&str, fn(&Base, i64, &str) -> SqlResult<[u8; 32]>) = match what {
+    let (seqs, digest): (&str, DigestOf) = match what {
         Earlier::Events => (
             "SELECT seq FROM fault_event WHERE seq <= ?1 ORDER BY seq",
             event_digest,
