@@ -170,7 +170,8 @@ fn bytes_and_messages_may_be_anything() {
         head.into_iter().chain(fields).collect::<Vec<u8>>()
     });
     let payloads: Vec<_> = payloads.collect();
-    let states: [(&str, fn() -> Bench); 3] = [
+    type State = (&'static str, fn() -> Bench);
+    let states: [State; 3] = [
         ("unit-fresh", || Bench::unfed(&[])),
         ("unit-in-service", || {
             let mut bench = Bench::new(&[]);

@@ -331,7 +331,7 @@ fn say_all(order: &Order<'_>) -> std::io::Result<()> {
         let done = match told {
             // What comes next may be the last.
             Told::Evaluates(path) => say(&Said::Evaluates(Cow::Borrowed(path)), true),
-            Told::Loaded(procedure) => say(&Said::Loaded(Box::new(procedure)), false),
+            Told::Loaded(procedure) => say(&Said::Loaded(procedure), false),
         };
         if went_well.is_ok() {
             went_well = done;

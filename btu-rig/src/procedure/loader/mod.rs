@@ -83,7 +83,7 @@ pub enum Told<'a> {
     /// The script of this path is being evaluated from now on.
     Evaluates(&'a str),
     /// This procedure was loaded.
-    Loaded(Procedure),
+    Loaded(Box<Procedure>),
 }
 
 /// Loads all `scripts` for a unit of type `unit` on `line` in `train`.
@@ -98,7 +98,7 @@ pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData
     let mut procedures = Vec::new();
     let loaded = load_telling(scripts, unit, line, train, &mut |told| {
         if let Told::Loaded(procedure) = told {
-            procedures.push(Arc::new(procedure));
+            procedures.push(Arc::new(*procedure));
         }
     });
     Loaded {
@@ -175,7 +175,7 @@ fn load_for(
             .procedure(path, text)
             .and_then(|declared| assemble::assemble(path, text, declared));
         match procedure {
-            Ok(procedure) => tell.borrow_mut()(Told::Loaded(procedure)),
+            Ok(procedure) => tell.borrow_mut()(Told::Loaded(Box::new(procedure))),
             Err(errors) => loaded.errors.extend(errors.into_iter().take(MOST_ERRORS)),
         }
     }
