@@ -29,7 +29,7 @@ pub struct Server {
     client: Option<Client>,
     coming: Vec<Newcomer>,
     /// Where what is not heard is read to.
-    unheard: [u8; 4096],
+    unheard: Vec<u8>,
 }
 
 /// Who has the unit.
@@ -61,7 +61,7 @@ impl Server {
             listener,
             client: None,
             coming: Vec::new(),
-            unheard: [0; 4096],
+            unheard: vec![0; 4096],
         })
     }
 
