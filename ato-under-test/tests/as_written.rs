@@ -149,7 +149,7 @@ fn the_prose_names_what_the_unit_keeps_and_is_configured_to() {
     let config = common::config();
     let (tacho, link) = (&config.tacho, &config.link);
     for phrase in [
-        format!("keeps the last {LOG_CAPACITY} entries"),
+        format!("keeps the newest {LOG_CAPACITY} entries"),
         format!("up to {RUN_ROWS} rows"),
         format!(
             "at most {} km/h for {} ms",

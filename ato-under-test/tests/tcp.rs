@@ -28,7 +28,9 @@ struct Unit {
 impl Unit {
     fn serve() -> Self {
         let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
-        let mut child = Command::new(env!("CARGO_BIN_EXE_ato-under-test"))
+        // A hang-up acts whether or not whoever runs the tests ignores it.
+        let mut child = Command::new("env")
+            .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_ato-under-test")])
             .args(["--tcp", "127.0.0.1:0", "--scripts"])
             .arg(scripts)
             .stdout(Stdio::piped())

@@ -141,8 +141,11 @@ impl Drop for Display {
 impl<'a> Shown<'a> {
     fn open(place: &Place, display: &'a Display, arguments: &[&str]) -> Self {
         let ptu = place.command(&[&["gui"], arguments].concat());
-        let mut command = Command::new(ptu.get_program());
+        // A hang-up acts whether or not whoever runs the tests ignores it.
+        let mut command = Command::new("env");
         command
+            .arg("--default-signal=HUP")
+            .arg(ptu.get_program())
             .args(ptu.get_args())
             .current_dir(place.path(""))
             .envs(
