@@ -370,8 +370,7 @@ fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
             terminal.read();
         }
         drop(terminal);
-        // It ends by itself. What with, nobody is there to see.
-        assert_ne!(ended(&mut run, || {}), None);
+        assert_eq!(ended(&mut run, || {}), Some(130));
         let mut observer = Observer::on(&unit);
         observer.wait(SLACK, "a status", |message| {
             if let Message::Status(status) = message {
