@@ -1058,7 +1058,8 @@ fn an_awaited_event_is_not_missing_while_the_log_is_not_read() {
         world.fake.evidence.log = LogState::Unanswered;
         world.link_error = (world.ms() >= 6_000).then_some("no answer");
     });
-    assert_eq!(in_vain.steps()[0].verdict, Verdict::Error);
+    let reason = "link to the unit: no answer";
+    assert_eq!(in_vain.summary(), [("a", Verdict::Error, reason)]);
 }
 
 #[test]

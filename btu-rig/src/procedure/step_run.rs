@@ -207,7 +207,9 @@ impl StepRun {
         if self.is_complete(step, scan.now) {
             return !self.waits_for_log(scan.now);
         }
-        if scan.now.since(self.started) >= step.time_limit {
+        let late = scan.now.since(self.started) >= step.time_limit;
+        // What it waits for may stand in a log that is not answered: whoever reads it says so.
+        if late && !self.waits_for_log(scan.now) && !self.given_up {
             let what = self.waiting_for(step);
             let text = format!(
                 "took longer than its time limit of {}{what}",

@@ -95,7 +95,10 @@ impl BenchSetup {
             }
         };
         let wrong = |identity: &Identity| self.check_identity(identity).is_err();
+        let mut first = None;
         let ready = session.idle(READY_WITHIN, &mut seen, |bench| {
+            // The unit's clock goes while it starts up.
+            first = first.or(bench.rig().unit_stamp_ms());
             let identity = bench.rig().identity();
             identity.is_some_and(|identity| wrong(identity) || started(bench))
         });
@@ -124,7 +127,7 @@ impl BenchSetup {
         let now = session.now();
         // A brake latched since the last tester left needs its acknowledgement.
         let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
-        self.check_clock(session, &mut seen)?;
+        self.check_clock(session, first, &mut seen)?;
         session.idle(LOG_WITHIN, &mut seen, |bench| {
             let rig = bench.rig();
             rig.evidence().log == LogState::Read || rig.link_error().is_some()
@@ -140,13 +143,14 @@ impl BenchSetup {
         Ok(identity)
     }
 
-    /// Holds the unit's clock against the bench's, as long as there is doubt.
+    /// Holds the unit's clock against the bench's, as long as there is doubt, from the `first` time it told
+    /// on.
     fn check_clock(
         &self,
         session: &mut Session<WireLink>,
+        mut first: Option<(Instant, u32)>,
         seen: &mut impl FnMut(&UnitEvent, Instant, &Sample),
     ) -> Result<(), Failure> {
-        let mut first = None;
         let mut times_faster = 1.0;
         session.idle(CLOCK_DOUBTED, seen, |bench| {
             let Some((at, stamp_ms)) = bench.rig().unit_stamp_ms() else {
