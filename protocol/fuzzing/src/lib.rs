@@ -5,6 +5,12 @@
 //!
 //! `FUZZ_RUNS` is the number of executions of each reader in place of the usual one, `FUZZ_SEED` another seed.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "says what a search for panics found"
+)]
+
 mod mutate;
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};

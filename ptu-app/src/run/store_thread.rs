@@ -223,7 +223,7 @@ fn write_entries(
     kept: &mut Kept,
     entries: &Receiver<Entry>,
     (patience, stop): (Patience, &Stop),
-) -> Result<(), (StoreError, Option<Entry>)> {
+) -> Result<(), (StoreError, Option<Box<Entry>>)> {
     let mut flushed = Instant::now();
     loop {
         let entry = match entries.recv_timeout(FLUSH.saturating_sub(flushed.elapsed())) {
@@ -245,7 +245,7 @@ fn write_entries(
                     return Ok(());
                 }
                 Ok(()) => {}
-                Err(error) => return Err((error, Some(entry))),
+                Err(error) => return Err((error, Some(Box::new(entry)))),
             }
         }
         if flushed.elapsed() >= FLUSH {
@@ -318,7 +318,7 @@ fn keep_rest(
     writer: &mut RunWriter<'_>,
     mut kept: Kept,
     record: &RunRecord,
-    at_hand: Option<Entry>,
+    at_hand: Option<Box<Entry>>,
     entries: &Receiver<Entry>,
 ) -> Option<PathBuf> {
     let mut name = writer.path().as_os_str().to_owned();
@@ -326,7 +326,11 @@ fn keep_rest(
     let path = PathBuf::from(name);
     let store = Store::open(&path, clock::open_options()).ok()?;
     let mut rest = writer.go_on_in(&store, record).ok()?;
-    for entry in at_hand.into_iter().chain(entries.iter()) {
+    for entry in at_hand
+        .map(|entry| *entry)
+        .into_iter()
+        .chain(entries.iter())
+    {
         // A step that was not written waits with the writer, which brought it here.
         keep(&mut rest, &mut kept, &entry, false)
             .or_else(|error| match error {
