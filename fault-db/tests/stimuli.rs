@@ -115,5 +115,9 @@ fn a_damaged_recording_is_found_and_never_handed_out() {
     assert!(matches!(error, StoreError::Corrupt { .. }), "{error}");
     let problems = store.check().expect("checked").problems;
     let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
-    assert_eq!(kinds, ["recording"; 2], "{problems:?}");
+    assert_eq!(
+        kinds,
+        ["recording", "recording", "seal", "seal", "seal"],
+        "{problems:?}"
+    );
 }

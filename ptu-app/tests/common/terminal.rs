@@ -43,9 +43,9 @@ impl Terminal {
     /// Starts a program whose terminal this is, as a shell's is that somebody looks at.
     pub fn start(&self, program: &Command) -> Child {
         let line = || self.line.try_clone().expect("a copy");
-        // A closed terminal acts whether or not whoever runs the tests ignores hang-ups.
+        // A closed terminal acts whether or not whoever runs the tests ignores signals.
         Command::new("env")
-            .args(["--default-signal=HUP", "setsid", "--ctty"])
+            .args(["--default-signal=HUP,INT", "setsid", "--ctty"])
             .arg(program.get_program())
             .args(program.get_args())
             .current_dir(program.get_current_dir().expect("a folder"))

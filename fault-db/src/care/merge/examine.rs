@@ -300,8 +300,9 @@ impl Found {
             if self.runs.contains_key(&run) {
                 continue;
             }
-            let known = "SELECT 1 FROM run WHERE id = ?1 AND verdict IS NOT NULL";
-            if ours.first(known, &values![&id[..]], |_| Ok(()))?.is_some() {
+            let known = "SELECT verdict IS NOT NULL FROM run WHERE id = ?1";
+            let known = ours.first(known, &values![&id[..]], |row| Ok(row.get::<i64>(0)? != 0))?;
+            if known == Some(true) || (known.is_some() && is_rest(theirs, run)?) {
                 continue;
             }
             if let Some(reason) = misfit(theirs, run, is_over)? {
@@ -404,6 +405,15 @@ fn check_event(columns: &[String], row: Row<'_>) -> Result<(), String> {
         }
     };
     check_body(text("kind"), text("body"))
+}
+
+/// Whether it is what a file that was busy for too long did not take of a run: it ended without a seal, and not
+/// by passing. The run is sealed where it was begun, as one that was found.
+fn is_rest(theirs: &Base, run: i64) -> SqlResult<bool> {
+    let rest =
+        "SELECT 1 FROM run r WHERE r.seq = ?1 AND r.verdict IN ('error', 'failed', 'aborted')
+         AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = r.id AND s.what = 'run')";
+    Ok(theirs.first(rest, &values![run], |_| Ok(()))?.is_some())
 }
 
 /// Why a run does not fit its seals.
