@@ -3,7 +3,8 @@
 //! Counted here are only losses that no part of a unit can cause. From the unit: gaps in the sequence of
 //! the PTU and I/O channels, frames of theirs out of place, and refused bytes beyond what a modem of the
 //! other two channels may have damaged. To the unit: what it says it has refused, which is counted where
-//! its line ends, before any modem of its own.
+//! its line ends, before any modem of its own. A unit whose clock goes wrong refuses good frames as late:
+//! what it refuses then is not counted.
 
 use std::collections::VecDeque;
 
@@ -22,6 +23,10 @@ const EVERY: Duration = Duration::from_ms(500);
 const LATELY: Duration = Duration::from_ms(12_000);
 /// After first contact and a restart both ends may refuse what is left of the time before.
 const SETTLES: Duration = Duration::from_ms(2_200);
+/// A unit's clock that is off by more than this, and by more than one part in [`CLOCK_SHARE`], goes wrong.
+const CLOCK_OFF: Duration = Duration::from_ms(60);
+/// A crystal is off by less than a hundredth of this; what is beyond is no delay of a frame.
+const CLOCK_SHARE: u64 = 100;
 /// Channels no part of the unit damages.
 const WHOLE: [Channel; 2] = [Channel::Ptu, Channel::Io];
 
@@ -54,6 +59,10 @@ pub struct LineWatch {
     counts: Counts,
     /// Frames refused as the unit told last.
     told: Option<u16>,
+    /// When the line had settled, and the unit's clock then, ms.
+    clock: Option<(Instant, u32)>,
+    /// Whether the unit's clock goes as the bench's does.
+    clock_is_right: bool,
     /// Until when the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,
     /// Counts of the last seconds, oldest first.
@@ -70,6 +79,8 @@ impl LineWatch {
             base: Counts::default(),
             counts: Counts::default(),
             told: None,
+            clock: None,
+            clock_is_right: true,
             on_purpose_until: Instant::ZERO,
             past: VecDeque::new(),
         }
@@ -84,6 +95,28 @@ impl LineWatch {
     pub fn note_restart(&mut self, now: Instant) {
         self.settles_until = Some(now + SETTLES);
         self.told = None;
+        self.clock = None;
+    }
+
+    /// This bench was held up by its own computer: its frames came late, those of the unit waited or were lost
+    /// here, and the line is not to blame for either.
+    pub fn note_held_up(&mut self, now: Instant) {
+        self.settles_until = self.settles_until.map(|_| now + SETTLES);
+        self.clock = None;
+        self.past.clear();
+        self.past.push_back((now, self.counts));
+    }
+
+    /// Takes when a frame of the unit came, and the unit's clock when it was made, ms.
+    pub fn hear_clock(&mut self, at: Instant, stamp_ms: u32) {
+        if !self.settled(at) {
+            return;
+        }
+        let (since, first_ms) = *self.clock.get_or_insert((at, stamp_ms));
+        let by_bench = at.since(since).as_us();
+        let by_unit = u64::from(stamp_ms.wrapping_sub(first_ms)) * 1_000;
+        let off = by_bench.abs_diff(by_unit);
+        self.clock_is_right = off <= CLOCK_OFF.as_us() || off <= by_bench / CLOCK_SHARE;
     }
 
     /// Takes the unit's own count, which wraps.
@@ -94,7 +127,7 @@ impl LineWatch {
             .map_or(0, |before| refused.wrapping_sub(before));
         // A count that falls is of a unit that was started again.
         let fallen = more > u16::MAX / 2;
-        if !fallen && self.settled(now) && now >= self.on_purpose_until {
+        if !fallen && self.clock_is_right && self.settled(now) && now >= self.on_purpose_until {
             self.counts.to_unit += u64::from(more);
         }
     }

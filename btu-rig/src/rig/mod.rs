@@ -270,6 +270,9 @@ impl Rig {
         }
         if let Message::Status(status) = message {
             self.recorder.hear_status(now, status);
+            if let Some((at, stamp_ms)) = self.unit_stamp {
+                self.line_watch.hear_clock(at, stamp_ms);
+            }
             self.line_watch.hear_refused(now, status.rejected_frames);
         }
     }
@@ -307,6 +310,12 @@ impl Rig {
     /// Who the unit is, once it has said so.
     pub fn identity(&self) -> Option<&Identity> {
         self.tester.identity()
+    }
+
+    /// This bench was held up by its own computer, longer than the unit bears: what got lost meanwhile says
+    /// nothing of the line.
+    pub fn note_held_up(&mut self, now: Instant) {
+        self.line_watch.note_held_up(now);
     }
 
     /// When a frame of the unit came last, and what the unit's clock was when it was made, ms.

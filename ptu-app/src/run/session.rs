@@ -233,6 +233,8 @@ impl<L: UnitLink> Session<L> {
         let behind = self.behind();
         if self.bears.is_some_and(|bears| behind > bears) {
             self.held_up = self.held_up.max(Some(behind));
+            let now = self.bench.now();
+            self.bench.rig_mut().note_held_up(now);
         }
         self.sample.clone_from(self.bench.rig().sample());
         let now = self.bench.now();
