@@ -417,7 +417,7 @@ fn a_log_without_end_is_read_within_its_time_and_bounded() {
             });
             out.extend(entries.map(Message::from));
             logged += 200;
-            status.events = logged + 200;
+            status.events = logged + 100_000;
             out.push(status.into());
         }
         Message::LogEntry(_) | Message::LogEnd(_) => {}

@@ -1,11 +1,11 @@
 //! The other end of the wire: answers as WIRE.md says a unit does, and loses frames on request.
 
-use protocol::Instant;
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmChallenge, ArmRefusal, ArmState, AtcToTcms, Channel, Identity, IoOutput, LogEnd,
     LogEntry, Message, Outputs, SelfTest, Status, StatusBits, StimulusAnswer, TwcTrain,
 };
+use protocol::{Duration, Instant};
 
 use crate::rig::random::Random;
 use crate::rig::{LinkFailure, UnitLink};
@@ -34,6 +34,8 @@ pub struct FakeUnit {
     pub answer: Answer,
     /// Channels on which nothing is sent or heard.
     pub dead: Vec<Channel>,
+    /// How much faster its clock goes than the bench's, as a share.
+    pub clock_gains: f64,
     /// Bytes it sends in each scan beside its frames.
     pub noise: &'static [u8],
     pub to_tcms: AtcToTcms,
@@ -62,6 +64,7 @@ impl Default for FakeUnit {
             refusal: ArmRefusal::None,
             answer: Answer::Accepted,
             dead: Vec::new(),
+            clock_gains: 0.0,
             noise: b"",
             to_tcms: AtcToTcms::default(),
             outputs: Outputs::EB_RELAY,
@@ -235,6 +238,8 @@ impl UnitLink for FakeUnit {
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkFailure> {
+        let gained = now.since(Instant::ZERO).as_secs() * self.clock_gains;
+        let now = now + Duration::from_secs(gained);
         self.scan += 1;
         self.bytes_per_scan.push(to_unit.len());
         self.all_bytes.extend_from_slice(to_unit);

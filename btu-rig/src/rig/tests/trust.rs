@@ -120,6 +120,20 @@ fn on_a_good_line_nothing_is_harmed() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
+/// Goal: a unit that refuses frames because its own clock gains is at fault, not the line. Method: a clock
+/// so fast that frames are late to it every 30 s.
+#[test]
+fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
+    let mut bench = bench(FakeUnit {
+        clock_gains: 0.017,
+        ..FakeUnit::default()
+    });
+    bench.run_ms(120_000);
+    assert!(bench.link().link.counters().rejected_total() > 200);
+    assert_eq!(bench.rig().evidence().line, LineState::default());
+    assert_eq!(bench.rig().link_error(), None);
+}
+
 #[test]
 fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
     let mut bench = bench(FakeUnit::default());
