@@ -106,7 +106,7 @@ pub fn write(
 /// Writes one to a file begun for it, under a name beside it where that is taken; which it was.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_beside(
     target: &Target,
     mut file: NewFile,
