@@ -25,7 +25,38 @@ pub struct LinkWatch {
     bytes: u64,
     taken: Option<Taken>,
     /// Frames refused until each of the watched channels was last heard.
-    refused: [u64; WATCHED.len()],
+    refused: [Refused; WATCHED.len()],
+}
+
+/// Frames refused: all, and those for their sequence number, as the frames of a unit that starts again
+/// are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Refused {
+    total: u64,
+    sequence: u64,
+}
+
+impl Refused {
+    fn until_now(counters: &Counters) -> Self {
+        Self {
+            total: counters.rejected_total(),
+            sequence: counters.rejected(Reject::Sequence),
+        }
+    }
+
+    /// What to say of those refused since `before`.
+    fn said(self, before: Self) -> Option<String> {
+        let (total, sequence) = (self.total - before.total, self.sequence - before.sequence);
+        match total {
+            0 => None,
+            _ if 2 * sequence > total => Some(format!(
+                "while {sequence} frames did not continue those before them — the unit starts again and again: check its supply"
+            )),
+            _ => Some(format!(
+                "while {total} frames were refused — check the line between tester and unit"
+            )),
+        }
+    }
 }
 
 impl LinkWatch {
@@ -64,7 +95,7 @@ impl LinkWatch {
     pub fn note_frame(&mut self, channel: Channel, counters: &Counters) {
         let place = WATCHED.iter().position(|(watched, _)| *watched == channel);
         if let Some(refused) = place.and_then(|place| self.refused.get_mut(place)) {
-            *refused = counters.rejected_total();
+            *refused = Refused::until_now(counters);
         }
     }
 
@@ -89,11 +120,9 @@ impl LinkWatch {
             (silence > SILENCE).then(|| {
                 let seconds = silence.as_secs();
                 let silent = format!("unit silent for {seconds:.1} s on the {name} channel");
-                match link.counters().rejected_total() - refused_before {
-                    0 => silent,
-                    refused => format!(
-                        "{silent}, while {refused} frames were refused — check the line between tester and unit"
-                    ),
+                match Refused::until_now(link.counters()).said(refused_before) {
+                    None => silent,
+                    Some(refused) => format!("{silent}, {refused}"),
                 }
             })
         })

@@ -325,3 +325,22 @@ fn a_unit_that_is_drowned_by_noise_is_not_called_silent_alone() {
         "{error}"
     );
 }
+
+/// A supply that dips again before the link has taken the unit's new numbers in.
+#[test]
+fn a_unit_that_starts_again_and_again_is_not_told_as_a_bad_line() {
+    let mut bench = bench(FakeUnit::default());
+    bench.run_ms(4_000);
+    for (down_ms, up_ms) in [(50, 900), (700, 0)] {
+        bench.link_mut().dead = Channel::ALL.to_vec();
+        bench.run_ms(down_ms);
+        bench.link_mut().restart();
+        bench.run_ms(up_ms);
+    }
+    bench.link_mut().dead = Channel::ALL.to_vec();
+    bench.run_ms(200);
+    let error = bench.rig().link_error();
+    let error = error.unwrap_or_default();
+    assert!(error.contains("the unit starts again and again"), "{error}");
+    assert!(!error.contains("line"), "{error}");
+}
