@@ -75,7 +75,7 @@ fn write(path: &Path, runs: u32) -> Result<(), StoreError> {
         .map(|seed| common::realistic_trace(TRACE_ROWS, seed))
         .collect();
     for first in (0..runs).step_by(TOGETHER as usize) {
-        store.together(|| {
+        store.transaction(|| {
             (first..runs.min(first + TOGETHER)).try_for_each(|run| one(&store, run, &traces))
         })?;
     }

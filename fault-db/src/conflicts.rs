@@ -1,15 +1,15 @@
-//! Two people who did not know of each other brought a fault to different states: both events are kept,
-//! and shown until somebody has looked again.
+//! Faults in conflict: two users, each without the other's event, brought a fault to different states.
+//! Both events are kept and listed until a later event follows both.
 
 use serde::Serialize;
 
 use crate::error::StoreError;
+use crate::event_graph::heads;
 use crate::fault_state::FaultState;
 use crate::id::Id;
-use crate::settle::last_words;
 use crate::store::Store;
 
-/// A fault about whose state places disagree. It is settled by whatever is done about the fault next.
+/// A fault in conflict. The next event that changes its state resolves the conflict.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StateConflict {
     /// The fault.
@@ -22,20 +22,20 @@ pub struct StateConflict {
     pub code_name: String,
     /// Replaceable part it points at.
     pub lru: String,
-    /// What stands meanwhile: the state that leaves the most to do.
+    /// The state that stands meanwhile: the one that leaves the most work.
     pub stands: FaultState,
-    /// What was done without knowledge of each other, by time.
+    /// The heads of its event graph, by time.
     pub rivals: Vec<RivalEvent>,
 }
 
-/// One side of a conflict.
+/// One head of the event graph.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RivalEvent {
     /// The event.
     pub id: Id,
-    /// What was done.
+    /// Its kind.
     pub kind: String,
-    /// When, by the clock there.
+    /// When, by the clock of the laptop.
     pub at_us: i64,
     /// Who did it.
     pub who: String,
@@ -45,19 +45,19 @@ pub struct RivalEvent {
     pub state: FaultState,
 }
 
-/// The last words on faults about which there is more than one.
+/// The heads of faults that have more than one.
 const RIVALS: &str = concat!(
     "SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.state, e.id, e.kind, e.at_us, e.who, e.body, e.state
      FROM fault f JOIN unit u ON u.seq = f.unit, ",
-    last_words!("f.seq"),
+    heads!("f.seq"),
     " AND e.kind <> 'opened' AND f.disputed = 1 ORDER BY f.id, e.at_us, e.id"
 );
 
 impl Store {
-    /// Faults about whose state two places disagree, in the order of their ids.
+    /// Faults in conflict, in the order of their ids.
     pub fn conflicts(&self) -> Result<Vec<StateConflict>, StoreError> {
         let mut conflicts = Vec::<StateConflict>::new();
-        let take = |row: crate::base::Row<'_>| {
+        let take = |row: crate::backend::Row<'_>| {
             let fault: Id = row.get(0)?;
             let rival = RivalEvent {
                 id: row.get(6)?,
@@ -81,7 +81,7 @@ impl Store {
             }
             Ok(())
         };
-        let found = self.base().each(RIVALS, &[], take);
+        let found = self.backend().each(RIVALS, &[], take);
         found.map_err(|error| self.failed("looking for conflicts", error))?;
         Ok(conflicts)
     }

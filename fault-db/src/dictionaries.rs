@@ -1,15 +1,15 @@
-//! Fault dictionaries in the file: kept for good, the newest first.
+//! Fault dictionaries stored in the file; none is ever deleted, the newest comes first.
 
 use rusqlite::params;
 
-use crate::base::values;
+use crate::backend::values;
 use crate::diagnosis::Dictionary;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
 
 impl Store {
-    /// Keeps a dictionary.
+    /// Stores a dictionary.
     ///
     /// # Errors
     /// It cannot be written.
@@ -45,11 +45,11 @@ impl Store {
         Ok(id)
     }
 
-    /// The dictionary made of just this, else of anything, that knows the most fault modes, the newest
-    /// of those, and when it was made.
+    /// The dictionary with exactly this provenance, else any, preferring the one with the most fault modes,
+    /// then the newest; and when it was made.
     ///
     /// # Errors
-    /// The file cannot be read, or what it holds is no dictionary.
+    /// The file cannot be read, or its content is no dictionary.
     pub fn dictionary(&self, basis_sha256: &str) -> Result<Option<(Dictionary, i64)>, StoreError> {
         const DOING: &str = "reading a fault dictionary";
         let found = self.first(

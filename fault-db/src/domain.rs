@@ -1,15 +1,16 @@
-//! What a column can hold, whatever its row came from: one list, by the columns' names, for rows of a file that
-//! is merged, and for those a sync sends or takes. A server has the same in `server/0002.sql`.
+//! The domain of each column, by its name: ranges, lengths and formats. Rows from outside are checked
+//! against it, both those of a file to merge and those that a sync sends or receives. The server enforces
+//! the same in `server/0002.sql`.
 
 use serde::Serialize;
 
-use crate::base::Field;
+use crate::backend::Field;
 use crate::fault_state::FaultState;
 use crate::record::Verdict;
 
-/// Times are from 1970, where a clock without a battery begins, to the end of 2199, µs.
+/// Times from 1970, where a clock without a battery starts, to the end of 2199, µs.
 const TIME_US: std::ops::RangeInclusive<i64> = 0..=7_258_118_400_000_000;
-/// Lengths of time, and the bench's own clock: 50 years either way, µs.
+/// Durations and bench times: up to 50 years either way, µs.
 const SPAN_US: std::ops::RangeInclusive<i64> = -1_577_880_000_000_000..=1_577_880_000_000_000;
 /// A day, µs.
 const DAY_US: i64 = 86_400_000_000;
@@ -23,10 +24,10 @@ const JSON_BYTES: usize = 16 << 20;
 /// Samples of a trace, stimuli of a recording.
 pub(crate) const PACKED_BYTES: usize = 48 << 20;
 
-/// Rows that are named, of all that were refused.
+/// Number of refused rows that are listed.
 const MOST_NAMED: usize = 100;
 
-/// Rows that are not what a history holds. They stayed where they were; all else went on.
+/// Rows outside their columns' domain. They were left where they are; all others were processed.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Refusals {
     /// How many there were.
@@ -38,7 +39,7 @@ pub struct Refusals {
 /// A row that was refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// Which: "run 0197…".
+    /// Which row, as "run 0197…".
     pub what: String,
     /// Why.
     pub reason: String,
@@ -46,7 +47,7 @@ pub struct Refused {
 
 impl Refusals {
     pub(crate) fn add(&mut self, what: String, reason: String) {
-        // A sync comes by an event twice.
+        // A sync may meet the same event twice.
         if self.named.iter().any(|one| one.what == what) {
             return;
         }
@@ -69,7 +70,7 @@ impl Refusals {
     }
 }
 
-/// An id as people read it, or what lies in its place.
+/// An id in its usual form, or a description of bytes that are none.
 pub(crate) fn shown_id(bytes: &[u8]) -> String {
     match bytes.try_into() {
         Ok(id) => crate::id::Id::from_bytes(id).to_string(),
@@ -82,8 +83,8 @@ pub(crate) fn shown_id(bytes: &[u8]) -> String {
     }
 }
 
-/// Whether a column of this name can hold this; the reason says the column. Whether it may hold nothing is the
-/// table's to say.
+/// Checks a value against the domain of the column; the error names the column. NULL passes: whether it is
+/// allowed is the table's constraint.
 pub(crate) fn check(column: &str, field: Field<'_>) -> Result<(), String> {
     let is_in = match field {
         Field::Null => return Ok(()),
@@ -146,7 +147,7 @@ fn word(column: &str) -> String {
     format!("{column} is no word that is known")
 }
 
-/// Parsed whole, because then its depth is bounded.
+/// Parsed completely, which bounds its depth.
 fn json(column: &str, text: &str) -> Result<(), String> {
     let parsed = serde_json::from_str::<serde_json::Value>(text);
     parsed
@@ -154,7 +155,7 @@ fn json(column: &str, text: &str) -> Result<(), String> {
         .map_err(|error| format!("{column} is no JSON: {error}"))
 }
 
-/// The body of an event of this kind.
+/// Checks the body of an event of this kind.
 pub(crate) fn check_body(kind: &str, body: &str) -> Result<(), String> {
     if kind != crate::fault_log::REPAIR {
         return Ok(());

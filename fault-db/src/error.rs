@@ -1,14 +1,14 @@
-//! What can go wrong, each with the file or server it concerns and the next move.
+//! Errors of the store, each with the file or server it concerns and the next move.
 
 use std::path::{Path, PathBuf};
 
 use rusqlite::ErrorCode;
 
-use crate::base::SqlError;
+use crate::backend::SqlError;
 use crate::fault_state::TransitionError;
 use crate::id::Id;
 use crate::query::QueryLimit;
-use crate::server::trouble;
+use crate::server::server_error;
 use crate::trace::TraceError;
 
 /// An error of the store. Nothing committed before it is lost.
@@ -21,13 +21,13 @@ pub enum StoreError {
         /// The database file.
         path: PathBuf,
     },
-    /// No room for the write; what was committed before stays.
+    /// No room for the write; what was committed before remains.
     #[error("no room left to write {}; free some space or choose another disk with --db (all that was recorded before is kept)", .path.display())]
     Full {
         /// The database file.
         path: PathBuf,
     },
-    /// The file or its directory does not let us write.
+    /// The file or its directory is write-protected.
     #[error("{} is read-only; make it and its directory writable or choose another file with --db", .path.display())]
     ReadOnly {
         /// The database file.
@@ -57,15 +57,15 @@ pub enum StoreError {
         /// The newest this crate knows.
         known: i32,
     },
-    /// Something is in the file that this program never made, or is no longer as it was made.
+    /// The file holds a table, index, view or trigger that this program did not make, or an altered one.
     #[error("{} was altered by hand: {what}; nothing is written to it. Look at it with `db check` and `db query`, keep a copy of it as it is, then go on with a backup, or take out by hand what is not of this program and check it again", .path.display())]
     Altered {
         /// The database file.
         path: PathBuf,
-        /// What was found first.
+        /// The first finding.
         what: String,
     },
-    /// The file is a copy from before what is known of it elsewhere.
+    /// The file is an older copy: more of its chain of seals is known elsewhere.
     #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]
     EarlierCopy {
         /// The database file.
@@ -75,24 +75,24 @@ pub enum StoreError {
         /// Entries known elsewhere.
         there: i64,
     },
-    /// The file and what is known of it elsewhere went on from each other.
+    /// The file and the copy known elsewhere have forked: each has entries the other has not.
     #[error("{} is a copy that went on by itself after entry {after} of its chain of seals: what is known there of it after that is not in it; bring what is new in it into the file itself with `db import`, or give it a name of its own with `db sync --as-copy`", .path.display())]
-    PartedCopy {
+    ForkedCopy {
         /// The database file.
         path: PathBuf,
         /// The last entry both have.
         after: i64,
     },
-    /// What was sealed and is known elsewhere is sealed as something else now.
+    /// An entry of the chain differs from the one known elsewhere.
     #[error("the history in {} was rewritten after entry {after} of its chain of seals: {what} {id} is not what it was sealed as; nothing of it is taken. Keep the file as it is, and go on with a backup or a new file", .path.display())]
     Rewritten {
         /// The database file.
         path: PathBuf,
-        /// The last entry that is as it was.
+        /// The last entry that is the same.
         after: i64,
         /// run, event or note.
         what: String,
-        /// Which.
+        /// Its id.
         id: Id,
     },
     /// An earlier schema that a read-only opening may not migrate.
@@ -105,7 +105,7 @@ pub enum StoreError {
         /// The one this crate reads.
         known: i32,
     },
-    /// There is no such file, and reading does not create one.
+    /// There is no such file; reading does not create one.
     #[error("there is no database {}; a first run creates it, or choose another file with --db", .path.display())]
     Missing {
         /// The file asked for.
@@ -124,7 +124,7 @@ pub enum StoreError {
     Io {
         /// The database file.
         path: PathBuf,
-        /// What SQLite said.
+        /// The error of the system.
         reason: String,
     },
     /// The file's content contradicts itself.
@@ -135,7 +135,7 @@ pub enum StoreError {
         /// What is wrong, and where.
         detail: String,
     },
-    /// Nothing has the id or name asked for.
+    /// No row has the id or name.
     #[error("no {what} {asked:?}; list them to see what there is")]
     NotFound {
         /// run, fault, trace or measurement.
@@ -143,7 +143,7 @@ pub enum StoreError {
         /// What was asked.
         asked: String,
     },
-    /// The part of an id given fits more than one.
+    /// A partial id that fits more than one row.
     #[error("{asked:?} fits more than one {what}: {}; give more digits", list(.matches))]
     Ambiguous {
         /// run, fault or trace.
@@ -153,7 +153,7 @@ pub enum StoreError {
         /// A few of those that fit.
         matches: Vec<Id>,
     },
-    /// Nothing in it that could be searched for.
+    /// A search text without any word.
     #[error("{asked:?} has no word to search for; give letters or digits")]
     NoWords {
         /// What was asked.
@@ -169,17 +169,17 @@ pub enum StoreError {
         /// What was asked.
         asked: String,
     },
-    /// A text is longer than what is kept.
+    /// A text exceeds its limit.
     #[error("{what} has {length} characters, and at most {most} are kept; shorten it")]
     TextTooLong {
         /// Which text, as "the note".
         what: &'static str,
         /// Its length in characters.
         length: usize,
-        /// The most that is kept.
+        /// The limit.
         most: usize,
     },
-    /// The fault is not in a state that allows it.
+    /// The fault's state does not allow the action.
     #[error("fault {fault}: {source}")]
     Transition {
         /// The fault.
@@ -187,7 +187,7 @@ pub enum StoreError {
         /// From where to where.
         source: TransitionError,
     },
-    /// Steps of a run must come with rising indexes.
+    /// Steps of a run must have rising indexes.
     #[error("step {index} recorded after step {last}: step indexes must rise")]
     StepOrder {
         /// The index given.
@@ -201,12 +201,12 @@ pub enum StoreError {
         /// The run.
         run: Id,
     },
-    /// Writing failed for so long that no more steps fit in memory.
+    /// Writing has failed for so long that no more steps can be buffered.
     #[error("{waiting} steps wait in memory because {} cannot be written; stop the run", .path.display())]
     StepsWaiting {
         /// The database file.
         path: PathBuf,
-        /// How many steps wait.
+        /// Buffered steps.
         waiting: usize,
     },
     /// The trace cannot be encoded or decoded.
@@ -231,46 +231,46 @@ pub enum StoreError {
         /// What is missing, or what the system said.
         reason: String,
     },
-    /// The same file was given as source and target.
+    /// The same file is both source and target.
     #[error("{} cannot be merged into itself; name another file", .path.display())]
     SameFile {
         /// The file.
         path: PathBuf,
     },
-    /// The statement does something else than read.
+    /// The statement does more than read.
     #[error("only one reading statement is allowed here ({reason}); write a single SELECT")]
     QueryRefused {
         /// What was refused.
         reason: String,
     },
-    /// SQLite could not make sense of the statement.
+    /// SQLite rejected the statement.
     #[error("the query failed: {reason}")]
     QueryFailed {
         /// What SQLite said.
         reason: String,
     },
-    /// The answer would have taken more than it may.
+    /// The result exceeds a limit.
     #[error("the query was given up: {limit}")]
     QueryExceeds {
-        /// More of what.
+        /// Which limit.
         limit: QueryLimit,
     },
-    /// What was asked needs a file, and this is a server.
+    /// The operation needs a file, and this is a server.
     #[error("{} is a server, and this needs a database file; name one with --db, and bring it to the server with `db sync`", .path.display())]
     NotAFile {
         /// The server.
         path: PathBuf,
     },
-    /// What was asked needs a server, and this is a file.
+    /// The operation needs a server, and this is a file.
     #[error("{} is a file, and this needs a server; name one as postgres://USER@HOST/DATABASE", .path.display())]
     NotAServer {
         /// The file.
         path: PathBuf,
     },
-    /// It is no server's address.
+    /// Not the address of a server.
     #[error("bad server address: {reason}; write postgres://USER@HOST/DATABASE")]
     BadAddress {
-        /// What is wrong with it, without its password.
+        /// What is wrong with it; never its password.
         reason: String,
     },
     /// The server does not answer, or no longer.
@@ -283,15 +283,15 @@ pub enum StoreError {
         /// What went wrong.
         reason: String,
     },
-    /// The server answers, and will not have us.
+    /// The server refuses the connection or the right.
     #[error("{} refuses: {reason}; ask who looks after the server", .path.display())]
     ServerRefuses {
         /// The server.
         path: PathBuf,
-        /// What it said.
+        /// The server's message.
         reason: String,
     },
-    /// The server did not prove who it is.
+    /// The server's certificate is not trusted.
     #[error("{} is not trusted: {reason}", .path.display())]
     ServerNotTrusted {
         /// The server.
@@ -299,14 +299,14 @@ pub enum StoreError {
         /// What is missing, and what to do.
         reason: String,
     },
-    /// Others keep the server busy for too long.
+    /// Other sessions keep the server busy for too long.
     #[error("{} is busy ({doing}: {reason}); try again later", .path.display())]
     ServerBusy {
         /// The server.
         path: PathBuf,
         /// What was being done.
         doing: &'static str,
-        /// What it said.
+        /// The server's message.
         reason: String,
     },
     /// There are no tables on the server yet.
@@ -315,7 +315,7 @@ pub enum StoreError {
         /// The server.
         path: PathBuf,
     },
-    /// The server's tables cannot be made, or their rights cannot be given.
+    /// The server's tables or rights cannot be set up.
     #[error("{} was not set up: {reason}", .path.display())]
     ServerSetup {
         /// The server.
@@ -349,30 +349,30 @@ pub enum StoreError {
         /// The one this crate knows.
         known: i32,
     },
-    /// Anything else a server refuses.
-    #[error("{doing} at {}: {}", .path.display(), trouble::words(.source))]
+    /// Any other error of a server.
+    #[error("{doing} at {}: {}", .path.display(), server_error::message(.source))]
     Server {
         /// The server.
         path: PathBuf,
         /// What was being done.
         doing: &'static str,
-        /// What it said.
+        /// The server's error.
         source: postgres::Error,
     },
-    /// Anything else SQLite refuses: a bug of ours.
+    /// Any other error of SQLite: a bug of this program.
     #[error("{doing} in {}: {source}", .path.display())]
     Sqlite {
         /// The database file.
         path: PathBuf,
         /// What was being done.
         doing: &'static str,
-        /// What SQLite said.
+        /// SQLite's error.
         source: rusqlite::Error,
     },
 }
 
 impl StoreError {
-    /// There is no run, fault or trace of this id.
+    /// There is no row of this id.
     pub(crate) fn not_found(what: &'static str, id: Id) -> Self {
         Self::NotFound {
             what,
@@ -380,11 +380,11 @@ impl StoreError {
         }
     }
 
-    /// Sorts an error of a file or a server into the kinds a caller can act on.
+    /// Classifies an error of a file or a server by what a caller can do about it.
     pub(crate) fn from_sql(path: &Path, doing: &'static str, error: SqlError) -> Self {
         match error {
             SqlError::File(error) => Self::from_sqlite(path, doing, error),
-            SqlError::Server(error) => trouble::sorted(path, doing, error),
+            SqlError::Server(error) => server_error::classify(path, doing, error),
             SqlError::Value { column, reason } => Self::Corrupt {
                 path: path.to_path_buf(),
                 detail: format!("{doing}: column {column}: {reason}"),
@@ -392,7 +392,7 @@ impl StoreError {
         }
     }
 
-    /// Sorts an error of SQLite into the kinds a caller can act on.
+    /// Classifies an error of SQLite by what a caller can do about it.
     pub(crate) fn from_sqlite(path: &Path, doing: &'static str, source: rusqlite::Error) -> Self {
         let path = path.to_path_buf();
         let reason = source.to_string();
@@ -424,7 +424,7 @@ impl StoreError {
     }
 }
 
-/// A stored value that does not fit its column's meaning: nobody but us writes them.
+/// A stored value of the wrong type or range: only this program writes them, so the file is damaged.
 fn is_bad_value(error: &rusqlite::Error) -> bool {
     use rusqlite::Error::{FromSqlConversionFailure, IntegralValueOutOfRange, InvalidColumnType};
     matches!(

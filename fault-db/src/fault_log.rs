@@ -1,14 +1,14 @@
-//! What people do to a fault: each act an event, and the fault's state the last one's.
+//! Changes of a fault by users and by runs: each is an event, and the newest event gives the state.
 
-use crate::base::{Base, SqlResult, values};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
+use crate::event_graph::{heads, recompute_fault};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::limits;
 use crate::record::RepairRecord;
 use crate::seal;
-use crate::server::said;
-use crate::settle::{last_words, settle};
+use crate::server::derived_columns;
 use crate::store::Store;
 
 /// An event about to be added.
@@ -18,7 +18,7 @@ pub(crate) struct NewEvent<'a> {
     pub at_us: i64,
     pub who: &'a str,
     pub body: &'a str,
-    /// The fault's state after it; none leaves it as it was.
+    /// The fault's state after it; `None` leaves the state.
     pub state: Option<FaultState>,
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct NewEvent<'a> {
 pub(crate) const REPAIR: &str = "repair";
 
 impl Store {
-    /// Takes note of a fault: somebody is at it.
+    /// Acknowledges a fault: somebody works on it.
     pub fn acknowledge(
         &self,
         fault: Id,
@@ -38,7 +38,7 @@ impl Store {
         self.act(fault, FaultAction::Acknowledge, None, who, note, at_us)
     }
 
-    /// Brings a fault to another state, if it may go there from where it is.
+    /// Changes the state of a fault, if its current state allows it.
     pub fn set_state(
         &self,
         fault: Id,
@@ -51,7 +51,7 @@ impl Store {
         self.act(fault, FaultAction::towards(state), None, who, note, at_us)
     }
 
-    /// Records a repair and takes the fault for repaired, until a passing run verifies it.
+    /// Records a repair. The fault counts as repaired until a passing run verifies it.
     pub fn record_repair(
         &self,
         fault: Id,
@@ -65,13 +65,13 @@ impl Store {
         self.act(fault, FaultAction::Repair, Some(REPAIR), who, &body, at_us)
     }
 
-    /// Adds a note; the state stays.
+    /// Adds a note; the state does not change.
     pub fn add_note(&self, fault: Id, who: &str, note: &str, at_us: i64) -> Result<(), StoreError> {
         const DOING: &str = "storing a note";
         limits::name("the name of who says it", who)?;
         limits::note("the note", note)?;
         let id = self.mint()?;
-        self.change(DOING, |base| {
+        self.change(DOING, |backend| {
             let (seq, _) = self.fault_row(fault)?;
             let event = NewEvent {
                 id,
@@ -81,7 +81,7 @@ impl Store {
                 body: note,
                 state: None,
             };
-            insert_event(base, seq, &event).map_err(|error| self.failed(DOING, error))
+            insert_event(backend, seq, &event).map_err(|error| self.failed(DOING, error))
         })
     }
 
@@ -97,7 +97,7 @@ impl Store {
         const DOING: &str = "changing a fault's state";
         limits::name("the name of who says it", who)?;
         let id = self.mint()?;
-        self.change(DOING, |base| {
+        self.change(DOING, |backend| {
             let (seq, from) = self.fault_row(fault)?;
             let to = from.next(action);
             let to = to.map_err(|source| StoreError::Transition { fault, source })?;
@@ -111,12 +111,12 @@ impl Store {
                 state: Some(to),
             };
             let work = || {
-                insert_event(base, seq, &event)?;
-                // A server does not let others say what follows from what was said.
-                if let Base::Server(_) = base {
-                    return settle(base, seq);
+                insert_event(backend, seq, &event)?;
+                // On a server clients may not write derived columns.
+                if let Backend::Server(_) = backend {
+                    return recompute_fault(backend, seq);
                 }
-                base.execute(
+                backend.execute(
                     "UPDATE fault SET state = ?2, closed_at_us = ?3 WHERE seq = ?1",
                     &values![seq, to, (to == FaultState::Closed).then_some(at_us)],
                 )?;
@@ -140,77 +140,83 @@ impl Store {
     }
 }
 
-/// What an event was made in knowledge of.
-pub(crate) struct Known {
-    /// The ids of the last words on the fault's state, one after the other; none for an event that leaves it.
-    pub follows: Vec<u8>,
-    /// One more than the greatest turn.
-    pub turn: i64,
-    /// Occurrences of the fault.
-    pub seen: i64,
+/// What the author of an event knew of its fault. The columns are named `follows`, `turn` and `seen`.
+pub(crate) struct EventContext {
+    /// Ids of its parents in the event graph, concatenated; empty for an event that leaves the state.
+    pub parents: Vec<u8>,
+    /// Lamport number: one more than the greatest of the events known.
+    pub lamport: i64,
+    /// Occurrences known.
+    pub occurrences_known: i64,
 }
 
-/// All that is here.
-fn known(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<Known> {
-    let mut follows = Vec::new();
+/// The context of an event whose author knows all that is stored here.
+fn context(backend: &Backend, fault: i64, event: &NewEvent<'_>) -> SqlResult<EventContext> {
+    let mut parents = Vec::new();
     if event.state.is_some() {
-        let last_words = concat!("SELECT e.id FROM ", last_words!("?1"), " ORDER BY e.id");
-        let said = base.select(last_words, &values![fault], |row| row.get::<Id>(0))?;
-        follows = said.iter().flat_map(Id::as_bytes).copied().collect();
+        let heads = concat!("SELECT e.id FROM ", heads!("?1"), " ORDER BY e.id");
+        let heads = backend.select(heads, &values![fault], |row| row.get::<Id>(0))?;
+        parents = heads.iter().flat_map(Id::as_bytes).copied().collect();
     }
-    let found = base.first(
+    let found = backend.first(
         "SELECT coalesce((SELECT max(turn) FROM fault_event WHERE fault = ?1), 0) + 1, occurrences
          FROM fault WHERE seq = ?1",
         &values![fault],
         |row| Ok((row.get(0)?, row.get(1)?)),
     )?;
-    let (turn, seen) = found.unwrap_or_default();
-    Ok(Known {
-        follows,
-        turn,
-        seen,
+    let (lamport, occurrences_known) = found.unwrap_or_default();
+    Ok(EventContext {
+        parents,
+        lamport,
+        occurrences_known,
     })
 }
 
-/// Adds an event that was made in knowledge of all that is here.
-pub(crate) fn insert_event(base: &Base, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
-    if event.state.is_some() && matches!(base, Base::File(_)) {
+/// Adds an event whose author knows all that is stored here.
+pub(crate) fn insert_event(backend: &Backend, fault: i64, event: &NewEvent<'_>) -> SqlResult<()> {
+    if event.state.is_some() && matches!(backend, Backend::File(_)) {
         let agreed = "UPDATE fault SET disputed = 0 WHERE seq = ?1 AND disputed = 1";
-        base.execute(agreed, &values![fault])?;
+        backend.execute(agreed, &values![fault])?;
     }
-    let known = known(base, fault, event)?;
-    insert_knowing(base, fault, event, &known)
+    let context = context(backend, fault, event)?;
+    insert_event_with_context(backend, fault, event, &context)
 }
 
-/// Adds an event, unless it is there.
-pub(crate) fn insert_knowing(
-    base: &Base,
+/// Adds an event unless its id exists.
+pub(crate) fn insert_event_with_context(
+    backend: &Backend,
     fault: i64,
     event: &NewEvent<'_>,
-    known: &Known,
+    context: &EventContext,
 ) -> SqlResult<()> {
-    if let Base::Server(_) = base {
-        return said::insert_event(base, fault, event, known);
+    if let Backend::Server(_) = backend {
+        return derived_columns::insert_event(backend, fault, event, context);
     }
-    let says = values![
+    let fields = values![
         event.id,
         event.kind,
         event.at_us,
         event.who,
         event.body,
         event.state,
-        known.turn,
-        &known.follows[..],
+        context.lamport,
+        &context.parents[..],
     ];
-    let mut row = says.to_vec();
-    row.extend(values![fault, known.seen]);
-    let added = base.execute(
+    let mut row = fields.to_vec();
+    row.extend(values![fault, context.occurrences_known]);
+    let added = backend.execute(
         "INSERT INTO fault_event(id, kind, at_us, who, body, state, turn, follows, fault, seen)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT (id) DO NOTHING",
         &row,
     )?;
     match added {
         0 => Ok(()),
-        _ => seal::said::event(base, fault, event.id, &says, known.seen),
+        _ => seal::events_and_notes::event(
+            backend,
+            fault,
+            event.id,
+            &fields,
+            context.occurrences_known,
+        ),
     }
 }

@@ -6,17 +6,17 @@
 use crate::text_enum::text_enum;
 
 text_enum! {
-    /// Where a fault stands.
+    /// The state of a fault.
     FaultState {
-        /// Seen, nobody has looked at it.
+        /// Seen, not looked at yet.
         Open = "open",
-        /// Somebody is at it.
+        /// Somebody works on it.
         Acknowledged = "acknowledged",
-        /// A part was changed or adjusted; not proven yet.
+        /// A part was replaced or adjusted; not verified yet.
         Repaired = "repaired",
         /// A run after the repair passed.
         Verified = "verified",
-        /// Done; the next occurrence is a new fault.
+        /// Closed; the next occurrence begins a new fault.
         Closed = "closed",
     }
 }
@@ -24,22 +24,22 @@ text_enum! {
 /// What can happen to a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultAction {
-    /// It was seen again.
+    /// It occurred again.
     Occur,
-    /// Somebody takes it.
+    /// Somebody begins to work on it.
     Acknowledge,
     /// A repair was made.
     Repair,
     /// A run after the repair passed.
     Verify,
-    /// It is done with.
+    /// It is closed.
     Close,
     /// The repair did not hold, or was a mistake.
     Reopen,
 }
 
 impl FaultAction {
-    /// The action that is meant to end in `state`.
+    /// The action that leads to `state`.
     pub fn towards(state: FaultState) -> Self {
         match state {
             FaultState::Open => Self::Reopen,
@@ -50,7 +50,7 @@ impl FaultAction {
         }
     }
 
-    /// Its word in the event log.
+    /// Its kind in the event log.
     pub fn event_kind(self) -> &'static str {
         match self {
             Self::Occur => "recurred",
@@ -63,18 +63,18 @@ impl FaultAction {
     }
 }
 
-/// A step that the life of a fault does not have.
+/// A transition that does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it is {from}, and from there it cannot be {}; it can be {}", .action.event_kind(), choices(*.from))]
 pub struct TransitionError {
     /// The state it is in.
     pub from: FaultState,
-    /// What was asked.
+    /// The action.
     pub action: FaultAction,
 }
 
 impl FaultState {
-    /// The state after an action, or why there is none.
+    /// The state after an action.
     pub fn next(self, action: FaultAction) -> Result<Self, TransitionError> {
         use FaultAction as A;
         use FaultState as S;
@@ -83,10 +83,10 @@ impl FaultState {
             (S::Acknowledged, A::Occur) => Ok(S::Acknowledged),
             (S::Repaired | S::Verified, A::Occur) => Ok(S::Open),
             (S::Open, A::Acknowledge) => Ok(S::Acknowledged),
-            // A second part changed is a second repair.
+            // A second part replaced is a second repair.
             (S::Open | S::Acknowledged | S::Repaired, A::Repair) => Ok(S::Repaired),
             (S::Repaired, A::Verify) => Ok(S::Verified),
-            // Without a repair: not found, or withdrawn. After one: only once it is proven.
+            // Without a repair: not found, or withdrawn. After a repair: only once it is verified.
             (S::Open | S::Acknowledged | S::Verified, A::Close) => Ok(S::Closed),
             (S::Acknowledged | S::Repaired | S::Verified, A::Reopen) => Ok(S::Open),
             (from, action) => Err(TransitionError { from, action }),

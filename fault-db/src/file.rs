@@ -1,23 +1,23 @@
-//! A SQLite file of ours: how it is told from others, set up and brought up to date.
+//! SQLite files: recognising our own, opening, setting up, and keeping a copy before a migration.
 
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
+use crate::atomic_file::AtomicFile;
 use crate::error::StoreError;
-use crate::functions;
-use crate::guard;
-use crate::part::Part;
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
+use crate::schema_guard;
+use crate::sql_functions;
 use crate::store::Synchronous;
 
-/// Programs that create one file at the same time may get in each other's way this often.
+/// Programs that create one file at the same time may disturb each other this often.
 const WAL_TRIES: u32 = 200;
 
 /// Copies of files of an earlier schema that may lie beside a file.
 const MAX_COPIES: u32 = 9;
 
-/// Pages of a file kept in memory: room for the upper levels of all its indexes.
+/// Page cache: enough for the upper levels of all indexes.
 pub(crate) const CACHE_KIB: u32 = 16 * 1024;
 
 /// One page of the smallest size SQLite has.
@@ -38,7 +38,7 @@ pub(crate) fn connect(
             reason,
         });
     }
-    // A pipe would be waited for.
+    // Opening a pipe would block.
     if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
         return Err(StoreError::NotADatabase {
             path: path.to_path_buf(),
@@ -48,18 +48,18 @@ pub(crate) fn connect(
     let conn = Connection::open_with_flags(name, flags).map_err(failed)?;
     conn.busy_timeout(std::time::Duration::from_millis(busy_timeout_ms.into()))
         .map_err(failed)?;
-    functions::register(&conn).map_err(failed)?;
+    sql_functions::register(&conn).map_err(failed)?;
     let may_write = flags.contains(OpenFlags::SQLITE_OPEN_READ_WRITE);
-    guard::restrain(&conn, may_write).map_err(failed)?;
+    schema_guard::harden(&conn, may_write).map_err(failed)?;
     conn.execute_batch(&format!("PRAGMA cache_size = -{CACHE_KIB}"))
         .map_err(failed)?;
     Ok(conn)
 }
 
-/// The schema version of a file of ours, 0 for an empty one; an error for any other file. Looks
-/// only, so that a file that is not ours stays as it is.
+/// The schema version of a file of ours, 0 for an empty one; an error for any other file. Reads only, so that
+/// a foreign file stays as it is.
 pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError> {
-    // SQLite takes a file too short for its header for an empty one, and would write over it.
+    // SQLite takes a file too short for its header for an empty one, and would overwrite it.
     if std::fs::metadata(path).is_ok_and(|file| (1..SMALLEST_FILE_BYTES).contains(&file.len())) {
         return Err(StoreError::NotADatabase {
             path: path.to_path_buf(),
@@ -93,11 +93,11 @@ pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError
     Ok(version)
 }
 
-/// Makes an empty file, for its owner alone. SQLite would make one as the umask has it; what it keeps beside a
-/// file gets that file's rights.
+/// Creates an empty file that only its owner can read. SQLite would use the umask; the files that it creates
+/// beside a database get that database's rights.
 ///
 /// # Errors
-/// There is a file of this name, or none can be made.
+/// The file exists, or cannot be created.
 pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
     let mut options = std::fs::OpenOptions::new();
     options.write(true).create_new(true);
@@ -106,7 +106,7 @@ pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
     options.open(path).map(drop)
 }
 
-/// What has to be set before a file is brought up to date.
+/// Settings to make before a file is migrated.
 pub(crate) fn set_up(
     conn: &Connection,
     version: i32,
@@ -124,13 +124,13 @@ pub(crate) fn set_up(
     conn.execute_batch("PRAGMA foreign_keys = ON")
 }
 
-/// What is set for recording, in a file that is up to date.
+/// Settings for recording, in a file of the current schema.
 pub(crate) fn set_up_to_record(
     conn: &Connection,
     max_pages: Option<u32>,
 ) -> Result<(), rusqlite::Error> {
-    // Each statement that sets off triggers keeps the pages it changes until it is done: in a file that
-    // costs more than the rows. Only now, because migrating sorts more than fits in memory.
+    // A statement that fires triggers keeps the pages it changes in a journal until it is done; on disk that
+    // costs more than the rows. Not set earlier, because migrations sort more than fits in memory.
     conn.execute_batch("PRAGMA temp_store = MEMORY")?;
     if let Some(pages) = max_pages {
         conn.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
@@ -138,12 +138,12 @@ pub(crate) fn set_up_to_record(
     Ok(())
 }
 
-/// Copies a file of an earlier schema before it is brought up to date. A copy that is there already
-/// is left alone: it may be the better one.
+/// Copies a file of an earlier schema before its migration. An existing copy is left alone: it may be the
+/// better one.
 pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<(), StoreError> {
     const DOING: &str = "keeping a copy of the older schema";
     let failed = |error| StoreError::from_sqlite(path, DOING, error);
-    // Another program may be at it: then the copy is made by whoever is first.
+    // Another program may be migrating it: then the first one makes the copy.
     if schema::user_version(conn).map_err(failed)? != version {
         return Ok(());
     }
@@ -160,24 +160,24 @@ pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<
         first.push(format!(".schema{version}"));
         return Err(StoreError::TargetExists { path: first.into() });
     };
-    let part = Part::copy(conn, &copy, DOING)?;
+    let part = AtomicFile::copy(conn, &copy, DOING)?;
     if part.version()? != version {
         return Ok(());
     }
     match part.publish() {
-        // It was not there a moment ago: another program has kept the same.
+        // It was not there a moment ago: another program made the same copy.
         Err(StoreError::TargetExists { .. }) => Ok(()),
         done => done,
     }
 }
 
-/// Copies a whole file, compacted, to a name that nothing has.
+/// Copies a whole file, compacted, to a free name.
 pub(crate) fn copy_to(conn: &Connection, to: &Path, doing: &'static str) -> Result<(), StoreError> {
-    Part::copy(conn, to, doing)?.publish()
+    AtomicFile::copy(conn, to, doing)?.publish()
 }
 
-/// Turns write-ahead logging on. SQLite does not wait for others while it changes a new file over;
-/// waiting for a write lock in between does, as long as the busy timeout allows.
+/// Turns write-ahead logging on. SQLite does not wait for others while it changes the mode of a new file;
+/// waiting for a write lock in between does, up to the busy timeout.
 fn enter_wal(conn: &Connection) -> Result<(), rusqlite::Error> {
     let turn_on = || conn.query_row("PRAGMA journal_mode = WAL", [], |_| Ok(()));
     for _ in 1..WAL_TRIES {
@@ -197,7 +197,7 @@ pub(crate) fn has_write_ahead_log(path: &Path) -> bool {
     std::fs::metadata(name).is_ok_and(|log| log.len() > 0)
 }
 
-/// `file:` with everything escaped that has a meaning in a URI.
+/// A `file:` URI with all special characters escaped.
 pub(crate) fn immutable_uri(path: &Path) -> PathBuf {
     let mut uri = String::from("file:");
     for byte in path.as_os_str().as_encoded_bytes() {

@@ -1,4 +1,4 @@
-//! Identities: 128-bit UUIDv7 (RFC 9562), minted from a time and random bytes the caller gives.
+//! 128-bit UUIDv7 identifiers (RFC 9562), made from a time and random bytes that the caller gives.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use rusqlite::types::{FromSql, FromSqlError, FromSqlResult, ToSql, ToSqlOutput, 
 use serde::{Serialize, Serializer};
 use uuid::{Builder, Uuid};
 
-/// The identity of a run, fault, occurrence, event or trace, the same in every file it reaches.
+/// The id of a run, fault, occurrence, event or trace, the same in every file.
 ///
 /// Stored as 16 bytes; shown as hyphenated lower-case text.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,7 +33,7 @@ impl Id {
         &self.0
     }
 
-    /// The last eight hex digits: random, so usually enough to name a row in a table.
+    /// The last eight hex digits: random, so usually enough to identify a row in a table.
     pub fn short(&self) -> String {
         self.0[12..]
             .iter()
@@ -87,7 +87,7 @@ impl FromSql for Id {
     }
 }
 
-/// Where new identities come from: the edge reads the clock and the random source, not this crate.
+/// Source of new ids: the caller reads the clock and the random source.
 pub struct IdSource(Box<dyn FnMut() -> (u64, [u8; 10]) + Send>);
 
 impl IdSource {

@@ -1,10 +1,10 @@
-//! The rows a run adds, inside a transaction the caller holds.
+//! Inserts the rows of a run; the caller holds the transaction.
 
 use std::borrow::Cow;
 
 use rusqlite::{Connection, params};
 
-use crate::base::{Base, SqlError, SqlResult, values};
+use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::fault_log::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
@@ -115,7 +115,7 @@ fn insert_measurements(
     Ok(())
 }
 
-/// Identities for all that one fault may add; those not needed are never seen.
+/// Ids for all rows that one fault may add; unused ones are discarded.
 #[derive(Clone, Copy)]
 pub(crate) struct FaultIds {
     pub fault: Id,
@@ -123,19 +123,19 @@ pub(crate) struct FaultIds {
     pub event: Id,
 }
 
-/// Where a fault was seen.
+/// The run that saw a fault.
 pub(crate) struct FaultPlace<'a> {
     pub run: i64,
     pub unit: i64,
     pub line: &'a str,
-    /// In a log that was read later.
+    /// Whether the run is an imported log, read later.
     pub of_log: bool,
-    /// The last event that was known when the run began.
+    /// The last event known when the run began.
     pub known_events: i64,
 }
 
 pub(crate) fn insert_fault(
-    base: &Base,
+    backend: &Backend,
     place: &FaultPlace<'_>,
     ids: FaultIds,
     record: &FaultRecord,
@@ -151,7 +151,7 @@ pub(crate) fn insert_fault(
             &cut
         }
     };
-    let known = base.first(
+    let known = backend.first(
         "SELECT seq, id, state FROM fault
          WHERE unit = ?1 AND code = ?2 AND lru = ?3 AND state <> 'closed'
          ORDER BY seq DESC LIMIT 1",
@@ -166,17 +166,21 @@ pub(crate) fn insert_fault(
     )?;
     let (fault, id, before) = match known {
         Some((seq, id, state)) => (seq, id, Some(state)),
-        None => (open_fault(base, place, ids.fault, record)?, ids.fault, None),
+        None => (
+            open_fault(backend, place, ids.fault, record)?,
+            ids.fault,
+            None,
+        ),
     };
-    // Every state but closed has an answer to a new occurrence, and closed was not asked for.
+    // Every state but closed has a transition for an occurrence, and closed was not selected.
     let after = match before {
         None => FaultState::Open,
-        // Out of a log that was read late: what was done since was done about that, too.
-        Some(state) if acted_since(base, fault, place, record.at_us)? => state,
+        // Read from a log later: events since then took this occurrence into account.
+        Some(state) if acted_since(backend, fault, place, record.at_us)? => state,
         Some(state) => state.next(FaultAction::Occur).unwrap_or(FaultState::Open),
     };
-    let digest = insert_occurrence(base, fault, place, ids.occurrence, record)?;
-    base.execute(
+    let digest = insert_occurrence(backend, fault, place, ids.occurrence, record)?;
+    backend.execute(
         "UPDATE fault SET occurrences = occurrences + 1, state = ?2, severity = ?3,
             code_name = ?4, line = CASE WHEN ?5 < first_at_us THEN ?6 ELSE line END,
             first_at_us = min(first_at_us, ?5), last_at_us = max(last_at_us, ?5)
@@ -206,7 +210,7 @@ pub(crate) fn insert_fault(
             body,
             state: Some(after),
         };
-        insert_event(base, fault, &event)?;
+        insert_event(backend, fault, &event)?;
     }
     let stored = FaultStored {
         fault: id,
@@ -217,10 +221,15 @@ pub(crate) fn insert_fault(
     Ok((stored, digest))
 }
 
-/// Somebody brought the fault to another state after this time. What was known when a run began came before
-/// all it sees, whatever the clock says of the laptop where it was said.
-fn acted_since(base: &Base, fault: i64, place: &FaultPlace<'_>, at_us: i64) -> SqlResult<bool> {
-    let acted = base.first(
+/// Whether an event changed the fault's state after this time. Events known when a run began precede all it
+/// sees, whatever the time stamps of other laptops say.
+fn acted_since(
+    backend: &Backend,
+    fault: i64,
+    place: &FaultPlace<'_>,
+    at_us: i64,
+) -> SqlResult<bool> {
+    let acted = backend.first(
         "SELECT 1 FROM fault_event
          WHERE fault = ?1 AND state IS NOT NULL AND at_us > ?2 AND kind NOT IN ('opened', 'recurred')
             AND seq > ?3 LIMIT 1",
@@ -230,8 +239,13 @@ fn acted_since(base: &Base, fault: i64, place: &FaultPlace<'_>, at_us: i64) -> S
     Ok(acted.is_some())
 }
 
-fn open_fault(base: &Base, place: &FaultPlace<'_>, id: Id, record: &FaultRecord) -> SqlResult<i64> {
-    let opened = base.first(
+fn open_fault(
+    backend: &Backend,
+    place: &FaultPlace<'_>,
+    id: Id,
+    record: &FaultRecord,
+) -> SqlResult<i64> {
+    let opened = backend.first(
         "INSERT INTO fault(id, unit, code, code_name, lru, severity, state, first_at_us,
             last_at_us, occurrences, line)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, 'open', ?7, ?7, 0, ?8)
@@ -252,13 +266,13 @@ fn open_fault(base: &Base, place: &FaultPlace<'_>, id: Id, record: &FaultRecord)
 }
 
 fn insert_occurrence(
-    base: &Base,
+    backend: &Backend,
     fault: i64,
     place: &FaultPlace<'_>,
     id: Id,
     record: &FaultRecord,
 ) -> SqlResult<[u8; 32]> {
-    let says = values![
+    let payload = values![
         id,
         record.step_index,
         record.at_us,
@@ -271,10 +285,10 @@ fn insert_occurrence(
         &record.code_name,
         &record.severity,
     ];
-    let digest = seal::run::occurrence(&says);
-    let mut row = Vec::from(says);
+    let digest = seal::run::occurrence(&payload);
+    let mut row = Vec::from(payload);
     row.extend(values![fault, place.run, place.unit]);
-    base.execute(
+    backend.execute(
         "INSERT INTO fault_occurrence(id, step_index, at_us, bench_us, message, freeze_json, code, lru,
             line, code_name, severity, fault, run, unit)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",

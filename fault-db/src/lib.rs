@@ -1,70 +1,71 @@
-//! Runs, measurements, faults and traces of the maintenance test unit, in one SQLite file; of many
-//! laptops, on a PostgreSQL server.
+//! Storage and analysis of the maintenance test unit's history: runs, measurements, faults and traces, in
+//! one SQLite file, or of many laptops on a PostgreSQL server.
 //!
-//! Three layers, each knowing only those before it:
+//! Three layers, each of which uses only those before it:
 //!
-//! 1. [`trace`]: equally spaced samples of named channels, packed column by column;
-//! 2. [`Store`]: one open file or server — opening and its checks, the schema, what can go wrong;
-//! 3. the verbs: [`RunWriter`] records a run as it happens, `query` reads, `fault_log` moves
-//!    faults through their life, `care` checks, backs up, prunes and merges files, `sync` brings
-//!    a file and a server together.
+//! 1. [`trace`]: equally spaced samples of named channels, compressed column by column;
+//! 2. [`Store`]: one open file or server, with its schema, its checks on opening and its errors;
+//! 3. operations on a store: [`RunWriter`] records a run as it happens, `query` reads, `fault_log` changes
+//!    the state of faults, `maintenance` checks, backs up, prunes and merges files, `sync` replicates
+//!    between a file and a server.
 //!
-//! No clock, no thread, no randomness and no file but the database: the caller gives times and an
-//! [`IdSource`]. How files that people name are read ([`read_given`]) and replaced ([`Part`]) is here for all
-//! programs. Connecting to a server is the exception: it reads the password file and certificates
-//! that the address and the environment name, and gives up on a thread that takes too long.
+//! Beside them stand [`diagnosis`] and [`process`], which know no database.
 //!
-//! Names ending in `at_us` are microseconds since 1970 (UTC), `bench_us` is the bench's own clock,
-//! `bench_time_us` and `wall_time_us` are lengths of time.
+//! The crate reads no clock, starts no thread, draws no random number and opens no file but the database:
+//! the caller gives times and an [`IdSource`]. Exceptions: [`read_regular_file`] and [`AtomicFile`] read and
+//! replace files for the whole program; connecting to a server reads the password file and certificates
+//! that the address and the environment name, on a thread that is abandoned after a time limit.
+//!
+//! Names ending in `at_us` are microseconds since 1970 (UTC); `bench_us` is time on the bench's own clock;
+//! `bench_time_us` and `wall_time_us` are durations.
 
-mod base;
-mod care;
+mod atomic_file;
+mod backend;
+mod compression;
 mod conflicts;
 pub mod diagnosis;
 mod dictionaries;
 mod domain;
 mod error;
+mod event_graph;
 mod fault_log;
 mod fault_state;
 mod file;
-mod functions;
-mod given;
-mod guard;
+mod full_text;
 mod id;
 mod insert;
 pub mod limits;
 mod lookup;
-mod packed;
-mod part;
+mod maintenance;
 pub mod process;
 mod query;
 mod record;
 mod recording;
+mod recurrence;
+mod regular_file;
 mod run_notes;
 mod run_writer;
 mod schema;
+mod schema_guard;
 mod seal;
-mod seen_again;
 mod server;
-mod settle;
+mod sql_functions;
 mod store;
 mod sync;
 mod text_enum;
-mod together;
 pub mod trace;
+mod transaction;
 mod units;
 mod verify;
 mod views;
-mod words;
 
-pub use care::{CheckReport, CopyOf, MergeCounts, Problem, PruneCounts, PruneRule};
+pub use atomic_file::AtomicFile;
 pub use conflicts::{RivalEvent, StateConflict};
 pub use domain::{Refusals, Refused};
 pub use error::StoreError;
 pub use fault_state::{FaultAction, FaultState, TransitionError};
-pub use given::{open_given, read_given};
 pub use id::{Id, IdSource};
-pub use part::Part;
+pub use maintenance::{CheckReport, CopyOf, MergeCounts, Problem, PruneCounts, PruneRule};
 pub use query::{
     DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
     Occurrence, PartHistory, PartRepair, QueryBounds, QueryLimit, QueryResult, RunDetail, RunFault,
@@ -77,6 +78,7 @@ pub use record::{
     StepRecord, UnitRecord, Verdict,
 };
 pub use recording::{Recording, RecordingRecord};
+pub use regular_file::{open_regular_file, read_regular_file};
 pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};

@@ -1,7 +1,7 @@
-//! How long a text may be that is kept: one door for the window, the command line and the wire.
+//! Longest texts that are stored, checked in one place for the window, the command line and the wire.
 //!
-//! What people and files name is refused when it is longer, before anything is done with it. What the
-//! program says of a unit under test is cut instead: refusing it would lose what was measured.
+//! A longer text from a user or a file is refused before anything is done with it. A longer message of the
+//! program about a unit under test is truncated: refusing it would lose the measurement.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ pub const MOST_TEXT: usize = 4_000;
 /// Longest path of a script, place of a unit or list of injected faults, in characters.
 pub const MOST_LIST: usize = 16_000;
 
-/// Refuses a name that is longer than [`MOST_NAME`]; `what` it is of, as "the operator's name".
+/// Refuses a name longer than [`MOST_NAME`]; `what` is, for instance, "the operator's name".
 ///
 /// # Errors
 /// It is longer.
@@ -23,7 +23,7 @@ pub fn name(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_NAME)
 }
 
-/// Refuses a note that is longer than [`MOST_TEXT`]; `what` it is, as "the note".
+/// Refuses a note longer than [`MOST_TEXT`]; `what` is, for instance, "the note".
 ///
 /// # Errors
 /// It is longer.
@@ -31,7 +31,7 @@ pub fn note(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_TEXT)
 }
 
-/// Refuses a longer text that lists things, such as a path or a question, beyond [`MOST_LIST`].
+/// Refuses a list, such as paths or a query, longer than [`MOST_LIST`].
 ///
 /// # Errors
 /// It is longer.
@@ -40,7 +40,7 @@ pub fn list(what: &'static str, text: &str) -> Result<(), StoreError> {
 }
 
 fn most(what: &'static str, text: &str, most: usize) -> Result<(), StoreError> {
-    // No text has more characters than bytes, and most have few.
+    // No text has more characters than bytes, and most are short.
     let length = match text.len() {
         short if short <= most => return Ok(()),
         _ => text.chars().count(),
@@ -51,7 +51,7 @@ fn most(what: &'static str, text: &str, most: usize) -> Result<(), StoreError> {
     }
 }
 
-/// A message with … in place of what is beyond [`MOST_TEXT`].
+/// A message truncated to [`MOST_TEXT`], ending in `…` then.
 pub(crate) fn cut(message: &str) -> Cow<'_, str> {
     let mut letters = message.char_indices();
     match (letters.nth(MOST_TEXT - 1), letters.next()) {
@@ -61,7 +61,7 @@ pub(crate) fn cut(message: &str) -> Cow<'_, str> {
 }
 
 impl RunRecord {
-    /// Whether the texts of this run can be kept: to be asked before a unit is touched.
+    /// Checks the texts of a run, before a unit is touched.
     ///
     /// # Errors
     /// One of them is too long.
@@ -87,7 +87,7 @@ impl RunRecord {
 }
 
 impl RepairRecord {
-    /// Whether its texts can be kept.
+    /// Checks the texts of a repair.
     ///
     /// # Errors
     /// One of them is too long.
@@ -101,10 +101,10 @@ impl RepairRecord {
 }
 
 impl StepRecord {
-    /// Whether its names can be kept.
+    /// Checks the names of a step.
     pub(crate) fn check(&self) -> Result<(), StoreError> {
         list("the procedure's name", &self.procedure)?;
-        // A script's name, and which of its repetitions it is.
+        // The script's name, and the number of the repetition.
         most("the step's name", &self.name, 2 * MOST_NAME)?;
         for measured in &self.measurements {
             name("the measurement's name", &measured.name)?;

@@ -1,30 +1,30 @@
-//! Finding a row by what a person types: a full id, a part of one, or `latest`.
+//! Finds a row by what a user types: a full id, its beginning or end, or `latest`.
 
-use crate::base::{Base, SqlResult, Value};
+use crate::backend::{Backend, SqlResult, Value};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
 
-/// A part of an id has at least this many hex digits.
+/// Fewest hex digits of a partial id.
 const MIN_DIGITS: usize = 4;
 const ID_DIGITS: usize = 32;
-/// The end of an id that is shown in tables, found by an index.
+/// Digits of an id's end that tables show; an index finds them.
 const SHORT_DIGITS: usize = 8;
 const DOING: &str = "looking up an id";
-/// So many of an ambiguous part's matches are named.
+/// Matches listed of an ambiguous partial id.
 const MATCHES_SHOWN: usize = 4;
 
-/// A table people name rows of.
+/// A table whose rows users name.
 struct Named {
     what: &'static str,
     table: &'static str,
-    /// Other ids of its rows, as `id` and `named`, the row's own.
+    /// Aliases of its rows: a table expression with `id` and `named`, the row's own id.
     aliases: Option<&'static str>,
     newest_first: &'static str,
 }
 
 impl Store {
-    /// The run meant by `asked`: an id, its beginning or end, or `latest`.
+    /// The run with this id, the beginning or end of an id, or `latest`.
     pub fn resolve_run(&self, asked: &str) -> Result<Id, StoreError> {
         let newest_first = "started_at_us DESC, seq DESC";
         self.resolve(
@@ -38,7 +38,7 @@ impl Store {
         )
     }
 
-    /// The fault meant by `asked`: an id, its beginning or end, or `latest`.
+    /// The fault with this id, the beginning or end of an id, or `latest`.
     pub fn resolve_fault(&self, asked: &str) -> Result<Id, StoreError> {
         let newest_first = "last_at_us DESC, seq DESC";
         self.resolve(
@@ -54,7 +54,7 @@ impl Store {
         )
     }
 
-    /// The trace meant by `asked`: an id, its beginning or end, or `latest`.
+    /// The trace with this id, the beginning or end of an id, or `latest`.
     pub fn resolve_trace(&self, asked: &str) -> Result<Id, StoreError> {
         let newest_first = "t0_us DESC, seq DESC";
         self.resolve(
@@ -116,19 +116,19 @@ impl Store {
             if let Some(aliases) = named.aliases {
                 exact += &format!(" UNION SELECT named FROM {aliases} WHERE id = ?1");
             }
-            return self.base().select(&exact, &[low], |row| row.get(0));
+            return self.backend().select(&exact, &[low], |row| row.get(0));
         }
-        // The beginning is a range of the index, and so is the end that tables show; any other end has to
-        // look at every id.
+        // A beginning is a range of the index, and so is the end that tables show; any other end scans all
+        // ids.
         let (by_end, end) = if digits.len() == SHORT_DIGITS {
             (
                 "substr(id, 13) = ?3".to_owned(),
                 Value::Bytes(bytes(digits).into()),
             )
         } else {
-            let hex = match self.base() {
-                Base::File(_) => "lower(hex(id))",
-                Base::Server(_) => "encode(id, 'hex')",
+            let hex = match self.backend() {
+                Backend::File(_) => "lower(hex(id))",
+                Backend::Server(_) => "encode(id, 'hex')",
             };
             let from = ID_DIGITS - digits.len() + 1;
             (format!("substr({hex}, {from}) = ?3"), digits.into())
@@ -143,7 +143,7 @@ impl Store {
             );
         }
         sql += &format!(" LIMIT {MATCHES_SHOWN}");
-        self.base()
+        self.backend()
             .select(&sql, &[low, high, end], |row| row.get(0))
     }
 }

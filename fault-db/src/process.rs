@@ -1,101 +1,100 @@
-//! A measured process over time: where it lies, how it scatters, whether it drifts, and when it will
-//! cross a limit. Individuals and averages charts after Shewhart; all of a list of numbers, no database.
+//! Statistical process control of a measured value over time: mean, spread, drift, and when a limit will
+//! be crossed. Shewhart's charts of individuals and of averages, on plain lists of numbers.
 
 use serde::Serialize;
 
 /// Microseconds of a day.
 const DAY_US: f64 = 86.4e9;
 
-/// Mean moving range of two over the standard deviation of a normal process: d2 of two.
+/// Mean moving range of two over the standard deviation of a normal process: d2 for n = 2.
 const D2_OF_TWO: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 
-/// Standard deviations from the mean to a control limit.
+/// Distance of the control limits from the mean, in standard deviations.
 const CONTROL: f64 = 3.0;
 
-/// Values on one side of the mean in a row that chance does not explain.
+/// Consecutive values on one side of the mean that chance does not explain.
 const ON_ONE_SIDE: usize = 9;
 
-/// Values each greater, or each less, than the one before that chance does not explain.
+/// Consecutive rising, or falling, values that chance does not explain.
 const IN_A_ROW: usize = 6;
 
-/// Farther ahead than this nothing is foretold, days.
+/// Limit of a forecast, days.
 const FORESEEN_DAYS: f64 = 3650.0;
 
-/// One value, or the mean of several taken together.
+/// One value, or the mean of several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// When, microseconds.
     pub at_us: i64,
     /// The value or mean.
     pub value: f64,
-    /// Of how many values.
+    /// Number of values.
     pub n: u32,
-    /// Sum of the squares of their distances from their mean; 0 of one.
+    /// Sum of their squared distances from their mean; 0 for a single value.
     pub scatter: f64,
 }
 
-/// What the values say together.
+/// The statistics of a series of samples.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Process {
-    /// Values.
+    /// Number of values.
     pub n: u32,
-    /// Their mean.
+    /// Mean.
     pub mean: f64,
-    /// Standard deviation from one value to the next: of single values by their moving range, of several
-    /// together by their own scatter. None of fewer than two.
+    /// Short-term standard deviation: of single values from their moving range, of groups from their own
+    /// scatter. `None` for fewer than two.
     pub sigma: Option<f64>,
-    /// Standard deviation of all values about their mean, drift included.
+    /// Standard deviation of all values about their mean, including drift.
     pub sigma_overall: Option<f64>,
-    /// Between these the process keeps as long as only chance moves it. Of means of more and fewer values
-    /// together these are the limits for as many as they have on average; signs are looked for with the
-    /// limits of each.
+    /// Control limits. For means of groups of unequal size these are the limits for the average size; the
+    /// signs below use each group's own limits.
     pub control: Option<(f64, f64)>,
-    /// The straight line through the values; none of fewer than three times.
+    /// Least-squares line through the values; `None` for fewer than three times.
     pub line: Option<Line>,
-    /// Signs that more than chance is at work, by kind.
+    /// Violations of the control rules, by kind.
     pub signs: Vec<Sign>,
 }
 
-/// A straight line by least squares.
+/// A least-squares line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// It rises so much in a day.
+    /// Change in a day.
     pub slope_per_day: f64,
-    /// Standard error of that.
+    /// Standard error of the slope.
     pub slope_error: f64,
-    /// Its value at the last sample.
+    /// Value at the last sample.
     pub now: f64,
     #[serde(skip)]
     middle: (f64, f64),
     #[serde(skip)]
     weight: f64,
-    /// 95 % of all lines through as many samples are within so many standard errors.
+    /// 0.975 quantile of Student's t for its degrees of freedom.
     #[serde(skip)]
     likely: f64,
     #[serde(skip)]
     last_us: i64,
 }
 
-/// A sign that more than chance is at work.
+/// A violation of a control rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Sign {
-    /// beyond_control (three standard deviations of a mean of as many values as it is of), nine_on_one_side or
-    /// six_in_a_row.
+    /// beyond_control (three standard deviations of a mean of as many values as it is of), nine_on_one_side
+    /// or six_in_a_row.
     pub kind: &'static str,
-    /// How often.
+    /// Number of violations.
     pub times: u32,
-    /// When first.
+    /// The first.
     pub first_at_us: i64,
-    /// When last.
+    /// The last.
     pub last_at_us: i64,
 }
 
-/// How a process fits between its limits.
+/// Process capability: the spread compared with the limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Capability {
-    /// Width of the limits by six standard deviations; none with one limit.
+    /// Width between the limits over six standard deviations; `None` with one limit.
     pub cp: Option<f64>,
-    /// Distance of the mean from the nearer limit by three standard deviations.
+    /// Distance of the mean from the nearer limit over three standard deviations.
     pub cpk: f64,
 }
 
@@ -104,16 +103,16 @@ pub struct Capability {
 pub struct Forecast {
     /// The limit.
     pub limit: f64,
-    /// The line crosses it here; before the last sample if it has done so already.
+    /// When the line crosses it; before the last sample if it has done so already.
     pub at_us: i64,
-    /// 95 % likely not before.
+    /// Start of the 95 % interval.
     pub earliest_us: i64,
-    /// 95 % likely not after; none if it may never be.
+    /// End of the 95 % interval; `None` if the crossing may never happen.
     pub latest_us: Option<i64>,
 }
 
 impl Process {
-    /// Of samples in order of time; `None` of none.
+    /// Statistics of samples in order of time; `None` without values.
     pub fn of(samples: &[Sample]) -> Option<Self> {
         let n: f64 = samples.iter().map(|sample| f64::from(sample.n)).sum();
         if n <= 0.0 {
@@ -146,7 +145,7 @@ impl Process {
         })
     }
 
-    /// How it fits between limits; `None` without a limit or without scatter.
+    /// Capability for these limits; `None` without a limit or without scatter.
     pub fn capability(&self, low: Option<f64>, high: Option<f64>) -> Option<Capability> {
         let sigma = self.sigma.filter(|sigma| *sigma > 0.0)?;
         let below = low.map(|low| (self.mean - low) / (3.0 * sigma));
@@ -161,7 +160,7 @@ impl Process {
         Some(Capability { cp, cpk })
     }
 
-    /// When the limit it drifts towards will be crossed; `None` if it does not drift for certain, or not
+    /// When the limit that it drifts towards will be crossed; `None` if the drift is not significant, or not
     /// towards a limit, or not within ten years.
     pub fn forecast(&self, low: Option<f64>, high: Option<f64>) -> Option<Forecast> {
         let line = self.line.as_ref()?;
@@ -205,18 +204,17 @@ impl Line {
         })
     }
 
-    /// The slope is 95 % likely within so much of what it is, either way, in a day. The fewer samples, the more
-    /// standard errors that takes.
+    /// Half the 95 % interval of the slope, in a day. The fewer samples, the more standard errors it has.
     pub fn slope_reach(&self) -> f64 {
         self.likely * self.slope_error
     }
 
-    /// More than chance makes it rise or fall.
+    /// Whether the slope is significant.
     pub fn is_certain(&self) -> bool {
         self.slope_per_day.abs() > self.slope_reach()
     }
 
-    /// Where the line, and the 95 % band about it, cross a value.
+    /// Where the line, and its 95 % band, cross a value.
     fn crosses(&self, limit: f64) -> Option<Forecast> {
         if !self.is_certain() {
             return None;
@@ -244,10 +242,9 @@ impl Line {
     }
 }
 
-/// The 0.975 quantile of Student's t distribution: so many standard errors hold 95 % when the error itself is
-/// known from so many degrees of freedom only. Of few from a table (Abramowitz and Stegun, Handbook of
-/// Mathematical Functions, table 26.10), of more by the expansion about the normal quantile (there, 26.7.5),
-/// off by less than 0.001.
+/// The 0.975 quantile of Student's t distribution. For few degrees of freedom from a table (Abramowitz and
+/// Stegun, Handbook of Mathematical Functions, table 26.10), for more by the expansion about the normal
+/// quantile (there, 26.7.5), with an error below 0.001.
 fn student(free: usize) -> f64 {
     const NORMAL: f64 = 1.959_964;
     const OF_FEW: [f64; 5] = [f64::INFINITY, 12.706, 4.303, 3.182, 2.776];
@@ -436,8 +433,8 @@ mod tests {
         }
     }
 
-    /// Goal: three values that rise about evenly foretell nothing: with one degree of freedom their slope may
-    /// be none at all. As many again, and it is certain.
+    /// Goal: three values that rise about evenly give no forecast: with one degree of freedom their slope is
+    /// not significant. With as many again it is.
     /// Method: a slope of three and a half standard errors, more than 1.96 and less than 12.7.
     #[test]
     fn three_values_are_too_few_to_be_certain() {
@@ -453,9 +450,9 @@ mod tests {
         assert!(six.forecast(None, Some(8.0)).is_some());
     }
 
-    /// Goal: a mean is judged by what means of as many values do.
-    /// Method: sigma is 1. A single value may be 2.5 off among days of many values, and a mean of 99 not 0.4 among
-    /// days of few; limits for the average number of values a day would say the reverse of both.
+    /// Goal: each mean is judged by the limits for means of as many values.
+    /// Method: sigma is 1. A single value may be 2.5 off among days of many values, and a mean of 99 not 0.4
+    /// among days of few; limits for the average number of values a day would say the reverse of both.
     #[test]
     fn each_day_is_judged_by_the_limits_of_as_many_values() {
         let day = |day: i64, n: u32, value: f64| Sample {

@@ -1,4 +1,4 @@
-//! What a caller hands in to be stored, in plain types. Times ending in `at_us` are UTC.
+//! The records a caller hands in to be stored. Times ending in `at_us` are UTC.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::text_enum::text_enum;
 
 text_enum! {
-    /// How a step, a measurement or a whole run came out.
+    /// The verdict of a step, a measurement or a whole run.
     Verdict {
         /// Every expectation held.
         Passed = "passed",
@@ -25,7 +25,7 @@ text_enum! {
 /// The unit under test, as a run finds it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitRecord {
-    /// Serial number; names the unit for ever.
+    /// Serial number; identifies the unit permanently.
     pub serial: String,
     /// Kind of unit.
     pub kind: String,
@@ -51,11 +51,11 @@ pub struct RunRecord {
     pub unit: UnitRecord,
     /// Line data in use.
     pub line: String,
-    /// The train the unit is in, as the tester names it; empty if nobody said.
+    /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
     /// Seed of everything random.
     pub seed: u64,
-    /// Who is testing.
+    /// Name of the tester.
     pub operator: String,
     /// Where the unit is: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
@@ -69,7 +69,7 @@ pub struct RunRecord {
     pub unit_config_sha256: String,
     /// Faults injected on purpose, if any.
     pub injected: Option<String>,
-    /// Names the writing process, such that a reader can tell whether it still lives.
+    /// Identifies the writing process, so that a reader can tell whether it still runs.
     pub owner: String,
     /// The procedure files used.
     pub scripts: Vec<ScriptRecord>,
@@ -78,17 +78,17 @@ pub struct RunRecord {
 /// A run at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunEnd {
-    /// How it came out.
+    /// The run's verdict.
     pub verdict: Verdict,
     /// When it ended.
     pub finished_at_us: i64,
-    /// Time that passed on the bench.
+    /// Duration on the bench's clock.
     pub bench_time_us: i64,
-    /// Time that passed for the operator.
+    /// Duration on the wall clock.
     pub wall_time_us: i64,
 }
 
-/// A step, once it is over.
+/// A finished step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepRecord {
     /// Place in the run; must rise from step to step.
@@ -97,13 +97,13 @@ pub struct StepRecord {
     pub procedure: String,
     /// Its name.
     pub name: String,
-    /// How it came out.
+    /// The step's verdict.
     pub verdict: Verdict,
     /// Bench time at its start.
     pub started_bench_us: i64,
     /// Bench time it took.
     pub bench_time_us: i64,
-    /// Why, in words; empty when there is nothing to say.
+    /// The reason of the verdict; empty if there is nothing to say.
     pub message: String,
     /// Line of the script it comes from.
     pub script_line: Option<u32>,
@@ -116,7 +116,7 @@ pub struct StepRecord {
 pub struct MeasurementRecord {
     /// Its name.
     pub name: String,
-    /// The value; none if nothing could be measured. NaN is stored as none.
+    /// The value; `None` if nothing could be measured. NaN is stored as NULL.
     pub value: Option<f64>,
     /// Unit of value and limits.
     pub unit: String,
@@ -124,11 +124,11 @@ pub struct MeasurementRecord {
     pub low: Option<f64>,
     /// Highest allowed value.
     pub high: Option<f64>,
-    /// How it came out.
+    /// Its verdict.
     pub verdict: Verdict,
 }
 
-/// A fault, seen once.
+/// One occurrence of a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaultRecord {
     /// Stable number of the fault.
@@ -137,15 +137,15 @@ pub struct FaultRecord {
     pub code_name: String,
     /// Replaceable part it points at; empty if unknown.
     pub lru: String,
-    /// How bad it is, in the caller's words.
+    /// Severity, in the caller's words.
     pub severity: String,
-    /// When.
+    /// Time of the occurrence.
     pub at_us: i64,
-    /// When, on the bench's clock.
+    /// The same on the bench's clock.
     pub bench_us: i64,
     /// Step under way, if any; it need not be recorded yet.
     pub step_index: Option<u32>,
-    /// What was seen, in words.
+    /// Description.
     pub message: String,
     /// All signals at that moment.
     pub freeze: Vec<FreezeSample>,
@@ -156,16 +156,16 @@ pub struct FaultRecord {
 pub struct FreezeSample {
     /// Name of the signal.
     pub name: String,
-    /// Its value; none if it had none.
+    /// Its value; `None` if there was none.
     pub value: Option<f64>,
     /// Its unit.
     pub unit: String,
-    /// The value's word, for an enum or a bit.
+    /// The word for the value, for an enum or a bit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
 }
 
-/// A part's name as it is compared: people write it as they like.
+/// A part's name for comparison: trimmed, in lower case.
 pub(crate) fn part_name(part: &str) -> String {
     part.trim().to_lowercase()
 }
@@ -173,7 +173,7 @@ pub(crate) fn part_name(part: &str) -> String {
 /// A repair made for a fault.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RepairRecord {
-    /// The part changed or worked on.
+    /// The part replaced or worked on.
     pub part: String,
     /// Serial number of the part taken out.
     pub serial_old: Option<String>,

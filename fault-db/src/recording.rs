@@ -1,13 +1,13 @@
-//! Recordings: what was done to the bench in a procedure that found a fault, so that it can be done
-//! again. This crate keeps the two JSON texts and does not look into them.
+//! Recordings: the stimuli of a procedure that found a fault, for replaying it. The two JSON texts are
+//! stored without being interpreted.
 
 use rusqlite::{Connection, params};
 use serde::Serialize;
 
-use crate::base::values;
+use crate::backend::values;
+use crate::compression;
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::packed;
 use crate::run_writer::RunWriter;
 use crate::seal;
 use crate::store::Store;
@@ -26,9 +26,9 @@ pub struct RecordingRecord {
     pub procedure: String,
     /// Bench time of the run at which the bench's clock was 0.
     pub t0_bench_us: i64,
-    /// What the bench was made of, JSON.
+    /// Setup of the bench, as JSON.
     pub bench_json: String,
-    /// What was done to it and when, JSON.
+    /// Stimuli with their times, as JSON.
     pub stimuli_json: String,
 }
 
@@ -41,20 +41,20 @@ pub struct Recording {
     pub procedure: String,
     /// Bench time of the run at which the bench's clock was 0.
     pub t0_bench_us: i64,
-    /// What the bench was made of, JSON.
+    /// Setup of the bench, as JSON.
     pub bench_json: String,
-    /// What was done to it and when, JSON.
+    /// Stimuli with their times, as JSON.
     pub stimuli_json: String,
 }
 
 impl RunWriter<'_> {
-    /// Commits the recording of a procedure and hangs traces of this run on it.
+    /// Commits the recording of a procedure and links traces of this run to it.
     pub fn recording(&mut self, record: &RecordingRecord, traces: &[Id]) -> Result<(), StoreError> {
         const DOING: &str = "storing a recording";
         self.check_unfinished()?;
         let (store, run) = (self.store, self.run);
         let stimuli =
-            packed::pack(record.stimuli_json.as_bytes(), ZSTD_LEVEL).map_err(|error| {
+            compression::pack(record.stimuli_json.as_bytes(), ZSTD_LEVEL).map_err(|error| {
                 StoreError::Io {
                     path: store.path().to_path_buf(),
                     reason: error.to_string(),
@@ -97,8 +97,8 @@ impl RunWriter<'_> {
 }
 
 impl Store {
-    /// The recording a trace was cut from; `None` for a trace of an earlier version, or one that was
-    /// not recorded by a procedure.
+    /// The recording a trace was cut from; `None` for a trace of an earlier version, or one outside of any
+    /// procedure.
     pub fn recording(&self, trace: Id) -> Result<Option<Recording>, StoreError> {
         const SQL: &str = "SELECT u.id, r.procedure, r.t0_bench_us, r.bench_json, r.stimuli
             FROM trace t JOIN run u ON u.seq = t.run
@@ -129,7 +129,7 @@ impl Store {
     }
 }
 
-/// Recordings that cannot be read back, in words, and how many were looked at.
+/// The recordings that cannot be read back, each with the reason, and the number of all.
 pub(crate) fn check_recordings(conn: &Connection) -> rusqlite::Result<(u32, Vec<String>)> {
     let mut select = conn.prepare(
         "SELECT 'recording ' || r.ordinal || ' of run ' || hex(u.id), r.bench_json, r.stimuli
@@ -158,6 +158,6 @@ pub(crate) fn check_recordings(conn: &Connection) -> rusqlite::Result<(u32, Vec<
 
 fn unpack(packed: &[u8]) -> Result<String, String> {
     let damaged = |error: &dyn std::fmt::Display| format!("the stimuli are damaged: {error}");
-    let json = packed::unpack(packed, MAX_STIMULI_BYTES).map_err(|error| damaged(&error))?;
+    let json = compression::unpack(packed, MAX_STIMULI_BYTES).map_err(|error| damaged(&error))?;
     String::from_utf8(json).map_err(|error| damaged(&error))
 }

@@ -1,13 +1,13 @@
-//! What the tester has to say about a run: kept for good, never changed.
+//! Notes of a user on a run; never changed or deleted.
 
 use serde::Serialize;
 
-use crate::base::{Base, SqlResult, values};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::limits;
 use crate::seal;
-use crate::server::said;
+use crate::server::derived_columns;
 use crate::store::Store;
 
 /// A note on a run.
@@ -22,7 +22,7 @@ pub struct RunNote {
 }
 
 impl Store {
-    /// Adds a note to a run, whether the run has ended or not.
+    /// Adds a note to a run, whether it has ended or not.
     ///
     /// # Errors
     /// There is no such run, or the note cannot be written.
@@ -37,7 +37,7 @@ impl Store {
         limits::name("the name of who says it", who)?;
         limits::note("the note", text)?;
         let id = self.mint()?;
-        self.change(DOING, |base| {
+        self.change(DOING, |backend| {
             let seq: Option<i64> = self.first(
                 DOING,
                 "SELECT seq FROM run WHERE id = ?1",
@@ -45,24 +45,26 @@ impl Store {
                 |row| row.get(0),
             )?;
             let seq = seq.ok_or_else(|| StoreError::not_found("run", run))?;
-            let add = || match base {
-                Base::Server(_) => said::insert_run_note(base, id, seq, at_us, who, text),
-                Base::File(_) => {
-                    base.execute(
+            let add = || match backend {
+                Backend::Server(_) => {
+                    derived_columns::insert_run_note(backend, id, seq, at_us, who, text)
+                }
+                Backend::File(_) => {
+                    backend.execute(
                         "INSERT INTO run_note(id, run, at_us, who, text)
                          VALUES (?1, ?2, ?3, ?4, ?5)",
                         &values![id, seq, at_us, who, text],
                     )?;
-                    seal::said::note(base, id, &values![id, run, at_us, who, text])
+                    seal::events_and_notes::note(backend, id, &values![id, run, at_us, who, text])
                 }
             };
             add().map_err(|error| self.failed(DOING, error))
         })
     }
 
-    /// Notes on the run of this number, oldest first.
+    /// Notes on the run with this row number, oldest first.
     pub(crate) fn run_notes(&self, run: i64) -> SqlResult<Vec<RunNote>> {
-        self.base().select(
+        self.backend().select(
             "SELECT at_us, who, text FROM run_note WHERE run = ?1 ORDER BY at_us, id",
             &values![run],
             |row| {

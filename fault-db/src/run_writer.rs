@@ -1,15 +1,15 @@
 //! Records one run while it happens.
 //!
-//! The run's row is on the disk before [`RunWriter::begin`] returns, so that a killed program
-//! leaves an interrupted run, not none. A fault is on the disk before [`RunWriter::fault`]
-//! returns. Steps wait in memory and go out many at a time, in short transactions: one commit
-//! costs milliseconds, and a transaction held open would lock out every other run on the file.
+//! The run's row is on the disk before [`RunWriter::begin`] returns, so that a killed program leaves an
+//! interrupted run, not none. A fault is on the disk before [`RunWriter::fault`] returns. Steps are
+//! buffered and written in batches, in short transactions: one commit costs milliseconds, and a long
+//! transaction would lock out every other run on the file.
 
 use std::borrow::Cow;
 
 use rusqlite::params;
 
-use crate::base::SqlError;
+use crate::backend::SqlError;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
@@ -21,46 +21,46 @@ use crate::seal::run::RunSeal;
 use crate::store::Store;
 use crate::trace::TraceData;
 
-/// Steps go out on their own when this many wait.
+/// Buffered steps that cause a flush.
 const FLUSH_AT_STEPS: usize = 256;
 
-/// When writing keeps failing, no more than this many steps are kept for a later try.
+/// Most steps that are buffered while writing fails.
 const MAX_WAITING_STEPS: usize = 16_384;
 
 /// The writing end of one run. Several may write to one store, and to one file.
 ///
-/// Dropping it writes the waiting steps if it can; without [`finish`](Self::finish) the run then
-/// counts as interrupted.
+/// Dropping it writes the buffered steps if it can; without [`finish`](Self::finish) the run then counts as
+/// interrupted.
 pub struct RunWriter<'a> {
     pub(crate) store: &'a Store,
     id: Id,
     pub(crate) run: i64,
     unit: i64,
     line: String,
-    /// It is no test but a log that was read.
+    /// The run is an imported log, not a test.
     of_log: bool,
-    /// The last event the file knew when the run began.
+    /// The last event in the file when the run began.
     known_events: i64,
     waiting: Vec<StepRecord>,
-    /// Made of what is recorded, as it comes.
+    /// Computed from the records as they come.
     pub(crate) seal: RunSeal,
     last_index: Option<u32>,
-    /// It records what a file that was busy for too long did not take: the run is whole, and sealed, where it
-    /// is brought together.
+    /// This file takes the rest of a run whose own file was busy for too long; the run is complete and sealed
+    /// where both are merged.
     is_rest: bool,
     finished: bool,
 }
 
-/// What became of a fault that was handed in.
+/// The result of storing a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultStored {
     /// The fault it belongs to.
     pub fault: Id,
     /// This occurrence of it.
     pub occurrence: Id,
-    /// It is the first of its fault.
+    /// Whether it is the first of its fault.
     pub is_new: bool,
-    /// The fault was thought repaired, and is open again.
+    /// Whether it reopened a fault that counted as repaired.
     pub reopened: bool,
 }
 
@@ -101,11 +101,11 @@ impl<'a> RunWriter<'a> {
         self.store.path()
     }
 
-    /// Goes on with the same run in another file, with the steps that wait: this one does not take them. An
-    /// import of that file completes the run here.
+    /// Continues the same run in another file, with the buffered steps, which this file does not take.
+    /// Importing that file completes the run here.
     ///
     /// # Errors
-    /// The other file does not take the run; the steps wait here.
+    /// The other file does not take the run; the steps stay buffered here.
     pub fn go_on_in<'b>(
         &mut self,
         store: &'b Store,
@@ -129,13 +129,13 @@ impl<'a> RunWriter<'a> {
         self.waiting.len()
     }
 
-    /// Records a step that is over. It reaches the file with the next flush, fault or finish.
+    /// Records a finished step. It reaches the file with the next flush, fault or finish.
     ///
-    /// After an error from writing the step still waits, and goes out when writing works again.
+    /// After a write error the step stays buffered and is written when writing works again.
     pub fn step(&mut self, mut step: StepRecord) -> Result<(), StoreError> {
         self.check_unfinished()?;
         step.check()?;
-        // A limit that nothing reaches is none, and such a value was not measured.
+        // A limit that no value reaches is none, and such a value was not measured.
         for measured in &mut step.measurements {
             for number in [&mut measured.value, &mut measured.low, &mut measured.high] {
                 *number = number.filter(|number| number.is_finite());
@@ -167,7 +167,7 @@ impl<'a> RunWriter<'a> {
         }
     }
 
-    /// Commits the waiting steps.
+    /// Commits the buffered steps.
     pub fn flush(&mut self) -> Result<(), StoreError> {
         const DOING: &str = "storing steps";
         if self.waiting.is_empty() {
@@ -181,10 +181,10 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// Commits an occurrence of a fault, with its freeze frame, and the waiting steps.
+    /// Commits an occurrence of a fault, with its freeze frame, and the buffered steps.
     ///
-    /// It joins the fault of the same unit, code and part that is not closed; if there is none, it
-    /// begins one. A fault that was repaired or verified is open again.
+    /// It belongs to the fault of the same unit, code and part that is not closed; if there is none, it
+    /// begins one. A repaired or verified fault is reopened.
     pub fn fault(&mut self, record: &FaultRecord) -> Result<FaultStored, StoreError> {
         const DOING: &str = "storing a fault";
         self.check_unfinished()?;
@@ -204,7 +204,7 @@ impl<'a> RunWriter<'a> {
         let (stored, digest) = store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
-                insert_fault(store.base(), &place, ids, record)
+                insert_fault(store.backend(), &place, ids, record)
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))
         })?;
@@ -213,7 +213,7 @@ impl<'a> RunWriter<'a> {
         Ok(stored)
     }
 
-    /// Commits a trace and hangs it on occurrences of this store; none is allowed too.
+    /// Commits a trace and links it to occurrences of this store; there may be none.
     pub fn trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Result<Id, StoreError> {
         self.check_unfinished()?;
         let (id, digest) = self.store.insert_trace(self.run, occurrences, trace)?;
@@ -221,8 +221,8 @@ impl<'a> RunWriter<'a> {
         Ok(id)
     }
 
-    /// Commits the waiting steps and the verdict, and verifies repairs that a passed run has proven. After
-    /// an error it may be tried again.
+    /// Commits the buffered steps and the verdict, and verifies repairs that a passed run has proven. After
+    /// an error it can be called again.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         const DOING: &str = "finishing a run";
         const SQL: &str = "UPDATE run SET verdict = ?2, finished_at_us = ?3, bench_time_us = ?4,
@@ -230,7 +230,7 @@ impl<'a> RunWriter<'a> {
         self.check_unfinished()?;
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
         let (unit, id, known_events) = (self.unit, self.id, self.known_events);
-        let (says, digest) = self.seal.end(end);
+        let (payload, digest) = self.seal.end(end);
         let is_rest = self.is_rest;
         store.write(DOING, |conn| {
             let work = || {
@@ -245,7 +245,7 @@ impl<'a> RunWriter<'a> {
                 conn.prepare_cached(SQL)?.execute(values)?;
                 match is_rest {
                     true => Ok(()),
-                    false => seal::append(store.base(), "run", id, &says, digest),
+                    false => seal::append(store.backend(), "run", id, &payload, digest),
                 }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
@@ -267,7 +267,7 @@ impl<'a> RunWriter<'a> {
 
 impl Drop for RunWriter<'_> {
     fn drop(&mut self) {
-        // The caller is already on its way out with an error of its own, which says more.
+        // The caller returns an error of its own, which says more.
         let _ = self.flush();
     }
 }

@@ -21,13 +21,13 @@ const STEPS: &[&str] = &[
     include_str!("schema/0005.sql"),
 ];
 
-/// Makes what is counted from other rows anew.
+/// Recomputes the tables of counts.
 pub(crate) const COUNTS: &str = include_str!("schema/counts.sql");
 
-/// Makes the words of notes anew.
+/// Rebuilds the full-text index of notes.
 pub(crate) const WORDS: &str = include_str!("schema/words.sql");
 
-/// Brings a file from its own schema version to another, in the caller's transaction.
+/// Migrates a file to another schema version, in the caller's transaction.
 pub(crate) fn bring_to(conn: &Connection, version: usize) -> Result<(), rusqlite::Error> {
     let from = usize::try_from(user_version(conn)?).unwrap_or(version);
     for step in STEPS.get(from..version).unwrap_or_default() {
@@ -44,7 +44,7 @@ pub(crate) fn user_version(conn: &Connection) -> Result<i32, rusqlite::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::functions;
+    use crate::sql_functions;
 
     #[test]
     fn the_sql_names_our_application_id() {
@@ -55,7 +55,7 @@ mod tests {
     #[test]
     fn the_steps_apply() {
         let conn = Connection::open_in_memory().expect("a database in memory");
-        functions::register(&conn).expect("functions");
+        sql_functions::register(&conn).expect("functions");
         bring_to(&conn, STEPS.len()).expect("every step applies to the one before");
     }
 
@@ -83,7 +83,7 @@ mod tests {
             old.concat()
         ))
         .expect("an old file");
-        functions::register(&conn).expect("functions");
+        sql_functions::register(&conn).expect("functions");
         for sql in [include_str!("schema/0004.sql"), COUNTS, WORDS] {
             conn.execute_batch(sql).expect("under way");
         }
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(one("PRAGMA integrity_check").expect("checked"), "ok");
         let train = one("SELECT train FROM run").expect_err("not a column yet");
         assert!(train.to_string().contains("no such column"), "{train}");
-        functions::register(&found).expect("functions");
+        sql_functions::register(&found).expect("functions");
         bring_to(&found, STEPS.len()).expect("and it can be brought up to date");
         assert_eq!(user_version(&found).expect("readable"), SCHEMA_VERSION);
     }

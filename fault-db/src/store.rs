@@ -1,4 +1,4 @@
-//! One open history, in a file or on a server: how it is opened, asked and written to.
+//! One open history, in a file or on a server: opening, queries, transactions.
 
 use std::cell::{RefCell, RefMut};
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 
-use crate::base::{Base, Row, Server, SqlError, SqlResult, Value};
+use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
 use crate::error::StoreError;
 use crate::file::{
     READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy,
@@ -16,17 +16,17 @@ use crate::file::{
 use crate::id::{Id, IdSource};
 use crate::schema::SCHEMA_VERSION;
 use crate::trace::{Channel, TraceCodec, TraceError};
-use crate::{guard, schema, seal};
+use crate::{schema, schema_guard, seal};
 
-/// More than the crate has statements that repeat.
+/// More than the number of distinct repeated statements in this crate.
 const STATEMENT_CACHE: usize = 64;
 
-/// How far a commit goes before it returns.
+/// Durability of a commit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Synchronous {
-    /// On the disk: a commit survives a power cut. For everything that is recorded.
+    /// On the disk: survives a power cut. For everything that is recorded.
     Full,
-    /// With the system: a commit survives the program's death, not a power cut. For benches.
+    /// In the system's cache: survives the program's death, not a power cut. For benchmarks.
     Normal,
 }
 
@@ -40,7 +40,7 @@ pub struct OpenOptions {
 }
 
 impl OpenOptions {
-    /// The usual way: on the disk at each commit, five seconds' patience with other writers.
+    /// The defaults: durable commits, five seconds' wait for other writers.
     pub fn new(ids: IdSource) -> Self {
         Self {
             ids,
@@ -62,7 +62,7 @@ impl OpenOptions {
         self
     }
 
-    /// Refuses to let the file grow beyond this many 4096-byte pages, like a disk of that size.
+    /// Refuses to let the file grow beyond this many 4096-byte pages, to simulate a full disk.
     pub fn max_pages(mut self, max_pages: u32) -> Self {
         self.max_pages = Some(max_pages);
         self
@@ -71,10 +71,9 @@ impl OpenOptions {
 
 /// One open history. Not shared between threads; open it once per thread instead.
 ///
-/// Runs are recorded in a file. What is asked of a history, and what people say about faults, goes to
-/// a server as well.
+/// Runs are recorded in a file. Queries, and changes of faults by users, work on a server as well.
 pub struct Store {
-    base: Base,
+    backend: Backend,
     path: PathBuf,
     ids: Option<RefCell<IdSource>>,
     codec: RefCell<TraceCodec>,
@@ -90,11 +89,11 @@ impl std::fmt::Debug for Store {
 }
 
 impl Store {
-    /// Opens a file for writing; creates it, or brings its schema up to date, if need be. A file of
-    /// an earlier schema is copied first, to `FILE.schemaN` beside it. What is made is its owner's alone.
+    /// Opens a file for writing; creates it, or migrates its schema, if need be. A file of an earlier schema
+    /// is copied first, to `FILE.schemaN` beside it. Created files are readable for their owner only.
     pub fn open(path: &Path, options: OpenOptions) -> Result<Self, StoreError> {
-        // One that is there is not touched: closing it would let go of SQLite's locks on it. Why none can be
-        // made is said by SQLite, which tries again.
+        // An existing file is not opened here: closing it would release SQLite's locks on it. If none can be
+        // created, SQLite's own attempt gives the reason.
         if !path.exists() {
             let _ = make_private(path);
         }
@@ -104,7 +103,7 @@ impl Store {
         let looked = connect(path, path, flags, options.busy_timeout_ms)
             .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
         let (conn, version) = match looked {
-            // On a write-protected disk SQLite fails before it can say why; what can be read but not
+            // On a write-protected disk SQLite fails without the reason; a file that can be read but not
             // opened for writing is read-only.
             Err(StoreError::CannotOpen { .. }) if Self::open_read_only(path).is_ok() => {
                 return Err(StoreError::ReadOnly {
@@ -114,13 +113,13 @@ impl Store {
             other => other?,
         };
         let failed = |error| StoreError::from_sqlite(path, "opening", error);
-        // SQLite opens a write-protected file for reading without a word.
+        // SQLite silently opens a write-protected file for reading.
         if conn.is_readonly("main").map_err(failed)? {
             return Err(StoreError::ReadOnly {
                 path: path.to_path_buf(),
             });
         }
-        refuse_strangers(&conn, path)?;
+        refuse_foreign_objects(&conn, path)?;
         if (1..SCHEMA_VERSION).contains(&version) {
             keep_copy(&conn, path, version)?;
         }
@@ -139,8 +138,8 @@ impl Store {
 
     /// Opens a file for reading only; never creates, migrates or locks it.
     ///
-    /// On a read-only directory the file is read as it stands, provided that no other program left
-    /// unfinished work beside it.
+    /// In a read-only directory the file is read as it is, provided that no other program left unfinished
+    /// work beside it.
     pub fn open_read_only(path: &Path) -> Result<Self, StoreError> {
         if !path.exists() {
             return Err(StoreError::Missing {
@@ -178,18 +177,18 @@ impl Store {
         }
     }
 
-    /// What is in this file and was not made by this program, or is no longer as it was made, in words. Who
-    /// opens it for reading may be told; for writing it is refused.
-    pub fn strangers(&self) -> Result<Vec<String>, StoreError> {
-        let Base::File(conn) = &self.base else {
+    /// Descriptions of objects in this file that this program did not make or that were altered. Opening such
+    /// a file for writing is refused; a reader may be warned.
+    pub fn foreign_objects(&self) -> Result<Vec<String>, StoreError> {
+        let Backend::File(conn) = &self.backend else {
             return Ok(Vec::new());
         };
-        let found = guard::strangers(conn, SCHEMA_VERSION);
+        let found = schema_guard::foreign_objects(conn, SCHEMA_VERSION);
         found.map_err(|error| self.failed("looking at its tables", error))
     }
 
-    /// Waits so long for other writers of the file from now on. Opening is answered soon; what is under way
-    /// already, where nobody waits for it, may well be more patient than give up what it has.
+    /// Sets how long to wait for other writers of the file. While opening, a short wait is best; work under
+    /// way in the background may wait longer rather than lose what it has.
     ///
     /// # Errors
     /// Of a server, which has none.
@@ -199,7 +198,7 @@ impl Store {
         set.map_err(|error| self.failed("setting how long to wait", error))
     }
 
-    /// The file's path, as it was given; of a server its address without a password.
+    /// The file's path as it was given; of a server its address without the password.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -209,8 +208,8 @@ impl Store {
         self.ids.is_none()
     }
 
-    /// Makes the tables of a new file, or brings those of an earlier version up to date, and begins its chain
-    /// of seals, all at once; the file's own name, given to it once.
+    /// Creates the tables of a new file, or migrates those of an earlier version, and begins its chain of
+    /// seals, in one transaction; returns the file's id, which is given once.
     fn bring_up_to_date(&self, version: i32) -> Result<Id, StoreError> {
         const DOING: &str = "bringing it up to date";
         if version < SCHEMA_VERSION {
@@ -223,15 +222,15 @@ impl Store {
                     return self.name();
                 }
                 schema::bring_to(conn, SCHEMA_VERSION as usize).map_err(failed)?;
-                seal::begin(&self.base, from, minted).map_err(|error| self.failed(DOING, error))
+                seal::begin(&self.backend, from, minted).map_err(|error| self.failed(DOING, error))
             });
         }
         self.name()
     }
 
-    /// The file's name; without it the chain of its seals is lost, and it is not for us to begin another.
+    /// The file's id. Without it its chain of seals is lost, and must not be begun again.
     fn name(&self) -> Result<Id, StoreError> {
-        let name = seal::own_name(&self.base);
+        let name = seal::own_file_id(&self.backend);
         let name = name.map_err(|error| self.failed("reading its name", error))?;
         name.ok_or_else(|| StoreError::Altered {
             path: self.path.clone(),
@@ -239,28 +238,28 @@ impl Store {
         })
     }
 
-    /// The name that what is said in this file is sealed with.
+    /// The file's id, under which its seals are made.
     pub(crate) fn file_id(&self) -> Result<Id, StoreError> {
         self.check_writable()?;
         self.name()
     }
 
-    /// Moves everything into the one file and closes it. Dropping closes it too, but cannot say
-    /// what went wrong.
+    /// Checkpoints the write-ahead log and closes the file. Dropping closes it too, but cannot report an
+    /// error.
     pub fn close(self) -> Result<(), StoreError> {
-        if !self.is_read_only() && matches!(self.base, Base::File(_)) {
+        if !self.is_read_only() && matches!(self.backend, Backend::File(_)) {
             self.checkpoint()?;
         }
         let path = self.path;
-        match self.base {
-            Base::File(conn) => conn
+        match self.backend {
+            Backend::File(conn) => conn
                 .close()
                 .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error)),
-            Base::Server(_) => Ok(()),
+            Backend::Server(_) => Ok(()),
         }
     }
 
-    /// Empties the write-ahead log as far as other readers allow.
+    /// Checkpoints the write-ahead log as far as other readers allow.
     pub(crate) fn checkpoint(&self) -> Result<(), StoreError> {
         let done = self
             .file()?
@@ -268,28 +267,28 @@ impl Store {
         done.map_err(|error| self.failed("writing back the log", error))
     }
 
-    /// The file's connection, for what only a file does.
+    /// The file's connection, for operations that only files have.
     pub(crate) fn file(&self) -> Result<&Connection, StoreError> {
-        match &self.base {
-            Base::File(conn) => Ok(conn),
-            Base::Server(_) => Err(StoreError::NotAFile {
+        match &self.backend {
+            Backend::File(conn) => Ok(conn),
+            Backend::Server(_) => Err(StoreError::NotAFile {
                 path: self.path.clone(),
             }),
         }
     }
 
-    /// The server's connection, for what only a server does.
+    /// The server's connection, for operations that only servers have.
     pub(crate) fn server(&self) -> Result<&Server, StoreError> {
-        match &self.base {
-            Base::Server(server) => Ok(server),
-            Base::File(_) => Err(StoreError::NotAServer {
+        match &self.backend {
+            Backend::Server(server) => Ok(server),
+            Backend::File(_) => Err(StoreError::NotAServer {
                 path: self.path.clone(),
             }),
         }
     }
 
-    /// Runs `work` in one short write transaction on the file, or in the one that is open; rolls back
-    /// when it fails.
+    /// Runs `work` in one short write transaction on the file, or in the one that is open; rolls back on an
+    /// error.
     pub(crate) fn write<T>(
         &self,
         doing: &'static str,
@@ -309,32 +308,32 @@ impl Store {
         Ok(result)
     }
 
-    /// Runs `work` in one short write transaction on the file or the server; rolls back when it fails.
+    /// Runs `work` in one short write transaction on the file or the server; rolls back on an error.
     pub(crate) fn change<T>(
         &self,
         doing: &'static str,
-        work: impl FnOnce(&Base) -> Result<T, StoreError>,
+        work: impl FnOnce(&Backend) -> Result<T, StoreError>,
     ) -> Result<T, StoreError> {
-        let Base::Server(server) = &self.base else {
-            return self.write(doing, |_| work(&self.base));
+        let Backend::Server(server) = &self.backend else {
+            return self.write(doing, |_| work(&self.backend));
         };
         self.check_writable()?;
         let failed = |error: SqlError| self.failed(doing, error);
         server.begin().map_err(failed)?;
-        match work(&self.base) {
+        match work(&self.backend) {
             Ok(result) => {
                 server.batch("COMMIT").map_err(failed)?;
                 Ok(result)
             }
             Err(error) => {
-                // If even this fails the server has let go of the connection, and of the work with it.
+                // If even this fails, the server drops the connection, and the work with it.
                 let _ = server.batch("ROLLBACK");
                 Err(error)
             }
         }
     }
 
-    /// All rows of an answer.
+    /// All rows of a result.
     pub(crate) fn select<T>(
         &self,
         doing: &'static str,
@@ -342,11 +341,11 @@ impl Store {
         values: &[Value<'_>],
         read: impl FnMut(Row<'_>) -> SqlResult<T>,
     ) -> Result<Vec<T>, StoreError> {
-        let found = self.base.select(sql, values, read);
+        let found = self.backend.select(sql, values, read);
         found.map_err(|error| self.failed(doing, error))
     }
 
-    /// The first row of an answer, if there is one.
+    /// The first row of a result.
     pub(crate) fn first<T>(
         &self,
         doing: &'static str,
@@ -354,13 +353,12 @@ impl Store {
         values: &[Value<'_>],
         read: impl FnMut(Row<'_>) -> SqlResult<T>,
     ) -> Result<Option<T>, StoreError> {
-        let found = self.base.first(sql, values, read);
+        let found = self.backend.first(sql, values, read);
         found.map_err(|error| self.failed(doing, error))
     }
 
-    /// What it is kept in.
-    pub(crate) fn base(&self) -> &Base {
-        &self.base
+    pub(crate) fn backend(&self) -> &Backend {
+        &self.backend
     }
 
     pub(crate) fn failed(&self, doing: &'static str, error: impl Into<SqlError>) -> StoreError {
@@ -391,16 +389,20 @@ impl Store {
 
     fn of_file(conn: Connection, path: &Path, ids: Option<IdSource>) -> Result<Self, StoreError> {
         conn.set_prepared_statement_cache_capacity(STATEMENT_CACHE);
-        Self::of(Base::File(conn), path, ids)
+        Self::of(Backend::File(conn), path, ids)
     }
 
-    pub(crate) fn of(base: Base, path: &Path, ids: Option<IdSource>) -> Result<Self, StoreError> {
+    pub(crate) fn of(
+        backend: Backend,
+        path: &Path,
+        ids: Option<IdSource>,
+    ) -> Result<Self, StoreError> {
         let codec = TraceCodec::new().map_err(|error: TraceError| StoreError::Io {
             path: path.to_path_buf(),
             reason: error.to_string(),
         })?;
         Ok(Self {
-            base,
+            backend,
             path: path.to_path_buf(),
             ids: ids.map(RefCell::new),
             codec: RefCell::new(codec),
@@ -409,18 +411,19 @@ impl Store {
     }
 }
 
-/// Refuses a file for writing that has something in it that no version of this program made.
-fn refuse_strangers(conn: &Connection, path: &Path) -> Result<(), StoreError> {
+/// Refuses to write to a file that holds objects which no version of this program made.
+fn refuse_foreign_objects(conn: &Connection, path: &Path) -> Result<(), StoreError> {
     let look = || {
-        // One snapshot: another program may be bringing the file up to date this moment.
+        // One snapshot: another program may be migrating the file this moment.
         let _snapshot = conn.unchecked_transaction()?;
         match schema::user_version(conn)? {
             0 => Ok(Vec::new()),
-            version => guard::strangers(conn, version),
+            version => schema_guard::foreign_objects(conn, version),
         }
     };
-    let strangers = look().map_err(|error| StoreError::from_sqlite(path, "opening", error))?;
-    match &strangers[..] {
+    let foreign_objects =
+        look().map_err(|error| StoreError::from_sqlite(path, "opening", error))?;
+    match &foreign_objects[..] {
         [] => Ok(()),
         [first, rest @ ..] => Err(StoreError::Altered {
             path: path.to_path_buf(),

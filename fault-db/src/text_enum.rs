@@ -1,4 +1,4 @@
-//! Enums stored and shown as one fixed word each.
+//! Enums that are stored and shown as one fixed word for each variant.
 
 /// Declares an enum whose variants are words in the database, in JSON and on the command line.
 macro_rules! text_enum {
@@ -56,14 +56,14 @@ macro_rules! text_enum {
             }
         }
 
-        impl crate::base::FromField<'_> for $name {
-            fn from_field(field: crate::base::Field<'_>) -> Result<Self, String> {
-                let word = <&str as crate::base::FromField>::from_field(field)?;
+        impl crate::backend::FromField<'_> for $name {
+            fn from_field(field: crate::backend::Field<'_>) -> Result<Self, String> {
+                let word = <&str as crate::backend::FromField>::from_field(field)?;
                 word.parse().map_err(|error: crate::text_enum::UnknownWord| error.to_string())
             }
         }
 
-        impl From<$name> for crate::base::Value<'_> {
+        impl From<$name> for crate::backend::Value<'_> {
             fn from(value: $name) -> Self {
                 value.as_str().into()
             }
@@ -73,12 +73,12 @@ macro_rules! text_enum {
 
 pub(crate) use text_enum;
 
-/// A word that is none of an enum's.
+/// A text that is none of an enum's values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown word {asked:?}; one of {} is expected", .known.join(", "))]
 pub struct UnknownWord {
-    /// What was given.
+    /// The text.
     pub asked: String,
-    /// What there is.
+    /// The values there are.
     pub known: Vec<&'static str>,
 }

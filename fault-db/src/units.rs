@@ -1,6 +1,6 @@
-//! Sets of units as bits, by the small numbers units have in a file.
+//! Sets of units as bit fields, indexed by the row numbers of units in a file.
 
-/// The set and one more.
+/// A copy of the set with one unit added.
 pub(crate) fn with(set: &[u8], unit: i64) -> Vec<u8> {
     let mut set = set.to_vec();
     insert(&mut set, unit);
@@ -28,7 +28,7 @@ pub(crate) fn add(set: &mut Vec<u8>, more: &[u8]) {
     }
 }
 
-/// How many are in it.
+/// Number of units in the set.
 pub(crate) fn count(set: &[u8]) -> u32 {
     set.iter().map(|byte| byte.count_ones()).sum()
 }

@@ -1,10 +1,10 @@
-//! Repairs that a run has proven.
+//! Verifies repairs by passing runs.
 //!
-//! A fault that is thought repaired is verified by a run that passed, began when the repair was already
-//! known here, and passed the very step that saw the fault last. A fault that no step saw, read from a
-//! unit's log perhaps, is for people to verify.
+//! A repaired fault becomes verified by a run that passed, began when the repair was known here, and passed
+//! the step that saw the fault last. A fault that no step saw, for instance one read from a unit's log, has
+//! to be verified by a user.
 
-use crate::base::{SqlError, values};
+use crate::backend::{SqlError, values};
 use crate::error::StoreError;
 use crate::fault_log::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
@@ -38,8 +38,8 @@ impl Store {
         Ok(found.unwrap_or_default())
     }
 
-    /// Verifies what a run that ended so has proven, in the caller's transaction: of its unit, and
-    /// repaired no later than the event of this number.
+    /// Verifies the repairs that a run proves, in the caller's transaction: those of its unit made no later
+    /// than the event of this number.
     pub(crate) fn verify_proven(
         &self,
         (unit, run, id): (i64, i64, Id),
@@ -66,9 +66,9 @@ impl Store {
                 state: Some(FaultState::Verified),
             };
             let work = || -> Result<(), SqlError> {
-                insert_event(self.base(), *fault, &event)?;
+                insert_event(self.backend(), *fault, &event)?;
                 let sql = "UPDATE fault SET state = ?2 WHERE seq = ?1";
-                self.base()
+                self.backend()
                     .execute(sql, &values![*fault, FaultState::Verified])?;
                 Ok(())
             };

@@ -1,6 +1,6 @@
-//! The page that says what questions in SQL are asked about.
+//! The documentation page of the views that SQL queries can use.
 
-/// What `ptu db schema` prints: each view, each column, what it means.
+/// The text of `ptu db schema`: each view, each column, its meaning.
 pub const VIEWS_PAGE: &str = include_str!("../VIEWS.md");
 
 #[cfg(test)]
@@ -10,7 +10,7 @@ mod tests {
     use rusqlite::Connection;
 
     use super::*;
-    use crate::{functions, schema};
+    use crate::{schema, sql_functions};
 
     /// The columns the page tells of, by view.
     fn told() -> BTreeMap<String, Vec<String>> {
@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn the_page_tells_of_every_column() {
         let conn = Connection::open_in_memory().expect("a database in memory");
-        functions::register(&conn).expect("functions");
+        sql_functions::register(&conn).expect("functions");
         schema::bring_to(&conn, schema::SCHEMA_VERSION as usize).expect("the schema");
         let sql = "SELECT v.name, c.name FROM sqlite_schema v, pragma_table_info(v.name) c
             WHERE v.type = 'view' ORDER BY 1, 2";

@@ -229,7 +229,7 @@ fn a_hundred_findings_of_a_kind_are_enough() {
     let path = dir.path().join("a.db");
     let store = open(&path);
     store
-        .together(|| {
+        .transaction(|| {
             for _ in 0..120 {
                 RunWriter::begin(&store, &run_record("ATC-7"))?.finish(&end(Verdict::Passed))?;
             }
@@ -252,7 +252,7 @@ fn writes_together_are_all_or_nothing() {
         let runs = store.runs(&fault_db::RunFilter::default(), &|_| false);
         runs.expect("listed").len()
     };
-    let failed = store.together(|| {
+    let failed = store.transaction(|| {
         three_runs(&store);
         assert_eq!(count(&store), 3, "seen within");
         store.resolve_run("nonsense")
@@ -260,7 +260,7 @@ fn writes_together_are_all_or_nothing() {
     failed.expect_err("nothing of it");
     assert_eq!(count(&store), 0);
     store
-        .together(|| {
+        .transaction(|| {
             three_runs(&store);
             let nobody = Id::from_bytes([7; 16]);
             store
@@ -463,7 +463,7 @@ fn a_planted_trigger_is_refused_by_name() {
         assert!(matches!(refused, StoreError::Altered { .. }), "{refused}");
         assert!(refused.to_string().contains(what), "{refused}");
         let reader = Store::open_read_only(&path).expect("opens");
-        assert_eq!(reader.strangers().expect("looked at"), [what]);
+        assert_eq!(reader.foreign_objects().expect("looked at"), [what]);
         reader.run(runs[0], &|_| false).expect("read");
         let found = problems(&reader);
         assert_eq!((found[0].kind, &found[0].detail[..]), ("schema", what));

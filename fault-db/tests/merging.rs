@@ -147,7 +147,7 @@ fn in_whatever_order_files_are_merged_they_say_the_same() {
         let mut random = Random::new(seed);
         let a = laptop(&dir, "a.db", 1000 + seed);
         let b = laptop(&dir, "b.db", 2000 + seed);
-        let done = a.together(|| {
+        let done = a.transaction(|| {
             live(&a, &mut random, T0_US);
             Ok(())
         });

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use btu_rig::bench_scatter::BenchScatter;
-use fault_db::read_given;
+use fault_db::read_regular_file;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::{self, Line};
@@ -250,7 +250,7 @@ pub fn read(file: &Path) -> Result<String, Failure> {
 pub fn read_within(file: &Path, most: u64) -> Result<String, Failure> {
     let cannot =
         |why: &dyn Display| Failure::usage(format!("cannot read {}: {why}", file.display()));
-    let bytes = read_given(file, most).map_err(|error| cannot(&error))?;
+    let bytes = read_regular_file(file, most).map_err(|error| cannot(&error))?;
     String::from_utf8(bytes).map_err(|_| cannot(&"it is not UTF-8"))
 }
 

@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use fault_db::Part;
+use fault_db::AtomicFile;
 
 use crate::failure::Failure;
 
@@ -16,7 +16,7 @@ const BESIDE: u32 = 1000;
 #[derive(Debug)]
 pub struct NewFile {
     file: BufWriter<File>,
-    part: Part,
+    part: AtomicFile,
     place: PathBuf,
 }
 
@@ -50,7 +50,7 @@ impl NewFile {
         };
         // What a link leads to is replaced, not the link.
         let place = std::fs::canonicalize(place).unwrap_or_else(|_| place.to_path_buf());
-        let part = Part::begin(&place);
+        let part = AtomicFile::begin(&place);
         let opened = File::create_new(part.path());
         let file = opened.map_err(|error| cannot(error.to_string()))?;
         if let Some(permissions) = before {

@@ -88,7 +88,7 @@ fn write(options: &Options) -> Result<Made, StoreError> {
     let mut people = People::default();
     let mut made = Made::default();
     while made.runs < options.runs {
-        store.together(|| {
+        store.transaction(|| {
             for _ in 0..BATCH.min(options.runs - made.runs) {
                 let visit = next_visit(options, &made, &fleet, start_us, &mut chance);
                 while people

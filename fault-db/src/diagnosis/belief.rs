@@ -1,4 +1,4 @@
-//! What is believed after what was seen: a probability for every hypothesis, updated step by step.
+//! The posterior probability of each hypothesis, updated step by step with Bayes' rule.
 
 use super::model::{Model, NO_FAULT};
 use super::observation::{Observation, StepSeen};

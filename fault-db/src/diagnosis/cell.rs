@@ -1,4 +1,4 @@
-//! What one check does under one hypothesis, counted over the runs of a campaign.
+//! The results of one check under one hypothesis, counted over the runs of a campaign.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
 use super::observation::{CheckName, Observation, Sign};
-use crate::packed::{pack, unpack};
+use crate::compression::{pack, unpack};
 
 /// Compression of a packed dictionary: read often, written seldom.
 const ZSTD_LEVEL: i32 = 15;

@@ -1,8 +1,8 @@
-//! How likely what a check showed is under what a cell has counted.
+//! The likelihood of a check's result and measured values under the counts of one cell.
 //!
-//! Counts of a few runs are smoothed: `doubt` runs that nobody made come out anyhow, so that nothing
-//! is impossible and one surprise refutes no hypothesis for good. Values are Student's (four degrees of
-//! freedom, so that an outlier is one) over the range the measurement has under all hypotheses.
+//! Counts of a few runs are smoothed with `doubt` pseudo-runs, so that no result is impossible and one
+//! surprise refutes no hypothesis for good. Values follow Student's t (four degrees of freedom, tolerant
+//! of outliers), scaled to the range that the measurement has under all hypotheses.
 
 use super::cell::{Cell, Signature, Values};
 use super::observation::{Result, Sign, StepSeen};

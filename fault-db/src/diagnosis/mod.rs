@@ -1,12 +1,12 @@
-//! From results to the part that failed.
+//! Diagnosis: from test results to the replaceable part (LRU) that failed.
 //!
-//! Two rooms. [`matrix`] works on any dependency matrix of states and tests and builds the cheapest
-//! decision tree. The rest reads what a run found against a dictionary of what each fault mode does
-//! to each check, in this order: [`Observation`] (what was seen) → [`Dictionary`] (what campaigns
-//! counted, `cell` by `cell`) → `likelihood` → [`Model`] (hypotheses and priors) → [`Belief`]
-//! (Bayes' rule, step by step) → [`NextCheck`] and [`Diagnosis`].
+//! [`matrix`] works on any dependency matrix of states and tests and builds the cheapest decision tree. The
+//! other modules compare one run with a dictionary that holds the effect of each fault mode on each check,
+//! in this order: [`Observation`] (what the run showed) → [`Dictionary`] (counts from campaigns, one `cell`
+//! for each mode and check) → `likelihood` → [`Model`] (hypotheses and priors) → [`Belief`] (Bayes' rule,
+//! step by step) → [`NextCheck`] and [`Diagnosis`].
 //!
-//! Nothing here knows which fault, if any, was injected.
+//! No function here is given the faults that were injected.
 
 mod belief;
 mod cell;

@@ -1,4 +1,4 @@
-//! A dictionary made ready for reading: hypotheses with priors, and the scale of every measurement.
+//! A dictionary prepared for diagnosis: hypotheses with priors, and the scale of each measurement.
 
 use std::collections::BTreeMap;
 

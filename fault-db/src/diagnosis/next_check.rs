@@ -1,7 +1,7 @@
-//! The next best check: the one that is expected to tell the most about the part, per second.
+//! The next best check: the most expected information about the faulty part per second.
 //!
-//! Procedures begin with a unit that is brought up for them, and their steps build on each other. So
-//! a check costs all steps of its procedure before it, but for those just run.
+//! A procedure sets the unit up at its start and its steps build on each other. So a check costs all steps
+//! of its procedure before it, except those that have just run.
 
 use std::collections::{BTreeMap, BTreeSet};
 

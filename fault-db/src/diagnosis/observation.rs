@@ -1,4 +1,4 @@
-//! What was seen: steps with what they measured and the signs that showed in them.
+//! What a run showed: its steps with their measured values, and the fault events of the unit.
 
 use std::collections::BTreeSet;
 

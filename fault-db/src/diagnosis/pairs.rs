@@ -1,7 +1,7 @@
-//! Two faults at once: looked at when one fault alone leaves results unexplained.
+//! Double faults, considered when no single fault explains the results.
 //!
-//! A check passes under two faults only if it passes under each, and does not pass if either makes it
-//! fail; so of the two likelihoods the lesser stands for a check that passed, the greater for another.
+//! A check passes under two faults only if it passes under each, and fails if either makes it fail. So the
+//! likelihood of a passed check is the lesser of the two, of any other result the greater.
 
 use super::belief::{Belief, normalised};
 use super::model::{Hypothesis, NO_FAULT};

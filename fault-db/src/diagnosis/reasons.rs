@@ -1,4 +1,4 @@
-//! Why: the steps that speak for a fault mode, and those that speak against it.
+//! The steps that speak for a fault mode and those that speak against it.
 
 use super::belief::Belief;
 use super::model::{Hypothesis, Model, NO_FAULT};

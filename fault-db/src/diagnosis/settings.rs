@@ -1,4 +1,4 @@
-//! What diagnosis takes for granted before it looks: `scripts/diagnosis.toml` in the project.
+//! Parameters of the diagnosis (priors, thresholds, costs), read from `scripts/diagnosis.toml`.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
-//! Isolating a fault by itself: which procedure to begin, when to leave it, when to stop.
+//! Automatic fault isolation: which procedure to start, when to leave it, when to stop.
 //!
-//! The caller runs what [`Strategy::begin`] asks for from its first step on, tells every step to
-//! [`Strategy::saw`] and leaves the procedure when that says so.
+//! The caller runs the procedure that [`Strategy::begin`] names from its first step, passes every step's
+//! result to [`Strategy::saw`], and leaves the procedure when that says so.
 
 use std::collections::BTreeSet;
 

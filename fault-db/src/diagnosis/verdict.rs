@@ -1,5 +1,5 @@
-//! The answer: ranked parts and modes, reasons, the next best check, and a conclusion that says
-//! "cannot tell" where the evidence does not.
+//! The result of a diagnosis: ranked parts and modes, reasons, the next best check, and a conclusion,
+//! which is "cannot tell" where the evidence is not enough.
 
 use std::collections::{BTreeMap, BTreeSet};
 

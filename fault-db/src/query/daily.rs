@@ -1,10 +1,10 @@
-//! How often faults were seen, day by day.
+//! Occurrences of faults counted by day.
 
 use serde::Serialize;
 
-use crate::base::values;
+use crate::backend::values;
 use crate::error::StoreError;
-use crate::functions::DAY_US;
+use crate::sql_functions::DAY_US;
 use crate::store::Store;
 
 /// How often one fault of one unit was seen on one day.

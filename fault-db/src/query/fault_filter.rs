@@ -1,12 +1,12 @@
-//! Which faults are meant: one filter for lists, counts and repairs.
+//! One filter on faults, for lists, counts and repairs.
 
 use super::filter::Conditions;
-use crate::base::{Base, values};
+use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
+use crate::full_text::Search;
 use crate::id::Id;
 use crate::store::Store;
-use crate::words::Search;
 
 /// Which faults; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -96,7 +96,7 @@ impl Resolved<'_> {
     /// For a list of a few: finds out how common what is looked for is. A server knows that by itself.
     pub fn weigh(&mut self, store: &Store) -> Result<(), StoreError> {
         let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
-        let (Base::File(_), Some(search), true) = (store.base(), &self.search, is_few) else {
+        let (Backend::File(_), Some(search), true) = (store.backend(), &self.search, is_few) else {
             return Ok(());
         };
         let asked = search.for_file();
@@ -164,7 +164,7 @@ impl Resolved<'_> {
     }
 
     /// Its conditions on rows called `x`, but for the span of time.
-    fn conditions(&self, base: &Base, of: Of, seen: Option<Seen>) -> Conditions {
+    fn conditions(&self, backend: &Backend, of: Of, seen: Option<Seen>) -> Conditions {
         let filter = self.filter;
         let mut all = Conditions::default();
         all.add("x.unit = ?", self.unit);
@@ -198,17 +198,17 @@ impl Resolved<'_> {
             let of_fault = if self.common.of_faults {
                 fault_says(fault, typed.clone(), &mut all)
             } else {
-                format!("{fault} IN ({})", said_of_fault(base, search, &mut all))
+                format!("{fault} IN ({})", said_of_fault(backend, search, &mut all))
             };
             let of_run = if self.common.of_runs {
                 run_says(fault, typed, &mut all)
             } else {
-                format!("{fault} IN ({})", said_of_run(base, search, &mut all))
+                format!("{fault} IN ({})", said_of_run(backend, search, &mut all))
             };
             all.require(format!("({of_fault} OR {of_run})"));
         }
         if let Some(serial) = &filter.serial {
-            let repaired = repaired_with(base, serial, &mut all);
+            let repaired = repaired_with(backend, serial, &mut all);
             all.require(format!("{fault} IN ({repaired})"));
         }
         all
@@ -269,30 +269,30 @@ impl Resolved<'_> {
     }
 
     /// The conditions and the span of time, on the column of `x` that says when.
-    pub fn conditions_at(&self, base: &Base, of: Of, at: &str) -> Conditions {
-        self.conditions_from(base, of, at, self.filter.since_us)
+    pub fn conditions_at(&self, backend: &Backend, of: Of, at: &str) -> Conditions {
+        self.conditions_from(backend, of, at, self.filter.since_us)
     }
 
     /// The same, and not before this time: one bound, since an index is gone through from one only.
     pub fn conditions_from(
         &self,
-        base: &Base,
+        backend: &Backend,
         of: Of,
         at: &str,
         since_us: Option<i64>,
     ) -> Conditions {
-        let mut all = self.conditions(base, of, None);
+        let mut all = self.conditions(backend, of, None);
         all.add(&format!("x.{at} >= ?"), since_us.max(self.filter.since_us));
         all.add(&format!("x.{at} < ?"), self.filter.until_us);
         all
     }
 
     /// The conditions on faults, and that they were seen in the span of time.
-    pub fn conditions_seen(&self, base: &Base) -> Conditions {
+    pub fn conditions_seen(&self, backend: &Backend) -> Conditions {
         let FaultFilter {
             since_us, until_us, ..
         } = *self.filter;
-        let mut all = self.conditions(base, Of::Faults, Some((since_us, until_us)));
+        let mut all = self.conditions(backend, Of::Faults, Some((since_us, until_us)));
         all.add("x.last_at_us >= ?", since_us);
         all.add("x.first_at_us < ?", until_us);
         all
@@ -303,16 +303,16 @@ impl Resolved<'_> {
 type Seen = (Option<i64>, Option<i64>);
 
 /// Faults with these words in what was said about them.
-fn said_of_fault(base: &Base, search: &Search, all: &mut Conditions) -> String {
-    match base {
-        Base::File(_) => {
+fn said_of_fault(backend: &Backend, search: &Search, all: &mut Conditions) -> String {
+    match backend {
+        Backend::File(_) => {
             let place = all.place(search.for_file());
             format!(
                 "SELECT e.fault FROM event_words w JOIN fault_event e ON e.seq = w.rowid
                  WHERE event_words MATCH {place}"
             )
         }
-        Base::Server(_) => {
+        Backend::Server(_) => {
             let place = all.place(search.for_server());
             format!("SELECT e.fault FROM fault_event e WHERE e.words @@ CAST({place} AS tsquery)")
         }
@@ -338,16 +338,16 @@ fn run_says(fault: &str, typed: String, all: &mut Conditions) -> String {
 }
 
 /// Faults seen in runs with these words in what was said about them.
-fn said_of_run(base: &Base, search: &Search, all: &mut Conditions) -> String {
-    match base {
-        Base::File(_) => {
+fn said_of_run(backend: &Backend, search: &Search, all: &mut Conditions) -> String {
+    match backend {
+        Backend::File(_) => {
             let place = all.place(search.for_file());
             format!(
                 "SELECT o.fault FROM note_words w JOIN run_note n ON n.seq = w.rowid
                  JOIN fault_occurrence o ON o.run = n.run WHERE note_words MATCH {place}"
             )
         }
-        Base::Server(_) => {
+        Backend::Server(_) => {
             let place = all.place(search.for_server());
             format!(
                 "SELECT o.fault FROM run_note n JOIN fault_occurrence o ON o.run = n.run
@@ -358,11 +358,11 @@ fn said_of_run(base: &Base, search: &Search, all: &mut Conditions) -> String {
 }
 
 /// Faults repaired with a part of this serial number: found by its words, then compared in full.
-fn repaired_with(base: &Base, serial: &str, all: &mut Conditions) -> String {
+fn repaired_with(backend: &Backend, serial: &str, all: &mut Conditions) -> String {
     let Some(search) = Search::exactly(serial) else {
         return "SELECT seq FROM fault WHERE 1 = 0".to_owned();
     };
-    let said = said_of_fault(base, &search, all);
+    let said = said_of_fault(backend, &search, all);
     let places = ["serial_old", "serial_new"].map(|key| {
         let quoted = serde_json::Value::from(serial).to_string();
         all.place(format!("\"{key}\":{quoted}"))

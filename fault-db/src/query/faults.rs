@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::fault_filter::FaultFilter;
 use super::filter::limit;
-use crate::base::{Row, SqlError, SqlResult, values};
+use crate::backend::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_log::REPAIR;
 use crate::fault_state::FaultState;
@@ -108,7 +108,7 @@ impl Store {
     pub fn faults(&self, filter: &FaultFilter) -> Result<Vec<FaultSummary>, StoreError> {
         let mut resolved = filter.resolve(self)?;
         resolved.weigh(self)?;
-        let conditions = resolved.conditions_seen(self.base());
+        let conditions = resolved.conditions_seen(self.backend());
         let order = "ORDER BY x.last_at_us DESC, x.seq DESC";
         let limit = limit(filter.limit);
         let sql = format!("{SELECT_FAULT} {} {order} {limit}", conditions.sql());
@@ -133,7 +133,7 @@ impl Store {
     }
 
     fn occurrences(&self, fault: i64) -> SqlResult<Vec<Occurrence>> {
-        self.base().select(
+        self.backend().select(
             "SELECT o.id, r.id, o.step_index, o.at_us, o.bench_us, o.message, t.id, o.freeze_json
              FROM fault_occurrence o JOIN run r ON r.seq = o.run
              LEFT JOIN trace t ON t.seq = o.trace
@@ -155,7 +155,7 @@ impl Store {
     }
 
     fn events(&self, fault: i64) -> SqlResult<Vec<FaultEvent>> {
-        self.base().select(
+        self.backend().select(
             "SELECT id, kind, at_us, who, body, state FROM fault_event
              WHERE fault = ?1 ORDER BY at_us, seq",
             &values![fault],

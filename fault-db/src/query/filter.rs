@@ -1,6 +1,6 @@
-//! Filters as SQL: conditions joined by AND, values always bound.
+//! Builds a WHERE clause: conditions joined by AND, values always bound as parameters.
 
-use crate::base::Value;
+use crate::backend::Value;
 
 /// Conditions of a filter, joined by AND, with their values.
 #[derive(Clone, Default)]

@@ -1,10 +1,10 @@
-//! A unit's own history: which parts faults named before, and what was done about them; and what of a
-//! log read from the unit is known already.
+//! The history of one unit: parts that earlier faults pointed at, their repairs, and which entries of a log
+//! read from the unit are stored already.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::faults::json;
-use crate::base::{Row, SqlError, SqlResult, values};
+use crate::backend::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_log::REPAIR;
 use crate::id::Id;
@@ -112,7 +112,7 @@ impl Store {
         };
         // No id is empty: nothing is left out then.
         let but = but.map_or_else(Vec::new, |id| id.as_bytes().to_vec());
-        let all = self.base().select(
+        let all = self.backend().select(
             "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
              FROM unit u JOIN run r ON r.unit = u.seq
              JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
@@ -136,7 +136,7 @@ impl Store {
         unit: &str,
         (since_us, before_us): (i64, i64),
     ) -> SqlResult<Vec<Repaired>> {
-        self.base().select(
+        self.backend().select(
             "SELECT f.code, f.lru, e.at_us, e.body
              FROM unit u JOIN fault f ON f.unit = u.seq JOIN fault_event e ON e.fault = f.seq
              WHERE u.serial = ?1 AND e.kind = ?2 AND e.at_us >= ?3 AND e.at_us < ?4

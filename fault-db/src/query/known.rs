@@ -1,4 +1,4 @@
-//! The names a history knows: what there is to ask for.
+//! The distinct names in a history (units, lines, codes …), for choices in filters.
 
 use crate::error::StoreError;
 use crate::record::part_name;

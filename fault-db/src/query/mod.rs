@@ -1,4 +1,4 @@
-//! The reading side: lists, single rows with all that belongs to them, counts, free questions.
+//! Queries: lists, single rows with their details, statistics, and free SQL.
 
 mod daily;
 mod fault_filter;

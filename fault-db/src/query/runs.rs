@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::filter::{Conditions, limit};
-use crate::base::{Row, SqlResult, values};
+use crate::backend::{Row, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::id::Id;
@@ -212,14 +212,14 @@ impl Store {
                 steps: self.steps(seq)?,
                 faults: self.run_faults(seq)?,
                 notes: self.run_notes(seq)?,
-                seal: sealed_as(self.base(), id)?,
+                seal: sealed_as(self.backend(), id)?,
             })
         };
         rest().map_err(|error| self.failed(DOING, error))
     }
 
     fn scripts(&self, run: i64) -> SqlResult<Vec<ScriptRecord>> {
-        self.base().select(
+        self.backend().select(
             "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
             &values![run],
             |row| {
@@ -233,7 +233,7 @@ impl Store {
 
     fn steps(&self, run: i64) -> SqlResult<Vec<StepDetail>> {
         let mut measurements = self.measurements(run)?;
-        self.base().select(
+        self.backend().select(
             "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
                 message, script_line FROM step WHERE run = ?1 ORDER BY step_index",
             &values![run],
@@ -256,7 +256,7 @@ impl Store {
 
     fn measurements(&self, run: i64) -> SqlResult<BTreeMap<u32, Vec<MeasurementRecord>>> {
         let mut by_step = BTreeMap::<u32, Vec<MeasurementRecord>>::new();
-        self.base().each(
+        self.backend().each(
             "SELECT step_index, name, value, unit, low, high, verdict FROM measurement
              WHERE run = ?1 ORDER BY step_index, ordinal",
             &values![run],
@@ -279,7 +279,7 @@ impl Store {
     }
 
     fn run_faults(&self, run: i64) -> SqlResult<Vec<RunFault>> {
-        self.base().select(
+        self.backend().select(
             "SELECT f.id, f.code, f.code_name, f.lru, f.severity, f.state, min(o.at_us),
                 max(o.at_us), min(o.bench_us), count(*),
                 (SELECT t.id FROM fault_occurrence p JOIN trace t ON t.seq = p.trace

@@ -1,6 +1,6 @@
-//! Every occurrence of a fault in one run, in order: what diagnosis reads.
+//! All fault occurrences of one run in order, as input of the diagnosis.
 
-use crate::base::values;
+use crate::backend::values;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;

@@ -1,4 +1,4 @@
-//! A question in SQL, on a connection that can only read.
+//! A user's SQL query on a file, on a connection that can only read.
 
 use rusqlite::fallible_iterator::FallibleIterator;
 use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
@@ -6,7 +6,7 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Statement};
 use serde::Serialize;
 
-use crate::base::Base;
+use crate::backend::Backend;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::server::query;
@@ -106,7 +106,7 @@ impl Store {
         bounds: QueryBounds,
         mut goes_on: impl FnMut() -> bool + Send + 'static,
     ) -> Result<QueryResult, StoreError> {
-        if let Base::Server(server) = self.base() {
+        if let Backend::Server(server) = self.backend() {
             return query::answer(server, self.path(), sql, bounds, &mut goes_on);
         }
         // A connection of its own: the authorizer would bind this one's writer, too.

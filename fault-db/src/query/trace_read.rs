@@ -1,4 +1,4 @@
-//! Traces read: whole, some channels, some rows.
+//! Reads traces: whole, selected channels, or selected rows.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use rusqlite::MAIN_DB;
 use rusqlite::blob::Blob;
 
 use super::traces::{GAPS, PARTIAL, sha256};
-use crate::base::{Base, Row, SqlResult, values};
+use crate::backend::{Backend, Row, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
@@ -221,12 +221,12 @@ impl Store {
     }
 
     fn reader(&self, seq: i64) -> Result<Reader<'_>, StoreError> {
-        match self.base() {
-            Base::File(conn) => conn
+        match self.backend() {
+            Backend::File(conn) => conn
                 .blob_open(MAIN_DB, "trace", "data", seq, true)
                 .map(Reader::File)
                 .map_err(|error| self.failed(DOING, error)),
-            Base::Server(_) => Ok(Reader::Server(seq)),
+            Backend::Server(_) => Ok(Reader::Server(seq)),
         }
     }
 

@@ -1,10 +1,10 @@
-//! Traces: which there are, and how one is stored.
+//! Lists traces, and shows how one is stored.
 
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::base::values;
+use crate::backend::values;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal;

@@ -1,13 +1,13 @@
-//! A measurement over time: every value, by day, and by unit.
+//! A measured value over time: every value, by day, and by unit.
 
 use serde::Serialize;
 
 use super::filter::Conditions;
-use crate::base::{Base, values};
+use crate::backend::{Backend, values};
 use crate::error::StoreError;
-use crate::functions::{DAY_US, month_start_us, utc_day, utc_month};
 use crate::id::Id;
 use crate::record::{Verdict, part_name};
+use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
 use crate::store::Store;
 
 const BY_DAY: &str = "reading a measurement by day";
@@ -132,7 +132,7 @@ impl Store {
         // Whole days are kept; at both ends of the span less than one may be left.
         let low = query.since_us.map_or(i64::MIN, |us| utc_day(us - 1) + 1);
         let high = query.until_us.map_or(i64::MAX, utc_day);
-        if matches!(self.base(), Base::Server(_)) || !is_fleet || low >= high {
+        if matches!(self.backend(), Backend::Server(_)) || !is_fleet || low >= high {
             return self.days(query);
         }
         self.measured(query)?;
@@ -192,8 +192,8 @@ impl Store {
         };
         let mut conditions = self.measured(&query)?;
         let is_kept = query.line.is_none() && query.train.is_none();
-        let sql = match self.base() {
-            Base::File(_) if is_kept => {
+        let sql = match self.backend() {
+            Backend::File(_) if is_kept => {
                 conditions = Conditions::default();
                 conditions.add("m.name = ?", Some(query.measurement.clone()));
                 conditions.add("u.serial = ?", query.unit.clone());
@@ -274,11 +274,11 @@ impl Store {
     /// # Errors
     /// Of the file or server.
     pub fn measuring_procedures(&self, measurement: &str) -> Result<Vec<String>, StoreError> {
-        let sql = match self.base() {
-            Base::File(_) => {
+        let sql = match self.backend() {
+            Backend::File(_) => {
                 "SELECT DISTINCT procedure FROM measured_day WHERE name = ?1 ORDER BY 1"
             }
-            Base::Server(_) => {
+            Backend::Server(_) => {
                 "SELECT DISTINCT s.procedure FROM measurement m JOIN step s ON s.run = m.run
                     AND s.step_index = m.step_index
                  WHERE m.name = ?1 AND m.value IS NOT NULL ORDER BY 1"
@@ -341,7 +341,7 @@ impl Store {
     }
 }
 
-fn trend_day(row: crate::base::Row<'_>) -> crate::base::SqlResult<TrendDay> {
+fn trend_day(row: crate::backend::Row<'_>) -> crate::backend::SqlResult<TrendDay> {
     let n: u32 = row.get(1)?;
     Ok(TrendDay {
         day_us: row.get::<i64>(0)? * DAY_US,

@@ -1,9 +1,9 @@
-//! Where a chain ends, and what a run is sealed as: what to compare with what is known elsewhere.
+//! The last entry of a chain, and the seal of a run, for comparison with values known elsewhere.
 
 use serde::Serialize;
 
-use super::{hex, own_name};
-use crate::base::{Base, SqlResult, values};
+use super::{hex, own_file_id};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
@@ -13,49 +13,49 @@ use crate::store::Store;
 pub struct SealHead {
     /// The file whose chain it is.
     pub file: Id,
-    /// Entries in it.
+    /// Number of entries.
     pub entries: i64,
-    /// The hash of the last, in hex: it stands for all of them.
+    /// The hash of the last entry, in hex; it covers all entries.
     pub seal: String,
 }
 
-/// What a run is sealed as.
+/// The seal of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RunSealed {
     /// The file that sealed it.
     pub file: Id,
-    /// Its place in that file's chain.
+    /// Its position in that file's chain.
     pub entry: i64,
-    /// The hash of its entry, in hex: it stands for the run and all that was sealed before it.
+    /// The hash of the entry, in hex; it covers the run and all entries before it.
     pub seal: String,
-    /// SHA-256 of all that the run says, in hex.
+    /// SHA-256 of the run's content, in hex.
     pub digest: String,
-    /// 1: sealed by an earlier version, which covered less; 2: all.
+    /// Digest version: 1 by an earlier version, covering less; 2 complete.
     pub covers: i64,
-    /// How the run came, if it came without a seal and was sealed as it was found.
+    /// How the run came, if it came without a seal and was sealed as found.
     pub found: Option<String>,
 }
 
 impl RunSealed {
-    /// The first digits of the seal, as they stand on a test sheet.
+    /// The first digits of the seal, as on a test sheet.
     pub fn short(&self) -> &str {
         self.seal.get(..16).unwrap_or(&self.seal)
     }
 }
 
 impl Store {
-    /// Where this file's chain ends; none of a server, which has no chain of its own, and of a file that
-    /// was never opened for writing.
+    /// The last entry of this file's chain; `None` for a server, which has no chain of its own, and for a
+    /// file never opened for writing.
     pub fn head(&self) -> Result<Option<SealHead>, StoreError> {
         const DOING: &str = "reading the last seal";
-        let Base::File(_) = self.base() else {
+        let Backend::File(_) = self.backend() else {
             return Ok(None);
         };
         let read = || -> SqlResult<_> {
-            let Some(file) = own_name(self.base())? else {
+            let Some(file) = own_file_id(self.backend())? else {
                 return Ok(None);
             };
-            let head = head_of(self.base(), file)?;
+            let head = head_of(self.backend(), file)?;
             Ok(head.map(|(entries, hash)| SealHead {
                 file,
                 entries,
@@ -66,30 +66,30 @@ impl Store {
     }
 }
 
-/// Entries of a chain, and the hash of the last.
-pub(crate) fn head_of(base: &Base, origin: Id) -> SqlResult<Option<(i64, Vec<u8>)>> {
-    base.first(
+/// Number of entries of a chain, and the hash of the last.
+pub(crate) fn head_of(backend: &Backend, origin: Id) -> SqlResult<Option<(i64, Vec<u8>)>> {
+    backend.first(
         "SELECT ordinal, hash FROM seal WHERE origin = ?1 ORDER BY ordinal DESC LIMIT 1",
         &values![origin],
         |row| Ok((row.get(0)?, row.get(1)?)),
     )
 }
 
-/// What a run is sealed as; the seal of who recorded it before that of who found it.
-pub(crate) fn sealed_as(base: &Base, run: Id) -> SqlResult<Option<RunSealed>> {
-    let sealed = base.select(
+/// The seal of a run; that of the file which recorded it before those of files which found it.
+pub(crate) fn sealed_as(backend: &Backend, run: Id) -> SqlResult<Option<RunSealed>> {
+    let sealed = backend.select(
         "SELECT origin, ordinal, hash, digest, covers, says FROM seal
          WHERE id = ?1 AND what = 'run' ORDER BY origin, ordinal",
         &values![run],
         |row| {
-            let says = super::run::RunSays::of(row.get(5)?).unwrap_or_default();
+            let payload = super::run::RunPayload::of(row.get(5)?).unwrap_or_default();
             Ok(RunSealed {
                 file: row.get(0)?,
                 entry: row.get(1)?,
                 seal: hex(row.get(2)?),
                 digest: hex(row.get(3)?),
                 covers: row.get(4)?,
-                found: says.found,
+                found: payload.found,
             })
         },
     )?;

@@ -1,58 +1,60 @@
-//! The chain of a file: each run that ends, all that is said later and each trace that is deleted is sealed
-//! with a hash over all it says and over the seal before it. What was changed later no longer fits its
-//! seal; what was taken out leaves a gap. Who rewrites the whole chain is found by a seal that is known
-//! elsewhere: on a test sheet, in a backup, in another file, or on a server. SEALS.md says what is
-//! hashed, byte by byte.
+//! The hash chain of a file. Each finished run, each later event or note and each deletion of a trace is
+//! sealed: an entry holds a digest of the content and a hash over that digest and the entry before.
+//!
+//! A changed row no longer matches its digest, and a removed entry leaves a gap. A chain that was rewritten
+//! as a whole is detected where one of its hashes is known elsewhere: on a test sheet, in a backup, in
+//! another file, or on a server. SEALS.md lists the hashed fields, byte by byte.
 
-mod canon;
-pub(crate) mod first;
+mod canonical;
+pub(crate) mod divergence;
+pub(crate) mod events_and_notes;
 mod head;
-pub(crate) mod parted;
 pub(crate) mod run;
-pub(crate) mod said;
 pub(crate) mod trace;
+pub(crate) mod version1;
 
 use serde::{Deserialize, Serialize};
 
-pub(crate) use canon::COVERS;
-use canon::Canon;
+use canonical::CanonicalHash;
+pub(crate) use canonical::DIGEST_VERSION;
 pub use head::{RunSealed, SealHead};
 pub(crate) use head::{head_of, sealed_as};
 
-use crate::base::{Base, SqlError, SqlResult, values};
+use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
-use said::{Earlier, EarlierSays};
+use events_and_notes::{Earlier, EarlierPayload};
 
-/// How a run, an event or a note came that was sealed as it was found.
+/// How a run, event or note came that was sealed as found.
 pub(crate) const BY_IMPORT: &str = "import";
 pub(crate) const BY_SYNC: &str = "sync";
 const BY_UPDATE: &str = "an earlier version";
 
-/// Adds an entry to the file's own chain.
+/// Appends an entry to the file's own chain.
 pub(crate) fn append(
-    base: &Base,
+    backend: &Backend,
     what: &str,
     id: Id,
-    says: &str,
+    payload: &str,
     digest: [u8; 32],
 ) -> SqlResult<()> {
-    append_as(base, what, id, COVERS, says, &digest)
+    append_as(backend, what, id, DIGEST_VERSION, payload, &digest)
 }
 
 fn append_as(
-    base: &Base,
+    backend: &Backend,
     what: &str,
     id: Id,
     covers: i64,
-    says: &str,
+    payload: &str,
     digest: &[u8],
 ) -> SqlResult<()> {
-    let origin = own_name(base)?.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))?;
-    let (ordinal, before) = match head_of(base, origin)? {
+    let origin =
+        own_file_id(backend)?.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))?;
+    let (ordinal, before) = match head_of(backend, origin)? {
         Some((ordinal, hash)) => (ordinal, Some(hash)),
         None => (0, None),
     };
-    base.execute(
+    backend.execute(
         "INSERT INTO seal(origin, ordinal, what, id, covers, says, digest, hash)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
         &values![
@@ -61,7 +63,7 @@ fn append_as(
             what,
             id,
             covers,
-            says,
+            payload,
             digest,
             &chained(before.as_deref(), digest)[..]
         ],
@@ -69,105 +71,127 @@ fn append_as(
     Ok(())
 }
 
-/// The name of a file, which its own entries have; a server has neither.
-pub(crate) fn own_name(base: &Base) -> SqlResult<Option<Id>> {
-    if let Base::Server(_) = base {
+/// The file's id, under which its entries are made; a server has none.
+pub(crate) fn own_file_id(backend: &Backend) -> SqlResult<Option<Id>> {
+    if let Backend::Server(_) = backend {
         return Ok(None);
     }
     let sql = "SELECT value FROM about WHERE key = 'file_id'";
-    base.first(sql, &[], |row| row.get(0))
+    backend.first(sql, &[], |row| row.get(0))
 }
 
-pub(crate) use first::chained;
+pub(crate) use version1::chained;
 
-/// Adds an entry that says something no row says.
-pub(crate) fn state(base: &Base, what: &str, id: Id, says: &impl Serialize) -> SqlResult<()> {
-    let says = serde_json::to_string(says).unwrap_or_default();
-    append(base, what, id, &says, statement_digest(what, id, &says))
+/// Appends an entry whose payload is its whole content.
+pub(crate) fn append_statement(
+    backend: &Backend,
+    what: &str,
+    id: Id,
+    payload: &impl Serialize,
+) -> SqlResult<()> {
+    let payload = serde_json::to_string(payload).unwrap_or_default();
+    append(
+        backend,
+        what,
+        id,
+        &payload,
+        statement_digest(what, id, &payload),
+    )
 }
 
-/// The digest of an entry that says all by itself.
-pub(crate) fn statement_digest(what: &str, id: Id, says: &str) -> [u8; 32] {
-    let mut hash = Canon::of(what);
+/// The digest of an entry whose payload is its whole content.
+pub(crate) fn statement_digest(what: &str, id: Id, payload: &str) -> [u8; 32] {
+    let mut hash = CanonicalHash::of(what);
     hash.bytes(id.as_bytes());
-    hash.text(says);
+    hash.text(payload);
     hash.finish()
 }
 
-/// The digest of a run as it lies there, of the kind that this seal is.
-pub(crate) fn run_digest(base: &Base, run: i64, covers: i64, says: &str) -> SqlResult<[u8; 32]> {
+/// The digest of a stored run, in the version of its seal.
+pub(crate) fn run_digest(
+    backend: &Backend,
+    run: i64,
+    covers: i64,
+    payload: &str,
+) -> SqlResult<[u8; 32]> {
     match covers {
-        COVERS => run::digest(base, run, says),
-        _ => first::digest(base, run),
+        DIGEST_VERSION => run::digest(backend, run, payload),
+        _ => version1::digest(backend, run),
     }
 }
 
-/// Seals a run as it is found, since it came without a seal.
-pub(crate) fn found_run(base: &Base, run: i64, found: &str) -> SqlResult<()> {
+/// Seals a run that came without a seal.
+pub(crate) fn seal_run_as_found(backend: &Backend, run: i64, found: &str) -> SqlResult<()> {
     let sql = "SELECT id FROM run WHERE seq = ?1";
-    let Some(id) = base.first(sql, &values![run], |row| row.get(0))? else {
+    let Some(id) = backend.first(sql, &values![run], |row| row.get(0))? else {
         return Ok(());
     };
-    let says = run::says(base, run, found)?.text();
-    append(base, "run", id, &says, run::digest(base, run, &says)?)
+    let payload = run::payload(backend, run, found)?.text();
+    append(
+        backend,
+        "run",
+        id,
+        &payload,
+        run::digest(backend, run, &payload)?,
+    )
 }
 
-/// What an entry is called that says that a trace or recording was deleted.
+/// The kind of an entry for the deletion of a trace or recording.
 pub(crate) const PRUNED: &str = "pruned";
 
-/// What a trace's, or a recording's, entry says that it was deleted.
+/// The payload of an entry for a deletion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PrunedSays {
+pub(crate) struct PrunedPayload {
     pub run: String,
-    /// Of what was deleted, as its run's seal has it.
+    /// The digest of what was deleted, as in its run's seal.
     pub sha256: String,
-    /// The recording, by its place in the run; none of a trace.
+    /// The position of the recording in its run; `None` for a trace.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording: Option<i64>,
     pub at_us: i64,
 }
 
-/// What the first entry of a file's chain in the fifth schema says.
+/// The payload of the first entry of a chain in schema 5.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct BegunSays {
-    /// The file's schema before; 0 of a new one.
+pub(crate) struct BegunPayload {
+    /// The file's schema before; 0 for a new file.
     pub schema: i32,
-    /// Runs sealed by an earlier version, and those that no version had sealed until then.
+    /// Runs sealed by an earlier version, and finished runs that had no seal.
     pub runs_sealed: i64,
     pub runs_found: usize,
-    pub events: EarlierSays,
-    pub notes: EarlierSays,
+    pub events: EarlierPayload,
+    pub notes: EarlierPayload,
 }
 
-/// Names a file and begins its chain, in the transaction that brought it up to date; what was recorded
-/// until then keeps the seals it has.
-pub(crate) fn begin(base: &Base, schema: i32, minted: Id) -> SqlResult<Id> {
-    let known = own_name(base)?;
+/// Gives a file its id and begins its chain, in the transaction that migrates it; earlier runs keep their
+/// seals.
+pub(crate) fn begin(backend: &Backend, schema: i32, minted: Id) -> SqlResult<Id> {
+    let known = own_file_id(backend)?;
     let origin = known.unwrap_or(minted);
     if known.is_none() {
         let sql = "INSERT INTO about(key, value) VALUES ('file_id', ?1)";
-        base.execute(sql, &values![origin])?;
+        backend.execute(sql, &values![origin])?;
     }
-    let count = |sql: &str| base.first(sql, &[], |row| row.get::<i64>(0));
-    // No version had sealed any run before the fourth schema. A run without a seal is none of theirs later.
+    let count = |sql: &str| backend.first(sql, &[], |row| row.get::<i64>(0));
+    // Schemas before 4 had no seals. From schema 4 on, a run without a seal was put in by hand.
     let found: Vec<i64> = match schema {
-        0..4 => base.select(
+        0..4 => backend.select(
             "SELECT seq FROM run WHERE verdict IS NOT NULL ORDER BY finished_at_us, seq",
             &[],
             |row| row.get(0),
         )?,
         _ => Vec::new(),
     };
-    let begun = BegunSays {
+    let begun = BegunPayload {
         schema,
         runs_sealed: count("SELECT count(DISTINCT id) FROM seal")?.unwrap_or(0),
         runs_found: found.len(),
-        events: said::earlier(base, Earlier::Events, i64::MAX)?,
-        notes: said::earlier(base, Earlier::Notes, i64::MAX)?,
+        events: events_and_notes::earlier(backend, Earlier::Events, i64::MAX)?,
+        notes: events_and_notes::earlier(backend, Earlier::Notes, i64::MAX)?,
     };
-    state(base, "begun", origin, &begun)?;
+    append_statement(backend, "begun", origin, &begun)?;
     for run in found {
-        found_run(base, run, BY_UPDATE)?;
+        seal_run_as_found(backend, run, BY_UPDATE)?;
     }
     Ok(origin)
 }
@@ -177,19 +201,18 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What an entry is called that says what was counted anew.
+/// The kind of an entry for a recount.
 pub(crate) const RECOUNTED: &str = "recounted";
 
-/// What was not as the history says before it was counted anew: it may be all that shows of a row that was
-/// changed by hand.
+/// What differed before a recount: this may be the only trace of a row that was changed by hand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RecountedSays {
+pub(crate) struct RecountedPayload {
     pub at_us: i64,
     pub differed: Vec<String>,
 }
 
-impl RecountedSays {
-    /// As a person reads it.
+impl RecountedPayload {
+    /// As a sentence.
     pub fn text(&self) -> String {
         let at = chrono::DateTime::from_timestamp_micros(self.at_us).unwrap_or_default();
         format!(
@@ -200,22 +223,23 @@ impl RecountedSays {
     }
 }
 
-/// What the first entry of a copy says that got a name of its own.
+/// The payload of the first entry of a copy that got an id of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct CopiedSays {
+pub(crate) struct CopiedPayload {
     /// The file it is a copy of.
     pub file: String,
-    /// The last entry that both have, and its hash.
+    /// The last common entry, and its hash.
     pub after: i64,
     pub seal: String,
     pub at_us: i64,
 }
 
-impl CopiedSays {
-    /// Of a file that is a copy from this entry on.
-    pub fn of(base: &Base, origin: Id, after: i64, at_us: i64) -> SqlResult<Self> {
+impl CopiedPayload {
+    /// For a file that is a copy from this entry on.
+    pub fn of(backend: &Backend, origin: Id, after: i64, at_us: i64) -> SqlResult<Self> {
         let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
-        let hash: Option<Vec<u8>> = base.first(sql, &values![origin, after], |row| row.get(0))?;
+        let hash: Option<Vec<u8>> =
+            backend.first(sql, &values![origin, after], |row| row.get(0))?;
         Ok(Self {
             file: origin.to_string(),
             after,
@@ -227,21 +251,25 @@ impl CopiedSays {
 
 const COPIED: &str = "copied";
 
-/// Gives a file another name, begins its chain, and enters in it what the file went on with: with the digests
-/// it had, so that nothing that was changed fits again.
-pub(crate) fn name_anew(base: &Base, name: Id, says: &CopiedSays) -> SqlResult<()> {
-    base.execute(
+/// Gives a copy its own id, begins its chain, and repeats in it the entries made since the copy, with their
+/// digests, so that rows changed meanwhile still do not match.
+pub(crate) fn start_chain_of_copy(
+    backend: &Backend,
+    name: Id,
+    payload: &CopiedPayload,
+) -> SqlResult<()> {
+    backend.execute(
         "UPDATE about SET value = ?1 WHERE key = 'file_id'",
         &values![name],
     )?;
-    state(base, COPIED, name, says)?;
-    let Ok(before) = says.file.parse::<Id>() else {
+    append_statement(backend, COPIED, name, payload)?;
+    let Ok(before) = payload.file.parse::<Id>() else {
         return Ok(());
     };
-    let went_on = base.select(
+    let went_on = backend.select(
         "SELECT what, id, covers, says, digest FROM seal WHERE origin = ?1 AND ordinal > ?2
          ORDER BY ordinal",
-        &values![before, says.after],
+        &values![before, payload.after],
         |row| {
             Ok((
                 row.get::<String>(0)?,
@@ -252,24 +280,24 @@ pub(crate) fn name_anew(base: &Base, name: Id, says: &CopiedSays) -> SqlResult<(
             ))
         },
     )?;
-    for (what, id, covers, says, digest) in went_on {
-        append_as(base, &what, id, covers, &says, &digest)?;
+    for (what, id, covers, payload, digest) in went_on {
+        append_as(backend, &what, id, covers, &payload, &digest)?;
     }
     Ok(())
 }
 
-/// The entry after which a file is a copy of another, if it said so.
-pub(crate) fn copied_from(base: &Base, origin: Id) -> SqlResult<Option<i64>> {
-    let says = base.select(
+/// The last entry that a file shares with the one it is a copy of, if it recorded that.
+pub(crate) fn copied_from(backend: &Backend, origin: Id) -> SqlResult<Option<i64>> {
+    let payload = backend.select(
         "SELECT says FROM seal WHERE what = 'copied' ORDER BY origin",
         &[],
         |row| row.get::<String>(0),
     )?;
-    let says = says
+    let payload = payload
         .iter()
-        .filter_map(|says| serde_json::from_str::<CopiedSays>(says).ok());
-    Ok(says
-        .filter(|says| says.file == origin.to_string())
-        .map(|says| says.after)
+        .filter_map(|payload| serde_json::from_str::<CopiedPayload>(payload).ok());
+    Ok(payload
+        .filter(|payload| payload.file == origin.to_string())
+        .map(|payload| payload.after)
         .min())
 }

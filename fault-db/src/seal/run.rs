@@ -1,35 +1,36 @@
-//! What a run is sealed as: all it says, and what its traces and recordings are.
+//! The digest of a run: its own fields, its steps, measurements and occurrences, and the digests of its
+//! traces and recordings.
 //!
-//! While it is recorded the digest is made of what is recorded, not of what lies in the file: a trigger
-//! that changes a row on its way does not get its change sealed.
+//! During recording the digest is computed from the recorded values, not from the rows in the file, so a
+//! trigger that changes a row does not get its change sealed.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::canon::{Canon, columns, take_rows};
+use super::canonical::{CanonicalHash, columns, take_rows};
 use super::{hex, trace};
-use crate::base::{Base, SqlResult, Value, values};
+use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 use crate::record::{MeasurementRecord, RunEnd, RunRecord, StepRecord};
 
-/// What a run's seal says in words: its traces and recordings, which come and go without it.
+/// The payload of a run's seal: its traces and recordings, which may be deleted or arrive later.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RunSays {
+pub(crate) struct RunPayload {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub traces: Vec<TraceSays>,
+    pub traces: Vec<TracePayload>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub recordings: Vec<RecordingSays>,
-    /// How the run came, if it came without a seal: what it is sealed as is how it was found then.
+    pub recordings: Vec<RecordingPayload>,
+    /// How the run came, if it came without a seal and was sealed as found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
 }
 
 /// A trace of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct TraceSays {
+pub(crate) struct TracePayload {
     pub id: String,
-    /// Of all it says, samples included.
+    /// Digest over all its fields, including the checksum of its samples.
     pub sha256: String,
     /// The recording it was cut from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -38,12 +39,12 @@ pub(crate) struct TraceSays {
 
 /// A recording of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RecordingSays {
+pub(crate) struct RecordingPayload {
     pub ordinal: i64,
     pub sha256: String,
 }
 
-impl RunSays {
+impl RunPayload {
     pub fn of(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }
@@ -54,21 +55,21 @@ impl RunSays {
     }
 }
 
-/// The digest of a run while it is recorded.
+/// The digest of a run under recording.
 pub(crate) struct RunSeal {
-    run: Canon,
+    run: CanonicalHash,
     scripts: [u8; 32],
-    steps: Canon,
-    measurements: Canon,
+    steps: CanonicalHash,
+    measurements: CanonicalHash,
     occurrences: BTreeMap<Id, [u8; 32]>,
-    says: RunSays,
+    payload: RunPayload,
 }
 
 impl RunSeal {
-    /// Of a run at its beginning.
+    /// For a run at its beginning.
     pub fn begin(id: Id, record: &RunRecord, sw_versions: &str) -> Self {
         let RunRecord { unit, .. } = record;
-        let mut run = Canon::of("run");
+        let mut run = CanonicalHash::of("run");
         run.values(&values![
             id,
             &unit.serial,
@@ -87,10 +88,10 @@ impl RunSeal {
             record.injected.as_ref(),
             &record.owner,
         ]);
-        // A path that comes twice is stored once, as it came last.
+        // A path given twice is stored once, with the last digest.
         let scripts = record.scripts.iter();
         let scripts: BTreeMap<_, _> = scripts.map(|s| (&s.path, &s.sha256)).collect();
-        let mut hash = Canon::new();
+        let mut hash = CanonicalHash::new();
         for (path, sha256) in scripts {
             hash.text(path);
             hash.text(sha256);
@@ -98,14 +99,14 @@ impl RunSeal {
         Self {
             run,
             scripts: hash.finish(),
-            steps: Canon::new(),
-            measurements: Canon::new(),
+            steps: CanonicalHash::new(),
+            measurements: CanonicalHash::new(),
             occurrences: BTreeMap::new(),
-            says: RunSays::default(),
+            payload: RunPayload::default(),
         }
     }
 
-    /// A step; they come with rising indexes.
+    /// Adds a step; indexes rise.
     pub fn step(&mut self, step: &StepRecord) {
         self.steps.values(&values![
             step.index,
@@ -135,34 +136,34 @@ impl RunSeal {
         ]);
     }
 
-    /// An occurrence of a fault.
+    /// Adds an occurrence of a fault.
     pub fn occurrence(&mut self, id: Id, digest: [u8; 32]) {
         self.occurrences.insert(id, digest);
     }
 
-    /// A trace.
+    /// Adds a trace.
     pub fn trace(&mut self, id: Id, digest: [u8; 32]) {
-        self.says.traces.push(TraceSays {
+        self.payload.traces.push(TracePayload {
             id: id.to_string(),
             sha256: hex(&digest),
             recording: None,
         });
     }
 
-    /// A recording, and the traces that were cut from it.
+    /// Adds a recording, and links the traces that were cut from it.
     pub fn recording(&mut self, ordinal: u32, digest: [u8; 32], traces: &[Id]) {
         let ordinal = i64::from(ordinal);
         let traces: Vec<_> = traces.iter().map(Id::to_string).collect();
-        for trace in &mut self.says.traces {
+        for trace in &mut self.payload.traces {
             if traces.contains(&trace.id) {
                 trace.recording = Some(ordinal);
             }
         }
         let sha256 = hex(&digest);
-        (self.says.recordings).push(RecordingSays { ordinal, sha256 });
+        (self.payload.recordings).push(RecordingPayload { ordinal, sha256 });
     }
 
-    /// What the run says at its end, and its digest.
+    /// The payload and the digest of the finished run.
     pub fn end(&self, end: &RunEnd) -> (String, [u8; 32]) {
         let mut run = self.run.clone();
         run.values(&values![
@@ -171,35 +172,35 @@ impl RunSeal {
             end.bench_time_us,
             end.wall_time_us,
         ]);
-        let says = self.says.text();
+        let payload = self.payload.text();
         let parts = [
             self.scripts,
             self.steps.clone().finish(),
             self.measurements.clone().finish(),
             joined(self.occurrences.values()),
         ];
-        let digest = whole(run, parts, &says);
-        (says, digest)
+        let digest = whole(run, parts, &payload);
+        (payload, digest)
     }
 }
 
-/// The digest of an occurrence about to be stored, its fields in the order of [`OCCURRENCES`].
+/// The digest of an occurrence about to be stored; `fields` in the order of [`OCCURRENCES`].
 pub(crate) fn occurrence(fields: &[Value<'_>]) -> [u8; 32] {
-    let mut hash = Canon::new();
+    let mut hash = CanonicalHash::new();
     hash.values(fields);
     hash.finish()
 }
 
-/// Occurrences in the order of their ids.
+/// One digest over occurrences in the order of their ids.
 fn joined<'a>(occurrences: impl Iterator<Item = &'a [u8; 32]>) -> [u8; 32] {
-    let mut hash = Canon::new();
+    let mut hash = CanonicalHash::new();
     occurrences.for_each(|digest| hash.plain(digest));
     hash.finish()
 }
 
-fn whole(mut run: Canon, parts: [[u8; 32]; 4], says: &str) -> [u8; 32] {
+fn whole(mut run: CanonicalHash, parts: [[u8; 32]; 4], payload: &str) -> [u8; 32] {
     parts.iter().for_each(|part| run.bytes(part));
-    run.text(says);
+    run.text(payload);
     run.finish()
 }
 
@@ -222,19 +223,19 @@ const OCCURRENCES: &str =
     "SELECT id, step_index, at_us, bench_us, message, freeze_json, code, lru, line, code_name, severity
      FROM fault_occurrence WHERE run = ?1 ORDER BY id";
 
-/// The digest of a run as it lies there, with what its seal says of traces and recordings.
-pub(crate) fn digest(base: &Base, run: i64, says: &str) -> SqlResult<[u8; 32]> {
+/// The digest of a stored run with this payload.
+pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u8; 32]> {
     let of_run = values![run];
     let mut parts = [[0; 32]; 4];
     for (part, sql) in parts.iter_mut().zip(PARTS) {
-        let mut hash = Canon::new();
-        take_rows(&mut hash, base, sql, &of_run)?;
+        let mut hash = CanonicalHash::new();
+        take_rows(&mut hash, backend, sql, &of_run)?;
         *part = hash.finish();
     }
     let width = columns(OCCURRENCES);
-    let mut all = Canon::new();
-    base.each(OCCURRENCES, &of_run, |row| {
-        let mut hash = Canon::new();
+    let mut all = CanonicalHash::new();
+    backend.each(OCCURRENCES, &of_run, |row| {
+        let mut hash = CanonicalHash::new();
         for column in 0..width {
             hash.take(row.field(column)?);
         }
@@ -242,31 +243,33 @@ pub(crate) fn digest(base: &Base, run: i64, says: &str) -> SqlResult<[u8; 32]> {
         Ok(())
     })?;
     parts[3] = all.finish();
-    let mut whole_run = Canon::of("run");
-    take_rows(&mut whole_run, base, RUN, &of_run)?;
-    Ok(whole(whole_run, parts, says))
+    let mut whole_run = CanonicalHash::of("run");
+    take_rows(&mut whole_run, backend, RUN, &of_run)?;
+    Ok(whole(whole_run, parts, payload))
 }
 
-/// What is there of a run's traces and recordings, for one that is sealed as it is found.
-pub(crate) fn says(base: &Base, run: i64, found: &str) -> SqlResult<RunSays> {
-    let mut says = RunSays {
+/// The payload of a stored run that is sealed as found.
+pub(crate) fn payload(backend: &Backend, run: i64, found: &str) -> SqlResult<RunPayload> {
+    let mut payload = RunPayload {
         found: Some(found.to_owned()),
-        ..RunSays::default()
+        ..RunPayload::default()
     };
-    for (seq, id, recording) in base.select(
+    for (seq, id, recording) in backend.select(
         "SELECT seq, id, recording FROM trace WHERE run = ?1 ORDER BY id",
         &values![run],
         |row| Ok((row.get::<i64>(0)?, row.get::<Id>(1)?, row.get(2)?)),
     )? {
-        says.traces.push(TraceSays {
+        payload.traces.push(TracePayload {
             id: id.to_string(),
-            sha256: hex(&trace::digest(base, seq)?),
+            sha256: hex(&trace::digest(backend, seq)?),
             recording,
         });
     }
-    for ordinal in trace::recordings(base, run)? {
-        let sha256 = hex(&trace::recording_digest(base, run, ordinal)?);
-        says.recordings.push(RecordingSays { ordinal, sha256 });
+    for ordinal in trace::recordings(backend, run)? {
+        let sha256 = hex(&trace::recording_digest(backend, run, ordinal)?);
+        payload
+            .recordings
+            .push(RecordingPayload { ordinal, sha256 });
     }
-    Ok(says)
+    Ok(payload)
 }

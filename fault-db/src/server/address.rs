@@ -1,4 +1,4 @@
-//! Where a server is: `postgres://user@host:port/database?option=value`, as libpq writes it.
+//! The address of a server: `postgres://user@host:port/database?option=value`, in libpq's syntax.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -11,22 +11,22 @@ const DEFAULT_CONNECT_TIMEOUT_S: u64 = 10;
 const OPTIONS: &str =
     "host, port, dbname, user, password, passfile, sslmode, sslrootcert, connect_timeout";
 
-/// How far a connection is guarded.
+/// Protection of a connection.
 ///
-/// The words are libpq's, but for two: without one, a server on another machine has to prove who it is;
-/// and `require` and `verify-ca` look at the certificate's issuer and at the host's name like
-/// `verify-full`, because a connection that is locked to a stranger is not guarded.
+/// The names are libpq's, with two differences: without `sslmode` a server on another machine has to prove
+/// its identity; and `require` and `verify-ca` verify issuer and host name like `verify-full`, because
+/// encryption to an unknown peer protects nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Guard {
-    /// In the clear.
+    /// No TLS.
     Disable,
-    /// TLS if the server has it, whoever it is.
+    /// TLS if the server offers it, without verification.
     Prefer,
-    /// TLS, by a certificate for this host from an issuer that is trusted.
+    /// TLS, with a certificate for this host from a trusted issuer.
     Verify,
 }
 
-/// A server's address. Shown without its password, always.
+/// The address of a server. Always shown without its password.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Address {
     pub(super) user: Option<String>,
@@ -41,15 +41,15 @@ pub struct Address {
 }
 
 impl Address {
-    /// Whether a text is meant as a server's address, rather than as a file's name: it begins with a scheme,
-    /// be it the right one or not.
+    /// Whether a text is meant as a server's address rather than as a file's name: it begins with a scheme,
+    /// even a misspelt one.
     pub fn is_meant(text: &str) -> bool {
         let is_postgres = |scheme: &str| scheme.to_ascii_lowercase().starts_with("postgres");
         scheme(text).is_some_and(|(scheme, rest)| rest.starts_with("//") || is_postgres(scheme))
     }
 
-    /// Whether a text holds the password of a server: as an address, be it spelled wrong or a part of something
-    /// longer, or as libpq's `password=`.
+    /// Whether a text contains the password of a server: in an address, even misspelt or within a longer
+    /// text, or as libpq's `password=`.
     pub fn holds_password(text: &str) -> bool {
         if let Ok(address) = text.parse::<Self>() {
             return address.password.is_some();
@@ -62,7 +62,7 @@ impl Address {
         named || after_schemes(text).any(is_login)
     }
 
-    /// A folder that holds a socket, or this machine by its own name.
+    /// A socket in a folder, or this machine.
     pub(super) fn is_local(&self) -> bool {
         let host = self.host.as_str();
         let loopback = host
@@ -76,12 +76,12 @@ impl Address {
         self.host.starts_with('/')
     }
 
-    /// Who logs in, if the address says so.
+    /// The user that the address names.
     pub fn user(&self) -> Option<&str> {
         self.user.as_deref()
     }
 
-    /// How far the connection is guarded.
+    /// The protection that applies, with its default.
     pub(super) fn guard(&self) -> Guard {
         match self.guard {
             _ if self.is_socket() => Guard::Disable,
@@ -99,7 +99,7 @@ impl Address {
             "user" => self.user = Some(value),
             "password" => self.password = Some(value),
             "passfile" => self.password_file = Some(value.into()),
-            // What libpq calls the system's own.
+            // libpq's name for the system's certificates.
             "sslrootcert" if value == "system" => self.root_certificates = None,
             "sslrootcert" => self.root_certificates = Some(value.into()),
             "sslmode" => self.guard = Some(guard(&value)?),
@@ -129,7 +129,7 @@ impl FromStr for Address {
     }
 }
 
-/// A scheme and what follows its colon.
+/// The scheme and the text after its colon.
 fn scheme(text: &str) -> Option<(&str, &str)> {
     let (scheme, rest) = text.split_once(':')?;
     let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "+-._".contains(letter);
@@ -137,7 +137,7 @@ fn scheme(text: &str) -> Option<(&str, &str)> {
     (begins && scheme.chars().all(is_letter)).then_some((scheme, rest))
 }
 
-/// What follows each `://` of a text, and the colon of a scheme that is nearly PostgreSQL's.
+/// The text after each `://`, and after the colon of a scheme similar to PostgreSQL's.
 fn after_schemes(text: &str) -> impl Iterator<Item = &str> {
     let marked = (text.match_indices("://")).map(|(at, mark)| &text[at + mark.len()..]);
     let short = (text.match_indices(':')).filter_map(|(at, _)| {
@@ -158,7 +158,7 @@ fn is_login(rest: &str) -> bool {
     !user.contains(['/', '@', '?']) && rest.contains('@')
 }
 
-/// The reason names no part of the text: any may be of a password that is spelled wrong.
+/// The error quotes nothing of the text: any part may belong to a misspelt password.
 fn parse(text: &str) -> Result<Address, String> {
     let rest = text
         .strip_prefix("postgres://")
@@ -216,7 +216,7 @@ fn parse(text: &str) -> Result<Address, String> {
     Ok(address)
 }
 
-/// Host and port; the host of a version 6 address stands in brackets.
+/// Host and port; an IPv6 address stands in brackets.
 fn split_host(place: &str) -> Result<(&str, Option<&str>), String> {
     if let Some(rest) = place.strip_prefix('[') {
         let (host, after) = rest.split_once(']').ok_or("its [ has no ]")?;
@@ -249,7 +249,7 @@ fn guard(word: &str) -> Result<Guard, String> {
     }
 }
 
-/// The text with every `%41` as its letter.
+/// Decodes percent escapes.
 fn plain(text: &str) -> Result<String, String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
@@ -261,7 +261,7 @@ fn plain(text: &str) -> Result<String, String> {
         }
         let digits = after.get(..2).and_then(|two| std::str::from_utf8(two).ok());
         let byte = digits.and_then(|two| u8::from_str_radix(two, 16).ok());
-        // The text itself is not shown: it may be a password.
+        // The error does not quote the text: it may be a password.
         bytes.push(byte.ok_or("after % come two hex digits; a % itself is written %25")?);
         rest = &after[2..];
     }
@@ -278,7 +278,7 @@ impl fmt::Display for Address {
             write!(f, "{user}@")?;
         }
         match self.host.as_str() {
-            // A folder would end the host.
+            // A slash would end the host.
             host if self.is_socket() => f.write_str(&host.replace('/', "%2F"))?,
             host if host.contains(':') => write!(f, "[{host}]")?,
             host => f.write_str(host)?,
@@ -347,7 +347,7 @@ mod tests {
             ("mysql://h/d", "neither postgres://"),
             ("postgres://a,b/d", "several hosts"),
             ("postgres://a:99999/d", "1 to 65535"),
-            // A password whose / and ? were left as they are.
+            // Passwords whose / and ? were not escaped.
             ("postgres://kim:pa/ss@a/d", "1 to 65535"),
             ("postgres://kim:77/pass@a/d", "%2F or %40"),
             ("postgres://kim:77?pass@a/d", "has no value"),

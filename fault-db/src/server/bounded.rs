@@ -1,5 +1,5 @@
-//! The stream under a connection: guarded as far as the address says, and no message of a server is longer than
-//! any of ours can be. What a server announces is otherwise waited for and kept, however much it is.
+//! The byte stream of a connection: TLS as the address demands, and a limit on the length of each message
+//! from the server. Without the limit the client would buffer as much as a server announces.
 
 use std::error::Error;
 use std::future::Future;
@@ -11,30 +11,30 @@ use postgres::tls::{ChannelBinding, MakeTlsConnect, TlsConnect, TlsStream};
 use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, ReadBuf};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
-/// Before somebody is let in there is little to say.
+/// Longest message before authentication is complete, bytes.
 const MOST_BEFORE: u32 = 64 << 10;
-/// A row may hold all samples of a trace.
+/// Longest message after it, bytes: a row may hold all samples of a trace.
 const MOST: u32 = 64 << 20;
 
-/// "Do you speak TLS?", as PostgreSQL is asked.
+/// PostgreSQL's SSLRequest message.
 const TLS_REQUEST: [u8; 8] = [0, 0, 0, 8, 0x04, 0xd2, 0x16, 0x2f];
-/// "Yes."
+/// The server's answer that it speaks TLS.
 const TLS_YES: u8 = b'S';
 
-/// What is said of a server that does not, where it has to.
+/// The error if the server has no TLS and the address demands it.
 pub(super) const NO_TLS: &str = "server does not support TLS";
 
 type Failed = Box<dyn Error + Sync + Send>;
 
-/// Makes streams. It asks for TLS by itself, so that one in the clear is bounded, too: to the client beneath it,
-/// each is one of TLS.
+/// Opens streams. It negotiates TLS itself, so that plain streams are bounded, too; the client takes every
+/// stream for one with TLS.
 pub(super) struct Bounded {
     pub tls: Option<MakeRustlsConnect>,
-    /// In the clear if the server has no TLS.
+    /// Whether an unencrypted connection is allowed if the server has no TLS.
     pub or_clear: bool,
 }
 
-/// Makes one.
+/// Opens one stream.
 pub(super) struct Connecting<S>
 where
     MakeRustlsConnect: MakeTlsConnect<S>,
@@ -97,7 +97,7 @@ where
 
 type Tls<S> = <MakeRustlsConnect as MakeTlsConnect<S>>::Stream;
 
-/// One way or the other.
+/// With or without TLS.
 enum Way<S>
 where
     MakeRustlsConnect: MakeTlsConnect<S>,
@@ -106,7 +106,7 @@ where
     Tls(Box<Tls<S>>),
 }
 
-/// A stream whose messages are looked at as they come.
+/// A stream that checks the length of incoming messages.
 pub(super) struct Watched<S>
 where
     MakeRustlsConnect: MakeTlsConnect<S>,
@@ -188,19 +188,19 @@ where
     }
 }
 
-/// How long each message says it is: a letter, four bytes of length (themselves included), the rest.
+/// Follows the messages of the stream: a type byte, four bytes of length (including themselves), the content.
 #[derive(Default)]
 struct Lengths {
     head: [u8; 5],
-    /// Bytes of the head that are there.
+    /// Bytes of the header read so far.
     known: usize,
-    /// Bytes of the message that are to come.
+    /// Bytes of the message still to come.
     rest: usize,
-    /// It has been told that it may ask.
+    /// Whether the server has reported ReadyForQuery.
     is_in: bool,
 }
 
-/// "Ask", once somebody is let in and after each answer.
+/// The type of ReadyForQuery, sent after authentication and after each result.
 const READY: u8 = b'Z';
 
 impl Lengths {
@@ -252,7 +252,7 @@ mod tests {
         bytes
     }
 
-    /// Each message is taken whole, byte by byte and in odd pieces.
+    /// Goal: every message passes, byte by byte and in uneven pieces.
     #[test]
     fn messages_are_bounded_wherever_they_are_cut() {
         let greeting = [message(b'R', 8), message(b'S', 30), message(READY, 5)].concat();

@@ -1,4 +1,4 @@
-//! Opening a server's history.
+//! Connects to a server.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
@@ -10,19 +10,19 @@ use postgres::{Client, Config, NoTls};
 use super::address::{Address, Guard};
 use super::bounded::Bounded;
 use super::password::{self, Password};
-use super::{schema, tls, trouble};
-use crate::base::{Base, Server};
+use super::{schema, server_error, tls};
+use crate::backend::{Backend, Server};
 use crate::error::StoreError;
 use crate::id::IdSource;
 use crate::store::Store;
 
 const DOING: &str = "connecting";
 
-/// Data that is on its way and not acknowledged for so long is lost.
+/// Time after which unacknowledged data counts as lost.
 const NETWORK_PATIENCE: Duration = Duration::from_secs(30);
 
-/// What a session agrees on: that a laptop whose cable was pulled lets go of the writers' lock soon, rather
-/// than in two hours; and that no question is compiled, which takes longer than to answer it.
+/// Session settings: a laptop whose cable was pulled releases the writers' lock soon rather than after two
+/// hours; and queries are not JIT-compiled, which takes longer than to run them.
 const MANNERS: &str = "
     SET statement_timeout = '300s';
     SET lock_timeout = '60s';
@@ -35,25 +35,25 @@ const MANNERS: &str = "
     SET jit = off";
 
 impl Store {
-    /// Connects to a server for reading, for a sync, and for writing what people say about faults and runs.
-    /// Its tables are made by [`Store::set_up_server`], and by nobody else.
+    /// Connects to a server for queries, for a sync, and for changes of faults and notes by users. Its tables
+    /// are created by [`Store::set_up_server`] only.
     pub fn connect(address: &Address, ids: IdSource) -> Result<Self, StoreError> {
-        let (base, path) = open(address)?;
-        schema::check(&base, &path)?;
-        Self::of(base, &path, Some(ids))
+        let (backend, path) = open(address)?;
+        schema::check(&backend, &path)?;
+        Self::of(backend, &path, Some(ids))
     }
 
     /// Connects to a server for reading only.
     pub fn connect_read_only(address: &Address) -> Result<Self, StoreError> {
-        let (base, path) = open(address)?;
-        schema::check(&base, &path)?;
-        let guarded = base.execute("SET default_transaction_read_only = on", &[]);
+        let (backend, path) = open(address)?;
+        schema::check(&backend, &path)?;
+        let guarded = backend.execute("SET default_transaction_read_only = on", &[]);
         guarded.map_err(|error| StoreError::from_sql(&path, DOING, error))?;
-        Self::of(base, &path, None)
+        Self::of(backend, &path, None)
     }
 }
 
-pub(super) fn open(address: &Address) -> Result<(Base, PathBuf), StoreError> {
+pub(super) fn open(address: &Address) -> Result<(Backend, PathBuf), StoreError> {
     let path = PathBuf::from(address.to_string());
     let environment = |name: &str| std::env::var_os(name);
     let user = address.user.clone().or_else(|| {
@@ -71,17 +71,17 @@ pub(super) fn open(address: &Address) -> Result<(Base, PathBuf), StoreError> {
     }
     let mut client = reach(config, address, &path, password)?;
     let agreed = client.batch_execute(MANNERS);
-    agreed.map_err(|error| trouble::sorted(&path, DOING, error))?;
+    agreed.map_err(|error| server_error::classify(&path, DOING, error))?;
     check_text(&mut client, &path)?;
-    Ok((Base::Server(Server::new(client)), path))
+    Ok((Backend::Server(Server::new(client)), path))
 }
 
-/// Text of any language has to come back as it went.
+/// Text of any language has to be stored unchanged.
 fn check_text(client: &mut Client, path: &Path) -> Result<(), StoreError> {
     let row = client.query_one("SHOW server_encoding", &[]);
     let encoding: String = row
         .and_then(|row| row.try_get(0))
-        .map_err(|error| trouble::sorted(path, DOING, error))?;
+        .map_err(|error| server_error::classify(path, DOING, error))?;
     if encoding == "UTF8" {
         return Ok(());
     }
@@ -108,7 +108,7 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
     if address.is_socket() {
         config.ssl_mode(SslMode::Disable).host_path(&address.host);
     } else {
-        // Our own stream asks for TLS, and whether there is any.
+        // Our own stream negotiates TLS, and whether there is any.
         config
             .ssl_mode(SslMode::Require)
             .ssl_negotiation(SslNegotiation::Direct)
@@ -117,8 +117,8 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
     config
 }
 
-/// Connects on a thread of its own, because a name that is being looked up and a server that takes a
-/// connection and then falls silent both keep it waiting longer than anybody wants to.
+/// Connects on a thread of its own, because resolving a name, and a server that accepts a connection and then
+/// falls silent, both block longer than the time limit.
 fn reach(
     config: Config,
     address: &Address,
@@ -143,12 +143,12 @@ fn reach(
     let connecting = std::thread::Builder::new()
         .name("connecting".into())
         .spawn(move || {
-            // Who may put a socket into that folder is trusted; no other stream is made of one.
+            // Whoever may put a socket into that folder is trusted; no other stream is made of one.
             let connected = match is_socket {
                 true => config.connect(NoTls),
                 false => config.connect(bounded),
             };
-            // Nobody waits any more if it took too long.
+            // Nobody receives it if it took too long.
             let _ = done.send(connected);
         });
     let away = |reason: String| StoreError::ServerAway {
@@ -161,7 +161,7 @@ fn reach(
     let connected = waiting
         .recv_timeout(patience)
         .map_err(|_| away("no answer in time".to_owned()))?;
-    connected.map_err(|error| match trouble::sorted(path, DOING, error) {
+    connected.map_err(|error| match server_error::classify(path, DOING, error) {
         StoreError::ServerRefuses { path, reason } => StoreError::ServerRefuses {
             path,
             reason: match &password.passed_over {
@@ -169,7 +169,7 @@ fn reach(
                 None => reason,
             },
         },
-        // Whatever else keeps a connection from being made, there is none.
+        // Any other error means that there is no connection.
         StoreError::Server { source, .. } => away(source.to_string()),
         other => other,
     })

@@ -1,15 +1,15 @@
-//! Where a password comes from: the address, `PGPASSWORD`, or a password file as libpq reads it.
+//! Finds the password: in the address, in `PGPASSWORD`, or in a password file in libpq's format.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::address::Address;
-use crate::given::read_given;
+use crate::regular_file::read_regular_file;
 
-/// A longer password file is none, bytes.
+/// Longest password file that is read, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-/// A password, and a file that was not looked into, in words.
+/// A password, or why a password file was not used.
 #[derive(Default, PartialEq, Eq)]
 pub(super) struct Password {
     pub secret: Option<String>,
@@ -25,10 +25,10 @@ impl std::fmt::Debug for Password {
     }
 }
 
-/// What the environment says.
+/// Reads environment variables.
 pub(super) type Environment<'a> = &'a dyn Fn(&str) -> Option<OsString>;
 
-/// The password for a user of a database at an address.
+/// Finds the password of a user for a database at an address.
 pub(super) fn find(
     address: &Address,
     user: &str,
@@ -77,7 +77,7 @@ fn file(address: &Address, environment: Environment<'_>) -> Option<PathBuf> {
         .filter(|file| address.password_file.is_some() || file.exists())
 }
 
-/// The file's text; like libpq, none of a file that others can read.
+/// The text of the file; as in libpq, a file that others can read is not used.
 fn read(file: &Path) -> Result<String, String> {
     let shown = file.display();
     let about = std::fs::metadata(file)
@@ -96,11 +96,11 @@ fn read(file: &Path) -> Result<String, String> {
     }
     let cannot =
         |why: &dyn std::fmt::Display| format!("the password file {shown} cannot be read ({why})");
-    let bytes = read_given(file, LONGEST_FILE).map_err(|error| cannot(&error))?;
+    let bytes = read_regular_file(file, LONGEST_FILE).map_err(|error| cannot(&error))?;
     String::from_utf8(bytes).map_err(|error| cannot(&error))
 }
 
-/// The password of a line `host:port:database:user:password`, if the line is for this one.
+/// The password of a line `host:port:database:user:password`, if the line matches.
 fn matching(line: &str, asked: [&str; 4]) -> Option<String> {
     if line.starts_with('#') {
         return None;
@@ -117,7 +117,7 @@ fn matching(line: &str, asked: [&str; 4]) -> Option<String> {
     (!password.is_empty()).then_some(password)
 }
 
-/// A field up to its `:`, and what comes after; a backslash takes the next letter as it is.
+/// A field up to its `:`, and the rest; a backslash escapes the next character.
 fn field(text: &str) -> (String, &str) {
     let mut field = String::new();
     let mut letters = text.char_indices();

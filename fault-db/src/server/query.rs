@@ -1,20 +1,21 @@
-//! A question in SQL to a server, in a transaction that can only read.
+//! A user's SQL query on a server, in a read-only transaction.
 
 use std::path::Path;
 
 use postgres::error::SqlState;
 
-use super::trouble;
-use crate::base::{Field, Row, Server, SqlError};
+use super::server_error;
+use crate::backend::{Field, Row, Server, SqlError};
 use crate::error::StoreError;
 use crate::query::{MOST_BYTES, QueryBounds, QueryLimit, QueryResult, SqlValue, exceeds};
 
 const DOING: &str = "answering a query";
 
-/// Most rows that are fetched together: first one, then ever more, because they come whole however long they are.
+/// Most rows fetched at once: first one, then twice as many each time, because a fetch arrives whole however
+/// long its rows are.
 const ROWS_AT_ONCE: i32 = 200;
 
-/// Answers one question; of a long answer the first rows.
+/// Runs one query; of a long result the first rows.
 pub(crate) fn answer(
     server: &Server,
     path: &Path,
@@ -41,7 +42,7 @@ pub(crate) fn answer(
         let (mut rows, mut bytes, mut truncated) = (Vec::new(), 0, false);
         let mut at_once = 1;
         loop {
-            // The server's limit is for each part of the answer.
+            // The server's own time limit applies to each fetch.
             if !goes_on() {
                 return Ok(Answered::TooMuch(QueryLimit::Stopped));
             }
@@ -85,13 +86,13 @@ pub(crate) fn answer(
     })
 }
 
-/// What came of a question.
+/// The outcome of a query.
 enum Answered {
-    /// Names of columns, rows, and whether there are more.
+    /// Column names, rows, and whether there are more rows.
     Rows(Vec<String>, Vec<Result<Vec<SqlValue>, SqlError>>, bool),
-    /// What has no columns does something instead of answering.
+    /// A statement without columns is no query.
     Otherwise,
-    /// More than it may take.
+    /// A limit was exceeded.
     TooMuch(QueryLimit),
 }
 
@@ -107,7 +108,7 @@ fn refused(reason: &str) -> StoreError {
     }
 }
 
-/// Trouble of the server stays what it is; all else is the question's own.
+/// Errors of the server keep their kind; all others are attributed to the query.
 fn sorted(path: &Path, error: postgres::Error) -> StoreError {
     if error.code() == Some(&SqlState::READ_ONLY_SQL_TRANSACTION) {
         return refused("it would do more than read");
@@ -115,7 +116,7 @@ fn sorted(path: &Path, error: postgres::Error) -> StoreError {
     if error.code() == Some(&SqlState::QUERY_CANCELED) {
         return exceeds(QueryLimit::Stopped);
     }
-    match trouble::sorted(path, DOING, error) {
+    match server_error::classify(path, DOING, error) {
         StoreError::Server { source, .. } => match source.as_db_error() {
             Some(said) if said.message().contains("multiple commands") => {
                 refused("there is a second statement")

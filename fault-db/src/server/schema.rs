@@ -1,12 +1,12 @@
-//! The server's tables: whether they are ours, how old they are, and how they are made.
+//! The server's schema: recognising it, its version, and its migrations.
 
 use std::path::Path;
 
-use crate::base::{Base, Server, SqlResult, values};
+use crate::backend::{Backend, Server, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 
-/// The schema's versions, one text each; `meta` counts them.
+/// The schema's migrations; `meta` holds the version.
 const STEPS: &[&str] = &[
     concat!(include_str!("schema.sql"), include_str!("views.sql")),
     include_str!("0002.sql"),
@@ -16,22 +16,22 @@ const STEPS: &[&str] = &[
 /// The schema this crate reads and writes on a server.
 pub const SERVER_SCHEMA_VERSION: i32 = STEPS.len() as i32;
 
-/// What `meta` says of a database of ours.
+/// The value in `meta` that marks a database as ours.
 const APPLICATION: &str = "ptu fault history";
 
 const DOING: &str = "looking at the server's tables";
 
-/// What was found in a database.
+/// The state of a database.
 enum Found {
     Nothing,
     Ours { schema: i32 },
     Others,
 }
 
-/// Refuses a server this crate cannot read.
-pub(super) fn check(base: &Base, path: &Path) -> Result<(), StoreError> {
+/// Refuses a database whose schema this crate cannot read.
+pub(super) fn check(backend: &Backend, path: &Path) -> Result<(), StoreError> {
     let path = path.to_path_buf();
-    match look(base).map_err(|error| StoreError::from_sql(&path, DOING, error))? {
+    match look(backend).map_err(|error| StoreError::from_sql(&path, DOING, error))? {
         Found::Nothing => Err(StoreError::ServerEmpty { path }),
         Found::Others => Err(StoreError::ServerForeign { path }),
         Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
@@ -52,18 +52,18 @@ pub(super) fn check(base: &Base, path: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// Makes the tables of a new database, or brings those of an earlier version up to date; runs in the caller's
-/// transaction, which no other program's is beside of.
-pub(super) fn bring_up_to_date(base: &Base, server: &Server, new_id: Id) -> SqlResult<()> {
+/// Creates the tables of a new database, or migrates those of an earlier version; runs in the caller's
+/// transaction, which excludes all other writers.
+pub(super) fn bring_up_to_date(backend: &Backend, server: &Server, new_id: Id) -> SqlResult<()> {
     // Another program may have been first.
-    match look(base)? {
+    match look(backend)? {
         Found::Nothing => steps(server, 0)?,
         Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
             steps(server, usize::try_from(schema).unwrap_or_default())?;
         }
         Found::Ours { .. } | Found::Others => return Ok(()),
     }
-    base.execute(
+    backend.execute(
         "INSERT INTO meta(key, value) VALUES ('application', ?1), ('server_id', ?2)
          ON CONFLICT DO NOTHING",
         &values![APPLICATION, new_id.to_string()],
@@ -81,9 +81,9 @@ fn steps(server: &Server, from: usize) -> SqlResult<()> {
     ))
 }
 
-/// The server's own name, given to it once.
-pub(crate) fn server_id(base: &Base) -> SqlResult<Option<Id>> {
-    let text = base.first(
+/// The server's id, which is given once.
+pub(crate) fn server_id(backend: &Backend) -> SqlResult<Option<Id>> {
+    let text = backend.first(
         "SELECT value FROM meta WHERE key = 'server_id'",
         &[],
         |row| row.get::<String>(0),
@@ -91,10 +91,10 @@ pub(crate) fn server_id(base: &Base) -> SqlResult<Option<Id>> {
     Ok(text.and_then(|text| text.parse().ok()))
 }
 
-fn look(base: &Base) -> SqlResult<Found> {
-    // What an extension brought along is nobody's history.
+fn look(backend: &Backend) -> SqlResult<Found> {
+    // Tables of extensions do not count.
     let tables: i64 = one(
-        base,
+        backend,
         "SELECT count(*) FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace
          WHERE n.nspname = current_schema() AND c.relkind IN ('r', 'p', 'v', 'm', 'f')
             AND NOT EXISTS (SELECT 1 FROM pg_depend d WHERE d.classid = 'pg_class'::regclass
@@ -104,7 +104,7 @@ fn look(base: &Base) -> SqlResult<Found> {
         return Ok(Found::Nothing);
     }
     let has_meta: i64 = one(
-        base,
+        backend,
         "SELECT count(*) FROM information_schema.columns
          WHERE table_schema = current_schema() AND table_name = 'meta'
             AND column_name IN ('key', 'value') AND data_type = 'text'",
@@ -114,7 +114,7 @@ fn look(base: &Base) -> SqlResult<Found> {
     }
     let said = |key: &str| {
         let value = "SELECT value FROM meta WHERE key = ?1";
-        base.first(value, &values![key], |row| row.get::<String>(0))
+        backend.first(value, &values![key], |row| row.get::<String>(0))
     };
     let schema = said("schema")?.and_then(|text| text.parse().ok());
     Ok(match (said("application")?.as_deref(), schema) {
@@ -123,7 +123,7 @@ fn look(base: &Base) -> SqlResult<Found> {
     })
 }
 
-fn one(base: &Base, sql: &str) -> SqlResult<i64> {
-    let found = base.first(sql, &[], |row| row.get(0))?;
+fn one(backend: &Backend, sql: &str) -> SqlResult<i64> {
+    let found = backend.first(sql, &[], |row| row.get(0))?;
     Ok(found.unwrap_or_default())
 }

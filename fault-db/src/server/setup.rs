@@ -1,19 +1,19 @@
-//! A server made ready by who looks after it: its tables, and who may do what with them.
+//! Sets a server up for its administrator: creates the tables and grants the rights.
 
 use serde::Serialize;
 
 use super::address::Address;
 use super::connect::open;
 use super::schema::{self, SERVER_SCHEMA_VERSION};
-use crate::base::{Base, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::error::StoreError;
+use crate::event_graph::RECOMPUTE_FAULT;
 use crate::id::IdSource;
-use crate::settle::SETTLE;
 use crate::store::Store;
 
 const DOING: &str = "setting up the server";
 
-/// What belongs to whom, and who may do what.
+/// Ownership and rights.
 const GRANTS: &str = include_str!("grants.sql");
 
 /// A server that is ready for laptops.
@@ -23,37 +23,37 @@ pub struct ServerSetup {
     pub server: String,
     /// The database.
     pub database: String,
-    /// The account that owns the tables: it alone may change or remove them.
+    /// The account that owns the tables; it alone may change or drop them.
     pub owner: String,
-    /// The account of the laptops: it adds rows and reads.
+    /// The laptops' account; it may insert and select.
     pub laptops: String,
-    /// Whether that account was made just now; it has no password yet.
+    /// Whether that account was created now; it has no password yet.
     pub made_account: bool,
-    /// The tables' version before; none if there were none.
+    /// The schema version before; `None` if there were no tables.
     pub schema_before: Option<i32>,
-    /// Their version now.
+    /// The schema version now.
     pub schema: i32,
 }
 
-/// What a step of it comes to: the reason if it is refused.
+/// A step's result, or the reason why it was refused.
 type Step<T> = SqlResult<Result<T, String>>;
 
 impl Store {
-    /// Makes the tables of a server, or brings those of an earlier version up to date, and lets the account of
-    /// the laptops add rows and read, and nothing else. All of it or nothing; done again it changes nothing.
+    /// Creates the tables of a server, or migrates those of an earlier version, and lets the laptops' account
+    /// insert and select, and nothing else. One transaction, idempotent.
     ///
     /// # Errors
-    /// The account that asks may not do so, or that of the laptops is the same or may do more.
+    /// The connecting account lacks the right, or the laptops' account is the same or has more rights.
     pub fn set_up_server(
         address: &Address,
         mut ids: IdSource,
         laptops: &str,
     ) -> Result<ServerSetup, StoreError> {
-        let (base, path) = open(address)?;
-        let Base::Server(server) = &base else {
+        let (backend, path) = open(address)?;
+        let Backend::Server(server) = &backend else {
             return Err(StoreError::NotAServer { path });
         };
-        let schema_before = match schema::check(&base, &path) {
+        let schema_before = match schema::check(&backend, &path) {
             Ok(()) => Some(SERVER_SCHEMA_VERSION),
             Err(StoreError::ServerEmpty { .. }) => None,
             Err(StoreError::ServerOlderSchema { found, .. }) => Some(found),
@@ -70,7 +70,7 @@ impl Store {
             other => other,
         };
         server.begin().map_err(failed)?;
-        let done = match set_up(&base, server, &mut ids, laptops) {
+        let done = match set_up(&backend, server, &mut ids, laptops) {
             Ok(Ok(done)) => server.batch("COMMIT").map(|()| done).map_err(failed),
             Ok(Err(reason)) => Err(refused(reason)),
             Err(error) => Err(failed(error)),
@@ -101,25 +101,25 @@ struct Done {
     made_account: bool,
 }
 
-/// All of it, in the caller's transaction.
-fn set_up(base: &Base, server: &Server, ids: &mut IdSource, laptops: &str) -> Step<Done> {
+/// All steps, in the caller's transaction.
+fn set_up(backend: &Backend, server: &Server, ids: &mut IdSource, laptops: &str) -> Step<Done> {
     let who = "SELECT CAST(current_user AS text), CAST(current_database() AS text)";
-    let found = base.first(who, &[], |row| Ok((row.get(0)?, row.get(1)?)))?;
+    let found = backend.first(who, &[], |row| Ok((row.get(0)?, row.get(1)?)))?;
     let (owner, database): (String, String) = found.unwrap_or_default();
-    let made_account = match account(base, server, laptops, &owner)? {
+    let made_account = match account(backend, server, laptops, &owner)? {
         Ok(made) => made,
         Err(reason) => return Ok(Err(reason)),
     };
-    // What is made now finds its tables here, whatever path who calls it has set.
+    // Functions find these tables whatever search path their caller has set.
     server.batch(
         "SELECT set_config('search_path', quote_ident(current_schema()) || ', pg_temp', true)",
     )?;
-    schema::bring_up_to_date(base, server, ids.mint())?;
+    schema::bring_up_to_date(backend, server, ids.mint())?;
     server.batch(&functions())?;
     let named = "SELECT set_config('ptu.laptops', ?1, true)";
-    base.execute(named, &values![laptops])?;
+    backend.execute(named, &values![laptops])?;
     server.batch(GRANTS)?;
-    if let Some(reason) = too_much(base, laptops)? {
+    if let Some(reason) = too_much(backend, laptops)? {
         return Ok(Err(reason));
     }
     Ok(Ok(Done {
@@ -129,13 +129,13 @@ fn set_up(base: &Base, server: &Server, ids: &mut IdSource, laptops: &str) -> St
     }))
 }
 
-/// What keeps what follows from rows.
+/// The functions that maintain derived columns.
 fn functions() -> String {
-    include_str!("functions.sql").replace("{settle}", SETTLE)
+    include_str!("functions.sql").replace("{recompute_fault}", RECOMPUTE_FAULT)
 }
 
-/// Sees to the laptops' account; whether it had to be made.
-fn account(base: &Base, server: &Server, laptops: &str, owner: &str) -> Step<bool> {
+/// Creates the laptops' account if need be; whether it did.
+fn account(backend: &Backend, server: &Server, laptops: &str, owner: &str) -> Step<bool> {
     if laptops == owner {
         return Ok(Err(format!(
             "{owner} makes the tables and may remove them; laptops need an account of their own, named with \
@@ -143,7 +143,7 @@ fn account(base: &Base, server: &Server, laptops: &str, owner: &str) -> Step<boo
         )));
     }
     let sql = "SELECT rolsuper OR pg_has_role(rolname, current_user, 'MEMBER') FROM pg_roles WHERE rolname = ?1";
-    let may_more = base.first(sql, &values![laptops], |row| row.get::<i64>(0))?;
+    let may_more = backend.first(sql, &values![laptops], |row| row.get::<i64>(0))?;
     match may_more {
         Some(0) => return Ok(Ok(false)),
         Some(_) => {
@@ -154,13 +154,13 @@ fn account(base: &Base, server: &Server, laptops: &str, owner: &str) -> Step<boo
         None => {}
     }
     let sql = "SELECT rolsuper OR rolcreaterole FROM pg_roles WHERE rolname = current_user";
-    if base.first(sql, &[], |row| row.get::<i64>(0))? != Some(1) {
+    if backend.first(sql, &[], |row| row.get::<i64>(0))? != Some(1) {
         return Ok(Err(format!(
             "there is no account {laptops}, and {owner} may not make one; make it on the server with \
              `createuser --pwprompt {laptops}`"
         )));
     }
-    base.execute(
+    backend.execute(
         "SELECT set_config('ptu.laptops', ?1, true)",
         &values![laptops],
     )?;
@@ -174,9 +174,9 @@ fn account(base: &Base, server: &Server, laptops: &str, owner: &str) -> Step<boo
     Ok(Ok(true))
 }
 
-/// What the laptops' account may do beyond adding rows, in words: who gave it that has to take it back.
-fn too_much(base: &Base, laptops: &str) -> SqlResult<Option<String>> {
-    let found = base.first(
+/// The rights of the laptops' account beyond inserting and selecting; the grantor has to revoke them.
+fn too_much(backend: &Backend, laptops: &str) -> SqlResult<Option<String>> {
+    let found = backend.first(
         "SELECT has_schema_privilege(?1, current_schema(), 'CREATE'),
             has_database_privilege(?1, current_database(), 'CREATE, TEMPORARY')",
         &values![laptops],

@@ -1,4 +1,4 @@
-//! TLS to a server: whom to trust, and what is said when the other side is not to be trusted.
+//! TLS to a server: trusted certificates, and the explanation when a certificate is not trusted.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use rustls::{
 use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::address::{Address, Guard};
-use crate::given::read_given;
+use crate::regular_file::read_regular_file;
 
-/// Certificates of all issuers of the world take less, bytes.
+/// Longest certificate file, bytes; all public issuers together take less.
 const LONGEST_FILE: u64 = 16 << 20;
 
-/// How to make connections to this address; the error says which certificates cannot be had.
+/// A connector for this address; the error says which certificates cannot be read.
 pub(super) fn connector(address: &Address) -> Result<MakeRustlsConnect, String> {
     let provider = Arc::new(ring::default_provider());
     let builder = ClientConfig::builder_with_provider(Arc::clone(&provider))
@@ -51,7 +51,7 @@ fn trusted(file: Option<&Path>) -> Result<RootCertStore, String> {
     };
     let shown = file.display();
     let bad = |error: &dyn std::fmt::Display| format!("sslrootcert {shown}: {error}");
-    let text = read_given(file, LONGEST_FILE).map_err(|error| bad(&error))?;
+    let text = read_regular_file(file, LONGEST_FILE).map_err(|error| bad(&error))?;
     for certificate in CertificateDer::pem_slice_iter(&text) {
         let certificate = certificate.map_err(|error| bad(&error))?;
         roots.add(certificate).map_err(|error| bad(&error))?;
@@ -62,7 +62,7 @@ fn trusted(file: Option<&Path>) -> Result<RootCertStore, String> {
     Ok(roots)
 }
 
-/// Why the other side was not trusted, and what to do about it.
+/// Why a certificate was not trusted, and what to do about it.
 pub(super) fn distrust(error: &rustls::Error) -> String {
     use rustls::Error::InvalidCertificate;
     match error {
@@ -83,7 +83,7 @@ pub(super) fn distrust(error: &rustls::Error) -> String {
     }
 }
 
-/// Takes any certificate, but only from who holds its key.
+/// Accepts any certificate, but only from the holder of its key.
 #[derive(Debug)]
 struct Anybody(Arc<CryptoProvider>);
 

@@ -1,32 +1,32 @@
-//! One batch: so many entries of the outbox with all that belongs to them, gathered from the file and
-//! added to the server in one transaction.
+//! One batch of outbox entries with all rows that belong to them, read from the file and inserted into the
+//! server in one transaction.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::ledger::Laptop;
+use super::cursors::Laptop;
 use super::outcome::{Different, SyncOutcome};
 use super::rows::Rows;
 use super::tables;
-use crate::base::{Base, Field, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Field, Server, SqlError, SqlResult, values};
 use crate::domain::{Refusals, shown_id};
+use crate::event_graph::{merge_duplicates_on_server, recompute_faults};
 use crate::id::Id;
-use crate::seen_again::{Mark, open_again_of};
-use crate::server::said;
-use crate::settle::{join_all, settle_all};
+use crate::recurrence::{HighWaterMark, reopen_recurred_on_server};
+use crate::server::derived_columns;
 
 /// Entries of a batch at most.
 pub(super) const MOST_ENTRIES: i64 = 500;
 
-/// A batch is closed when it is as large as this, in bytes on the wire.
+/// A batch is closed at this size, bytes on the wire.
 pub(super) const ENOUGH_BYTES: usize = 4 << 20;
 
-/// An entry of the outbox, and of a run its id and the digests it is sealed with.
+/// An outbox entry; for a run its id and the digests of its seals.
 pub(super) struct Entry {
     pub seq: i64,
     pub what: What,
     pub row: i64,
     run: Option<(Id, BTreeSet<Vec<u8>>)>,
-    /// It is of a run whose id is none.
+    /// The run's id is invalid.
     is_unnamed: bool,
 }
 
@@ -37,8 +37,8 @@ pub(super) enum What {
     Note,
 }
 
-/// The next entries of the outbox, but for traces.
-pub(super) fn entries(file: &Base, after: i64) -> SqlResult<Vec<Entry>> {
+/// The next outbox entries, except traces.
+pub(super) fn entries(file: &Backend, after: i64) -> SqlResult<Vec<Entry>> {
     let mut entries = file.select(
         "SELECT o.seq, o.what, o.row, r.id FROM outbox o
             LEFT JOIN run r ON o.what = 'run' AND r.seq = o.row
@@ -69,8 +69,8 @@ pub(super) fn entries(file: &Base, after: i64) -> SqlResult<Vec<Entry>> {
     Ok(entries)
 }
 
-/// The last entry of the outbox.
-pub(super) fn last(file: &Base) -> SqlResult<i64> {
+/// The last outbox entry.
+pub(super) fn last(file: &Backend) -> SqlResult<i64> {
     let last = "SELECT coalesce(max(seq), 0) FROM outbox";
     Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())
 }
@@ -78,24 +78,24 @@ pub(super) fn last(file: &Base) -> SqlResult<i64> {
 /// What the server has of a run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Known {
-    /// All of it, the same.
+    /// The same run, complete.
     Whole,
-    /// Some of it, or there is no telling.
+    /// Part of it, or unknown.
     Perhaps,
-    /// Something else under its id.
+    /// A different run with the same id.
     Different,
 }
 
 /// Rows of one batch.
 pub(super) struct Batch<'a> {
-    file: &'a Base,
+    file: &'a Backend,
     runs: Rows,
     of_runs: [Rows; 5],
     events: Rows,
     notes: Rows,
     unit_numbers: BTreeSet<i64>,
     fault_numbers: BTreeSet<i64>,
-    /// Up to which entry it goes.
+    /// The last entry included.
     pub through: i64,
     pub entries: u64,
     already_there: u64,
@@ -104,8 +104,8 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Gathers what these entries stand for, as far as one batch goes.
-    pub fn gather(file: &'a Base, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
+    /// Reads the rows of these entries, up to the size of one batch.
+    pub fn gather(file: &'a Backend, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
         let known = known_runs(server, entries)?;
         let mut batch = Self {
             file,
@@ -128,7 +128,7 @@ impl<'a> Batch<'a> {
             refused: Refusals::default(),
         };
         for entry in entries {
-            batch.take_or_refuse(entry, &known)?;
+            batch.gather_or_reject(entry, &known)?;
             batch.through = entry.seq;
             batch.entries += 1;
             if batch.bytes() >= ENOUGH_BYTES {
@@ -138,8 +138,8 @@ impl<'a> Batch<'a> {
         Ok(batch)
     }
 
-    /// Takes an entry with all that belongs to it, or, if a row of that holds what none holds, nothing of it.
-    fn take_or_refuse(&mut self, entry: &Entry, known: &BTreeMap<Id, Known>) -> SqlResult<()> {
+    /// Adds an entry with all rows that belong to it, or, if one is outside its domain, none of them.
+    fn gather_or_reject(&mut self, entry: &Entry, known: &BTreeMap<Id, Known>) -> SqlResult<()> {
         let marks: Vec<_> = self.rows().map(|rows| rows.mark()).collect();
         let identities = (self.unit_numbers.clone(), self.fault_numbers.clone());
         let taken = self
@@ -155,7 +155,7 @@ impl<'a> Batch<'a> {
         self.refuse(entry.what, entry.row, reason)
     }
 
-    /// Names a row of the file that is not sent.
+    /// Records a refused row of the file.
     fn refuse(&mut self, what: What, row: i64, reason: String) -> SqlResult<()> {
         let (word, table) = match what {
             What::Run => ("run", "run"),
@@ -169,13 +169,13 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// All rows that are gathered entry by entry.
+    /// The row sets that are filled entry by entry.
     fn rows(&mut self) -> impl Iterator<Item = &mut Rows> {
         let rest = [&mut self.runs, &mut self.events, &mut self.notes];
         rest.into_iter().chain(&mut self.of_runs)
     }
 
-    /// Looks at the units and faults that an entry brought.
+    /// Checks the units and faults that an entry refers to.
     fn check_identities(&self, (units, faults): &(BTreeSet<i64>, BTreeSet<i64>)) -> SqlResult<()> {
         for unit in self.unit_numbers.difference(units) {
             Rows::of(&tables::UNITS).read(self.file, *unit)?;
@@ -233,7 +233,7 @@ impl<'a> Batch<'a> {
         self.unit_numbers.extend(units);
         self.fault_numbers.extend(faults);
         notes.into_iter().try_for_each(|note| {
-            // A note is no part of what is sealed of a run.
+            // Notes are not covered by the run's seal, so one can be refused alone.
             let mark = self.notes.mark();
             match self.note(note) {
                 Err(SqlError::Value { reason, .. }) => {
@@ -250,9 +250,9 @@ impl<'a> Batch<'a> {
         self.file
             .each(tables::EVENTS.read, &values![event], |row| {
                 let (kind, body) = (row.get(2)?, row.get(5)?);
-                let part = said::part(kind, body);
-                let words = said::event_words(kind, body);
-                events.take(row, &[made(&part), made(&words)])
+                let part = derived_columns::part(kind, body);
+                let words = derived_columns::event_words(kind, body);
+                events.take(row, &[derived_field(&part), derived_field(&words)])
             })?;
         let of = "SELECT fault FROM fault_event WHERE seq = ?1";
         let fault = self
@@ -265,7 +265,7 @@ impl<'a> Batch<'a> {
     fn note(&mut self, note: i64) -> SqlResult<()> {
         let notes = &mut self.notes;
         self.file.each(tables::NOTES.read, &values![note], |row| {
-            let words = said::note_words(row.get(4)?);
+            let words = derived_columns::note_words(row.get(4)?);
             notes.take(row, &[Field::Text(&words)])
         })
     }
@@ -276,10 +276,15 @@ impl<'a> Batch<'a> {
         of_runs + rest.iter().map(|rows| rows.bytes).sum::<usize>()
     }
 
-    /// Adds all of it to the server, parents before children; runs in the caller's transaction.
-    pub fn send(mut self, base: &Base, server: &Server, known: &Laptop) -> SqlResult<SyncOutcome> {
+    /// Inserts all rows on the server, parents before children; runs in the caller's transaction.
+    pub fn send(
+        mut self,
+        backend: &Backend,
+        server: &Server,
+        known: &Laptop,
+    ) -> SqlResult<SyncOutcome> {
         let laptop = known.seq;
-        let mark = Mark::of(base)?;
+        let mark = HighWaterMark::of(backend)?;
         let (units, faults, other_ids) = self.identities()?;
         units.send(server, laptop)?;
         let runs = self.runs.send(server, laptop)?;
@@ -293,19 +298,18 @@ impl<'a> Batch<'a> {
         }
         let events = self.events.send(server, laptop)?;
         let notes = self.notes.send(server, laptop)?;
-        let settled = spoken_of(&faults, server, laptop)?;
-        settle_all(server, &settled)?;
-        join_all(server, &settled)?;
-        // What opens a fault again may make it one with another, where more was seen, or somebody was done
-        // with it, too.
+        let settled = server_faults(&faults, server, laptop)?;
+        recompute_faults(server, &settled)?;
+        merge_duplicates_on_server(server, &settled)?;
+        // A reopened fault may now be merged with another one, which brings more occurrences or resolutions.
         loop {
-            let spoken_of = spoken_of(&faults, server, laptop)?;
-            let again = open_again_of(base, server, &spoken_of, mark)?;
+            let server_faults = server_faults(&faults, server, laptop)?;
+            let again = reopen_recurred_on_server(backend, server, &server_faults, mark)?;
             if again.is_empty() {
                 break;
             }
-            settle_all(server, &again)?;
-            join_all(server, &again)?;
+            recompute_faults(server, &again)?;
+            merge_duplicates_on_server(server, &again)?;
         }
         let there = |rows: &Rows, new: u64| rows.count as u64 - new.min(rows.count as u64);
         Ok(SyncOutcome {
@@ -323,7 +327,7 @@ impl<'a> Batch<'a> {
         })
     }
 
-    /// The units and faults that the rows speak of.
+    /// The units and faults that the rows refer to.
     fn identities(&mut self) -> SqlResult<(Rows, Rows, Rows)> {
         let mut faults = Rows::of(&tables::FAULTS);
         let mut other_ids = Rows::of(&tables::OTHER_IDS);
@@ -344,12 +348,12 @@ impl<'a> Batch<'a> {
     }
 }
 
-fn made(text: &Option<String>) -> Field<'_> {
+fn derived_field(text: &Option<String>) -> Field<'_> {
     text.as_deref().map_or(Field::Null, Field::Text)
 }
 
-/// The server's numbers of the faults sent, as they are now: two may have become one.
-fn spoken_of(faults: &Rows, server: &Server, laptop: i64) -> SqlResult<Vec<i64>> {
+/// The server's current row numbers of the faults sent, as two may have been merged.
+fn server_faults(faults: &Rows, server: &Server, laptop: i64) -> SqlResult<Vec<i64>> {
     let found = faults.ask(server, laptop, SERVER_FAULTS)?;
     let numbers: Result<_, _> = found.iter().map(|row| row.try_get(0)).collect();
     Ok(numbers?)
@@ -358,7 +362,7 @@ fn spoken_of(faults: &Rows, server: &Server, laptop: i64) -> SqlResult<Vec<i64>>
 const SERVER_FAULTS: &str = "SELECT DISTINCT k.fault FROM {rows}
     JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id ORDER BY k.fault";
 
-/// What the server has of the runs among the entries. A run that is sealed came as a whole.
+/// What the server has of the entries' runs. A sealed run was sent complete.
 fn known_runs(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Id, Known>> {
     let ours: BTreeMap<Id, &BTreeSet<Vec<u8>>> = (entries.iter())
         .filter_map(|entry| entry.run.as_ref())

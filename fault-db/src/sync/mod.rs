@@ -1,39 +1,40 @@
-//! A file and a server: what the file recorded goes there, and what others said about its faults comes
-//! back. The file has everything at all times; the server is told when it can be reached.
+//! Replication between a file and a server: sends what the file recorded, and receives the events that
+//! other laptops and users added to its faults. The file is complete at all times and works without a
+//! server.
 //!
-//! Every entry of the file's outbox is sent once it is there, in batches of one transaction each, and
-//! rows on the server are only added. So a sync that breaks off anywhere is taken up by the next, and
-//! one that has nothing new changes nothing.
+//! Each entry of the file's outbox is sent once, in batches of one transaction each, and rows on the server
+//! are only inserted. So an interrupted sync is continued by the next one, and a sync without new entries
+//! changes nothing.
 
-mod adopt;
 mod batch;
-mod heads;
-mod ledger;
+mod cursors;
+mod outbox;
 mod outcome;
 mod pull;
 mod rows;
+mod seal_chains;
 mod tables;
 mod traces;
 
-use crate::base::{Base, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::server::schema::server_id;
 use crate::store::Store;
-pub(crate) use heads::refusal;
-use heads::{Chain, HeadsError};
-use ledger::{Cursors, Laptop};
+use cursors::{Cursors, Laptop};
 pub use outcome::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
+pub(crate) use seal_chains::chain_error;
+use seal_chains::{Chain, ChainError};
 
 const SENDING: &str = "sending";
 const RECEIVING: &str = "receiving";
 
 impl Store {
-    /// Brings this file and a server together: sends what the server has not, and gets what was said
-    /// about this file's faults elsewhere.
+    /// Replicates in both directions: sends what the server does not have, and receives the events that
+    /// others added to this file's faults.
     ///
     /// # Errors
-    /// The server is away, or the file cannot be written. What was sent until then stays sent.
+    /// The server is away, or the file cannot be written. What was sent stays sent.
     pub fn sync(
         &self,
         server: &Store,
@@ -42,43 +43,43 @@ impl Store {
         const DOING: &str = "beginning a sync";
         let mut file_id = self.file_id()?;
         let wire = server.server()?;
-        let id = server_id(server.base()).map_err(|error| server.failed(DOING, error))?;
+        let id = server_id(server.backend()).map_err(|error| server.failed(DOING, error))?;
         let id = id.ok_or_else(|| StoreError::ServerForeign {
             path: server.path().to_path_buf(),
         })?;
-        let remembered = self.change(DOING, |file| {
-            let adopt = || {
-                adopt::interrupted_runs(file, options.is_alive)?;
-                adopt::earlier_rows(file)?;
-                ledger::remembered(file, id)
+        let known = self.change(DOING, |file| {
+            let prepare = || {
+                outbox::enqueue_interrupted_runs(file, options.is_alive)?;
+                outbox::enqueue_rows_before_outbox(file)?;
+                cursors::load(file, id)
             };
-            adopt().map_err(|error| self.failed(DOING, error))
+            prepare().map_err(|error| self.failed(DOING, error))
         })?;
         if options.as_copy {
             let (minted, at_us) = (self.mint()?, (options.now_us)());
             let parted = self.change(DOING, |file| {
-                heads::part(file, server.base(), file_id, minted, at_us)
+                seal_chains::rename_copy(file, server.backend(), file_id, minted, at_us)
                     .map_err(|error| self.either(server, DOING, error))
             })?;
             file_id = parted.unwrap_or(file_id);
         }
-        let chains = heads::look(self.base(), server.base(), file_id, self.path());
+        let chains = seal_chains::look(self.backend(), server.backend(), file_id, self.path());
         let chains = chains.map_err(|error| match error {
-            HeadsError::Sql(error) => self.either(server, DOING, error),
-            HeadsError::Refused(error) => error,
+            ChainError::Sql(error) => self.either(server, DOING, error),
+            ChainError::Refused(error) => error,
         })?;
-        let laptop = server.change(DOING, |base| {
-            let known = ledger::introduce(base, file_id, options);
-            known.map_err(|error| server.failed(DOING, error))
+        let laptop = server.change(DOING, |backend| {
+            let met = cursors::register_laptop(backend, file_id, options);
+            met.map_err(|error| server.failed(DOING, error))
         })?;
         let mut sync = Sync {
             file: self,
             server,
             wire,
             id,
-            cursors: remembered.common(laptop.cursors),
-            // The file is behind what it once got: it came back from a backup.
-            own_too: remembered.received < laptop.cursors.received,
+            cursors: known.minimum(laptop.cursors),
+            // The file has received less than the server knows of: it was restored from a backup.
+            own_too: known.received < laptop.cursors.received,
             outcome: SyncOutcome {
                 clock_offset_us: laptop.clock_offset_us,
                 different: chains.different,
@@ -97,7 +98,7 @@ struct Sync<'a> {
     file: &'a Store,
     server: &'a Store,
     wire: &'a Server,
-    /// The server's own name.
+    /// The server's id.
     id: Id,
     laptop: Laptop,
     cursors: Cursors,
@@ -123,35 +124,35 @@ impl Sync<'_> {
         Ok(())
     }
 
-    /// Sends all but traces; up to which entry of the outbox that is.
+    /// Sends all but traces; the last outbox entry that was covered.
     fn send(&mut self, options: &mut SyncOptions<'_>) -> Result<i64, StoreError> {
         let total = self.entries_after(self.cursors.sent, "what <> 'trace'")?;
         let mut done = 0;
         loop {
-            // Asked first: what is recorded from now on may be a trace whose run has not been sent.
+            // Read first: an entry recorded from now on may be a trace whose run was not sent.
             let reach = self.of_file(SENDING, batch::last)?;
             let entries = self.of_file(SENDING, |file| batch::entries(file, self.cursors.sent))?;
             if entries.is_empty() || self.outcome.stopped {
                 return Ok(reach);
             }
-            done += self.send_batch(options, |sync, base, cursors| {
-                let batch = batch::Batch::gather(sync.file.base(), sync.wire, &entries)?;
+            done += self.send_batch(options, |sync, backend, cursors| {
+                let batch = batch::Batch::gather(sync.file.backend(), sync.wire, &entries)?;
                 cursors.sent = batch.through;
                 let count = batch.entries;
-                Ok((count, batch.send(base, sync.wire, &sync.laptop)?))
+                Ok((count, batch.send(backend, sync.wire, &sync.laptop)?))
             })?;
             let phase = SyncPhase::Sending;
             self.tell(SyncProgress { phase, done, total }, options);
         }
     }
 
-    /// Sends the seals of what has been sent.
+    /// Sends the seals of what was sent.
     fn send_seals(&mut self) -> Result<(), StoreError> {
         let (file, server, wire) = (self.file, self.server, self.wire);
         for chain in &mut self.chains {
             loop {
                 let sent = server.change(SENDING, |_| {
-                    heads::send(file.base(), wire, chain)
+                    seal_chains::send(file.backend(), wire, chain)
                         .map_err(|error| file.either(server, SENDING, error))
                 })?;
                 match sent {
@@ -163,7 +164,7 @@ impl Sync<'_> {
         Ok(())
     }
 
-    /// Sends traces up to an entry of the outbox up to which all runs have been sent.
+    /// Sends traces up to an outbox entry up to which all runs were sent.
     fn send_traces(&mut self, reach: i64, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
         let total = self.entries_after(self.cursors.sent_traces, "what = 'trace'")?;
         let mut done = 0;
@@ -174,7 +175,7 @@ impl Sync<'_> {
                 return Ok(());
             }
             done += self.send_batch(options, |sync, _, cursors| {
-                let batch = traces::Batch::gather(sync.file.base(), sync.wire, &entries)?;
+                let batch = traces::Batch::gather(sync.file.backend(), sync.wire, &entries)?;
                 cursors.sent_traces = batch.through;
                 let count = batch.entries;
                 Ok((count, batch.send(sync.wire, sync.laptop.seq)?))
@@ -184,74 +185,74 @@ impl Sync<'_> {
         }
     }
 
-    /// Gathers and sends a batch in one transaction of the server, with the cursor that goes with it; how
-    /// many entries it had.
+    /// Reads and sends a batch in one transaction of the server, together with its cursor; the number of
+    /// entries.
     fn send_batch(
         &mut self,
         options: &SyncOptions<'_>,
-        work: impl FnOnce(&Self, &Base, &mut Cursors) -> SqlResult<(u64, SyncOutcome)>,
+        work: impl FnOnce(&Self, &Backend, &mut Cursors) -> SqlResult<(u64, SyncOutcome)>,
     ) -> Result<u64, StoreError> {
         let mut cursors = self.cursors;
-        let (count, outcome) = self.server.change(SENDING, |base| {
-            let sent = work(self, base, &mut cursors).and_then(|sent| {
-                ledger::note(base, self.laptop.seq, cursors)?;
+        let (count, outcome) = self.server.change(SENDING, |backend| {
+            let sent = work(self, backend, &mut cursors).and_then(|sent| {
+                cursors::save_on_server(backend, self.laptop.seq, cursors)?;
                 Ok(sent)
             });
             sent.map_err(|error| self.file.either(self.server, SENDING, error))
         })?;
         self.cursors = cursors;
-        self.remember(options)?;
+        self.save(options)?;
         self.outcome.add(outcome);
         Ok(count)
     }
 
-    /// Tells how far it is, and hears whether to go on.
+    /// Reports progress, and stops if the caller says so.
     fn tell(&mut self, progress: SyncProgress, options: &mut SyncOptions<'_>) {
         self.outcome.stopped |= !(options.go_on)(progress);
     }
 
     fn receive(&mut self, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
         let until = self.of_server(RECEIVING, pull::last)?;
-        let new = self.of_server(RECEIVING, |base| pull::fresh(base, self.laptop.seq))?;
-        let asked = pull::Asked {
+        let new = self.of_server(RECEIVING, |backend| pull::fresh(backend, self.laptop.seq))?;
+        let scope = pull::PullScope {
             laptop: self.laptop.seq,
             until,
             fresh: false,
-            own: self.own_too,
+            own_events: self.own_too,
         };
         let mut done = 0;
-        // Who asks from the beginning is told of all faults anyway.
+        // A pull from the beginning includes all faults anyway.
         if self.cursors.received > 0 {
-            let fresh = pull::Asked {
+            let fresh = pull::PullScope {
                 fresh: true,
-                ..asked
+                ..scope
             };
             done = self.receive_from(0, fresh, done, options)?;
         }
         if !self.outcome.stopped {
-            self.receive_from(self.cursors.received, asked, done, options)?;
+            self.receive_from(self.cursors.received, scope, done, options)?;
         }
         if self.outcome.stopped {
             return Ok(());
         }
         self.cursors.received = until;
         self.server.change(RECEIVING, |_| {
-            pull::told(self.wire, self.laptop.seq, &new, until)
+            pull::acknowledge(self.wire, self.laptop.seq, &new, until)
                 .map_err(|error| self.server.failed(RECEIVING, error))
         })?;
-        self.remember(options)
+        self.save(options)
     }
 
     fn receive_from(
         &mut self,
         after: i64,
-        asked: pull::Asked,
+        scope: pull::PullScope,
         mut done: u64,
         options: &mut SyncOptions<'_>,
     ) -> Result<u64, StoreError> {
         let mut after = Some(after);
         while let Some(from) = after {
-            let batch = self.of_server(RECEIVING, |base| pull::events(base, asked, from))?;
+            let batch = self.of_server(RECEIVING, |backend| pull::events(backend, scope, from))?;
             after = batch.next;
             self.outcome.refused.extend(batch.refused);
             let events = batch.events;
@@ -273,13 +274,13 @@ impl Sync<'_> {
         Ok(done)
     }
 
-    /// Keeps the cursors in the file.
-    fn remember(&self, options: &SyncOptions<'_>) -> Result<(), StoreError> {
+    /// Stores the cursors in the file.
+    fn save(&self, options: &SyncOptions<'_>) -> Result<(), StoreError> {
         const DOING: &str = "remembering a sync";
         let address = self.server.path().to_string_lossy().into_owned();
         let now_us = (options.now_us)();
         self.file.change(DOING, |file| {
-            ledger::remember(file, self.id, &address, self.cursors, now_us)
+            cursors::save(file, self.id, &address, self.cursors, now_us)
                 .map_err(|error| self.file.failed(DOING, error))
         })
     }
@@ -300,22 +301,22 @@ impl Sync<'_> {
     fn of_file<T>(
         &self,
         doing: &'static str,
-        ask: impl FnOnce(&Base) -> SqlResult<T>,
+        ask: impl FnOnce(&Backend) -> SqlResult<T>,
     ) -> Result<T, StoreError> {
-        ask(self.file.base()).map_err(|error| self.file.failed(doing, error))
+        ask(self.file.backend()).map_err(|error| self.file.failed(doing, error))
     }
 
     fn of_server<T>(
         &self,
         doing: &'static str,
-        ask: impl FnOnce(&Base) -> SqlResult<T>,
+        ask: impl FnOnce(&Backend) -> SqlResult<T>,
     ) -> Result<T, StoreError> {
-        ask(self.server.base()).map_err(|error| self.server.failed(doing, error))
+        ask(self.server.backend()).map_err(|error| self.server.failed(doing, error))
     }
 }
 
 impl Store {
-    /// An error of this file or of the server, as it says itself.
+    /// Attributes an error to this file or to the server.
     fn either(&self, server: &Store, doing: &'static str, error: SqlError) -> StoreError {
         match error {
             SqlError::File(_) | SqlError::Value { .. } => self.failed(doing, error),

@@ -1,4 +1,4 @@
-//! What a sync did, and how far it is.
+//! Options, progress and result of a sync.
 
 use serde::Serialize;
 
@@ -6,46 +6,46 @@ use crate::conflicts::StateConflict;
 use crate::domain::Refusals;
 use crate::id::Id;
 
-/// What a sync is told by its caller.
+/// Options of a sync.
 pub struct SyncOptions<'a> {
-    /// What the laptop is called on the server.
+    /// The laptop's name on the server.
     pub laptop: &'a str,
-    /// Whether samples go along; without them a later sync sends them.
+    /// Whether traces are sent, too; otherwise a later sync sends them.
     pub traces: bool,
-    /// The file is a copy, or came back from a backup: it gets a name of its own, if the server has seen more of
-    /// it or something else.
+    /// The file is a copy, or was restored from a backup: it gets an id of its own if the server knows more
+    /// of its chain, or other entries.
     pub as_copy: bool,
-    /// Whether the owner of an unfinished run still lives; a run of a dead one is sent as it is.
+    /// Whether the owner of an unfinished run is alive; the run of a dead one is sent as it is.
     pub is_alive: &'a dyn Fn(&str) -> bool,
     /// The laptop's clock, µs since 1970, UTC.
     pub now_us: &'a dyn Fn() -> i64,
-    /// Told after each batch; ends the sync there by answering no.
+    /// Called after each batch; returning `false` ends the sync there.
     pub go_on: &'a mut dyn FnMut(SyncProgress) -> bool,
 }
 
-/// What a sync is at.
+/// The phase of a sync.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SyncPhase {
-    /// Runs, events and notes go to the server.
+    /// Runs, events and notes are sent.
     Sending,
-    /// Traces go to the server.
+    /// Traces are sent.
     SendingTraces,
-    /// Events come from the server.
+    /// Events are received.
     Receiving,
 }
 
-/// How far a sync is.
+/// The progress of a sync.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SyncProgress {
-    /// What it is at.
+    /// The current phase.
     pub phase: SyncPhase,
     /// Entries done in this phase.
     pub done: u64,
-    /// Entries there were to do when it began; of what comes, 0: nobody knows.
+    /// Entries in this phase when it began; 0 when receiving, as the number is not known.
     pub total: u64,
 }
 
-/// What a sync did. It counts what was new to the other side.
+/// The result of a sync. Counts are of rows that were new to the receiving side.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SyncOutcome {
     /// Runs sent.
@@ -60,29 +60,30 @@ pub struct SyncOutcome {
     pub traces: u64,
     /// Entries that the server had already, from an earlier sync or another laptop.
     pub already_there: u64,
-    /// Events that came.
+    /// Events received.
     pub events_received: u64,
     /// Faults of the file that they changed.
     pub faults_changed: u64,
-    /// About as many bytes went over the wire, both ways.
+    /// Approximate bytes transferred, both ways.
     pub bytes: u64,
     /// Entries that wait for the next sync.
     pub waiting: u64,
-    /// By how much the laptop's clock is ahead of the server's, µs.
+    /// How far the laptop's clock is ahead of the server's, µs.
     pub clock_offset_us: i64,
-    /// What has the same id here and there and does not say the same; both were left as they are.
+    /// Rows with the same id and different content on both sides; both were left as they are.
     pub different: Vec<Different>,
-    /// Traces of the file that no longer fit their checksum; they were not sent.
+    /// Traces of the file that do not match their checksum; they were not sent.
     pub damaged_traces: Vec<Id>,
-    /// Rows, here or there, that hold what no history holds: they were left where they are, and all else went on.
+    /// Rows on either side outside their columns' domain: they were left where they are, and all others were
+    /// processed.
     pub refused: Refusals,
-    /// Faults of the file that people who did not know of each other brought to different states.
+    /// Faults of the file in conflict.
     pub conflicts: Vec<StateConflict>,
-    /// Whether it was stopped before its end.
+    /// Whether the caller stopped it.
     pub stopped: bool,
 }
 
-/// Something of which there are two versions.
+/// Something with different content on both sides.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Different {
     /// run, trace or chain.
@@ -92,10 +93,10 @@ pub struct Different {
 }
 
 impl SyncOutcome {
-    /// A difference of the clocks that is more than a slow network makes.
+    /// A larger difference is not explained by a slow network, µs.
     pub const CLOCK_TOLERANCE_US: i64 = 3_000_000;
 
-    /// Whether the laptop's clock and the server's are apart.
+    /// Whether the clocks differ by more than the tolerance.
     pub fn clocks_differ(&self) -> bool {
         self.clock_offset_us.abs() > Self::CLOCK_TOLERANCE_US
     }

@@ -1,19 +1,19 @@
-//! What other laptops, and people at the server itself, said about the faults of a file.
+//! Receives the events that other laptops, and users on the server, added to the faults of a file.
 
 use std::collections::BTreeSet;
 
 use super::outcome::SyncOutcome;
-use crate::base::{Base, Row, Server, SqlResult, values};
+use crate::backend::{Backend, Row, Server, SqlResult, values};
 use crate::domain::{Refusals, check, check_body, shown_id};
+use crate::event_graph::{fault_of, merge_faults, open_duplicates, recompute_fault};
 use crate::id::Id;
 use crate::seal::BY_SYNC;
-use crate::seal::said::found_event;
-use crate::settle::{fault_of, join, open_doubles, settle};
+use crate::seal::events_and_notes::seal_event_as_found;
 
 /// Events of a batch at most.
 const MOST_EVENTS: usize = 500;
 
-/// An event of the server, with the fault's id as the file knows it.
+/// An event on the server, with the fault's id in the file.
 pub(super) struct Event {
     id: Id,
     fault: Id,
@@ -22,64 +22,66 @@ pub(super) struct Event {
     who: String,
     body: String,
     state: Option<String>,
-    turn: i64,
-    follows: Vec<u8>,
-    seen: i64,
+    lamport: i64,
+    parents: Vec<u8>,
+    occurrences_known: i64,
 }
 
-/// Which events are asked for.
+/// Which events to receive.
 #[derive(Clone, Copy)]
-pub(super) struct Asked {
-    /// The server's number of the laptop.
+pub(super) struct PullScope {
+    /// The server's row number of the laptop.
     pub laptop: i64,
-    /// Up to this event, which was the last when the pull began. Events are added one transaction after
-    /// the other, so that none comes later with a smaller number.
+    /// The last event when the pull began. Writers exclude each other, so no event appears later with a
+    /// smaller number.
     pub until: i64,
-    /// Only of faults that the laptop has not been told of before, however old the event.
+    /// Only of faults that are new to the laptop, however old the event.
     pub fresh: bool,
-    /// The laptop's own, too: its file came back from a backup.
-    pub own: bool,
+    /// Also those that the laptop sent itself: its file was restored from a backup.
+    pub own_events: bool,
 }
 
-/// The last event there is.
-pub(super) fn last(base: &Base) -> SqlResult<i64> {
+/// The last event on the server.
+pub(super) fn last(backend: &Backend) -> SqlResult<i64> {
     let last = "SELECT coalesce(max(seq), 0) FROM fault_event";
-    Ok(base.first(last, &[], |row| row.get(0))?.unwrap_or_default())
+    Ok(backend
+        .first(last, &[], |row| row.get(0))?
+        .unwrap_or_default())
 }
 
-/// Some events.
+/// One batch of events.
 #[derive(Default)]
 pub(super) struct Events {
     pub events: Vec<Event>,
-    /// Those that hold what none holds: a server of an earlier version took them.
+    /// Events outside their columns' domain, accepted by an early version of the server.
     pub refused: Refusals,
-    /// Where the next question goes on; none if these were the last.
+    /// Where the next batch begins; `None` after the last.
     pub next: Option<i64>,
 }
 
-/// An event's columns, in the order they are asked for.
+/// The columns of an event, in the order of the query.
 const COLUMNS: [&str; 11] = [
     "seq", "id", "fault", "kind", "at_us", "who", "body", "state", "turn", "follows", "seen",
 ];
 
 /// The next events after this one.
-pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Events> {
-    let fresh = if asked.fresh { "AND k.fresh > 0" } else { "" };
-    let own = if asked.own {
+pub(super) fn events(backend: &Backend, scope: PullScope, after: i64) -> SqlResult<Events> {
+    let fresh = if scope.fresh { "AND k.fresh > 0" } else { "" };
+    let own_events = if scope.own_events {
         ""
     } else {
         "AND e.laptop IS DISTINCT FROM ?1"
     };
-    // Two faults of the file may have become one on the server: the later one is told.
+    // Two faults of the file may have been merged on the server: the later one is returned.
     let sql = format!(
         "SELECT DISTINCT ON (e.seq) e.seq, e.id, k.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn,
             e.follows, e.seen
          FROM fault_event e JOIN laptop_fault k ON k.fault = e.fault AND k.laptop = ?1 {fresh}
-         WHERE e.seq > ?2 AND e.seq <= ?3 {own} ORDER BY e.seq, k.id DESC LIMIT {MOST_EVENTS}"
+         WHERE e.seq > ?2 AND e.seq <= ?3 {own_events} ORDER BY e.seq, k.id DESC LIMIT {MOST_EVENTS}"
     );
     let mut found = Events::default();
     let mut count = 0;
-    base.each(&sql, &values![asked.laptop, after, asked.until], |row| {
+    backend.each(&sql, &values![scope.laptop, after, scope.until], |row| {
         count += 1;
         let seq = row.get(0)?;
         found.next = Some(seq);
@@ -98,9 +100,9 @@ pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Events>
             who: row.get(5)?,
             body: row.get(6)?,
             state: row.get(7)?,
-            turn: row.get(8)?,
-            follows: row.get(9)?,
-            seen: row.get(10)?,
+            lamport: row.get(8)?,
+            parents: row.get(9)?,
+            occurrences_known: row.get(10)?,
         });
         Ok(())
     })?;
@@ -108,7 +110,7 @@ pub(super) fn events(base: &Base, asked: Asked, after: i64) -> SqlResult<Events>
     Ok(found)
 }
 
-/// Holds an event to its columns' domain.
+/// Checks an event against its columns' domain.
 fn check_event(row: Row<'_>) -> Result<(), String> {
     for (place, column) in COLUMNS.into_iter().enumerate() {
         let field = row
@@ -120,8 +122,8 @@ fn check_event(row: Row<'_>) -> Result<(), String> {
     check_body(text(3), text(6))
 }
 
-/// Adds events to the file and brings their faults in line; runs in the caller's transaction.
-pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
+/// Inserts events into the file and recomputes their faults; runs in the caller's transaction.
+pub(super) fn add(file: &Backend, events: &[Event]) -> SqlResult<SyncOutcome> {
     let mut outcome = SyncOutcome::default();
     let before: i64 = file
         .first("SELECT coalesce(max(seq), 0) FROM outbox", &[], |row| {
@@ -130,11 +132,11 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
         .unwrap_or_default();
     let mut faults = BTreeSet::new();
     for event in events {
-        // The file came back from a backup older than the fault.
+        // The file was restored from a backup older than the fault.
         let Some(fault) = fault_of(file, event.fault)? else {
             continue;
         };
-        // What others saw of it stays with them and the server: of that, nothing is known here.
+        // Occurrences on other laptops are not known in this file.
         let added = file.execute(
             "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
              VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9,
@@ -147,9 +149,9 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
                 &event.who,
                 &event.body,
                 event.state.as_deref(),
-                event.turn,
-                &event.follows[..],
-                event.seen
+                event.lamport,
+                &event.parents[..],
+                event.occurrences_known
             ],
         )?;
         if added > 0 {
@@ -158,30 +160,30 @@ pub(super) fn add(file: &Base, events: &[Event]) -> SqlResult<SyncOutcome> {
                 &values![event.id],
                 |row| row.get(0),
             )? {
-                found_event(file, seq, BY_SYNC)?;
+                seal_event_as_found(file, seq, BY_SYNC)?;
             }
             outcome.events_received += 1;
             outcome.bytes += (event.body.len() + event.who.len() + 80) as u64;
             faults.insert(fault);
         }
     }
-    // What came from the server need not go back to it.
+    // Received events need not be sent back.
     file.execute("DELETE FROM outbox WHERE seq > ?1", &values![before])?;
     outcome.faults_changed = faults.len() as u64;
     for fault in faults {
-        settle(file, fault)?;
-        join_doubles(file, fault)?;
+        recompute_fault(file, fault)?;
+        merge_duplicates(file, fault)?;
     }
     Ok(outcome)
 }
 
-/// What came may have opened a fault again that the file has a second one of by now.
-fn join_doubles(file: &Base, fault: i64) -> SqlResult<()> {
-    let mut doubles = open_doubles(file, fault)?.into_iter();
-    let Some(oldest) = doubles.next() else {
+/// A received event may have reopened a fault of which the file has a second one by now.
+fn merge_duplicates(file: &Backend, fault: i64) -> SqlResult<()> {
+    let mut duplicates = open_duplicates(file, fault)?.into_iter();
+    let Some(oldest) = duplicates.next() else {
         return Ok(());
     };
-    doubles.try_for_each(|double| join(file, oldest, double))
+    duplicates.try_for_each(|duplicate| merge_faults(file, oldest, duplicate))
 }
 
 /// A fault that is new to a laptop, and how often it became so.
@@ -191,10 +193,10 @@ pub(super) struct Fresh {
 }
 
 /// The faults that are new to a laptop.
-pub(super) fn fresh(base: &Base, laptop: i64) -> SqlResult<Vec<Fresh>> {
+pub(super) fn fresh(backend: &Backend, laptop: i64) -> SqlResult<Vec<Fresh>> {
     let fresh =
         "SELECT fault, fresh FROM laptop_fault WHERE laptop = ?1 AND fresh > 0 ORDER BY fault";
-    base.select(fresh, &values![laptop], |row| {
+    backend.select(fresh, &values![laptop], |row| {
         Ok(Fresh {
             fault: row.get(0)?,
             times: row.get(1)?,
@@ -202,12 +204,17 @@ pub(super) fn fresh(base: &Base, laptop: i64) -> SqlResult<Vec<Fresh>> {
     })
 }
 
-/// The laptop has been told all of these faults, which were new to it, and of the others up to `received`.
-/// What became new once more meanwhile, since another laptop's sync joined it with a fault, stays new.
-pub(super) fn told(server: &Server, laptop: i64, fresh: &[Fresh], received: i64) -> SqlResult<()> {
+/// Confirms to the server that the laptop has received these new faults, and all other events up to
+/// `received`. A fault that became new again meanwhile, because another laptop's sync merged it, stays new.
+pub(super) fn acknowledge(
+    server: &Server,
+    laptop: i64,
+    fresh: &[Fresh],
+    received: i64,
+) -> SqlResult<()> {
     let faults: Vec<i64> = fresh.iter().map(|fresh| fresh.fault).collect();
     let times: Vec<i64> = fresh.iter().map(|fresh| fresh.times).collect();
-    let told = "SELECT note_told($1, $2, $3, $4)";
-    server.execute_columns(told, &[&laptop, &received, &faults, &times])?;
+    let sql = "SELECT note_told($1, $2, $3, $4)";
+    server.execute_columns(sql, &[&laptop, &received, &faults, &times])?;
     Ok(())
 }

@@ -1,11 +1,11 @@
-//! Rows on their way to the server: gathered column by column, sent in one statement.
+//! Rows to be sent: collected column by column, inserted by one statement.
 
 use postgres::types::ToSql;
 
-use crate::base::{Base, Field, Row, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Field, Row, Server, SqlError, SqlResult, values};
 use crate::domain::check;
 
-/// What a column holds.
+/// The type of a column.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Integer,
@@ -14,23 +14,23 @@ pub(super) enum Kind {
     Bytes,
 }
 
-/// How rows of one kind are read from a file and added to a server.
+/// How rows of a table are read from a file and inserted on a server.
 pub(super) struct Table {
-    /// What is sent of each row.
+    /// The columns sent.
     pub columns: &'static [(&'static str, Kind)],
-    /// Reads rows of a file in that order; `?1` is the row they belong to.
+    /// Reads the rows of a parent row `?1`, with the columns in that order.
     pub read: &'static str,
-    /// Add them to the server, one after the other: `{rows}` are the rows sent, `x`, with their place
-    /// in it; `{laptop}` is the laptop. The first says how many were new.
+    /// Statements that insert the rows, in this order: `{rows}` stands for the rows sent, `x`, with their
+    /// place; `{laptop}` for the laptop. The first one counts the new rows.
     pub insert: &'static [&'static str],
 }
 
-/// Rows of one kind.
+/// Rows of one table.
 pub(super) struct Rows {
     table: &'static Table,
     columns: Vec<Column>,
     pub count: usize,
-    /// About as many bytes as they take on the wire.
+    /// Approximate bytes on the wire.
     pub bytes: usize,
 }
 
@@ -57,13 +57,13 @@ impl Rows {
         }
     }
 
-    /// Takes the rows that belong to this row of a file.
-    pub fn read(&mut self, file: &Base, of: i64) -> SqlResult<()> {
+    /// Reads the rows that belong to this row of a file.
+    pub fn read(&mut self, file: &Backend, of: i64) -> SqlResult<()> {
         let sql = self.table.read;
         file.each(sql, &values![of], |row| self.take(row, &[]))
     }
 
-    /// Takes a row of a file, and what was made of it.
+    /// Adds a row of a file, with its derived fields.
     pub fn take(&mut self, row: Row<'_>, made: &[Field<'_>]) -> SqlResult<()> {
         let read = self.columns.len() - made.len();
         for column in 0..read {
@@ -76,12 +76,12 @@ impl Rows {
         Ok(())
     }
 
-    /// How far it is.
+    /// The current length, for [`back_to`](Self::back_to).
     pub fn mark(&self) -> (usize, usize) {
         (self.count, self.bytes)
     }
 
-    /// Gives up what was taken since.
+    /// Removes the rows added since.
     pub fn back_to(&mut self, (count, bytes): (usize, usize)) {
         (self.count, self.bytes) = (count, bytes);
         self.columns
@@ -102,7 +102,7 @@ impl Rows {
             .map_err(|reason| SqlError::Value { column, reason })
     }
 
-    /// Adds all of them; how many were new.
+    /// Inserts all rows; the number of new ones.
     pub fn send(&self, server: &Server, laptop: i64) -> SqlResult<u64> {
         if self.count == 0 {
             return Ok(0);
@@ -115,7 +115,7 @@ impl Rows {
         Ok(new.unwrap_or_default())
     }
 
-    /// Hands all of them to one statement; how many rows of the server it changed.
+    /// Executes one statement over all rows; the number of rows it changed.
     pub fn send_by(&self, server: &Server, laptop: i64, sql: &str) -> SqlResult<u64> {
         if self.count == 0 {
             return Ok(0);
@@ -124,7 +124,7 @@ impl Rows {
         server.execute_columns(&self.filled(sql, laptop), &columns)
     }
 
-    /// What the server answers about them.
+    /// The result of a query over all rows.
     pub fn ask(&self, server: &Server, laptop: i64, sql: &str) -> SqlResult<Vec<postgres::Row>> {
         if self.count == 0 {
             return Ok(Vec::new());
@@ -188,7 +188,7 @@ impl Column {
     }
 }
 
-/// PostgreSQL keeps no zero letter in a text.
+/// PostgreSQL stores no NUL character in text.
 fn plain(text: &str) -> String {
     text.replace('\0', "\u{fffd}")
 }

@@ -1,7 +1,7 @@
-//! What a run, a fault, an event and a note are made of, table by table.
+//! The columns sent of each table, and the statements that read and insert them.
 //!
-//! Rows name their parents by id; the server joins them by its own numbers. What is there already stays
-//! as it is, so that sending twice is sending once.
+//! Rows name their parents by id; the server translates ids to its own row numbers. Rows that exist are left
+//! as they are, so sending twice equals sending once.
 
 use super::rows::Kind::{Bytes, Integer, Real, Text};
 use super::rows::Table;
@@ -145,7 +145,7 @@ pub(super) const RECORDINGS: Table = Table {
     ],
 };
 
-/// Ids that a fault of the file has elsewhere. Sent before the faults themselves.
+/// Aliases of a fault in the file. Sent before the faults.
 pub(super) const OTHER_IDS: Table = Table {
     columns: &[("id", Bytes), ("other", Bytes)],
     read: "SELECT f.id, a.id FROM fault f JOIN fault_alias a ON a.fault = f.seq WHERE f.seq = ?1
@@ -158,15 +158,15 @@ pub(super) const OTHER_IDS: Table = Table {
          ORDER BY x.id, x.place ON CONFLICT DO NOTHING"],
 };
 
-/// Makes the other ids known that the server had never heard of. Sent after the faults.
+/// Registers aliases that the server did not know. Sent after the faults.
 pub(super) const OTHER_IDS_TOO: &str = "
     INSERT INTO fault_alias(id, fault)
     SELECT x.other, k.fault FROM {rows} JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.id
     WHERE NOT EXISTS (SELECT 1 FROM fault g WHERE g.id = x.other)
     ORDER BY x.place ON CONFLICT DO NOTHING";
 
-/// A fault of the file is one of the server's if it has the same id there. Whether it is one under another
-/// id, too, is known when the batch's events are there: one of them may have closed the other.
+/// A fault of the file is one of the server's if it has the same id or alias there. Duplicates under other
+/// ids are merged after the batch's events, as one of these may have closed a fault.
 pub(super) const FAULTS: Table = Table {
     columns: &[
         ("id", Bytes),
@@ -231,7 +231,7 @@ pub(super) const OCCURRENCES: Table = Table {
     ],
 };
 
-/// The last two columns are made of what was said.
+/// The last two columns are derived from the text.
 pub(super) const EVENTS: Table = Table {
     columns: &[
         ("id", Bytes),
@@ -259,7 +259,7 @@ pub(super) const EVENTS: Table = Table {
     ],
 };
 
-/// The last column is made of what was said.
+/// The last column is derived from the text.
 pub(super) const NOTES: Table = Table {
     columns: &[
         ("id", Bytes),
@@ -271,13 +271,13 @@ pub(super) const NOTES: Table = Table {
     ],
     read: "SELECT n.id, r.id, n.at_us, n.who, n.text
          FROM run_note n JOIN run r ON r.seq = n.run WHERE n.seq = ?1",
-    // A note on a run that is still under way comes again with the run.
+    // Notes on a run that is still under way are sent again with the run.
     insert: &["INSERT INTO run_note(id, run, at_us, who, text, words)
          SELECT x.id, r.seq, x.at_us, x.who, x.text, CAST(x.words AS tsvector)
          FROM {rows} JOIN run r ON r.id = x.run ORDER BY x.place ON CONFLICT (id) DO NOTHING"],
 };
 
-/// The seal with this number in the order in which they are sent: `heads.rs` reads them.
+/// Read by `seal_chains`, in the order of the chain.
 pub(super) const SEALS: Table = Table {
     columns: &[
         ("origin", Bytes),
@@ -337,7 +337,7 @@ pub(super) const TRACES: Table = Table {
     ],
 };
 
-/// Which occurrences a trace shows. Sent after the traces.
+/// The occurrences a trace shows. Sent after the traces.
 pub(super) const SHOWN: Table = Table {
     columns: &[("occurrence", Bytes), ("trace", Bytes)],
     read:

@@ -1,5 +1,5 @@
-//! Traces, after all that is small: each with its channel list, checked before it goes and by the server
-//! when it comes.
+//! Sends traces, after all other rows; the file checks each trace before it is sent, the server when it
+//! arrives.
 
 use std::collections::BTreeMap;
 
@@ -9,21 +9,21 @@ use super::batch::{ENOUGH_BYTES, MOST_ENTRIES};
 use super::outcome::{Different, SyncOutcome};
 use super::rows::Rows;
 use super::tables;
-use crate::base::{Base, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::id::Id;
 
-/// An entry of the outbox: a trace, if it was not pruned since.
+/// An outbox entry of a trace, which may have been pruned since.
 pub(super) struct Entry {
     pub seq: i64,
     trace: i64,
     id: Option<Id>,
-    /// Its id is none.
+    /// The trace's id is invalid.
     is_unnamed: bool,
     sha256: Vec<u8>,
 }
 
 /// The next traces of the outbox, up to an entry.
-pub(super) fn entries(file: &Base, after: i64, until: i64) -> SqlResult<Vec<Entry>> {
+pub(super) fn entries(file: &Backend, after: i64, until: i64) -> SqlResult<Vec<Entry>> {
     file.select(
         "SELECT o.seq, o.row, t.id, t.sha256 FROM outbox o LEFT JOIN trace t ON t.seq = o.row
          WHERE o.seq > ?1 AND o.seq <= ?2 AND o.what = 'trace' ORDER BY o.seq LIMIT ?3",
@@ -42,12 +42,11 @@ pub(super) fn entries(file: &Base, after: i64, until: i64) -> SqlResult<Vec<Entr
     )
 }
 
-/// Channel lists of a file, and whether each is what was stored.
+/// Channel lists of a file, and whether each matches its checksum.
 type Lists = BTreeMap<i64, bool>;
 
-/// Looked at as bytes: what is damaged may be no text any more. The server would refuse it, and all that goes
-/// with it.
-fn is_list_whole(file: &Base, list: i64) -> SqlResult<bool> {
+/// Compared as bytes, since damaged text may not be UTF-8. The server would refuse the whole batch.
+fn is_list_whole(file: &Backend, list: i64) -> SqlResult<bool> {
     let sql = "SELECT CAST(json AS BLOB), sha256 FROM channel_set WHERE seq = ?1";
     let whole = file.first(sql, &values![list], |row| {
         let (json, sha256): (&[u8], &[u8]) = (row.get(0)?, row.get(1)?);
@@ -56,7 +55,7 @@ fn is_list_whole(file: &Base, list: i64) -> SqlResult<bool> {
     Ok(whole.unwrap_or(false))
 }
 
-/// Traces of one batch.
+/// The traces of one batch.
 pub(super) struct Batch {
     traces: Rows,
     shown: Rows,
@@ -67,8 +66,8 @@ pub(super) struct Batch {
 }
 
 impl Batch {
-    /// Reads what the server has not, as far as one batch goes.
-    pub fn gather(file: &Base, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
+    /// Reads what the server does not have, up to the size of one batch.
+    pub fn gather(file: &Backend, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
         let known = known(server, entries)?;
         let mut batch = Self {
             traces: Rows::of(&tables::TRACES),
@@ -101,7 +100,7 @@ impl Batch {
                 Some(_) => batch.outcome.already_there += 1,
                 None => batch.read(file, entry, id, &mut lists)?,
             }
-            // An occurrence may have come after its trace.
+            // An occurrence may have been sent after its trace.
             let mark = batch.shown.mark();
             if let Err(SqlError::Value { reason, .. }) = batch.shown.read(file, entry.trace) {
                 batch.shown.back_to(mark);
@@ -122,7 +121,7 @@ impl Batch {
         Ok(batch)
     }
 
-    fn read(&mut self, file: &Base, entry: &Entry, id: Id, lists: &mut Lists) -> SqlResult<()> {
+    fn read(&mut self, file: &Backend, entry: &Entry, id: Id, lists: &mut Lists) -> SqlResult<()> {
         let is_whole = "SELECT data, channel_set FROM trace WHERE seq = ?1";
         let list = file.first(is_whole, &values![entry.trace], |row| {
             let data: &[u8] = row.get(0)?;
@@ -155,7 +154,7 @@ impl Batch {
         }
     }
 
-    /// Adds all of it to the server; runs in the caller's transaction.
+    /// Inserts everything on the server; runs in the caller's transaction.
     pub fn send(mut self, server: &Server, laptop: i64) -> SqlResult<SyncOutcome> {
         self.channel_sets.send(server, laptop)?;
         self.outcome.traces = self.traces.send(server, laptop)?;

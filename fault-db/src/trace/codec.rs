@@ -1,4 +1,4 @@
-//! A trace packed into one blob, laid out as `layout` says.
+//! Encodes a trace into one blob with the layout that `layout` describes.
 //!
 //! A compressed body is the varint length of the plain body, then a zstd frame without its
 //! four-byte magic number. Every column is compressed alone: one channel is then read in a few

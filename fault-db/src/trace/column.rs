@@ -1,4 +1,4 @@
-//! One column of a trace as bytes.
+//! The encoding of one column of a trace.
 //!
 //! Terms: *scaled* samples are whole multiples of the channel's lsb, so the column is a list of
 //! integers; *presence* says which samples exist. The plain body of a column is

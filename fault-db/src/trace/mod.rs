@@ -1,8 +1,7 @@
-//! Traces: equally spaced rows of named channels, as they are handed in and out.
+//! Traces: equally spaced rows of named channels.
 //!
-//! `codec` packs one into a blob, column by column, so that one channel is read without
-//! unpacking the others; `layout` says where in the blob which rows of it lie, `column` what a column
-//! can look like.
+//! `codec` encodes one into a blob, column by column, so that one channel is read without decompressing the
+//! others; `layout` describes the blob, `column` the encoding of a column.
 
 mod codec;
 mod column;

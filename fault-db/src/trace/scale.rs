@@ -1,7 +1,7 @@
-//! Samples as whole multiples of their channel's lsb, where they are.
+//! Converts samples to whole multiples of their channel's lsb, where they are such.
 //!
-//! Written without branches in the loops over samples, so that the compiler takes several at a time: this
-//! is most of what packing a trace costs.
+//! The loops over samples have no branches, so that the compiler vectorises them: they take most of the
+//! time of encoding a trace.
 
 /// Samples taken at a time.
 const LANES: usize = 16;

@@ -1,4 +1,4 @@
-//! Little-endian base-128 integers, and the zigzag that makes small negative numbers small.
+//! Little-endian base-128 integers, and the zigzag mapping that makes small negative numbers short.
 
 /// Appends `value`, seven bits a byte, lowest first.
 #[inline]

@@ -600,7 +600,7 @@ fn a_copied_file_that_went_on_by_itself_gets_a_name_of_its_own() {
     one.sync(&address);
     let refused = copy.try_sync(&address, &mut |_| true).expect_err("a copy");
     assert!(
-        matches!(refused, StoreError::PartedCopy { after: 2, .. }),
+        matches!(refused, StoreError::ForkedCopy { after: 2, .. }),
         "{refused}"
     );
     assert!(refused.to_string().contains("--as-copy"), "{refused}");

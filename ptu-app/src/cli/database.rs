@@ -109,7 +109,7 @@ impl Database {
         Ok(match self.place()? {
             Place::File(path) => {
                 let store = Store::open_read_only(&path)?;
-                for stranger in store.strangers()? {
+                for stranger in store.foreign_objects()? {
                     tell::note(&format!(
                         "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
                         path.display()

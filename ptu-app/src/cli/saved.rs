@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, FromArgMatches};
-use fault_db::{limits, read_given};
+use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out};
 use crate::data::{self, LONGEST_FILE};
@@ -211,7 +211,7 @@ fn usual_file() -> Result<PathBuf, Failure> {
 }
 
 fn load(file: &Path) -> Result<Questions, Failure> {
-    let text = match read_given(file, LONGEST_FILE) {
+    let text = match read_regular_file(file, LONGEST_FILE) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Questions::new()),
         other => other
             .map_err(|error| Failure::bench(format!("cannot read {}: {error}", file.display())))?,

@@ -2,7 +2,7 @@
 //! comes with the scripts.
 
 use fault_db::diagnosis::{Basis, Dictionary};
-use fault_db::{Store, read_given};
+use fault_db::{Store, read_regular_file};
 
 use super::basis;
 use crate::data::ScriptsDirectory;
@@ -94,7 +94,8 @@ fn shipped(directory: &ScriptsDirectory) -> Result<Option<Dictionary>, Failure> 
         return Ok(None);
     }
     let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
-    let packed = read_given(&file, LONGEST_PACKED).map_err(|error| wrong(error.to_string()))?;
+    let packed =
+        read_regular_file(&file, LONGEST_PACKED).map_err(|error| wrong(error.to_string()))?;
     Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
 }
 

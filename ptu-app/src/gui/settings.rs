@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fault_db::read_given;
+use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
 use super::Page;
@@ -67,7 +67,7 @@ impl Settings {
 
     /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
     pub fn load(file: &Path) -> Self {
-        let text = read_given(file, LONGEST_FILE).unwrap_or_default();
+        let text = read_regular_file(file, LONGEST_FILE).unwrap_or_default();
         let mut settings: Self = serde_json::from_slice(&text).unwrap_or_default();
         settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
         settings

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use fault_db::{Channel, ChannelKind, open_given, read_given};
+use fault_db::{Channel, ChannelKind, open_regular_file, read_regular_file};
 use serde_json::Value;
 
 use super::about::About;
@@ -21,7 +21,7 @@ const MAX_LINE: u64 = 1 << 20;
 /// tab.
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let about = about(file)?;
-    let opened = open_given(file);
+    let opened = open_regular_file(file);
     let opened = opened
         .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))?;
     let mut lines = Lines {
@@ -42,7 +42,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
 /// What stands in the description beside, if there is one.
 fn about(file: &Path) -> Result<Option<About>, Failure> {
     let beside = beside(file);
-    let text = match read_given(&beside, LONGEST_FILE) {
+    let text = match read_regular_file(&beside, LONGEST_FILE) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => {

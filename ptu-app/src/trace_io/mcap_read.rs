@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::Read;
 use std::path::Path;
 
-use fault_db::{Channel, open_given};
+use fault_db::{Channel, open_regular_file};
 use mcap::McapError;
 use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -52,7 +52,7 @@ fn check_name(file: &Path, name: &str) -> Result<(), Failure> {
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let cannot =
         |error: std::io::Error| Failure::usage(format!("cannot read {}: {error}", file.display()));
-    let mut input = open_given(file).map_err(cannot)?;
+    let mut input = open_regular_file(file).map_err(cannot)?;
     let options = LinearReaderOptions::default()
         .with_record_length_limit(MAX_RECORD)
         .with_prevalidate_chunk_crcs(true);

@@ -1,4 +1,4 @@
-//! A plan as one JSON document.
+//! The JSON document of a test plan.
 
 use serde::Serialize;
 

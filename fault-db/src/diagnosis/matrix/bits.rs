@@ -1,4 +1,4 @@
-//! Sets of small numbers, packed.
+//! Sets of small integers as bit fields.
 
 /// A set of numbers below a length that is fixed when it is made.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,4 +1,4 @@
-//! The search where every test is certain in what it says: a point is a set of groups.
+//! Search over crisp matrices (every test certain): a search node is a set of ambiguity groups.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What is wrong with a matrix, with outcomes, or with what is asked of them.
+//! Errors in a matrix, in outcomes, or in the question asked of them.
 
 /// A matrix, outcomes or options that cannot be worked with.
 #[derive(Debug, thiserror::Error)]

@@ -1,5 +1,5 @@
-//! Trees from information gain per cost, each choice checked by one step of rollout: of the best few
-//! tests the one whose branches, grown by plain gain to their ends, cost least.
+//! Greedy trees: information gain per cost, with one step of rollout. Of the few tests with the most gain,
+//! the one is chosen whose branches, completed by plain gain, cost least.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,5 +1,5 @@
-//! The search where tests may miss or raise false alarms: a point is what is possible and what was
-//! seen, each test at most once on a way.
+//! Search over noisy matrices (tests may miss or raise false alarms): a search node is the set of possible
+//! states with the outcomes so far; a path uses each test at most once.
 
 use super::bits::{Bits, ones};
 use super::information::{binary_entropy, capacity, entropy};

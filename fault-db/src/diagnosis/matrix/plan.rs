@@ -1,4 +1,4 @@
-//! The order of tests: what is asked, how it is found, what is to be said about it.
+//! Planning the order of tests: the question, the choice of method, and the resulting plan.
 
 use super::crisp::CrispSpace;
 use super::error::MatrixError;

@@ -1,4 +1,4 @@
-//! What is known of the states, before any test and after some.
+//! State probabilities, before any test and after the outcomes given.
 
 use super::error::MatrixError;
 use super::model::Matrix;

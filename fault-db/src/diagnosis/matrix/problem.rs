@@ -1,4 +1,4 @@
-//! What is left to tell apart, and with what.
+//! The remaining search problem: states not yet told apart, and tests not yet used.
 
 use super::bits::Bits;
 use super::model::{Matrix, equal_rows};

@@ -1,4 +1,4 @@
-//! AND/OR search: the cheapest test at each point, where both branches must be paid for.
+//! AND/OR search: at each node the test of least expected cost, where both outcomes have to be paid for.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};

@@ -1,9 +1,9 @@
-//! What is counted, whichever way.
+//! The counts of one key, however they are obtained.
 
 use std::collections::BTreeMap;
 
-use crate::base::Field;
-use crate::functions::{DAY_US, utc_day, utc_month};
+use crate::backend::Field;
+use crate::sql_functions::{DAY_US, utc_day, utc_month};
 use crate::units;
 
 /// A code or unit by its number, a part or line by its name; of all together an empty name.
@@ -29,11 +29,11 @@ pub(crate) type Counted = BTreeMap<Key, Counts>;
 /// What is counted of one key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Counts {
-    pub seen: u64,
+    pub occurrences: u64,
     pub opened: u32,
     pub not_closed: u32,
     pub closed: u32,
-    pub bare: u32,
+    pub closed_without_repair: u32,
     pub units: Units,
     pub last_at_us: Option<i64>,
     pub course: Vec<u64>,
@@ -43,12 +43,12 @@ pub(crate) struct Counts {
 impl Counts {
     /// Nothing was there after all.
     pub fn is_nothing(&self) -> bool {
-        self.seen == 0 && self.opened == 0 && self.closed == 0 && self.repairs.all == 0
+        self.occurrences == 0 && self.opened == 0 && self.closed == 0 && self.repairs.all == 0
     }
 
     /// Seen so often in a bin.
-    pub fn see(&mut self, bins: &Bins, bin: usize, times: u64) {
-        self.seen += times;
+    pub fn add_occurrences(&mut self, bins: &Bins, bin: usize, times: u64) {
+        self.occurrences += times;
         self.course.resize(bins.len(), 0);
         if let Some(count) = self.course.get_mut(bin) {
             *count += times;
@@ -56,11 +56,11 @@ impl Counts {
     }
 
     /// Adds what was counted of a day or month.
-    pub fn take_in(&mut self, tally: &Tally<'_>) {
-        self.see(tally.bins, tally.bin, tally.seen);
+    pub fn add(&mut self, tally: &Tally<'_>) {
+        self.add_occurrences(tally.bins, tally.bin, tally.occurrences);
         self.opened += tally.opened;
         self.closed += tally.closed;
-        self.bare += tally.bare;
+        self.closed_without_repair += tally.closed_without_repair;
         self.units.add(tally.units);
         self.repairs.all += tally.repairs;
         self.repairs.us += tally.repair_us;
@@ -68,15 +68,15 @@ impl Counts {
     }
 
     /// Takes a day out of its month; which units have none left is not known.
-    pub fn leave_out(&mut self, tally: &Tally<'_>) {
+    pub fn subtract(&mut self, tally: &Tally<'_>) {
         let less = |count: &mut u32, by: u32| *count = count.saturating_sub(by);
-        self.seen = self.seen.saturating_sub(tally.seen);
+        self.occurrences = self.occurrences.saturating_sub(tally.occurrences);
         if let Some(count) = self.course.get_mut(tally.bin) {
-            *count = count.saturating_sub(tally.seen);
+            *count = count.saturating_sub(tally.occurrences);
         }
         less(&mut self.opened, tally.opened);
         less(&mut self.closed, tally.closed);
-        less(&mut self.bare, tally.bare);
+        less(&mut self.closed_without_repair, tally.closed_without_repair);
         less(&mut self.repairs.all, tally.repairs);
         self.repairs.us -= tally.repair_us;
         less(&mut self.repairs.back, tally.back);
@@ -92,10 +92,10 @@ impl Counts {
 pub(crate) struct Tally<'a> {
     pub bins: &'a Bins,
     pub bin: usize,
-    pub seen: u64,
+    pub occurrences: u64,
     pub opened: u32,
     pub closed: u32,
-    pub bare: u32,
+    pub closed_without_repair: u32,
     pub units: &'a [u8],
     pub repairs: u32,
     pub repair_us: i64,

@@ -1,11 +1,11 @@
-//! How long units were watched: from a unit's first run, in the span that is asked about.
+//! Observation time of units, from a unit's first run, within the span asked for.
 
 use super::super::fault_filter::Resolved;
 use super::StatKey;
 use super::counted::Key;
-use crate::base::values;
+use crate::backend::values;
 use crate::error::StoreError;
-use crate::functions::DAY_US;
+use crate::sql_functions::DAY_US;
 use crate::store::Store;
 
 /// The days of each unit.

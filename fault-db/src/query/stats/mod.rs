@@ -1,8 +1,8 @@
-//! Counts of faults: how many of each kind, how long units go without one, how long repairs take, and
-//! whether they hold.
+//! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
-//! A file answers from the counts its triggers keep, as long as only a span of time is asked for; the
-//! hours at both ends of it, and everything else, are counted row by row. A server counts row by row.
+//! A file answers from the counts that its triggers maintain if the filter allows it; the incomplete days
+//! at both ends of the span, and every other filter, are counted row by row. A server always counts row by
+//! row.
 
 mod counted;
 mod exposure;
@@ -17,7 +17,7 @@ use counted::{Counts, Key};
 use exposure::Exposure;
 
 use super::fault_filter::{FaultFilter, Of, Resolved};
-use crate::base::{Base, values};
+use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::store::Store;
 
@@ -99,22 +99,22 @@ impl Store {
         let resolved = query.filter.resolve(self)?;
         let exposure = Exposure::read(self, &resolved, query.now_us)?;
         let bins = Bins::of(exposure.since_us(), exposure.until_us());
-        let kept = match self.base() {
-            Base::File(_) => tallied::reads(&resolved, query.by),
-            Base::Server(_) => None,
+        let kept = match self.backend() {
+            Backend::File(_) => tallied::reads(&resolved, query.by),
+            Backend::Server(_) => None,
         };
         let counted = match &kept {
-            Some(kept) => tallied::count(self.base(), kept, &query.filter, &bins),
-            None => plain::count(self.base(), &resolved, query.by, &bins),
+            Some(kept) => tallied::count(self.backend(), kept, &query.filter, &bins),
+            None => plain::count(self.backend(), &resolved, query.by, &bins),
         };
         let mut counted = counted.map_err(failed)?;
         counted.retain(|_, counts| !counts.is_nothing());
         self.add_not_closed(&resolved, query.by, &mut counted)
             .map_err(failed)?;
         if kept.is_none() || query.back_within_days != repairs::KEPT_DAYS {
-            repairs::add(self.base(), &resolved, query, &mut counted).map_err(failed)?;
+            repairs::add(self.backend(), &resolved, query, &mut counted).map_err(failed)?;
         }
-        repairs::add_young(self.base(), &resolved, query, &mut counted).map_err(failed)?;
+        repairs::add_young(self.backend(), &resolved, query, &mut counted).map_err(failed)?;
         let names = Names::read(self, query.by)?;
         let mut stats: Vec<FaultStat> = counted
             .into_iter()
@@ -133,15 +133,15 @@ impl Store {
         resolved: &Resolved<'_>,
         by: StatKey,
         counted: &mut counted::Counted,
-    ) -> crate::base::SqlResult<()> {
-        let mut conditions = resolved.conditions_at(self.base(), Of::Faults, "last_at_us");
+    ) -> crate::backend::SqlResult<()> {
+        let mut conditions = resolved.conditions_at(self.backend(), Of::Faults, "last_at_us");
         conditions.require("x.state <> 'closed'");
         let sql = format!(
             "SELECT {}, count(*) FROM fault x {} GROUP BY 1",
             by.column(),
             conditions.sql()
         );
-        self.base().each(&sql, conditions.values(), |row| {
+        self.backend().each(&sql, conditions.values(), |row| {
             let key = Key::from_field(row.field(0)?);
             counted.entry(key).or_default().not_closed = row.get(1)?;
             Ok(())
@@ -232,11 +232,11 @@ impl Counts {
             name: String::new(),
             faults: self.opened,
             not_closed: self.not_closed,
-            occurrences: self.seen,
+            occurrences: self.occurrences,
             units: self.units.count(),
             last_at_us: self.last_at_us,
             closed: self.closed,
-            no_fault_found: self.bare,
+            no_fault_found: self.closed_without_repair,
             repairs: self.repairs.all,
             repairs_judged: self.repairs.all.saturating_sub(self.repairs.young),
             repairs_back: self.repairs.back,

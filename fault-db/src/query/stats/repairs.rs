@@ -1,10 +1,10 @@
-//! Repairs: how long they took, and whether they held.
+//! Repairs: how long they took, and whether the fault came back.
 
 use super::super::fault_filter::{Of, Resolved};
 use super::counted::{Counted, Key};
 use super::{HOUR_US, StatQuery};
-use crate::base::{Base, SqlResult};
-use crate::functions::DAY_US;
+use crate::backend::{Backend, SqlResult};
+use crate::sql_functions::DAY_US;
 
 /// Repairs after which a fault was back within so many days are counted as they happen.
 pub(super) const KEPT_DAYS: u32 = 30;
@@ -29,12 +29,12 @@ impl Repairs {
 
 /// Adds the repairs made in the span, row by row.
 pub(super) fn add(
-    base: &Base,
+    backend: &Backend,
     resolved: &Resolved<'_>,
     query: &StatQuery,
     counted: &mut Counted,
 ) -> SqlResult<()> {
-    let mut conditions = resolved.conditions_at(base, Of::Repairs, "at_us");
+    let mut conditions = resolved.conditions_at(backend, Of::Repairs, "at_us");
     let within = conditions.place(within_us(query));
     let sql = format!(
         "SELECT {}, count(*), CAST(sum(x.at_us - x.opened_at_us) AS BIGINT),
@@ -43,7 +43,7 @@ pub(super) fn add(
         query.by.column(),
         conditions.sql()
     );
-    base.each(&sql, conditions.values(), |row| {
+    backend.each(&sql, conditions.values(), |row| {
         let counts = counted.entry(Key::from_field(row.field(0)?)).or_default();
         counts.repairs = Repairs {
             all: row.get(1)?,
@@ -57,7 +57,7 @@ pub(super) fn add(
 
 /// Adds how many of the latest repairs cannot be judged yet.
 pub(super) fn add_young(
-    base: &Base,
+    backend: &Backend,
     resolved: &Resolved<'_>,
     query: &StatQuery,
     counted: &mut Counted,
@@ -70,7 +70,7 @@ pub(super) fn add_young(
     {
         return Ok(());
     }
-    let mut conditions = resolved.conditions_from(base, Of::Repairs, "at_us", Some(young_us));
+    let mut conditions = resolved.conditions_from(backend, Of::Repairs, "at_us", Some(young_us));
     let within = conditions.place(within_us(query));
     conditions.require(format!(
         "(x.back_at_us IS NULL OR x.back_at_us - x.at_us >= {within})"
@@ -80,7 +80,7 @@ pub(super) fn add_young(
         query.by.column(),
         conditions.sql()
     );
-    base.each(&sql, conditions.values(), |row| {
+    backend.each(&sql, conditions.values(), |row| {
         let counts = counted.entry(Key::from_field(row.field(0)?)).or_default();
         counts.repairs.young = row.get(1)?;
         Ok(())

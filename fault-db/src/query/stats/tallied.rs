@@ -1,12 +1,12 @@
-//! Counting from the counts a file keeps: whole months and days, and row by row what is left at both
-//! ends of the span.
+//! Counts from a file's table `tally`: whole months and days, with the incomplete days at both ends counted
+//! row by row.
 
 use super::super::fault_filter::{FaultFilter, Resolved};
 use super::StatKey;
 use super::counted::{Bins, Counted, Counts, Key, Tally, Units};
 use super::repairs::KEPT_DAYS;
-use crate::base::{Base, Row, SqlResult, Value, values};
-use crate::functions::{DAY_US, month_start_us, utc_day, utc_month};
+use crate::backend::{Backend, Row, SqlResult, Value, values};
+use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
 
 /// Numbers of the kinds of counts, as the schema gives them.
 const MONTHS: i64 = 0;
@@ -67,13 +67,13 @@ pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
 
 /// Counts in the filter's span of time.
 pub(super) fn count(
-    base: &Base,
+    backend: &Backend,
     kept: &Kept,
     filter: &FaultFilter,
     bins: &Bins,
 ) -> SqlResult<Counted> {
     let mut counting = Counting {
-        base,
+        backend,
         kept,
         bins,
         counted: Counted::new(),
@@ -100,14 +100,14 @@ pub(super) fn count(
     counting.last(since, until)?;
     if kept.tells_units_apart() {
         for counts in counting.counted.values_mut() {
-            counts.units = Units::Number(u32::from(counts.seen > 0));
+            counts.units = Units::Number(u32::from(counts.occurrences > 0));
         }
     }
     Ok(counting.counted)
 }
 
 struct Counting<'a> {
-    base: &'a Base,
+    backend: &'a Backend,
     kept: &'a Kept,
     bins: &'a Bins,
     counted: Counted,
@@ -152,12 +152,12 @@ impl Counting<'_> {
     }
 
     fn kept(&mut self, grain: i64, from: i64, to: i64) -> SqlResult<()> {
-        self.read(grain, from, to, Counts::take_in)
+        self.read(grain, from, to, Counts::add)
     }
 
     /// Days that a month counted has and the span has not.
     fn left_out(&mut self, from: i64, to: i64) -> SqlResult<()> {
-        self.read(DAYS, from, to, Counts::leave_out)
+        self.read(DAYS, from, to, Counts::subtract)
     }
 
     fn read(
@@ -183,17 +183,17 @@ impl Counting<'_> {
             _ => bins.place(at),
         };
         let (kept, counted) = (self.kept, &mut self.counted);
-        self.base.each(&sql, &values, |row| {
+        self.backend.each(&sql, &values, |row| {
             let counts = counted.entry(kept.key(row)?).or_default();
             count(
                 counts,
                 &Tally {
                     bins,
                     bin: place(row.get(1)?),
-                    seen: row.get(2)?,
+                    occurrences: row.get(2)?,
                     opened: row.get(3)?,
                     closed: row.get(4)?,
-                    bare: row.get(5)?,
+                    closed_without_repair: row.get(5)?,
                     units: row.get(6)?,
                     repairs: row.get(7)?,
                     repair_us: row.get(8)?,
@@ -221,9 +221,9 @@ impl Counting<'_> {
             "SELECT {column}, at_us, unit FROM fault_occurrence
              WHERE at_us >= ?1 AND at_us < ?2 {only}"
         );
-        self.base.each(&sql, &values, |row| {
+        self.backend.each(&sql, &values, |row| {
             let counts = counted.entry(kept.key(row)?).or_default();
-            counts.see(bins, bins.place_at(row.get(1)?), 1);
+            counts.add_occurrences(bins, bins.place_at(row.get(1)?), 1);
             counts.units.add_one(row.get(2)?);
             Ok(())
         })?;
@@ -231,7 +231,7 @@ impl Counting<'_> {
             "SELECT {column}, count(*) FROM fault
              WHERE first_at_us >= ?1 AND first_at_us < ?2 {only} GROUP BY 1"
         );
-        self.base.each(&sql, &values, |row| {
+        self.backend.each(&sql, &values, |row| {
             counted.entry(kept.key(row)?).or_default().opened += row.get::<u32>(1)?;
             Ok(())
         })?;
@@ -239,10 +239,10 @@ impl Counting<'_> {
             "SELECT {column}, count(*), sum(CASE WHEN repairs = 0 THEN 1 ELSE 0 END) FROM fault
              WHERE closed_at_us >= ?1 AND closed_at_us < ?2 {only} GROUP BY 1"
         );
-        self.base.each(&sql, &values, |row| {
+        self.backend.each(&sql, &values, |row| {
             let counts = counted.entry(kept.key(row)?).or_default();
             counts.closed += row.get::<u32>(1)?;
-            counts.bare += row.get::<u32>(2)?;
+            counts.closed_without_repair += row.get::<u32>(2)?;
             Ok(())
         })?;
         let within_us = i64::from(KEPT_DAYS) * DAY_US;
@@ -251,7 +251,7 @@ impl Counting<'_> {
                 sum(CASE WHEN back_at_us - at_us < {within_us} THEN 1 ELSE 0 END) FROM repair
              WHERE at_us >= ?1 AND at_us < ?2 {only} GROUP BY 1"
         );
-        self.base.each(&sql, &values, |row| {
+        self.backend.each(&sql, &values, |row| {
             let repairs = &mut counted.entry(kept.key(row)?).or_default().repairs;
             repairs.all += row.get::<u32>(1)?;
             repairs.us += row.get::<i64>(2)?;
@@ -280,7 +280,7 @@ impl Counting<'_> {
                 "SELECT max(at_us) FROM fault_occurrence WHERE at_us >= ?1 AND at_us < ?2 {only}"
             );
             let last = self
-                .base
+                .backend
                 .first(&sql, &values, |row| row.get::<Option<i64>>(0))?;
             counts.last_at_us = last.flatten();
         }

@@ -1,0 +1,211 @@
+//! Parameter values of a query, and the conversion of result fields to Rust types.
+
+use std::borrow::Cow;
+
+use crate::id::Id;
+
+/// A parameter of a query.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value<'a> {
+    Null,
+    Integer(i64),
+    Real(f64),
+    Text(Cow<'a, str>),
+    Bytes(Cow<'a, [u8]>),
+}
+
+/// A field of a result, borrowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Field<'a> {
+    Null,
+    Integer(i64),
+    Real(f64),
+    Text(&'a str),
+    Bytes(&'a [u8]),
+}
+
+/// `values![a, b]`: the parameters `?1`, `?2` of a query.
+macro_rules! values {
+    ($($value:expr),* $(,)?) => { [$($crate::backend::Value::from($value)),*] };
+}
+pub(crate) use values;
+
+impl Value<'_> {
+    /// The same as a field, for comparison with stored rows.
+    pub fn field(&self) -> Field<'_> {
+        match self {
+            Self::Null => Field::Null,
+            Self::Integer(value) => Field::Integer(*value),
+            Self::Real(value) => Field::Real(*value),
+            Self::Text(text) => Field::Text(text),
+            Self::Bytes(bytes) => Field::Bytes(bytes),
+        }
+    }
+}
+
+impl From<i64> for Value<'_> {
+    fn from(value: i64) -> Self {
+        Self::Integer(value)
+    }
+}
+
+impl From<u32> for Value<'_> {
+    fn from(value: u32) -> Self {
+        Self::Integer(value.into())
+    }
+}
+
+impl From<bool> for Value<'_> {
+    fn from(value: bool) -> Self {
+        Self::Integer(value.into())
+    }
+}
+
+impl From<f64> for Value<'_> {
+    fn from(value: f64) -> Self {
+        Self::Real(value)
+    }
+}
+
+impl<'a> From<&'a str> for Value<'a> {
+    fn from(value: &'a str) -> Self {
+        Self::Text(Cow::Borrowed(value))
+    }
+}
+
+impl From<String> for Value<'_> {
+    fn from(value: String) -> Self {
+        Self::Text(Cow::Owned(value))
+    }
+}
+
+impl<'a> From<&'a String> for Value<'a> {
+    fn from(value: &'a String) -> Self {
+        Self::Text(Cow::Borrowed(value))
+    }
+}
+
+impl From<Id> for Value<'_> {
+    fn from(value: Id) -> Self {
+        Self::Bytes(Cow::Owned(value.as_bytes().to_vec()))
+    }
+}
+
+impl<'a> From<&'a [u8]> for Value<'a> {
+    fn from(value: &'a [u8]) -> Self {
+        Self::Bytes(Cow::Borrowed(value))
+    }
+}
+
+impl<'a, T: Into<Value<'a>>> From<Option<T>> for Value<'a> {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Null, Into::into)
+    }
+}
+
+/// Conversion of a field to a Rust type; the error says what the field is instead.
+pub(crate) trait FromField<'a>: Sized {
+    fn from_field(field: Field<'a>) -> Result<Self, String>;
+}
+
+impl Field<'_> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Null => "nothing",
+            Self::Integer(_) => "a whole number",
+            Self::Real(_) => "a number",
+            Self::Text(_) => "text",
+            Self::Bytes(_) => "bytes",
+        }
+    }
+
+    fn instead_of<T>(&self, wanted: &str) -> Result<T, String> {
+        Err(format!("{} where {wanted} should be", self.kind()))
+    }
+}
+
+impl FromField<'_> for i64 {
+    fn from_field(field: Field<'_>) -> Result<Self, String> {
+        match field {
+            Field::Integer(value) => Ok(value),
+            other => other.instead_of("a whole number"),
+        }
+    }
+}
+
+macro_rules! smaller_integer {
+    ($($type:ty),*) => {$(
+        impl FromField<'_> for $type {
+            fn from_field(field: Field<'_>) -> Result<Self, String> {
+                let value = i64::from_field(field)?;
+                value.try_into().map_err(|_| format!("{value} is out of range"))
+            }
+        }
+    )*};
+}
+smaller_integer!(u32, u64, usize, i32);
+
+impl FromField<'_> for bool {
+    fn from_field(field: Field<'_>) -> Result<Self, String> {
+        Ok(i64::from_field(field)? != 0)
+    }
+}
+
+impl FromField<'_> for f64 {
+    fn from_field(field: Field<'_>) -> Result<Self, String> {
+        match field {
+            Field::Real(value) => Ok(value),
+            Field::Integer(value) => Ok(value as f64),
+            other => other.instead_of("a number"),
+        }
+    }
+}
+
+impl<'a> FromField<'a> for &'a str {
+    fn from_field(field: Field<'a>) -> Result<Self, String> {
+        match field {
+            Field::Text(value) => Ok(value),
+            other => other.instead_of("text"),
+        }
+    }
+}
+
+impl FromField<'_> for String {
+    fn from_field(field: Field<'_>) -> Result<Self, String> {
+        <&str>::from_field(field).map(str::to_owned)
+    }
+}
+
+impl<'a> FromField<'a> for &'a [u8] {
+    fn from_field(field: Field<'a>) -> Result<Self, String> {
+        match field {
+            Field::Bytes(value) => Ok(value),
+            other => other.instead_of("bytes"),
+        }
+    }
+}
+
+impl FromField<'_> for Vec<u8> {
+    fn from_field(field: Field<'_>) -> Result<Self, String> {
+        <&[u8]>::from_field(field).map(<[u8]>::to_vec)
+    }
+}
+
+impl FromField<'_> for Id {
+    fn from_field(field: Field<'_>) -> Result<Self, String> {
+        let bytes = <&[u8]>::from_field(field)?;
+        let exact = bytes
+            .try_into()
+            .map_err(|_| format!("{} bytes where an id has 16", bytes.len()))?;
+        Ok(Self::from_bytes(exact))
+    }
+}
+
+impl<'a, T: FromField<'a>> FromField<'a> for Option<T> {
+    fn from_field(field: Field<'a>) -> Result<Self, String> {
+        match field {
+            Field::Null => Ok(None),
+            other => T::from_field(other).map(Some),
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The event graph of a fault, and the columns of the fault's row that follow from it.
+//!
+//! Each event that changes the state names its *parents*: the events that its author knew as the latest.
+//! An event that is no other event's parent is a *head*. One head decides the fault's state. With several
+//! heads, their authors did not know of each other, and the fault is *in conflict*: the state that leaves
+//! the most work stands until a later event names all heads as parents. `opened` and `recurred` are
+//! observations, not decisions: `recurred` yields to an acknowledgement, `opened` to every other event.
+//!
+//! The columns keep their first names: `follows` holds the parents, `turn` the Lamport number, `seen` the
+//! occurrences known, `disputed` whether the fault is in conflict.
+
+use crate::backend::{Backend, Server, SqlResult, values};
+use crate::id::Id;
+
+/// Recomputes the derived columns of a fault's row from its occurrences and events.
+pub(crate) fn recompute_fault(backend: &Backend, fault: i64) -> SqlResult<()> {
+    if let Backend::Server(server) = backend {
+        return recompute_faults(server, &[fault]);
+    }
+    backend.execute(
+        &format!("{RECOMPUTE_FAULT} WHERE seq = ?1"),
+        &values![fault],
+    )?;
+    Ok(())
+}
+
+/// The same for many faults on a server in one round trip, by a function that the owner of the tables
+/// provides.
+pub(crate) fn recompute_faults(server: &Server, faults: &[i64]) -> SqlResult<()> {
+    server.execute_columns("SELECT settle_faults($1)", &[&faults])?;
+    Ok(())
+}
+
+/// Merges, on a server, faults that are not closed with others of the same unit, code and part.
+pub(crate) fn merge_duplicates_on_server(server: &Server, faults: &[i64]) -> SqlResult<()> {
+    server.execute_columns("SELECT join_faults($1)", &[&faults])?;
+    Ok(())
+}
+
+/// The row number of the fault with this id, or with this id as an alias.
+pub(crate) fn fault_of(backend: &Backend, id: Id) -> SqlResult<Option<i64>> {
+    backend.first(
+        "SELECT seq FROM fault WHERE id = ?1 UNION ALL SELECT fault FROM fault_alias WHERE id = ?1",
+        &values![id],
+        |row| row.get(0),
+    )
+}
+
+/// Faults not closed of the same unit, code and part as this one, oldest first; none if this one is closed.
+pub(crate) fn open_duplicates(backend: &Backend, fault: i64) -> SqlResult<Vec<i64>> {
+    backend.select(
+        "SELECT d.seq FROM fault f JOIN fault d ON d.unit = f.unit AND d.code = f.code AND d.lru = f.lru
+         WHERE f.seq = ?1 AND f.state <> 'closed' AND d.state <> 'closed' ORDER BY d.seq",
+        &values![fault],
+        |row| row.get(0),
+    )
+}
+
+/// Merges two faults of a file: all rows of `merged` move to `kept`, and its ids become aliases. On a server
+/// `join_faults` in `server/functions.sql` does this, for many faults at once and without counts.
+pub(crate) fn merge_faults(backend: &Backend, kept: i64, merged: i64) -> SqlResult<()> {
+    for sql in MOVE_ROWS {
+        backend.execute(sql, &values![kept, merged])?;
+    }
+    backend.execute(SUBTRACT_FROM_TALLY, &values![merged])?;
+    backend.execute("DELETE FROM fault WHERE seq = ?1", &values![merged])?;
+    recompute_fault(backend, kept)?;
+    backend.execute(UPDATE_REPAIRS, &values![kept])?;
+    Ok(())
+}
+
+/// Repairs are selected by the unit, code and part that both faults share.
+const MOVE_ROWS: [&str; 5] = [
+    "UPDATE fault_occurrence SET fault = ?1 WHERE fault = ?2",
+    "UPDATE fault_event SET fault = ?1 WHERE fault = ?2",
+    "UPDATE repair SET fault = ?1 WHERE fault = ?2 AND unit = (SELECT unit FROM fault WHERE seq = ?2)",
+    "UPDATE fault_alias SET fault = ?1 WHERE fault = ?2",
+    "INSERT INTO fault_alias(id, fault) SELECT id, ?1 FROM fault WHERE seq = ?2",
+];
+
+/// Subtracts from the counts what the file's triggers counted of the fault that is removed.
+const SUBTRACT_FROM_TALLY: &str = "
+    INSERT INTO tally(dim, grain, at, key, opened, closed, bare)
+    SELECT dim, grain, at,
+        CASE dim WHEN 0 THEN '' WHEN 1 THEN code WHEN 2 THEN lru WHEN 3 THEN unit ELSE line END,
+        opened, closed, closed * (repairs = 0)
+    FROM fault,
+        (SELECT 0 AS dim UNION ALL SELECT 1 UNION ALL SELECT 2 UNION ALL SELECT 3 UNION ALL SELECT 4),
+        (SELECT 0 AS grain, utc_month(first_at_us) AS at, -1 AS opened, 0 AS closed
+            FROM fault WHERE seq = ?1
+        UNION ALL SELECT 1, utc_day(first_at_us), -1, 0 FROM fault WHERE seq = ?1
+        UNION ALL SELECT 0, utc_month(closed_at_us), 0, -1 FROM fault WHERE seq = ?1
+        UNION ALL SELECT 1, utc_day(closed_at_us), 0, -1 FROM fault WHERE seq = ?1)
+    WHERE seq = ?1 AND at IS NOT NULL
+    ON CONFLICT DO UPDATE SET opened = opened + excluded.opened, closed = closed + excluded.closed,
+        bare = bare + excluded.bare";
+
+/// Recomputes when the fault was opened before each of its repairs, from the events of both faults.
+const UPDATE_REPAIRS: &str = "
+    UPDATE repair SET
+        line = (SELECT line FROM fault WHERE seq = ?1),
+        opened_at_us = min(repair.at_us, coalesce(
+            (SELECT max(e.at_us) FROM fault_event e WHERE e.fault = ?1
+                AND e.kind IN ('opened', 'recurred', 'reopened') AND e.at_us <= repair.at_us),
+            (SELECT first_at_us FROM fault WHERE seq = ?1)))
+    WHERE fault = ?1 AND unit = (SELECT unit FROM fault WHERE seq = ?1)";
+
+/// The heads of a fault's event graph, as `e`: the text after `FROM`.
+macro_rules! heads {
+    ($fault:literal) => {
+        concat!(
+            "fault_event e WHERE e.fault = ",
+            $fault,
+            " AND e.state IS NOT NULL AND NOT EXISTS (SELECT 1 FROM fault_event later
+                WHERE later.fault = e.fault AND later.state IS NOT NULL
+                    AND instr(later.follows, e.id) > 0)"
+        )
+    };
+}
+pub(crate) use heads;
+
+/// The head with the lowest rank decides the state.
+macro_rules! rank {
+    () => {
+        "CASE e.kind WHEN 'opened' THEN 9 WHEN 'recurred' THEN 3 ELSE
+            CASE e.state WHEN 'open' THEN 1 WHEN 'acknowledged' THEN 2 WHEN 'repaired' THEN 4
+                WHEN 'verified' THEN 5 ELSE 6 END END"
+    };
+}
+
+/// The `UPDATE` of the derived columns, without its `WHERE`.
+pub(crate) const RECOMPUTE_FAULT: &str = concat!(
+    "UPDATE fault SET
+        occurrences = (SELECT count(*) FROM fault_occurrence o WHERE o.fault = fault.seq),
+        first_at_us = coalesce(
+            (SELECT min(o.at_us) FROM fault_occurrence o WHERE o.fault = fault.seq), first_at_us),
+        last_at_us = coalesce(
+            (SELECT max(o.at_us) FROM fault_occurrence o WHERE o.fault = fault.seq), last_at_us),
+        line = coalesce((SELECT o.line FROM fault_occurrence o WHERE o.fault = fault.seq
+            ORDER BY o.at_us, o.id LIMIT 1), line),
+        repairs = (SELECT count(*) FROM fault_event e
+            WHERE e.fault = fault.seq AND e.kind = 'repair'),
+        state = coalesce((SELECT e.state FROM ",
+    heads!("fault.seq"),
+    " ORDER BY ",
+    rank!(),
+    " LIMIT 1), state),
+        closed_at_us = (SELECT CASE WHEN e.state = 'closed' THEN e.at_us END FROM ",
+    heads!("fault.seq"),
+    " ORDER BY ",
+    rank!(),
+    ", e.at_us LIMIT 1),
+        disputed = coalesce((SELECT CAST(
+                max(CASE WHEN e.kind <> 'recurred' THEN ",
+    rank!(),
+    " END) > min(",
+    rank!(),
+    ") AS integer) FROM ",
+    heads!("fault.seq"),
+    " AND e.kind <> 'opened'), 0)"
+);

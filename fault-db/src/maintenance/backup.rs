@@ -1,0 +1,22 @@
+//! A copy of a file, made while other programs may write to it.
+
+use std::path::Path;
+
+use crate::atomic_file::AtomicFile;
+use crate::error::StoreError;
+use crate::file::copy_to;
+use crate::store::Store;
+
+impl Store {
+    /// Copies the file as it is now, compacted, while others may write to it.
+    pub fn backup(&self, to: &Path) -> Result<(), StoreError> {
+        if to.exists() {
+            return Err(StoreError::TargetExists {
+                path: to.to_path_buf(),
+            });
+        }
+        let conn = self.file()?;
+        AtomicFile::can_be_made(to)?;
+        copy_to(conn, to, "backing up")
+    }
+}

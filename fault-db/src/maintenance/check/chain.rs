@@ -1,0 +1,414 @@
+//! Checks each seal against the row it covers and against the seal before it.
+
+use std::collections::BTreeSet;
+
+use super::{Findings, Remarks};
+use crate::backend::{Backend, SqlResult, values};
+use crate::id::Id;
+use crate::seal::events_and_notes::{
+    Earlier, EarlierPayload, EventPayload, earlier, event_digest, note_digest,
+};
+use crate::seal::run::RunPayload;
+use crate::seal::{
+    BegunPayload, DIGEST_VERSION, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, chained, hex,
+    own_file_id, run_digest, statement_digest, trace, version1,
+};
+
+/// Seals read at a time, which bounds the memory used.
+const SEALS_PER_BATCH: usize = 1_000;
+
+/// A seal as stored, with the row number of what it covers, if that exists.
+struct Seal {
+    origin: Id,
+    ordinal: i64,
+    what: String,
+    id: Id,
+    covers: i64,
+    payload: String,
+    digest: Vec<u8>,
+    hash: Vec<u8>,
+    row: Option<i64>,
+}
+
+/// What is collected while the chains are read.
+#[derive(Default)]
+struct ChainSummary {
+    /// Seals of runs.
+    runs: u32,
+    /// Of these, with a digest of version 1.
+    by_earlier: u32,
+    /// Runs, events and notes sealed as found, since they came without a seal.
+    found: u32,
+    /// Traces and recordings named in a run's seal that do not exist.
+    missing: BTreeSet<(Id, Option<i64>)>,
+    /// Those deleted by a prune, with their digests.
+    pruned: BTreeSet<(Id, Option<i64>, String)>,
+    begun: Option<BegunPayload>,
+}
+
+/// Checks all chains; the number of runs checked.
+pub(super) fn check(
+    backend: &Backend,
+    mut found: Findings<'_>,
+    remarks: &mut Remarks,
+) -> SqlResult<u32> {
+    let own = match backend {
+        Backend::File(_) => own_file_id(backend)?,
+        Backend::Server(_) => None,
+    };
+    let mut summary = ChainSummary::default();
+    let mut last: Option<Seal> = None;
+    loop {
+        let seals = seals_after(backend, last.as_ref())?;
+        let is_end = seals.len() < SEALS_PER_BATCH;
+        for seal in seals {
+            let before = last.as_ref().filter(|last| last.origin == seal.origin);
+            if let Some(wrong) = position_error(&seal, before) {
+                found.add(wrong);
+            }
+            check_entry(backend, &seal, own, &mut summary, &mut found, remarks)?;
+            last = Some(seal);
+        }
+        if is_end {
+            break;
+        }
+    }
+    if let Backend::File(_) = backend {
+        let told: BTreeSet<_> = summary.pruned.iter().map(|(id, n, _)| (*id, *n)).collect();
+        for (id, recording) in summary.missing.difference(&told) {
+            found.add(match recording {
+                None => format!("trace {id} was taken out: no seal says that it was pruned"),
+                Some(n) => format!(
+                    "recording {n} of run {id} was taken out: no seal says that it was pruned"
+                ),
+            });
+        }
+        check_begun(backend, own, &summary, &mut found, remarks)?;
+    }
+    check_unsealed_runs(backend, &mut found)?;
+    let ChainSummary {
+        by_earlier,
+        found: as_found,
+        ..
+    } = summary;
+    if by_earlier > 0 {
+        let covered = version1::COVERED;
+        remarks.push(format!(
+            "{by_earlier} runs were sealed by an earlier version: covers {covered}"
+        ));
+    }
+    if as_found > 0 {
+        remarks.push(format!(
+            "{as_found} runs, events and notes came without a seal and were sealed as they were found then"
+        ));
+    }
+    Ok(summary.runs)
+}
+
+/// Checks one entry against the row it covers.
+fn check_entry(
+    backend: &Backend,
+    seal: &Seal,
+    own: Option<Id>,
+    summary: &mut ChainSummary,
+    found: &mut Findings<'_>,
+    remarks: &mut Remarks,
+) -> SqlResult<()> {
+    let id = seal.id;
+    match (&seal.what[..], seal.row) {
+        ("run", None) => found.add(format!("{}: its run was taken out", seal.name())),
+        ("event", None) => found.add(format!("{}: its event was taken out", seal.name())),
+        ("note", None) => found.add(format!("{}: its note was taken out", seal.name())),
+        ("run", Some(run)) => {
+            summary.runs += 1;
+            summary.by_earlier += u32::from(seal.covers < DIGEST_VERSION);
+            if run_digest(backend, run, seal.covers, &seal.payload)? != seal.digest[..] {
+                found.add(format!("run {id} was changed after it was sealed"));
+            }
+            if seal.covers == DIGEST_VERSION {
+                let payload = RunPayload::of(&seal.payload).unwrap_or_default();
+                summary.found += u32::from(payload.found.is_some());
+                check_traces_and_recordings(backend, (id, run), &payload, summary, found)?;
+            }
+        }
+        ("event", Some(event)) => {
+            let payload = EventPayload::of(&seal.payload);
+            let fits = event_digest(backend, event, &seal.payload)? == seal.digest[..];
+            if !fits || !is_of_its_fault(backend, event, payload.as_ref())? {
+                found.add(format!("event {id} was changed after it was sealed"));
+            }
+            summary.found += u32::from(payload.is_some_and(|payload| payload.found.is_some()));
+        }
+        ("note", Some(note)) => {
+            if note_digest(backend, note, &seal.payload)? != seal.digest[..] {
+                found.add(format!("note {id} was changed after it was sealed"));
+            }
+            summary.found += u32::from(!seal.payload.is_empty());
+        }
+        (what, _) => {
+            if statement_digest(what, id, &seal.payload) != seal.digest[..] {
+                found.add(format!("{} was changed", seal.name()));
+            }
+            match what {
+                PRUNED => {
+                    if let Ok(payload) = serde_json::from_str::<PrunedPayload>(&seal.payload) {
+                        summary
+                            .pruned
+                            .insert((id, payload.recording, payload.sha256));
+                    }
+                }
+                "begun" if own == Some(seal.origin) => {
+                    summary.begun = serde_json::from_str(&seal.payload).ok();
+                }
+                RECOUNTED => {
+                    if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
+                        remarks.push(payload.text());
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks the traces and recordings of a run against its seal.
+fn check_traces_and_recordings(
+    backend: &Backend,
+    (id, run): (Id, i64),
+    payload: &RunPayload,
+    summary: &mut ChainSummary,
+    found: &mut Findings<'_>,
+) -> SqlResult<()> {
+    let traces = backend.select(
+        "SELECT seq, id, recording FROM trace WHERE run = ?1",
+        &values![run],
+        |row| {
+            Ok((
+                row.get::<i64>(0)?,
+                row.get::<Id>(1)?,
+                row.get::<Option<i64>>(2)?,
+            ))
+        },
+    )?;
+    for said in &payload.traces {
+        let Ok(of) = said.id.parse::<Id>() else {
+            continue;
+        };
+        match traces.iter().find(|(_, trace, _)| *trace == of) {
+            None => {
+                summary.missing.insert((of, None));
+            }
+            Some((seq, _, recording)) => {
+                if hex(&trace::digest(backend, *seq)?) != said.sha256
+                    || *recording != said.recording
+                {
+                    found.add(format!("trace {of} was changed after its run was sealed"));
+                }
+            }
+        }
+    }
+    for (_, of, _) in &traces {
+        if !payload.traces.iter().any(|said| said.id == of.to_string()) {
+            found.add(format!(
+                "trace {of} was put into run {id} after it was sealed"
+            ));
+        }
+    }
+    let recordings = trace::recordings(backend, run)?;
+    for said in &payload.recordings {
+        let ordinal = said.ordinal;
+        if !recordings.contains(&ordinal) {
+            summary.missing.insert((id, Some(ordinal)));
+        } else if hex(&trace::recording_digest(backend, run, ordinal)?) != said.sha256 {
+            found.add(format!(
+                "recording {ordinal} of run {id} was changed after it was sealed"
+            ));
+        }
+    }
+    for ordinal in recordings {
+        if !payload
+            .recordings
+            .iter()
+            .any(|said| said.ordinal == ordinal)
+        {
+            found.add(format!(
+                "recording {ordinal} was put into run {id} after it was sealed"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Whether an event belongs to the fault it was sealed for, with no more occurrences known than sealed.
+fn is_of_its_fault(
+    backend: &Backend,
+    event: i64,
+    payload: Option<&EventPayload>,
+) -> SqlResult<bool> {
+    let Some((payload, of)) =
+        payload.and_then(|payload| Some((payload, payload.fault.parse::<Id>().ok()?)))
+    else {
+        return Ok(false);
+    };
+    let same = backend.first(
+        "SELECT 1 FROM fault_event e JOIN fault f ON f.seq = e.fault
+         WHERE e.seq = ?1 AND e.seen <= ?3
+            AND (f.id = ?2 OR EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = ?2 AND a.fault = f.seq))",
+        &values![event, of, payload.occurrences_known],
+        |_| Ok(()),
+    )?;
+    Ok(same.is_some())
+}
+
+/// Checks the rows that were there before seals covered them one by one.
+fn check_begun(
+    backend: &Backend,
+    own: Option<Id>,
+    summary: &ChainSummary,
+    found: &mut Findings<'_>,
+    remarks: &mut Remarks,
+) -> SqlResult<()> {
+    let Some(begun) = &summary.begun else {
+        let copied = "SELECT 1 FROM seal WHERE origin = ?1 AND what = 'copied' AND ordinal = 1";
+        let is_copy = match own {
+            Some(own) => backend.first(copied, &values![own], |_| Ok(()))?.is_some(),
+            None => false,
+        };
+        if !is_copy {
+            found.add(
+                "the beginning of this file's own chain of seals is not there: it was taken out"
+                    .into(),
+            );
+        }
+        // The chain that the file was copied with covers the events and notes of before.
+        return Ok(());
+    };
+    let rows = [
+        ("events", Earlier::Events, &begun.events, UNSEALED_EVENTS),
+        ("notes", Earlier::Notes, &begun.notes, UNSEALED_NOTES),
+    ];
+    for (name, what, said, unsealed) in rows {
+        let now = earlier(backend, what, said.last)?;
+        if now != *said && (said.count > 0 || now.count > 0) {
+            found.add(format!(
+                "the {name} from before the fifth schema are not what they were when the file was brought up to date"
+            ));
+        }
+        backend.each(unsealed, &values![said.last], |row| {
+            let id = row.get::<Id>(0)?;
+            found.add(format!("one of the {name}, {id}, has no seal: it was put in by hand, or its seal was taken out"));
+            Ok(())
+        })?;
+    }
+    let EarlierPayload { count: events, .. } = begun.events;
+    let EarlierPayload { count: notes, .. } = begun.notes;
+    if events + notes > 0 {
+        remarks.push(format!(
+            "{events} events and {notes} notes were here before this file was brought up to date (schema {}): \
+             they are covered as they were then",
+            begun.schema
+        ));
+    }
+    Ok(())
+}
+
+const UNSEALED_EVENTS: &str = "SELECT e.id FROM fault_event e WHERE e.seq > ?1
+    AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = e.id AND s.what = 'event') ORDER BY e.seq";
+const UNSEALED_NOTES: &str = "SELECT n.id FROM run_note n WHERE n.seq > ?1
+    AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = n.id AND s.what = 'note') ORDER BY n.seq";
+
+/// Finds runs without a seal, and sealed runs without a verdict.
+fn check_unsealed_runs(backend: &Backend, found: &mut Findings<'_>) -> SqlResult<()> {
+    let checks = [
+        (
+            "was finished and has no seal: its seal was taken out, or it was put in by hand",
+            "SELECT id FROM run WHERE verdict IS NOT NULL
+                AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run') ORDER BY seq",
+        ),
+        (
+            "has a seal and no verdict: the verdict was taken away",
+            "SELECT id FROM run WHERE verdict IS NULL
+                AND EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run') ORDER BY seq",
+        ),
+    ];
+    for (what, sql) in checks {
+        backend.each(sql, &[], |row| {
+            found.add(format!("run {} {what}", row.get::<Id>(0)?));
+            Ok(())
+        })?;
+    }
+    let Backend::File(_) = backend else {
+        return Ok(());
+    };
+    // If the end of the chain was cut off together with the last runs, the outbox still names them.
+    let told = "SELECT count(*) FROM outbox o WHERE o.what = 'run'
+        AND NOT EXISTS (SELECT 1 FROM run WHERE run.seq = o.row)";
+    let gone = backend
+        .first(told, &[], |row| row.get::<i64>(0))?
+        .unwrap_or(0);
+    if gone > 0 {
+        found.add(format!(
+            "{gone} runs that were recorded here are not there any more"
+        ));
+    }
+    Ok(())
+}
+
+/// The error in a seal's position or hash, if any; `before` is the seal before it in the same chain.
+fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<String> {
+    let expected = before.map_or(1, |before| before.ordinal + 1);
+    if seal.ordinal != expected {
+        let last = seal.ordinal - 1;
+        let missing = if last > expected {
+            format!("{expected} to {last}")
+        } else {
+            expected.to_string()
+        };
+        return Some(format!(
+            "{}: before it seals were taken out, number {missing}",
+            seal.name()
+        ));
+    }
+    let hash = chained(before.map(|before| &before.hash[..]), &seal.digest);
+    (hash != seal.hash[..]).then(|| {
+        format!(
+            "{} ({} {}) does not fit the one before: it was changed",
+            seal.name(),
+            seal.what,
+            seal.id
+        )
+    })
+}
+
+impl Seal {
+    fn name(&self) -> String {
+        format!("seal {} of file {}", self.ordinal, self.origin.short())
+    }
+}
+
+fn seals_after(backend: &Backend, last: Option<&Seal>) -> SqlResult<Vec<Seal>> {
+    let (origin, ordinal) = last.map_or((&[][..], 0), |last| {
+        (&last.origin.as_bytes()[..], last.ordinal)
+    });
+    let sql = format!(
+        "SELECT s.origin, s.ordinal, s.what, s.id, s.covers, s.says, s.digest, s.hash,
+            CASE s.what WHEN 'run' THEN (SELECT r.seq FROM run r WHERE r.id = s.id)
+                WHEN 'event' THEN (SELECT e.seq FROM fault_event e WHERE e.id = s.id)
+                WHEN 'note' THEN (SELECT n.seq FROM run_note n WHERE n.id = s.id) END
+         FROM seal s WHERE (s.origin, s.ordinal) > (?1, ?2) ORDER BY s.origin, s.ordinal LIMIT {SEALS_PER_BATCH}"
+    );
+    backend.select(&sql, &values![origin, ordinal], |row| {
+        Ok(Seal {
+            origin: row.get(0)?,
+            ordinal: row.get(1)?,
+            what: row.get(2)?,
+            id: row.get(3)?,
+            covers: row.get(4)?,
+            payload: row.get(5)?,
+            digest: row.get(6)?,
+            hash: row.get(7)?,
+            row: row.get(8)?,
+        })
+    })
+}

@@ -1,0 +1,165 @@
+//! Checks and rebuilds the tables of counts and sums that triggers maintain.
+//!
+//! The statements that fill these tables are run against temporary tables of the same names: an unqualified
+//! name means the temporary table, so the check changes nothing in the file.
+
+use rusqlite::Connection;
+
+use super::Findings;
+use super::derived::faults_that_differ;
+use crate::backend::SqlResult;
+use crate::error::StoreError;
+use crate::event_graph::recompute_fault;
+use crate::schema::{COUNTS, WORDS};
+use crate::seal::{RECOUNTED, RecountedPayload, append_statement};
+use crate::store::Store;
+
+/// The tables of counts, and the columns to index for a join with itself.
+const TABLES: [(&str, Option<&str>); 4] = [
+    ("repair", None),
+    ("tally", None),
+    ("measured_day", Some("name, day")),
+    ("measured_month", Some("name, month, unit")),
+];
+
+/// Queries that count differing rows. Floating-point sums depend on the order of summation; that much
+/// difference is allowed, relative to the sum of squares.
+const DIFFERENCES: [(&str, &str); 6] = [
+    (
+        "rows of the table of repairs",
+        "SELECT count(DISTINCT event) FROM (
+            SELECT * FROM (SELECT * FROM main.repair EXCEPT SELECT * FROM temp.repair)
+            UNION ALL SELECT * FROM (SELECT * FROM temp.repair EXCEPT SELECT * FROM main.repair))",
+    ),
+    (
+        "counts by day or month",
+        "WITH kept AS (SELECT * FROM main.tally
+            WHERE seen <> 0 OR opened <> 0 OR closed <> 0 OR bare <> 0 OR repairs <> 0 OR repair_us <> 0
+                OR back <> 0 OR units <> x'')
+         SELECT count(*) FROM (SELECT DISTINCT dim, grain, at, key FROM (
+            SELECT * FROM (SELECT * FROM kept EXCEPT SELECT * FROM temp.tally)
+            UNION ALL SELECT * FROM (SELECT * FROM temp.tally EXCEPT SELECT * FROM kept)))",
+    ),
+    (
+        "sums of measured values by day",
+        "SELECT count(*) FROM main.measured_day a FULL JOIN temp.measured_day b USING (name, procedure, day)
+         WHERE a.n IS NOT b.n OR a.least IS NOT b.least OR a.most IS NOT b.most
+            OR a.not_passed IS NOT b.not_passed
+            OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx",
+    ),
+    (
+        "sums of measured values by month",
+        "SELECT count(*) FROM main.measured_month a FULL JOIN temp.measured_month b USING (name, procedure, month, unit)
+         WHERE a.n IS NOT b.n
+            OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx
+            OR (a.t - b.t) * (a.t - b.t) > 1e-18 * b.n * b.tt OR abs(a.tt - b.tt) > 1e-9 * b.tt
+            OR (a.tx - b.tx) * (a.tx - b.tx) > 1e-18 * b.tt * b.xx",
+    ),
+    (
+        "notes on faults that a search does not find, or finds and are not there",
+        "SELECT (SELECT count(*) FROM fault_event e WHERE e.kind NOT IN ('opened', 'recurred') AND e.body <> ''
+                AND NOT EXISTS (SELECT 1 FROM event_words_docsize w WHERE w.id = e.seq))
+            + (SELECT count(*) FROM event_words_docsize w
+                WHERE NOT EXISTS (SELECT 1 FROM fault_event e WHERE e.seq = w.id))",
+    ),
+    (
+        "notes on runs that a search does not find, or finds and are not there",
+        "SELECT (SELECT count(*) FROM run_note n
+                WHERE NOT EXISTS (SELECT 1 FROM note_words_docsize w WHERE w.id = n.seq))
+            + (SELECT count(*) FROM note_words_docsize w
+                WHERE NOT EXISTS (SELECT 1 FROM run_note n WHERE n.seq = w.id))",
+    ),
+];
+
+/// Compares the tables with a recount.
+pub(super) fn check(conn: &Connection, mut found: Findings<'_>) -> rusqlite::Result<()> {
+    in_snapshot(conn, || compare(conn, |detail| found.add(detail)))
+}
+
+/// Runs `work` in one snapshot of the file, and rolls the temporary tables back; others may write meanwhile.
+pub(super) fn in_snapshot(
+    conn: &Connection,
+    work: impl FnOnce() -> rusqlite::Result<()>,
+) -> rusqlite::Result<()> {
+    with_sorting_on_disk(conn, || {
+        conn.execute_batch("BEGIN")?;
+        let done = work();
+        let ended = conn.execute_batch("ROLLBACK");
+        done.and(ended)
+    })
+}
+
+fn compare(conn: &Connection, mut found: impl FnMut(String)) -> rusqlite::Result<()> {
+    for (table, named_by) in TABLES {
+        conn.execute_batch(&format!(
+            "CREATE TEMP TABLE {table} AS SELECT * FROM main.{table} WHERE false"
+        ))?;
+        if let Some(columns) = named_by {
+            conn.execute_batch(&format!(
+                "CREATE INDEX temp.{table}_by_name ON {table}({columns})"
+            ))?;
+        }
+    }
+    conn.execute_batch(COUNTS)?;
+    for (what, sql) in DIFFERENCES {
+        let differ: i64 = conn.query_row(sql, [], |row| row.get(0))?;
+        if differ > 0 {
+            found(format!("{differ} {what} are not what the history says"));
+        }
+    }
+    Ok(())
+}
+
+/// Recounts everything; what differed.
+pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreError> {
+    const DOING: &str = "counting anew";
+    let failed = |error| store.failed(DOING, error);
+    let conn = store.file()?;
+    let id = store.mint()?;
+    with_sorting_on_disk(conn, || {
+        Ok(store.write(DOING, |conn| {
+            let mut differed = Vec::new();
+            compare(conn, |detail| differed.push(detail)).map_err(failed)?;
+            for (table, _) in TABLES {
+                let drop = format!("DROP TABLE temp.{table}");
+                conn.execute_batch(&drop).map_err(failed)?;
+            }
+            let mut faults = Vec::new();
+            faults_that_differ(conn, |fault, id| faults.push((fault, id))).map_err(failed)?;
+            if let Some((_, id)) = faults.first() {
+                let count = faults.len();
+                differed.push(format!(
+                    "{count} faults, first {id}, did not stand as their occurrences and events say"
+                ));
+            }
+            let work = || -> SqlResult<()> {
+                for (fault, _) in &faults {
+                    recompute_fault(store.backend(), *fault)?;
+                }
+                if !differed.is_empty() {
+                    let differed = differed.clone();
+                    let payload = RecountedPayload { at_us, differed };
+                    append_statement(store.backend(), RECOUNTED, id, &payload)?;
+                }
+                Ok(())
+            };
+            work().map_err(|error| store.failed(DOING, error))?;
+            conn.execute_batch(COUNTS).map_err(failed)?;
+            conn.execute_batch(WORDS).map_err(failed)?;
+            Ok(differed)
+        }))
+    })
+    .map_err(failed)?
+}
+
+/// Lets SQLite sort on disk: a whole history does not fit in memory.
+fn with_sorting_on_disk<T>(
+    conn: &Connection,
+    work: impl FnOnce() -> rusqlite::Result<T>,
+) -> rusqlite::Result<T> {
+    let kept: i64 = conn.query_row("PRAGMA temp_store", [], |row| row.get(0))?;
+    conn.execute_batch("PRAGMA temp_store = FILE")?;
+    let done = work();
+    conn.execute_batch(&format!("PRAGMA temp_store = {kept}"))?;
+    done
+}

@@ -1,0 +1,223 @@
+//! Integrity check of a file or a server: damage, altered rows, broken seals, wrong counts.
+
+mod chain;
+mod counted;
+mod derived;
+mod server;
+
+use rusqlite::Connection;
+use serde::Serialize;
+
+use crate::backend::Backend;
+use crate::error::StoreError;
+use crate::id::Id;
+use crate::recording::check_recordings;
+use crate::schema::SCHEMA_VERSION;
+use crate::schema_guard;
+use crate::seal::SealHead;
+use crate::store::Store;
+
+/// The result of a check.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CheckReport {
+    /// Runs checked against their seals.
+    pub runs: u32,
+    /// Traces whose checksum and samples were read.
+    pub traces: u32,
+    /// Recordings that were decompressed and read.
+    pub recordings: u32,
+    /// Problems found; empty is good.
+    pub problems: Vec<Problem>,
+    /// Remarks that are no problems: what an earlier version sealed, what was sealed as found, and what was
+    /// recounted.
+    pub remarks: Vec<String>,
+    /// The last entry of the file's chain of seals, for comparison with values known elsewhere.
+    pub head: Option<SealHead>,
+}
+
+/// Remarks, as sentences.
+type Remarks = Vec<String>;
+
+/// One problem.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Problem {
+    /// integrity, schema, foreign_key, count, fault, trace, recording, seal or tally.
+    pub kind: &'static str,
+    /// Where it is, and what is wrong.
+    pub detail: String,
+    /// What to do about it.
+    pub advice: &'static str,
+}
+
+/// Problems listed of each kind; SQLite's own check stops there, too.
+const MAX_FINDINGS: u32 = 100;
+
+const FROM_BACKUP: &str = "keep this file as it is and go on with a backup; other laptops and the server may \
+    have what was recorded since";
+const LOST: &str =
+    "it cannot be brought back here; a backup, another laptop or the server may have it";
+const ALTERED: &str = "somebody has changed the file by hand: what no line names can still be trusted as far as its \
+    seal is the one on a test sheet, in a backup or on the server; no command takes this finding away";
+const FOREIGN_OBJECT: &str = "nothing is written to such a file; keep a copy of it as it is, then go on with a backup, or \
+    take out by hand what is not of this program and check it again";
+const REBUILD: &str = "a row may have been changed by hand: hold the file against a backup or the server first; then \
+    `db rebuild` makes it anew from the rows it follows from, and what differed stays on record";
+
+/// Collects problems of one kind, up to the limit.
+struct Findings<'a> {
+    problems: &'a mut Vec<Problem>,
+    kind: &'static str,
+    advice: &'static str,
+    found: u32,
+}
+
+impl<'a> Findings<'a> {
+    fn new(problems: &'a mut Vec<Problem>, kind: &'static str, advice: &'static str) -> Self {
+        Self {
+            problems,
+            kind,
+            advice,
+            found: 0,
+        }
+    }
+
+    fn add(&mut self, detail: String) {
+        self.found += 1;
+        if self.found <= MAX_FINDINGS {
+            self.say(detail);
+        }
+    }
+
+    fn say(&mut self, detail: String) {
+        self.problems.push(Problem {
+            kind: self.kind,
+            detail,
+            advice: self.advice,
+        });
+    }
+}
+
+impl Drop for Findings<'_> {
+    fn drop(&mut self) {
+        let more = self.found.saturating_sub(MAX_FINDINGS);
+        if more > 0 {
+            self.say(format!("and {more} more of this kind"));
+        }
+    }
+}
+
+impl Store {
+    /// Looks for damage and for manual changes: SQLite's integrity check, foreign objects, foreign keys,
+    /// every trace and recording, every run, event and note against its seal, the seals against each other,
+    /// the derived columns of faults and units, and all counts.
+    ///
+    /// On a server: every run against its seal, the seals against each other, and the triggers that make its
+    /// tables append-only.
+    pub fn check(&self) -> Result<CheckReport, StoreError> {
+        if let Backend::Server(_) = self.backend() {
+            return server::check(self);
+        }
+        let conn = self.file()?;
+        let mut problems = Vec::new();
+        let failed = |error| self.failed("checking", error);
+
+        let integrity = format!("PRAGMA integrity_check({MAX_FINDINGS})");
+        let mut found = Findings::new(&mut problems, "integrity", FROM_BACKUP);
+        each_text(conn, &integrity, |detail| {
+            if detail != "ok" {
+                found.add(detail);
+            }
+        })
+        .map_err(failed)?;
+        drop(found);
+        let is_damaged = !problems.is_empty();
+
+        let mut report = CheckReport {
+            runs: 0,
+            traces: 0,
+            recordings: 0,
+            problems,
+            remarks: Vec::new(),
+            head: None,
+        };
+        match self.check_rows(conn, &mut report) {
+            // SQLite's findings are worth more than the place where reading failed.
+            Err(error) if is_damaged => report.problems.push(Problem {
+                kind: "integrity",
+                detail: format!("the rest could not be looked at: {error}"),
+                advice: FROM_BACKUP,
+            }),
+            done => done?,
+        }
+        Ok(report)
+    }
+
+    /// Checks all rows.
+    fn check_rows(&self, conn: &Connection, report: &mut CheckReport) -> Result<(), StoreError> {
+        let failed = |error| self.failed("checking", error);
+        let problems = &mut report.problems;
+        let mut found = Findings::new(problems, "schema", FOREIGN_OBJECT);
+        let foreign_objects =
+            schema_guard::foreign_objects(conn, SCHEMA_VERSION).map_err(failed)?;
+        foreign_objects
+            .into_iter()
+            .for_each(|detail| found.add(detail));
+        drop(found);
+
+        let mut found = Findings::new(problems, "foreign_key", FROM_BACKUP);
+        each_text(conn, FOREIGN, |detail| found.add(detail)).map_err(failed)?;
+        drop(found);
+
+        let mut found = Findings::new(problems, "trace", LOST);
+        for id in trace_ids(conn).map_err(failed)? {
+            report.traces += 1;
+            match self.trace(id) {
+                Ok(_) => {}
+                // Another program may prune meanwhile.
+                Err(StoreError::NotFound { .. }) => report.traces -= 1,
+                Err(error) => found.add(error.to_string()),
+            }
+        }
+        drop(found);
+
+        let mut found = Findings::new(problems, "recording", LOST);
+        let (recordings, wrong) = check_recordings(conn).map_err(failed)?;
+        report.recordings = recordings;
+        wrong.into_iter().for_each(|detail| found.add(detail));
+        drop(found);
+
+        let found = Findings::new(problems, "seal", ALTERED);
+        let runs = chain::check(self.backend(), found, &mut report.remarks);
+        report.runs = runs.map_err(|error| self.failed("checking seals", error))?;
+        report.head = self.head()?;
+
+        let found = Findings::new(problems, "tally", REBUILD);
+        counted::check(conn, found).map_err(failed)?;
+        counted::in_snapshot(conn, || derived::check(conn, &mut report.problems)).map_err(failed)
+    }
+
+    /// Recomputes everything that follows from other rows: counts by day and month, repairs, sums of measured
+    /// values, search words of notes, and derived columns of faults. Runs, faults, events and traces stay as
+    /// they are, and so do their seals, even if wrong or missing. What differed is sealed with this time, and
+    /// returned.
+    pub fn rebuild(&self, at_us: i64) -> Result<Vec<String>, StoreError> {
+        counted::rebuild(self, at_us)
+    }
+}
+
+const FOREIGN: &str = "SELECT coalesce('row ' || rowid, 'a row') || ' of ' || \"table\"
+    || ' points at a missing row of ' || parent FROM pragma_foreign_key_check";
+
+fn each_text(conn: &Connection, sql: &str, mut take: impl FnMut(String)) -> rusqlite::Result<()> {
+    let mut select = conn.prepare(sql)?;
+    let mut rows = select.query([])?;
+    while let Some(row) = rows.next()? {
+        take(row.get(0)?);
+    }
+    Ok(())
+}
+
+fn trace_ids(conn: &Connection) -> rusqlite::Result<Vec<Id>> {
+    let mut select = conn.prepare("SELECT id FROM trace ORDER BY seq")?;
+    select.query_map([], |row| row.get(0))?.collect()
+}

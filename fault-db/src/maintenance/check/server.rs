@@ -1,0 +1,48 @@
+//! What can be checked of a server from a client: the seals of its runs, and the triggers that make its
+//! tables append-only.
+
+use super::{CheckReport, Findings, chain};
+use crate::backend::SqlResult;
+use crate::error::StoreError;
+use crate::store::Store;
+
+const DOING: &str = "checking the server";
+
+const SEALS: &str = "hold it against the test sheet or the laptop that recorded it; who owns the tables has changed them by hand";
+const GUARDS: &str =
+    "let who looks after the server find out who took them off, and put them back from a backup";
+
+/// Triggers that are missing or disabled.
+const OFF: &str = "
+    SELECT t.name, x.trigger FROM (VALUES ('run'), ('run_script'), ('step'), ('measurement'), ('recording'),
+        ('channel_set'), ('trace'), ('fault_occurrence'), ('fault_event'), ('run_note'), ('seal')) AS t(name)
+    CROSS JOIN (VALUES ('only_added'), ('only_added_1'), ('only_added_2'), ('in_domain')) AS x(trigger)
+    WHERE NOT EXISTS (SELECT 1 FROM pg_trigger g WHERE g.tgrelid = to_regclass(t.name)
+        AND g.tgname = x.trigger AND g.tgenabled IN ('O', 'A'))
+    ORDER BY 1, 2";
+
+pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
+    let mut report = CheckReport {
+        runs: 0,
+        traces: 0,
+        recordings: 0,
+        problems: Vec::new(),
+        remarks: Vec::new(),
+        head: None,
+    };
+    let backend = store.backend();
+    let mut found = Findings::new(&mut report.problems, "schema", GUARDS);
+    let looked = backend.each(OFF, &[], |row| -> SqlResult<()> {
+        let (table, trigger): (&str, &str) = (row.get(0)?, row.get(1)?);
+        found.add(format!(
+            "trigger {trigger} of table {table} is off or gone: its rows can be changed"
+        ));
+        Ok(())
+    });
+    looked.map_err(|error| store.failed(DOING, error))?;
+    drop(found);
+    let found = Findings::new(&mut report.problems, "seal", SEALS);
+    let checked = chain::check(backend, found, &mut report.remarks);
+    report.runs = checked.map_err(|error| store.failed(DOING, error))?;
+    Ok(report)
+}

@@ -1,0 +1,183 @@
+//! Seals of fault events and of notes on runs, made when they are stored.
+
+use serde::{Deserialize, Serialize};
+
+use super::canonical::{CanonicalHash, take_rows};
+use super::{append, hex};
+use crate::backend::{Backend, SqlResult, Value, values};
+use crate::id::Id;
+
+/// Fields of an event that its row may lose: two faults may be merged, and a laptop that receives the event
+/// may know fewer occurrences of its fault.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EventPayload {
+    /// The id of its fault when it was made.
+    pub fault: String,
+    /// Occurrences known then. The key is part of what is hashed.
+    #[serde(rename = "seen")]
+    pub occurrences_known: i64,
+    /// How it came, if it came without a seal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found: Option<String>,
+}
+
+impl EventPayload {
+    pub fn of(text: &str) -> Option<Self> {
+        serde_json::from_str(text).ok()
+    }
+
+    fn text(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+const EVENT: &str =
+    "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn, e.follows, u.serial, f.code, f.lru
+     FROM fault_event e JOIN fault f ON f.seq = e.fault JOIN unit u ON u.seq = f.unit WHERE e.seq = ?1";
+
+/// The digest of a stored event.
+pub(crate) fn event_digest(backend: &Backend, event: i64, payload: &str) -> SqlResult<[u8; 32]> {
+    let mut hash = CanonicalHash::of("event");
+    take_rows(&mut hash, backend, EVENT, &values![event])?;
+    hash.text(payload);
+    Ok(hash.finish())
+}
+
+/// Seals an event of this fault; `fields` as given, in the order of [`EVENT`], without those of the fault.
+pub(crate) fn event(
+    backend: &Backend,
+    fault: i64,
+    id: Id,
+    fields: &[Value<'_>],
+    occurrences_known: i64,
+) -> SqlResult<()> {
+    let of_fault = backend.first(
+        "SELECT f.id, u.serial, f.code, f.lru FROM fault f JOIN unit u ON u.seq = f.unit
+         WHERE f.seq = ?1",
+        &values![fault],
+        |row| {
+            Ok((
+                row.get::<Id>(0)?,
+                row.get::<String>(1)?,
+                row.get::<i64>(2)?,
+                row.get::<String>(3)?,
+            ))
+        },
+    )?;
+    let Some((of, serial, code, lru)) = of_fault else {
+        return Ok(());
+    };
+    let payload = EventPayload {
+        fault: of.to_string(),
+        occurrences_known,
+        found: None,
+    };
+    let payload = payload.text();
+    let mut hash = CanonicalHash::of("event");
+    hash.values(fields);
+    hash.values(&values![serial, code, lru]);
+    hash.text(&payload);
+    append(backend, "event", id, &payload, hash.finish())
+}
+
+/// Seals an event that came without a seal.
+pub(crate) fn seal_event_as_found(backend: &Backend, event: i64, found: &str) -> SqlResult<()> {
+    let sql = "SELECT e.id, f.id, e.seen FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.seq = ?1";
+    let read = backend.first(sql, &values![event], |row| {
+        Ok((row.get::<Id>(0)?, row.get::<Id>(1)?, row.get::<i64>(2)?))
+    })?;
+    let Some((id, fault, occurrences_known)) = read else {
+        return Ok(());
+    };
+    let payload = EventPayload {
+        fault: fault.to_string(),
+        occurrences_known,
+        found: Some(found.to_owned()),
+    };
+    let payload = payload.text();
+    append(
+        backend,
+        "event",
+        id,
+        &payload,
+        event_digest(backend, event, &payload)?,
+    )
+}
+
+const NOTE: &str = "SELECT n.id, r.id, n.at_us, n.who, n.text
+     FROM run_note n JOIN run r ON r.seq = n.run WHERE n.seq = ?1";
+
+/// The digest of a stored note on a run.
+pub(crate) fn note_digest(backend: &Backend, note: i64, payload: &str) -> SqlResult<[u8; 32]> {
+    let mut hash = CanonicalHash::of("note");
+    take_rows(&mut hash, backend, NOTE, &values![note])?;
+    hash.text(payload);
+    Ok(hash.finish())
+}
+
+/// Seals a note; `fields` as given, in the order of [`NOTE`].
+pub(crate) fn note(backend: &Backend, id: Id, fields: &[Value<'_>]) -> SqlResult<()> {
+    let mut hash = CanonicalHash::of("note");
+    hash.values(fields);
+    hash.text("");
+    append(backend, "note", id, "", hash.finish())
+}
+
+/// Seals a note that came without a seal.
+pub(crate) fn seal_note_as_found(backend: &Backend, note: i64, found: &str) -> SqlResult<()> {
+    let sql = "SELECT id FROM run_note WHERE seq = ?1";
+    let payload = serde_json::json!({ "found": found }).to_string();
+    match backend.first(sql, &values![note], |row| row.get(0))? {
+        Some(id) => append(
+            backend,
+            "note",
+            id,
+            &payload,
+            note_digest(backend, note, &payload)?,
+        ),
+        None => Ok(()),
+    }
+}
+
+/// The digest function of a row number and the entry's payload.
+type DigestOf = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
+
+/// One digest over all events or notes up to a row number: those stored before schema 5.
+pub(crate) fn earlier(backend: &Backend, what: Earlier, last: i64) -> SqlResult<EarlierPayload> {
+    let (seqs, digest): (&str, DigestOf) = match what {
+        Earlier::Events => (
+            "SELECT seq FROM fault_event WHERE seq <= ?1 ORDER BY seq",
+            event_digest,
+        ),
+        Earlier::Notes => (
+            "SELECT seq FROM run_note WHERE seq <= ?1 ORDER BY seq",
+            note_digest,
+        ),
+    };
+    let seqs: Vec<i64> = backend.select(seqs, &values![last], |row| row.get(0))?;
+    let mut all = CanonicalHash::new();
+    for seq in &seqs {
+        all.plain(&digest(backend, *seq, "")?);
+    }
+    Ok(EarlierPayload {
+        last: seqs.last().copied().unwrap_or(0),
+        count: seqs.len(),
+        sha256: hex(&all.finish()),
+    })
+}
+
+/// Which table.
+#[derive(Clone, Copy)]
+pub(crate) enum Earlier {
+    Events,
+    Notes,
+}
+
+/// Rows stored before they were sealed one by one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EarlierPayload {
+    /// The last row number.
+    pub last: i64,
+    pub count: usize,
+    pub sha256: String,
+}

@@ -1,0 +1,80 @@
+//! Columns derived from the text of events and notes: search words, and the part that a repair replaced.
+//! In a file triggers fill them; for a server they are computed here.
+
+use crate::backend::{Backend, SqlResult, values};
+use crate::fault_log::{EventContext, NewEvent, REPAIR};
+use crate::full_text;
+use crate::id::Id;
+use crate::record::{RepairRecord, part_name};
+use crate::sql_functions;
+
+/// PostgreSQL limits a `tsvector` to one megabyte, and positions to 16 383.
+const MOST_TEXT_BYTES: usize = 100_000;
+
+/// The search words of an event, as text of a `tsvector`; `None` for events made by the program.
+pub(crate) fn event_words(kind: &str, body: &str) -> Option<String> {
+    let said = !matches!(kind, "opened" | "recurred") && !body.is_empty();
+    said.then(|| note_words(&sql_functions::said(body)))
+}
+
+/// The search words of a note, as text of a `tsvector`; of a very long note those of its beginning.
+pub(crate) fn note_words(text: &str) -> String {
+    let mut end = text.len().min(MOST_TEXT_BYTES);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    full_text::for_server(&text[..end])
+}
+
+/// The part that a repair replaced, in lower case.
+pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
+    let repair = (kind == REPAIR).then(|| serde_json::from_str::<RepairRecord>(body));
+    let part = repair?.ok()?.part;
+    Some(part_name(&part))
+}
+
+/// Inserts an event made on the server itself, unless its id exists.
+pub(crate) fn insert_event(
+    backend: &Backend,
+    fault: i64,
+    event: &NewEvent<'_>,
+    context: &EventContext,
+) -> SqlResult<()> {
+    backend.execute(
+        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen, part, words)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, CAST(?12 AS tsvector))
+         ON CONFLICT (id) DO NOTHING",
+        &values![
+            event.id,
+            fault,
+            event.kind,
+            event.at_us,
+            event.who,
+            event.body,
+            event.state,
+            context.lamport,
+            &context.parents[..],
+            context.occurrences_known,
+            part(event.kind, event.body),
+            event_words(event.kind, event.body)
+        ],
+    )?;
+    Ok(())
+}
+
+/// Inserts a note on a run made on the server itself.
+pub(crate) fn insert_run_note(
+    backend: &Backend,
+    id: Id,
+    run: i64,
+    at_us: i64,
+    who: &str,
+    text: &str,
+) -> SqlResult<()> {
+    backend.execute(
+        "INSERT INTO run_note(id, run, at_us, who, text, words)
+         VALUES (?1, ?2, ?3, ?4, ?5, CAST(?6 AS tsvector))",
+        &values![id, run, at_us, who, text, note_words(text)],
+    )?;
+    Ok(())
+}

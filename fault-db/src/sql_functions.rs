@@ -1,0 +1,130 @@
+//! SQL functions that the schema's triggers and queries call and SQLite does not have.
+
+use chrono::{DateTime, Datelike as _, NaiveDate, NaiveTime};
+use rusqlite::Connection;
+use rusqlite::functions::{Aggregate, Context, FunctionFlags};
+use rusqlite::types::FromSqlError;
+
+use crate::full_text::{Search, words};
+use crate::record::{RepairRecord, part_name};
+use crate::units;
+
+/// Microseconds of a day.
+pub(crate) const DAY_US: i64 = 86_400_000_000;
+
+/// Registers the functions on a connection.
+pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
+    let flags = FunctionFlags::SQLITE_UTF8
+        | FunctionFlags::SQLITE_DETERMINISTIC
+        | FunctionFlags::SQLITE_INNOCUOUS;
+    conn.create_scalar_function("utc_day", 1, flags, |context| at(context, utc_day))?;
+    conn.create_scalar_function("utc_month", 1, flags, |context| at(context, utc_month))?;
+    conn.create_scalar_function("with_unit", 2, flags, |context| {
+        Ok(units::with(context.get_raw(0).as_blob()?, context.get(1)?))
+    })?;
+    conn.create_aggregate_function("unit_set", 1, flags, UnitSet)?;
+    conn.create_scalar_function("part_of", 1, flags, |context| {
+        Ok(part_of(context.get_raw(0).as_str()?))
+    })?;
+    conn.create_scalar_function("search_words", 1, flags, |context| {
+        Ok(words(&said(context.get_raw(0).as_str()?)).join(" "))
+    })?;
+    conn.create_scalar_function("says", 2, flags, |context| {
+        let asked = context.get_or_create_aux(1, |asked| {
+            Ok::<_, FromSqlError>(Search::new(asked.as_str()?))
+        })?;
+        let text = context.get_raw(0).as_str()?;
+        Ok(asked
+            .as_ref()
+            .as_ref()
+            .is_some_and(|asked| asked.is_in(&said(text))))
+    })
+}
+
+/// Aggregate: the set of the units in a group.
+struct UnitSet;
+
+impl Aggregate<Vec<u8>, Vec<u8>> for UnitSet {
+    fn init(&self, _: &mut Context<'_>) -> rusqlite::Result<Vec<u8>> {
+        Ok(Vec::new())
+    }
+
+    fn step(&self, context: &mut Context<'_>, set: &mut Vec<u8>) -> rusqlite::Result<()> {
+        if let Some(unit) = context.get(0)? {
+            units::insert(set, unit);
+        }
+        Ok(())
+    }
+
+    fn finalize(&self, _: &mut Context<'_>, set: Option<Vec<u8>>) -> rusqlite::Result<Vec<u8>> {
+        Ok(set.unwrap_or_default())
+    }
+}
+
+/// NULL in, NULL out.
+fn at(context: &Context<'_>, number: fn(i64) -> i64) -> rusqlite::Result<Option<i64>> {
+    Ok(context.get::<Option<i64>>(0)?.map(number))
+}
+
+/// The number of the day of a time since 1970, UTC.
+pub(crate) fn utc_day(at_us: i64) -> i64 {
+    at_us.div_euclid(DAY_US)
+}
+
+/// The number of the month of a time since January 1970, UTC.
+pub(crate) fn utc_month(at_us: i64) -> i64 {
+    let at = DateTime::from_timestamp_micros(at_us).unwrap_or_default();
+    (i64::from(at.year()) - 1970) * 12 + i64::from(at.month0())
+}
+
+/// The beginning of a month, counted from January 1970.
+pub(crate) fn month_start_us(month: i64) -> i64 {
+    let year = i32::try_from(1970 + month.div_euclid(12)).unwrap_or(i32::MAX);
+    let first = NaiveDate::from_ymd_opt(year, month.rem_euclid(12) as u32 + 1, 1);
+    let midnight = first.unwrap_or_default().and_time(NaiveTime::MIN);
+    midnight.and_utc().timestamp_micros()
+}
+
+/// The readable text of an event's body: of a repair its fields.
+pub(crate) fn said(body: &str) -> String {
+    match serde_json::from_str::<RepairRecord>(body) {
+        Ok(repair) => {
+            let serials = [repair.serial_old, repair.serial_new].into_iter().flatten();
+            let all = std::iter::once(repair.part)
+                .chain(serials)
+                .chain([repair.note]);
+            all.collect::<Vec<_>>().join("\n")
+        }
+        Err(_) => body.to_owned(),
+    }
+}
+
+/// The part named in a repair's body, in lower case; empty if there is none.
+pub(crate) fn part_of(body: &str) -> String {
+    let repair = serde_json::from_str::<serde_json::Value>(body).unwrap_or_default();
+    let part = repair.get("part").and_then(serde_json::Value::as_str);
+    part_name(part.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2024-02-29 is day 19 782, 2024-03-01 the next; 2023-12-31 is day 19 722.
+    #[test]
+    fn months_are_those_of_the_calendar() {
+        let month = |day: i64| utc_month(day * DAY_US + 5);
+        assert_eq!(month(0), 0);
+        assert_eq!(month(-1), -1);
+        assert_eq!(month(19_782), 54 * 12 + 1);
+        assert_eq!(month(19_783), 54 * 12 + 2);
+        assert_eq!(month(19_722), 53 * 12 + 11);
+        for number in -500..3000 {
+            let start = month_start_us(number);
+            assert_eq!(
+                (utc_month(start), utc_month(start - 1)),
+                (number, number - 1)
+            );
+        }
+    }
+}

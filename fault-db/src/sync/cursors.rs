@@ -1,0 +1,120 @@
+//! Replication cursors: how far a file and a server have exchanged their entries. Both sides store them, the
+//! server in the transaction that inserts the rows, the file right after. The smaller of both values is
+//! used. So after a crash, or with a file or server restored from a backup, entries are sent again, which
+//! changes nothing where they are known.
+
+use super::outcome::SyncOptions;
+use crate::backend::{Backend, SqlResult, values};
+use crate::id::Id;
+
+/// Positions in a file's outbox, and in a server's events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cursors {
+    pub sent: i64,
+    pub sent_traces: i64,
+    pub received: i64,
+}
+
+/// The server's record of a file.
+pub(super) struct Laptop {
+    /// The server's row number of it.
+    pub seq: i64,
+    pub cursors: Cursors,
+    pub clock_offset_us: i64,
+}
+
+/// Registers the file with the server, and measures the clock offset.
+pub(super) fn register_laptop(
+    backend: &Backend,
+    file_id: Id,
+    options: &SyncOptions<'_>,
+) -> SqlResult<Laptop> {
+    let clock = "SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000000 AS bigint)";
+    let asked_us = (options.now_us)();
+    let theirs_us = backend.first(clock, &[], |row| row.get::<i64>(0))?;
+    let answered_us = (options.now_us)();
+    let theirs_us = theirs_us.unwrap_or(answered_us);
+    let clock_offset_us = asked_us + (answered_us - asked_us) / 2 - theirs_us;
+    let found = backend.first(
+        "SELECT number, through, traces_through, told FROM meet_laptop(?1, ?2, ?3)",
+        &values![file_id, options.laptop, clock_offset_us],
+        |row| Ok((row.get(0)?, cursors(row.get(1)?, row.get(2)?, row.get(3)?))),
+    )?;
+    let (seq, cursors) = found.unwrap_or((0, cursors(0, 0, 0)));
+    Ok(Laptop {
+        seq,
+        cursors,
+        clock_offset_us,
+    })
+}
+
+/// The file's cursors for this server; zero if they never met.
+pub(super) fn load(file: &Backend, server_id: Id) -> SqlResult<Cursors> {
+    let found = file.first(
+        "SELECT sent, sent_traces, received FROM sync_server WHERE id = ?1",
+        &values![server_id],
+        |row| Ok(cursors(row.get(0)?, row.get(1)?, row.get(2)?)),
+    )?;
+    Ok(found.unwrap_or(cursors(0, 0, 0)))
+}
+
+/// Whether the file has ever been synced with any server.
+pub(super) fn has_met_a_server(file: &Backend) -> SqlResult<bool> {
+    let found = file.first("SELECT 1 FROM sync_server LIMIT 1", &[], |_| Ok(()))?;
+    Ok(found.is_some())
+}
+
+/// Stores the cursors in the file.
+pub(super) fn save(
+    file: &Backend,
+    server_id: Id,
+    address: &str,
+    cursors: Cursors,
+    now_us: i64,
+) -> SqlResult<()> {
+    file.execute(
+        "INSERT INTO sync_server(id, address, sent, sent_traces, received, last_at_us)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6)
+         ON CONFLICT (id) DO UPDATE SET address = excluded.address, sent = excluded.sent,
+            sent_traces = excluded.sent_traces, received = excluded.received,
+            last_at_us = excluded.last_at_us",
+        &values![
+            server_id,
+            address,
+            cursors.sent,
+            cursors.sent_traces,
+            cursors.received,
+            now_us
+        ],
+    )?;
+    Ok(())
+}
+
+/// Stores on the server what was sent, in the transaction that inserts the rows. `received` is only stored
+/// when everything was received: an interrupted sync receives all of it again.
+pub(super) fn save_on_server(backend: &Backend, laptop: i64, cursors: Cursors) -> SqlResult<()> {
+    backend.execute(
+        "SELECT note_sent(?1, ?2, ?3)",
+        &values![laptop, cursors.sent, cursors.sent_traces],
+    )?;
+    Ok(())
+}
+
+impl Cursors {
+    /// What both sides have stored.
+    pub fn minimum(self, other: Self) -> Self {
+        cursors(
+            self.sent.min(other.sent),
+            self.sent_traces.min(other.sent_traces),
+            self.received.min(other.received),
+        )
+    }
+}
+
+fn cursors(sent: i64, sent_traces: i64, received: i64) -> Cursors {
+    Cursors {
+        sent,
+        sent_traces,
+        received,
+    }
+}

@@ -1,0 +1,57 @@
+//! Fills the outbox with what no trigger enters: runs that never finished, and rows recorded before the file
+//! had an outbox.
+
+use super::cursors;
+use crate::backend::{Backend, SqlResult, values};
+
+/// Enters the runs of dead programs with their traces: they never finish by themselves.
+pub(super) fn enqueue_interrupted_runs(
+    file: &Backend,
+    is_alive: &dyn Fn(&str) -> bool,
+) -> SqlResult<()> {
+    let unfinished = file.select(
+        "SELECT seq, owner FROM run WHERE verdict IS NULL
+            AND seq NOT IN (SELECT row FROM outbox WHERE what = 'run')",
+        &[],
+        |row| Ok((row.get::<i64>(0)?, row.get::<String>(1)?)),
+    )?;
+    for (run, owner) in unfinished {
+        if is_alive(&owner) {
+            continue;
+        }
+        for sql in [
+            "INSERT INTO outbox(what, row) VALUES ('run', ?1)",
+            "INSERT INTO outbox(what, row) SELECT 'trace', seq FROM trace WHERE run = ?1
+             ORDER BY seq",
+        ] {
+            file.execute(sql, &values![run])?;
+        }
+    }
+    Ok(())
+}
+
+/// Before a file's first sync: enters what was recorded before the file had an outbox.
+pub(super) fn enqueue_rows_before_outbox(file: &Backend) -> SqlResult<()> {
+    if cursors::has_met_a_server(file)? {
+        return Ok(());
+    }
+    for (what, rows) in [
+        ("run", "SELECT seq FROM run WHERE verdict IS NOT NULL"),
+        ("event", "SELECT seq FROM fault_event"),
+        ("note", "SELECT seq FROM run_note"),
+        (
+            "trace",
+            "SELECT t.seq FROM trace t JOIN run r ON r.seq = t.run WHERE r.verdict IS NOT NULL",
+        ),
+    ] {
+        file.execute(
+            &format!(
+                "INSERT INTO outbox(what, row) SELECT '{what}', e.seq FROM ({rows}) AS e
+                 WHERE e.seq NOT IN (SELECT row FROM outbox WHERE what = '{what}')
+                 ORDER BY e.seq"
+            ),
+            &[],
+        )?;
+    }
+    Ok(())
+}
