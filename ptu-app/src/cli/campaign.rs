@@ -24,7 +24,7 @@ use crate::tell;
 /// Examples:
 ///   ptu campaign                             all fault modes, 5 seeds each
 ///   ptu campaign --faults 'eb_relay.*' --seeds 2
-///   ptu campaign --held-out 5 --good 1000    the figures of the README
+///   ptu campaign --held-out 2 --good 1000    the figures of docs/figures.md
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CampaignArguments {
