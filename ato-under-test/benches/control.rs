@@ -2,7 +2,7 @@
 //!
 //! Goal: one control cycle of the slowest controller takes at most 5 µs.
 
-use ato_under_test::ato::controller::{Situation, controller};
+use ato_under_test::ato::controller::{ControllerInput, controller};
 use divan::{Bencher, black_box};
 use protocol::config::{ControllerKind, UnitConfig};
 
@@ -11,12 +11,12 @@ fn main() {
 }
 
 /// A station stop seen cycle after cycle: every phase of a profile, errors of both signs.
-fn situations() -> Vec<Situation> {
+fn situations() -> Vec<ControllerInput> {
     let cycles = 1800;
     (0..cycles)
         .map(|i| {
             let share = f64::from(i) / f64::from(cycles);
-            Situation {
+            ControllerInput {
                 cruise_mps: 16.7,
                 speed_mps: 16.0 * (share * std::f64::consts::PI).sin()
                     + 0.3 * (f64::from(i) * 0.7).sin(),

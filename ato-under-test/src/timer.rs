@@ -1,12 +1,12 @@
-//! A condition that counts only after it has lasted.
+//! On-delay timer and edge detector for conditions that are evaluated every scan.
 
 use protocol::{Duration, Instant};
 
-/// Remembers since when a condition has held without a break.
+/// On-delay timer: true once its condition has held without a break for a given time.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Lasting(Option<Instant>);
+pub struct OnDelay(Option<Instant>);
 
-impl Lasting {
+impl OnDelay {
     /// Takes the condition's present value; true once it has held for `span`.
     pub fn update(&mut self, now: Instant, holds: bool, span: Duration) -> bool {
         if !holds {
@@ -16,13 +16,13 @@ impl Lasting {
         now.since(*self.0.get_or_insert(now)) >= span
     }
 
-    /// Forgets it.
+    /// Starts again, as if the condition had never held.
     pub fn clear(&mut self) {
         self.0 = None;
     }
 }
 
-/// Reports a condition's change once.
+/// Edge detector: reports each change of a condition once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Edge(bool);
 
@@ -41,7 +41,7 @@ impl Edge {
         changed.then_some(holds)
     }
 
-    /// The last value seen.
+    /// The value of the last scan.
     pub fn value(&self) -> bool {
         self.0
     }

@@ -498,15 +498,15 @@ fn the_unit_answers_as_in_the_worked_sessions() {
         let mut ends = [Link::new(End::Unit), Link::new(End::Bench)];
         for line in described(&format!("vectors/{file}")).lines() {
             let columns: Vec<&str> = line.split_whitespace().collect();
-            let [at_ms, way @ ("<" | ">"), name, ref hex @ ..] = columns[..] else {
+            let [at_ms, direction @ ("<" | ">"), name, ref hex @ ..] = columns[..] else {
                 continue;
             };
             let after = Duration::from_ms(at_ms.parse().expect("a time in ms"));
-            let end = &mut ends[usize::from(way == "<")];
+            let end = &mut ends[usize::from(direction == "<")];
             end.push(&bytes(&hex.join(" ")));
             let written = end.poll(Instant::ZERO + after).expect("a good frame");
             player.run_until(Instant::from_ms(2000) + after);
-            if way == ">" {
+            if direction == ">" {
                 player.request(written.message);
                 continue;
             }

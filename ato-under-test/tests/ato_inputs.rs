@@ -106,7 +106,7 @@ fn drawn() -> impl Strategy<Value = Drawn> {
             standstill,
             power_cut,
             train: TrainReport {
-                hinders: place.4.0,
+                overrides: place.4.0,
                 sent: place.4.1,
                 given: place.4.2,
             },

@@ -19,7 +19,7 @@ fn fault_from(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
     }
 }
 
-/// Way of one tachometer pulse, m: at rest no position is known better.
+/// Distance of one tachometer pulse, m: at rest no position is known better.
 const PULSE_M: f64 = std::f64::consts::PI * 0.86 / 100.0;
 
 #[test]

@@ -9,7 +9,7 @@
 
 mod plant;
 
-use ato_under_test::ato::controller::{Fuzzy, Pi, Situation, controller};
+use ato_under_test::ato::controller::{ControllerInput, Fuzzy, Pi, controller};
 use plant::{KMH, Row, Run, config, drive, rms, s1_errors};
 use proptest::prelude::*;
 use protocol::config::{AtoConfig, ControllerKind, GainUnit};
@@ -70,7 +70,7 @@ fn feed_forward_leaves_little_but_the_disturbance() {
 }
 
 /// Goal: stop where a train should although the effort comes late and with a lag. Empty and
-/// full, on the level and on gradients of the track database; way known to a tachometer pulse and speed
+/// full, on the level and on gradients of the track database; distance known to a tachometer pulse and speed
 /// to 0.05 m/s in the second half.
 #[test]
 fn trains_stop_within_five_centimetres() {
@@ -82,7 +82,7 @@ fn trains_stop_within_five_centimetres() {
                         load_kg,
                         known_permille,
                         speed_noise_mps,
-                        way_m: Some(850.0),
+                        distance_m: Some(850.0),
                         ..Run::LEVEL
                     };
                     let rows = run(kind, conditions, 110.0, |_| 60.0 * KMH);
@@ -111,7 +111,7 @@ fn a_brake_a_tenth_off_on_a_wrong_gradient_moves_the_stop_little() {
                     unknown_permille,
                     brake_factor,
                     speed_noise_mps: 0.05,
-                    way_m: Some(850.0),
+                    distance_m: Some(850.0),
                     ..Run::LEVEL
                 };
                 let rows = run(kind, conditions, 110.0, |_| 60.0 * KMH);
@@ -121,11 +121,11 @@ fn a_brake_a_tenth_off_on_a_wrong_gradient_moves_the_stop_little() {
     }
 }
 
-fn assert_stopped(rows: &[Row], way_m: f64, allowed_m: f64, kind: ControllerKind, run: Run) {
+fn assert_stopped(rows: &[Row], distance_m: f64, allowed_m: f64, kind: ControllerKind, run: Run) {
     let Some(last) = rows.last() else {
         panic!("no rows");
     };
-    let error = last.position_m - way_m;
+    let error = last.position_m - distance_m;
     println!("{kind:?} {run:?}: {:+.1} cm", error * 100.0);
     assert!(last.speed_mps < 0.01, "{kind:?} {run:?}: still moves");
     assert!(error.abs() <= allowed_m, "{kind:?} {run:?}: {error} m");
@@ -196,7 +196,7 @@ fn cruising_is_quiet() {
 #[test]
 fn pss_runs_as_on_line_6() {
     let conditions = Run {
-        way_m: Some(735.0),
+        distance_m: Some(735.0),
         ..Run::LEVEL
     };
     let cruise = |at_m: f64| if at_m < 235.0 { 50.0 * KMH } else { 40.0 * KMH };
@@ -219,8 +219,8 @@ fn pss_runs_as_on_line_6() {
 }
 
 /// A situation in the middle of a run.
-fn sound() -> Situation {
-    Situation {
+fn sound() -> ControllerInput {
+    ControllerInput {
         cruise_mps: 15.0,
         speed_mps: 12.0,
         accel_mps2: 0.3,
@@ -259,8 +259,8 @@ prop_compose! {
         markers_to_stop_m in prop::array::uniform4(number()),
         mass_kg in prop_oneof![3 => 200e3..500e3_f64, 1 => number()],
         granted_n in prop_oneof![3 => -4e5..4e5_f64, 1 => number()],
-    ) -> Situation {
-        Situation {
+    ) -> ControllerInput {
+        ControllerInput {
             cruise_mps,
             speed_mps,
             accel_mps2,
@@ -274,7 +274,7 @@ prop_compose! {
 }
 
 proptest! {
-    /// Whatever comes in, a force comes out that a train can be asked for; a speed, a way or a mass
+    /// Whatever comes in, a force comes out that a train can be asked for; a speed, a distance or a mass
     /// that is no number is braked; and a reset forgets it all.
     #[test]
     fn any_input_gives_a_force(situations in prop::collection::vec(any_situation(), 1..40)) {
@@ -282,16 +282,16 @@ proptest! {
             let mut config = config();
             config.controller = kind;
             let mut tried = controller(&config);
-            for situation in &situations {
-                let demand = tried.step(situation);
-                prop_assert!(demand.force_n.is_finite(), "{kind:?} {situation:?}: {demand:?}");
-                prop_assert!(demand.target_mps.is_finite(), "{kind:?} {situation:?}: {demand:?}");
-                let unknown = [situation.speed_mps, situation.cruise_mps, situation.mass_kg]
+            for input in &situations {
+                let demand = tried.step(input);
+                prop_assert!(demand.force_n.is_finite(), "{kind:?} {input:?}: {demand:?}");
+                prop_assert!(demand.target_mps.is_finite(), "{kind:?} {input:?}: {demand:?}");
+                let unknown = [input.speed_mps, input.cruise_mps, input.mass_kg]
                     .iter()
-                    .chain(&situation.to_stop_m)
+                    .chain(&input.to_stop_m)
                     .any(|x| !x.is_finite());
                 if unknown {
-                    prop_assert!(demand.force_n < 0.0, "{kind:?} {situation:?}: {demand:?}");
+                    prop_assert!(demand.force_n < 0.0, "{kind:?} {input:?}: {demand:?}");
                 }
             }
             tried.reset();

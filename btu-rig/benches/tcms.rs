@@ -76,7 +76,7 @@ fn scan(bencher: Bencher<'_, '_>, name: &str) {
                         effort,
                         ..AtcToTcms::default()
                     };
-                    tcms.hear(now, &order);
+                    tcms.receive(now, &order);
                 }
                 demand += tcms.step(now, divan::black_box(&inputs)).demand;
             }

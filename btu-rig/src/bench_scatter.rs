@@ -50,9 +50,9 @@ pub struct SensorScatter {
 pub struct TimingScatter {
     /// Power-up after a whole cycle of the bench, ms.
     pub power_up_ms: Spread,
-    /// Way of a frame to the unit, ms.
+    /// Distance of a frame to the unit, ms.
     pub to_unit_ms: Spread,
-    /// Way of a frame from it, ms.
+    /// Distance of a frame from it, ms.
     pub from_unit_ms: Spread,
     /// Share of scans whose frames come one scan later than that.
     pub late_share: Spread,
@@ -63,9 +63,9 @@ pub struct TimingScatter {
 pub struct Timing {
     /// Power-up after a whole cycle of the bench.
     pub power_up: Duration,
-    /// Way of a frame to the unit.
+    /// Distance of a frame to the unit.
     pub to_unit: Duration,
-    /// Way of a frame from it.
+    /// Distance of a frame from it.
     pub from_unit: Duration,
     /// Share of scans whose frames come one scan later than that.
     pub late_share: f64,
@@ -73,7 +73,7 @@ pub struct Timing {
 
 /// What was drawn for one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrawnBench {
+pub struct BenchDraw {
     /// Passengers where a procedure says nothing of them, kg.
     pub load_kg: f64,
     /// Train and track.
@@ -125,13 +125,13 @@ impl BenchScatter {
     }
 
     /// Draws a run's unit, train and bench; the same for the same `seed`.
-    pub fn draw(&self, seed: u64, full_load_kg: f64) -> DrawnBench {
+    pub fn draw(&self, seed: u64, full_load_kg: f64) -> BenchDraw {
         let train = self.train.draw(seed, full_load_kg);
         let random = &mut Random::new(seed ^ OWN_SEQUENCE);
         let (sensors, timing) = (&self.sensors, &self.timing);
         let ms =
             |spread: Spread, random: &mut Random| Duration::from_secs(spread.draw(random) / 1e3);
-        DrawnBench {
+        BenchDraw {
             load_kg: train.load_kg,
             conditions: train.conditions,
             sensors: Sensors {
@@ -166,7 +166,7 @@ mod tests {
         let scatter = BenchScatter::from_toml(FILE).unwrap();
         let drawn: Vec<_> = (0..1000).map(|seed| scatter.draw(seed, 160e3)).collect();
         assert_eq!(scatter.draw(77, 160e3), drawn[77]);
-        let of = |value: fn(&DrawnBench) -> f64| {
+        let of = |value: fn(&BenchDraw) -> f64| {
             let values = drawn.iter().map(value);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
                 (low.min(v), high.max(v))

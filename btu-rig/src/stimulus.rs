@@ -175,11 +175,11 @@ pub enum Stimulus {
         /// Size of the acceleration, m/s².
         accel_mps2: f64,
     },
-    /// Tachometer generators run exactly this way and stand still again.
+    /// Tachometer generators run exactly this distance and stand still again.
     Travel {
         /// Distance, m.
         distance_m: f64,
-        /// Speed on the way.
+        /// Speed of the travel.
         #[serde(rename = "speed_mps", with = "mps")]
         speed: Speed,
         /// Size of the acceleration, m/s².

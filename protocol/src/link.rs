@@ -165,9 +165,8 @@ impl Link {
         self.counters.garbage = self.decoder.garbage();
     }
 
-    /// Another connection stands in place of the last: its bytes do not go on from the other's, and
-    /// every channel begins anew. What was counted stays.
-    pub fn begin_anew(&mut self) {
+    /// Starts a new connection: drops the unfinished frame and the state of every channel. Counters stay.
+    pub fn reset_connection(&mut self) {
         self.decoder.restart();
         self.counters.garbage = self.decoder.garbage();
         self.receivers = [None; CHANNELS];
@@ -361,7 +360,7 @@ mod tests {
         assert!(unit.poll(now).is_some() && unit.poll(now).is_none());
         let mut frame = Vec::new();
         Link::new(End::Bench).send(Instant::from_ms(10), &keep_alive, &mut frame);
-        unit.begin_anew();
+        unit.reset_connection();
         unit.push(&frame);
         assert_eq!(unit.poll(now).map(|r| r.message), Some(keep_alive));
         let counters = unit.counters();

@@ -28,9 +28,9 @@ pub fn holding_force_n(
 /// The least of it from PSM2 to the stop point, N for each kilogram that weighs: below 0 = downhill.
 pub fn approach_n_per_kg(section: &Section, train: &AtoTrainConfig) -> f64 {
     let [_, psm2, _, _] = section.markers_m;
-    let way_m = (section.stop_m - psm2).max(0.0);
+    let distance_m = (section.stop_m - psm2).max(0.0);
     let least = (0..=APPROACH_PLACES)
-        .map(|i| psm2 + way_m * f64::from(i) / f64::from(APPROACH_PLACES))
+        .map(|i| psm2 + distance_m * f64::from(i) / f64::from(APPROACH_PLACES))
         .map(|position_m| under(section, position_m, train))
         .fold(f64::INFINITY, f64::min);
     (least + train.rolling_kgf_t) * KGF_PER_T

@@ -9,10 +9,10 @@ mod art;
 pub mod controller;
 mod cruise;
 mod feed_forward;
+mod monitor;
 mod observer;
 mod profile;
 mod reg;
-mod watch;
 
 use alloc::boxed::Box;
 
@@ -21,14 +21,14 @@ use protocol::config::{AtoConfig, UnitConfig};
 use protocol::line::Section;
 use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
-use controller::{Situation, SpeedController, controller};
+use controller::{ControllerInput, SpeedController, controller};
 use cruise::CruiseInputs;
-use observer::{Measuring, Observer};
-use reg::{Bounds, Granted, Regulator};
-use watch::{Watch, Watched};
+use monitor::{Monitor, MonitorInputs};
+use observer::{Observer, SpeedMeasurement};
+use reg::{Bounds, GrantedEffort, Regulator};
 
 pub use art::{ArtInputs, Checks};
-pub use watch::{Findings, TrainReport};
+pub use monitor::{Findings, TrainReport};
 
 /// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
 /// train that is stopping still has a second to go.
@@ -86,7 +86,7 @@ pub struct AtoOutputs {
     pub effort: i16,
     /// Holding brake.
     pub holding_brake: bool,
-    /// Way run in this cycle that sliding wheels did not tell, m.
+    /// Distance run in this cycle that sliding wheels did not tell, m.
     pub slid_m: f64,
     /// Why it cannot drive.
     pub failure: AtoFailure,
@@ -99,13 +99,13 @@ pub struct AtoOutputs {
 pub struct Ato {
     state: AtoState,
     failure: AtoFailure,
-    watch: Watch,
+    monitor: Monitor,
     observer: Observer,
     /// Section and least force on its approach, N/kg.
     approach: Option<(u16, f64)>,
     controller: Box<dyn SpeedController>,
     regulator: Regulator,
-    granted: Granted,
+    granted: GrantedEffort,
     feed_forward_n: f64,
 }
 
@@ -113,19 +113,19 @@ impl Ato {
     /// Ready once it has been inspected.
     pub fn new(unit: &UnitConfig) -> Self {
         let config = &unit.ato;
-        let measuring = Measuring {
+        let measurement = SpeedMeasurement {
             window_s: f64::from(unit.tacho.window_ms) / 1000.0,
             pulse_m: unit.metres_per_pulse(),
         };
         Self {
             state: AtoState::Inspection,
             failure: AtoFailure::None,
-            watch: Watch::default(),
-            observer: Observer::new(&config.observer, measuring),
+            monitor: Monitor::default(),
+            observer: Observer::new(&config.observer, measurement),
             approach: None,
             controller: controller(config),
             regulator: Regulator::default(),
-            granted: Granted::default(),
+            granted: GrantedEffort::default(),
             feed_forward_n: 0.0,
         }
     }
@@ -136,7 +136,7 @@ impl Ato {
         let to_stop_m = inputs
             .section
             .map(|s| s.stop_m - inputs.position_m - inputs.ahead_m);
-        let arrived = to_stop_m.is_some_and(|way| way < config.arrived_m);
+        let arrived = to_stop_m.is_some_and(|distance| distance < config.arrived_m);
         let cruise = cruise::cruise(
             CruiseInputs {
                 limit: inputs.limit,
@@ -146,14 +146,14 @@ impl Ato {
             config,
         );
         let stands = inputs.standstill && inputs.speed <= STOPPED && !self.observer.sliding();
-        let watched = Watched {
+        let monitored = MonitorInputs {
             state: self.state,
-            may_go: cruise > Speed::ZERO && !inputs.power_cut && !inputs.train.hinders,
+            may_go: cruise > Speed::ZERO && !inputs.power_cut && !inputs.train.overrides,
             asked_mps2: self.net_mps2(&inputs, config),
             stands,
             arrived,
         };
-        let findings = self.watch.step(&inputs, watched, config);
+        let findings = self.monitor.step(&inputs, monitored, config);
         self.failure = self.failure_after(&inputs, &findings);
         self.state = art::next(
             self.state,
@@ -223,11 +223,11 @@ impl Ato {
             .section
             .map_or([0.0; 4], |s| s.markers_m.map(|at| s.stop_m - at));
         let brake_mps2 = self.brake_mps2(inputs, weight_kg / mass_kg, config);
-        let demand = self.controller.step(&Situation {
+        let demand = self.controller.step(&ControllerInput {
             cruise_mps: cruise.mps(),
             speed_mps: ahead.speed_mps,
             accel_mps2: ahead.accel_mps2,
-            to_stop_m: to_stop_m.map(|way| way - ahead.moved_m),
+            to_stop_m: to_stop_m.map(|distance| distance - ahead.moved_m),
             markers_to_stop_m,
             mass_kg,
             brake_mps2,
@@ -236,7 +236,7 @@ impl Ato {
         self.feed_forward_n =
             feed_forward::holding_force_n(inputs.section, inputs.position_m, weight_kg, train);
         let most = match to_stop_m {
-            Some(way) if way < markers_to_stop_m[1] => config.gently_mps2,
+            Some(distance) if distance < markers_to_stop_m[1] => config.gently_mps2,
             _ => config.accel_kmh_per_s / 3.6,
         } * mass_kg;
         let least = -config.decel_kmh_per_s / 3.6 * mass_kg;
@@ -249,7 +249,7 @@ impl Ato {
         let goes = demand.force_n > STARTING_MPS2 * mass_kg;
         let rests = self.state == AtoState::Run && !goes;
         // A demand that is no number stays one, so that REG brakes.
-        let past_it = to_stop_m.is_some_and(|way| way < -config.watch.overrun_m);
+        let past_it = to_stop_m.is_some_and(|distance| distance < -config.watch.overrun_m);
         let force_n = if past_it { least } else { demand.force_n };
         let asked_n = force_n.clamp(least, most) + self.feed_forward_n;
         // When this effort acts the train will stand: what held it on a climb until then must be a brake.
@@ -289,7 +289,7 @@ impl Ato {
         self.controller.reset();
         self.regulator.reset();
         self.observer.reset();
-        self.granted = Granted::default();
+        self.granted = GrantedEffort::default();
         self.feed_forward_n = 0.0;
         let holding_brake = inputs.mode == Mode::AutomaticRun
             || inputs.mode == Mode::Automatic && inputs.standstill;

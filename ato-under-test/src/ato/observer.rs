@@ -1,4 +1,4 @@
-//! Speed and way at which the effort of this cycle will meet the train.
+//! Speed and distance at which the effort of this cycle will meet the train.
 //!
 //! The printed laws act on the present speed of a train whose effort is there at once. A measured speed
 //! is the mean of a window that lies in the past, and effort follows its command after a dead time and
@@ -22,10 +22,10 @@ const PULSE_S: (f64, f64) = (0.034, 0.1);
 
 /// How speed is measured.
 #[derive(Clone, Copy, Debug)]
-pub struct Measuring {
+pub struct SpeedMeasurement {
     /// Window over which it is averaged, s.
     pub window_s: f64,
-    /// Way between pulses, m.
+    /// Distance between pulses, m.
     pub pulse_m: f64,
 }
 
@@ -33,7 +33,7 @@ pub struct Measuring {
 #[derive(Debug)]
 pub struct Observer {
     config: ObserverConfig,
-    measuring: Measuring,
+    measurement: SpeedMeasurement,
     /// What was asked for, newest first, m/s².
     asked: [f64; CYCLES],
     /// What of it the train gives by the model.
@@ -61,14 +61,14 @@ impl Lag {
 
 /// The train when the effort has built up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ahead {
+pub struct PredictedState {
     /// Speed, m/s.
     pub speed_mps: f64,
     /// Acceleration as the effort begins to act, m/s².
     pub accel_mps2: f64,
-    /// Way until then, m.
+    /// Distance until then, m.
     pub moved_m: f64,
-    /// Way run in the last cycle that sliding wheels did not tell, m.
+    /// Distance run in the last cycle that sliding wheels did not tell, m.
     pub slid_m: f64,
 }
 
@@ -95,10 +95,10 @@ impl Times {
 
 impl Observer {
     /// An observer of a train at rest.
-    pub fn new(config: &ObserverConfig, measuring: Measuring) -> Self {
+    pub fn new(config: &ObserverConfig, measurement: SpeedMeasurement) -> Self {
         Self {
             config: config.clone(),
-            measuring,
+            measurement,
             asked: [0.0; CYCLES],
             given: Lag::default(),
             speed_mps: 0.0,
@@ -109,7 +109,12 @@ impl Observer {
     }
 
     /// One cycle: `asked_mps2` is what the last effort asks of the train.
-    pub fn step(&mut self, measured_mps: f64, asked_mps2: f64, train: &AtoTrainConfig) -> Ahead {
+    pub fn step(
+        &mut self,
+        measured_mps: f64,
+        asked_mps2: f64,
+        train: &AtoTrainConfig,
+    ) -> PredictedState {
         self.asked.rotate_right(1);
         self.asked[0] = asked_mps2;
         let times = Times::of(train, measured_mps, asked_mps2 < 0.0);
@@ -133,7 +138,7 @@ impl Observer {
         let accel_mps2 = given.0 + self.missing_mps2;
         moved += (speed + accel_mps2 * times.lag_s / 2.0) * times.lag_s;
         speed += accel_mps2 * times.lag_s;
-        Ahead {
+        PredictedState {
             speed_mps: speed.max(0.0),
             accel_mps2,
             moved_m: moved.max(0.0),
@@ -147,14 +152,14 @@ impl Observer {
         self.speed_mps = (self.speed_mps + accel * dt).max(0.0);
         // Speeds of a pulse every 0.1 s and every 0.034 s: between them a measured speed gains its weight.
         let (low, high) = (
-            self.measuring.pulse_m / PULSE_S.1,
-            self.measuring.pulse_m / PULSE_S.0,
+            self.measurement.pulse_m / PULSE_S.1,
+            self.measurement.pulse_m / PULSE_S.0,
         );
         if measured_mps <= 0.0 {
             self.speed_mps = self.speed_mps.min(low);
         }
-        let since_edge_s = self.measuring.pulse_m / 2.0 / self.speed_mps.max(low);
-        let age_s = self.measuring.window_s / 2.0 + FRAME_S + since_edge_s;
+        let since_edge_s = self.measurement.pulse_m / 2.0 / self.speed_mps.max(low);
+        let age_s = self.measurement.window_s / 2.0 + FRAME_S + since_edge_s;
         let expected = self.speed_mps - accel * age_s;
         if self.slides(measured_mps - expected, dt) {
             self.slid_m = (expected - measured_mps) * dt;
@@ -206,6 +211,6 @@ impl Observer {
 
     /// The train stands.
     pub fn reset(&mut self) {
-        *self = Self::new(&self.config, self.measuring);
+        *self = Self::new(&self.config, self.measurement);
     }
 }

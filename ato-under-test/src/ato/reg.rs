@@ -12,7 +12,7 @@ pub struct Regulator {
 
 /// What it gave out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Granted {
+pub struct GrantedEffort {
     /// -1024 full brake .. 1023 full power.
     pub effort: i16,
     /// Force that stands for, N.
@@ -32,7 +32,7 @@ pub struct Bounds {
 
 impl Regulator {
     /// One cycle. Not a number is a full brake.
-    pub fn step(&mut self, force_n: f64, bounds: Bounds, config: &AtoConfig) -> Granted {
+    pub fn step(&mut self, force_n: f64, bounds: Bounds, config: &AtoConfig) -> GrantedEffort {
         let train = &config.train;
         let (power, brake) = (
             power_mps2(train, bounds.speed_mps),
@@ -51,7 +51,7 @@ impl Regulator {
         };
         let effort = libm::round(accel / full * scale).clamp(-1024.0, 1023.0);
         self.accel_mps2 = effort / scale * full;
-        Granted {
+        GrantedEffort {
             effort: effort as i16,
             force_n: self.accel_mps2 * bounds.mass_kg,
         }

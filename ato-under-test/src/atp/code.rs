@@ -6,7 +6,7 @@ use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::EventLog;
 use crate::signals::AntennaSignal;
-use crate::timer::Lasting;
+use crate::timer::OnDelay;
 
 /// What the antenna signal means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,8 +27,8 @@ pub struct CodeDecoder {
     code: Code,
     heard: Instant,
     candidate: Code,
-    steady: Lasting,
-    unknown: Lasting,
+    steady: OnDelay,
+    unknown: OnDelay,
     unknown_reported: bool,
 }
 
@@ -39,8 +39,8 @@ impl CodeDecoder {
             code: Code::None,
             heard: Instant::ZERO,
             candidate: Code::None,
-            steady: Lasting::default(),
-            unknown: Lasting::default(),
+            steady: OnDelay::default(),
+            unknown: OnDelay::default(),
             unknown_reported: false,
         }
     }

@@ -1,4 +1,4 @@
-//! Rollback: way run against the reverser.
+//! Rollback: distance run against the reverser.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -7,7 +7,7 @@ use protocol::message::TrainLines;
 use crate::kernel::EventLog;
 use crate::timer::Edge;
 
-/// Adds up the way run against the reverser.
+/// Adds up the distance run against the reverser.
 #[derive(Debug, Default)]
 pub struct Rollback {
     against_m: f64,
@@ -15,7 +15,7 @@ pub struct Rollback {
 }
 
 impl Rollback {
-    /// One scan; true once the way against the reverser exceeds `allowed_m`, until the train stands.
+    /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the train stands.
     pub fn step(
         &mut self,
         now: Instant,

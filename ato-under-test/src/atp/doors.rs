@@ -6,7 +6,7 @@ use protocol::message::{DoorSide, Outputs};
 use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::EventLog;
-use crate::timer::{Edge, Lasting};
+use crate::timer::{Edge, OnDelay};
 
 /// Time a train that has just stopped has until its place counts: alignment is known a scan after
 /// standstill.
@@ -32,9 +32,9 @@ pub struct DoorInputs {
 /// The supervision.
 #[derive(Debug, Default)]
 pub struct Doors {
-    open_moving: Lasting,
+    open_moving: OnDelay,
     tripped: Edge,
-    unaligned: Lasting,
+    unaligned: OnDelay,
     refused: Edge,
     enable: Outputs,
 }

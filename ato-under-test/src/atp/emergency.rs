@@ -7,7 +7,7 @@ use protocol::{Duration, Instant};
 
 use super::Overspeed;
 use crate::kernel::EventLog;
-use crate::timer::{Edge, Lasting};
+use crate::timer::{Edge, OnDelay};
 
 /// What the brake looks at in one scan.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +31,8 @@ pub struct BrakeInputs {
 pub struct EmergencyBrake {
     cause: EbCause,
     acknowledge: Edge,
-    welded: Lasting,
-    open: Lasting,
+    welded: OnDelay,
+    open: OnDelay,
     relay_sound: bool,
     feedback: Duration,
 }
@@ -43,8 +43,8 @@ impl EmergencyBrake {
         Self {
             cause: EbCause::NotReleased,
             acknowledge: Edge::default(),
-            welded: Lasting::default(),
-            open: Lasting::default(),
+            welded: OnDelay::default(),
+            open: OnDelay::default(),
             relay_sound: true,
             feedback,
         }

@@ -1,5 +1,5 @@
-//! ATP: the part that keeps the train safe. Scanned every 10 ms; the mode sequence runs with the
-//! 50 ms cycle.
+//! ATP: automatic train protection. [`Atp::scan`] runs every 10 ms, in order: speed code, speed, limit,
+//! overspeed, doors, direction of travel, brakes. The mode sequence runs with the 50 ms cycle.
 
 mod code;
 mod direction;
@@ -8,13 +8,277 @@ mod emergency;
 mod mode;
 mod overspeed;
 mod speedometer;
-mod supervisor;
 mod tachometers;
+
+use protocol::config::UnitConfig;
+use protocol::event::Event;
+use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
+use protocol::{Duration, Instant, Speed};
+
+use crate::kernel::EventLog;
+use crate::signals::Inputs;
+use crate::timer::Edge;
+use direction::Rollback;
 
 pub use code::{Code, CodeDecoder};
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
-pub use overspeed::{Overspeed, Supervision};
-pub use supervisor::{Atp, ScanContext};
+pub use overspeed::{Overspeed, OverspeedSupervision};
 pub use tachometers::Tachometers;
+
+/// What the other parts tell ATP for a scan.
+#[derive(Clone, Copy, Debug)]
+pub struct ScanContext {
+    /// Start-up has finished with nothing vital failed.
+    pub vital_passed: bool,
+    /// Start-up has finished.
+    pub started: bool,
+    /// The harness has been alive at least once.
+    pub ever_alive: bool,
+    /// At the stop point.
+    pub aligned: bool,
+    /// On the arrival station's loop with valid station data.
+    pub at_platform: bool,
+    /// Door side given by TWC.
+    pub door_side: DoorSide,
+    /// TWC is up.
+    pub twc_up: bool,
+    /// TCMS is up.
+    pub tcms_up: bool,
+    /// ATO works.
+    pub ato_ready: bool,
+}
+
+/// State of the protection functions from scan to scan.
+#[derive(Debug)]
+pub struct Atp {
+    decoder: CodeDecoder,
+    tachometers: Tachometers,
+    supervision: OverspeedSupervision,
+    doors: Doors,
+    rollback: Rollback,
+    brake: EmergencyBrake,
+    sequence: ModeSequence,
+    limit: Speed,
+    overspeed: Overspeed,
+    fsb_cause: FsbCause,
+    inputs_lost: Edge,
+    broken: Edge,
+    doors_closed: bool,
+}
+
+impl Atp {
+    /// Braking, since power-up.
+    pub fn new(config: &UnitConfig) -> Self {
+        let feedback = Duration::from_ms(u64::from(config.overspeed.eb_feedback_ms));
+        Self {
+            decoder: CodeDecoder::new(),
+            tachometers: Tachometers::new(config),
+            supervision: OverspeedSupervision::new(),
+            doors: Doors::default(),
+            rollback: Rollback::default(),
+            brake: EmergencyBrake::new(feedback),
+            sequence: ModeSequence::default(),
+            limit: Speed::ZERO,
+            overspeed: Overspeed::default(),
+            fsb_cause: FsbCause::None,
+            inputs_lost: Edge::default(),
+            broken: Edge::default(),
+            doors_closed: false,
+        }
+    }
+
+    /// One scan.
+    pub fn scan(
+        &mut self,
+        now: Instant,
+        inputs: &Inputs,
+        context: ScanContext,
+        config: &UnitConfig,
+        log: &mut EventLog,
+    ) {
+        self.decoder.step(now, inputs.signal, config, log);
+        self.tachometers.step(now, inputs, config, log);
+        self.limit = self.limit_in_force(config);
+        let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
+        self.overspeed = self.supervision.step(now, speed, self.limit, config, log);
+        self.doors_closed = inputs.lines.contains(TrainLines::DOORS_CLOSED);
+        let door_inputs = DoorInputs {
+            closed: self.doors_closed || !inputs.alive,
+            standstill,
+            aligned: context.aligned,
+            at_platform: context.at_platform,
+            side: context.door_side,
+            speed,
+        };
+        let door_open = self.doors.step(now, door_inputs, &config.doors, log);
+        let moved_m = self.tachometers.moved_m();
+        let allowed_m = config.tacho.rollback_m;
+        let rollback = self
+            .rollback
+            .step(now, moved_m, inputs.lines, standstill, allowed_m, log);
+        let cause = self.emergency_cause(now, inputs, context, (door_open, rollback), log);
+        let brake_inputs = BrakeInputs {
+            cause,
+            overspeed: self.overspeed,
+            may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
+            standstill,
+            lines: inputs.lines,
+            alive: inputs.alive,
+        };
+        self.brake.step(now, brake_inputs, log);
+        self.fsb_cause = self.service_cause(context);
+    }
+
+    /// The limit by mode: by code under cab signal, fixed in yard and emergency mode.
+    fn limit_in_force(&self, config: &UnitConfig) -> Speed {
+        match self.sequence.mode() {
+            Mode::Yard => Speed::from_kmh(config.overspeed.yard_kmh),
+            Mode::Emergency => Speed::from_kmh(config.overspeed.emergency_kmh),
+            Mode::Manual | Mode::Automatic | Mode::AutomaticRun => {
+                self.decoder.limit(&config.codes)
+            }
+            Mode::Off | Mode::Unknown(_) => Speed::ZERO,
+        }
+    }
+
+    /// The first cause for the emergency brake that holds now.
+    fn emergency_cause(
+        &mut self,
+        now: Instant,
+        inputs: &Inputs,
+        context: ScanContext,
+        (door_open, rollback): (bool, bool),
+        log: &mut EventLog,
+    ) -> EbCause {
+        let lost = context.ever_alive && !inputs.alive;
+        match self.inputs_lost.changes(lost) {
+            Some(true) => log.push(now, Event::InputsLost, 0),
+            Some(false) => log.push(now, Event::InputsRestored, 0),
+            None => {}
+        }
+        let broken = self.broken_invariant();
+        if self.broken.rises(broken.is_some()) {
+            log.push(now, Event::InternalError, broken.unwrap_or_default());
+        }
+        let causes = [
+            (broken.is_some(), EbCause::Internal),
+            (context.started && !context.vital_passed, EbCause::SelfTest),
+            (lost, EbCause::InputsLost),
+            (self.tachometers.faulty(), EbCause::Tachometer),
+            (rollback, EbCause::Rollback),
+            (door_open, EbCause::DoorOpen),
+            (self.overspeed.emergency, EbCause::Overspeed),
+            (self.overspeed.ineffective, EbCause::ServiceBrakeIneffective),
+        ];
+        causes
+            .iter()
+            .find(|(holds, _)| *holds)
+            .map_or(EbCause::None, |(_, cause)| *cause)
+    }
+
+    /// What must hold whatever came in; the number of the first that does not. A processor that
+    /// computes this has failed, and nothing it says can be trusted.
+    fn broken_invariant(&self) -> Option<i32> {
+        let speed = self.tachometers.speed();
+        let holds = [
+            speed.mps().is_finite() && speed >= Speed::ZERO,
+            self.limit.mps().is_finite() && self.limit >= Speed::ZERO,
+            self.tachometers.moved_m().is_finite(),
+            self.doors.enable().is_empty() || self.tachometers.standstill(),
+        ];
+        holds
+            .iter()
+            .position(|holds| !holds)
+            .map(|number| number as i32)
+    }
+
+    fn service_cause(&self, context: ScanContext) -> FsbCause {
+        let mode = self.sequence.mode();
+        let by_code = matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun);
+        let running = mode == Mode::AutomaticRun;
+        let causes = [
+            (self.overspeed.service_brake, FsbCause::Overspeed),
+            (
+                by_code && self.decoder.code() == Code::None,
+                FsbCause::NoCode,
+            ),
+            (running && !context.twc_up, FsbCause::TwcLost),
+            (running && !context.tcms_up, FsbCause::TcmsLost),
+            (running && !context.ato_ready, FsbCause::AtoFailed),
+            (running && self.sequence.forbidden(), FsbCause::NotPermitted),
+        ];
+        causes
+            .iter()
+            .find(|(holds, _)| *holds)
+            .map_or(FsbCause::None, |(_, cause)| *cause)
+    }
+
+    /// Start-up is over: the code it fed into the test coil counts no more.
+    pub fn forget_test_code(&mut self) {
+        self.decoder = CodeDecoder::new();
+    }
+
+    /// One cycle of the mode sequence.
+    pub fn cycle(&mut self, now: Instant, inputs: ModeInputs, log: &mut EventLog) {
+        self.sequence.step(now, inputs, log);
+    }
+
+    /// What the output contacts should do.
+    pub fn outputs(&self, healthy: bool) -> Outputs {
+        let mut outputs = self.doors.enable();
+        let code_valid = matches!(self.decoder.code(), Code::Known(_));
+        outputs.set(Outputs::EB_RELAY, !self.brake.applied());
+        outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
+        outputs.set(Outputs::POWER_CUT, self.power_cut());
+        outputs.set(Outputs::ALARM, self.overspeed.alarm);
+        outputs.set(Outputs::CODE_VALID, code_valid);
+        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
+        outputs.set(Outputs::HEALTHY, healthy && self.brake.relay_sound());
+        outputs
+    }
+
+    /// No powering while braking, with doors open or against a stop.
+    pub fn power_cut(&self) -> bool {
+        self.brake.applied()
+            || self.fsb_cause != FsbCause::None
+            || !self.doors_closed
+            || self.limit == Speed::ZERO
+    }
+
+    /// Cab at automatic or driverless.
+    pub fn switch_automatic(switch: ModeSwitch) -> bool {
+        matches!(switch, ModeSwitch::Automatic | ModeSwitch::Driverless)
+    }
+
+    /// Speed code decoder.
+    pub fn decoder(&self) -> &CodeDecoder {
+        &self.decoder
+    }
+
+    /// Tachometers.
+    pub fn tachometers(&self) -> &Tachometers {
+        &self.tachometers
+    }
+
+    /// Emergency brake.
+    pub fn brake(&self) -> &EmergencyBrake {
+        &self.brake
+    }
+
+    /// Mode sequence.
+    pub fn sequence(&self) -> &ModeSequence {
+        &self.sequence
+    }
+
+    /// Limit in force.
+    pub fn limit(&self) -> Speed {
+        self.limit
+    }
+
+    /// Why the full service brake is requested.
+    pub fn fsb_cause(&self) -> FsbCause {
+        self.fsb_cause
+    }
+}

@@ -8,12 +8,12 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::EventLog;
-use crate::timer::{Edge, Lasting};
+use crate::timer::{Edge, OnDelay};
 
 /// Scans over which the deceleration is measured (0.5 s).
 const DECEL_SCANS: usize = 50;
 
-/// The supervision's verdict in one scan.
+/// Result of the supervision in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overspeed {
     /// Sound the alarm.
@@ -30,14 +30,14 @@ pub struct Overspeed {
     pub decel_mms2: i32,
 }
 
-/// The supervision.
+/// Compares the speed with the limit in force, scan by scan.
 #[derive(Debug)]
-pub struct Supervision {
+pub struct OverspeedSupervision {
     limit: Speed,
-    above_alarm: Lasting,
-    above_service: Lasting,
-    above_emergency: Lasting,
-    unproved: Lasting,
+    above_alarm: OnDelay,
+    above_service: OnDelay,
+    above_emergency: OnDelay,
+    unproved: OnDelay,
     alarm: bool,
     service: bool,
     service_since: Instant,
@@ -49,15 +49,15 @@ pub struct Supervision {
     at: usize,
 }
 
-impl Supervision {
+impl OverspeedSupervision {
     /// Limit zero, nothing exceeded.
     pub fn new() -> Self {
         Self {
             limit: Speed::ZERO,
-            above_alarm: Lasting::default(),
-            above_service: Lasting::default(),
-            above_emergency: Lasting::default(),
-            unproved: Lasting::default(),
+            above_alarm: OnDelay::default(),
+            above_service: OnDelay::default(),
+            above_emergency: OnDelay::default(),
+            unproved: OnDelay::default(),
             alarm: false,
             service: false,
             service_since: Instant::ZERO,
@@ -155,7 +155,7 @@ impl Supervision {
     }
 }
 
-impl Default for Supervision {
+impl Default for OverspeedSupervision {
     fn default() -> Self {
         Self::new()
     }

@@ -1,4 +1,4 @@
-//! Two tachometers compared: speed, way, direction, standstill, and which of them lies.
+//! Two tachometers compared: speed, distance, direction, standstill, and which of them lies.
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;
@@ -7,7 +7,7 @@ use protocol::{Duration, Instant, Speed};
 use crate::atp::speedometer::Speedometer;
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
-use crate::timer::{Edge, Lasting};
+use crate::timer::{Edge, OnDelay};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.
 const DEAD_BELOW: Speed = Speed::from_kmh(1.0);
@@ -24,13 +24,13 @@ pub struct Tachometers {
     meters: [Speedometer; 2],
     noise: [Noise; 2],
     from_board: [bool; 2],
-    differ: Lasting,
-    opposed: Lasting,
+    differ: OnDelay,
+    opposed: OnDelay,
     faulty: bool,
-    slow: Lasting,
+    slow: OnDelay,
     standstill: bool,
     moved_m: f64,
-    way_channel: usize,
+    distance_channel: usize,
 }
 
 #[derive(Debug, Default)]
@@ -49,13 +49,13 @@ impl Tachometers {
             meters: [meter(), meter()],
             noise: [Noise::default(), Noise::default()],
             from_board: [false; 2],
-            differ: Lasting::default(),
-            opposed: Lasting::default(),
+            differ: OnDelay::default(),
+            opposed: OnDelay::default(),
             faulty: false,
-            slow: Lasting::default(),
+            slow: OnDelay::default(),
             standstill: false,
             moved_m: 0.0,
-            way_channel: 0,
+            distance_channel: 0,
         }
     }
 
@@ -73,7 +73,7 @@ impl Tachometers {
             self.noise[i].step(now, impossible, jump, event, log);
         }
         self.compare(now, inputs, config, log);
-        self.measure_way(inputs, config);
+        self.measure_distance(inputs, config);
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
         self.standstill = self.slow.update(now, slow, span);
@@ -111,13 +111,13 @@ impl Tachometers {
         self.faulty = faulty;
     }
 
-    /// Way by channel 1, by channel 2 when only that turns.
-    fn measure_way(&mut self, inputs: &Inputs, config: &UnitConfig) {
+    /// Distance by channel 1, by channel 2 when only that turns.
+    fn measure_distance(&mut self, inputs: &Inputs, config: &UnitConfig) {
         let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
-        self.way_channel = usize::from(first_dead);
-        let pulses = &inputs.pulses[self.way_channel];
-        let way = f64::from(pulses.count) * config.metres_per_pulse();
-        self.moved_m = if pulses.backward { -way } else { way };
+        self.distance_channel = usize::from(first_dead);
+        let pulses = &inputs.pulses[self.distance_channel];
+        let distance = f64::from(pulses.count) * config.metres_per_pulse();
+        self.moved_m = if pulses.backward { -distance } else { distance };
     }
 
     /// The safe speed: the greater of the two.
@@ -145,12 +145,12 @@ impl Tachometers {
         self.standstill || self.from_board != [false; 2]
     }
 
-    /// The channel that counts the way, 0 or 1.
-    pub fn way_channel(&self) -> usize {
-        self.way_channel
+    /// The channel that counts the distance, 0 or 1.
+    pub fn distance_channel(&self) -> usize {
+        self.distance_channel
     }
 
-    /// Way run in this scan, m, backward negative.
+    /// Distance run in this scan, m, backward negative.
     pub fn moved_m(&self) -> f64 {
         self.moved_m
     }

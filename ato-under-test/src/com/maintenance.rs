@@ -133,7 +133,7 @@ impl Maintenance {
                 let refusal = ArmRefusal::Disarmed;
                 replies.push(self.disarm(now, request.session, refusal, board, log));
             }
-            Message::KeepAlive(alive) => self.hear_session(now, alive.session),
+            Message::KeepAlive(alive) => self.on_session(now, alive.session),
             Message::ReadLog(request) => self.reader = Some(request.from_index),
             Message::ReadRun(request) => self.run_reader = Some(request.from_index),
             other => {
@@ -150,7 +150,7 @@ impl Maintenance {
         }
     }
 
-    fn hear_session(&mut self, now: Instant, session: u32) {
+    fn on_session(&mut self, now: Instant, session: u32) {
         if self.armed == Some(session) {
             self.session_heard = now;
         }

@@ -98,7 +98,7 @@ impl TcmsLink {
     }
 
     /// TCMS brakes by itself, or gives no power: what the train does is not what ATO asks.
-    pub fn hinders(&self) -> bool {
+    pub fn overrides(&self) -> bool {
         self.alive && self.last.bits.intersects(HINDERS)
     }
 
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn what_tcms_does_by_itself_hinders_and_counts_only_while_it_is_heard() {
         let mut link = link();
-        for (bits, cuts, hinders) in [
+        for (bits, cuts, overrides) in [
             (TcmsToAtcBits::empty(), false, false),
             (TcmsToAtcBits::SERVICE_BRAKE_APPLIED, false, false),
             (TcmsToAtcBits::POWERING_CUT, true, true),
@@ -208,12 +208,12 @@ mod tests {
             link.take(Instant::ZERO, TcmsToAtc { bits, ..FRAME });
             link.step(Instant::ZERO);
             assert_eq!(
-                (link.cuts_power(), link.hinders()),
-                (cuts, hinders),
+                (link.cuts_power(), link.overrides()),
+                (cuts, overrides),
                 "{bits:?}"
             );
         }
         link.step(Instant::from_ms(500));
-        assert!(!link.hinders() && !link.cuts_power());
+        assert!(!link.overrides() && !link.cuts_power());
     }
 }

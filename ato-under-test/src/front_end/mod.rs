@@ -2,24 +2,24 @@
 //!
 //! Test signals join here, and injected faults act here, each at its own place in the signal path.
 
+mod delay_queue;
 mod effort;
 mod faults;
-mod late;
 mod outputs;
 mod sensors;
-mod stored;
+mod stored_data;
 mod supply;
 
 use protocol::injection::{Effect, Place};
 use protocol::message::{IoInput, ModeSwitch, TrainLines};
 use protocol::{Duration, Instant, SCAN};
 
+pub use delay_queue::DelayQueue;
 pub use effort::EffortOutput;
 pub use faults::Faults;
-pub use late::Late;
 pub use outputs::OutputStage;
 pub use sensors::PulseSensor;
-pub use stored::spoil_stored_data;
+pub use stored_data::apply_stored_data_faults;
 pub use supply::{PowerAndClock, Supply, at_rate};
 
 use crate::com::IoImage;

@@ -4,7 +4,7 @@ use protocol::injection::{Effect, Place};
 use protocol::message::Outputs;
 use protocol::{Duration, Instant};
 
-use super::{Faults, Late};
+use super::{DelayQueue, Faults};
 
 /// The output side.
 #[derive(Debug, Default)]
@@ -18,7 +18,7 @@ pub struct OutputStage {
 struct Contact {
     on: bool,
     wanted: bool,
-    changes: Late<bool>,
+    changes: DelayQueue<bool>,
 }
 
 impl OutputStage {

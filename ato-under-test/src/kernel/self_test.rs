@@ -7,7 +7,7 @@ use protocol::line::Line;
 use protocol::message::SelfTest;
 use protocol::{Duration, Instant};
 
-use crate::timer::Lasting;
+use crate::timer::OnDelay;
 
 /// Time the brake line has to be dead with the relay.
 const RELAY_TIME: Duration = Duration::from_ms(200);
@@ -32,7 +32,7 @@ pub struct SelfTestInputs {
 pub struct SelfTester {
     ends: Instant,
     seen: SelfTestInputs,
-    line_energised: Lasting,
+    line_energised: OnDelay,
     relay_failed: bool,
     data: SelfTest,
     failed: SelfTest,
@@ -48,7 +48,7 @@ impl SelfTester {
         Self {
             ends: now + span,
             seen: SelfTestInputs::default(),
-            line_energised: Lasting::default(),
+            line_energised: OnDelay::default(),
             relay_failed: false,
             data,
             failed: SelfTest::empty(),

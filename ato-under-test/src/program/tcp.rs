@@ -16,7 +16,7 @@ use super::tell;
 const SILENT: Duration = Duration::from_ms(10_000);
 /// A connection on which nothing comes is probed after this time, and as often again.
 const PROBED_AFTER: std::time::Duration = std::time::Duration::from_secs(5);
-/// A newcomer waits so long to be taken: its predecessor's last bytes may still have to be read.
+/// A second client waits this long before it is accepted: its predecessor's last bytes may still have to be read.
 const HANDS_OVER: Duration = Duration::from_ms(100);
 /// Who is turned away has so long to close, so that what it is told is not lost by a reset.
 const LEAVES_WITHIN: Duration = Duration::from_ms(1000);
@@ -27,7 +27,7 @@ const MOST_COMING: usize = 16;
 pub struct Server {
     listener: TcpListener,
     client: Option<Client>,
-    coming: Vec<Newcomer>,
+    coming: Vec<SecondClient>,
     /// Where what is not heard is read to.
     unheard: Vec<u8>,
 }
@@ -43,7 +43,7 @@ struct Client {
 }
 
 /// Who came while another had it.
-struct Newcomer {
+struct SecondClient {
     stream: TcpStream,
     address: SocketAddr,
     since: Instant,
@@ -70,7 +70,7 @@ impl Server {
     /// accepted.
     pub fn attend(&mut self, now: Instant, behind: Duration, accepted: u64) -> io::Result<bool> {
         self.let_silent_go(now, accepted);
-        self.receive_newcomers(now, behind)?;
+        self.receive_waiting_clients(now, behind)?;
         let taken = self.client.is_none() && self.take_first(now, accepted);
         self.turn_away(now);
         Ok(taken)
@@ -89,7 +89,7 @@ impl Server {
         }
     }
 
-    fn receive_newcomers(&mut self, now: Instant, behind: Duration) -> io::Result<()> {
+    fn receive_waiting_clients(&mut self, now: Instant, behind: Duration) -> io::Result<()> {
         while self.coming.len() < MOST_COMING {
             let (mut stream, address) = match self.listener.accept() {
                 Ok(came) => came,
@@ -102,7 +102,7 @@ impl Server {
             if behind > MAX_DELAY {
                 drain(&mut stream, &mut self.unheard);
             }
-            self.coming.push(Newcomer {
+            self.coming.push(SecondClient {
                 stream,
                 address,
                 since: now,
@@ -113,7 +113,7 @@ impl Server {
     }
 
     fn take_first(&mut self, now: Instant, accepted: u64) -> bool {
-        let Some(place) = self.coming.iter().position(|newcomer| !newcomer.told) else {
+        let Some(place) = self.coming.iter().position(|waiting| !waiting.told) else {
             return false;
         };
         let first = self.coming.remove(place);
@@ -137,15 +137,15 @@ impl Server {
     fn turn_away(&mut self, now: Instant) {
         let unheard = &mut self.unheard;
         let client = self.client.as_ref();
-        self.coming.retain_mut(|newcomer| {
-            let waited = now.since(newcomer.since);
-            if let Some(client) = client.filter(|_| !newcomer.told && waited >= HANDS_OVER) {
-                newcomer.told = true;
-                let _ = newcomer.stream.write(&client.taken(now));
-                let _ = newcomer.stream.shutdown(std::net::Shutdown::Write);
+        self.coming.retain_mut(|waiting| {
+            let waited = now.since(waiting.since);
+            if let Some(client) = client.filter(|_| !waiting.told && waited >= HANDS_OVER) {
+                waiting.told = true;
+                let _ = waiting.stream.write(&client.taken(now));
+                let _ = waiting.stream.shutdown(std::net::Shutdown::Write);
             }
-            !newcomer.told
-                || (waited < HANDS_OVER + LEAVES_WITHIN && drain(&mut newcomer.stream, unheard))
+            !waiting.told
+                || (waited < HANDS_OVER + LEAVES_WITHIN && drain(&mut waiting.stream, unheard))
         });
     }
 

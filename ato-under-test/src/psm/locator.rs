@@ -1,8 +1,8 @@
 //! Position in the section: distance run from the departure, corrected at markers.
 //!
-//! Markers correct the position ([`super::belief`]) and calibrate the wheel ([`super::wheel`]). One
+//! Markers correct the position ([`super::marker_check`]) and calibrate the wheel ([`super::wheel`]). One
 //! that must have come by now and has not leaves the position unsure: from there on
-//! [`Locator::ahead_m`] grows, the way by which the train may be further than it seems. ATO stops by
+//! [`Locator::ahead_m`] grows, the distance by which the train may be further than it seems. ATO stops by
 //! the most advanced position that can be believed, so that a train without markers stops short
 //! rather than beyond the platform. So it does after a marker that came too early to be believed.
 
@@ -12,8 +12,9 @@ use protocol::event::Event;
 use protocol::line::{Line, Section};
 use protocol::message::TwcWayside;
 
-use super::belief::{
-    Doubtful, Fix, Judgement, Sighting, Wheels, further_m, judge, place_m, window_m,
+use super::marker_check::{
+    Fix, MarkerCheck, MarkerDetection, PendingDetection, Wheels, further_m, judge, place_m,
+    window_m,
 };
 use super::{Movement, Odometer, WheelCalibration};
 use crate::kernel::EventLog;
@@ -21,7 +22,7 @@ use crate::signals::MarkerPulse;
 
 /// Markers of a section.
 const MARKERS: u8 = 4;
-/// Greatest share of the way run by which [`Locator::ahead_m`] grows, so that the stop point comes
+/// Greatest share of the distance run by which [`Locator::ahead_m`] grows, so that the stop point comes
 /// nearer gently [default].
 const AHEAD_SHARE: f64 = 0.5;
 /// Time without a tachometer pulse after which the wheels stand, s: ATP's standstill is up to 0.3 m/s, at
@@ -38,12 +39,12 @@ pub struct Locator {
     fix: Fix,
     /// Number the next pulse should have; pulses of test markers count, too.
     expected: u8,
-    doubtful: Option<Sighting>,
-    /// Way run on sliding wheels since the fix, m.
+    pending: Option<MarkerDetection>,
+    /// Distance run on sliding wheels since the fix, m.
     slid_m: f64,
-    /// Way told when the position became unsure, m.
+    /// Distance told when the position became unsure, m.
     unsure_since_m: Option<f64>,
-    /// Way by which a marker that was not believed came early, m.
+    /// Distance by which a marker that was not believed came early, m.
     early_m: f64,
     wheel_reported: bool,
     last_marker: u8,
@@ -68,11 +69,11 @@ impl Locator {
             section: None,
             fix: Fix {
                 place_m: 0.0,
-                way_m: 0.0,
+                distance_m: 0.0,
                 marker: 0,
             },
             expected: 1,
-            doubtful: None,
+            pending: None,
             slid_m: 0.0,
             unsure_since_m: None,
             early_m: 0.0,
@@ -96,12 +97,12 @@ impl Locator {
         if standstill && (!same || (departing && run)) {
             self.fix = Fix {
                 place_m: section.start_m,
-                way_m: self.odometer.way_m(),
+                distance_m: self.odometer.distance_m(),
                 marker: 0,
             };
             self.section = Some(section.clone());
             self.expected = 1;
-            self.doubtful = None;
+            self.pending = None;
             self.slid_m = 0.0;
             self.unsure_since_m = None;
             self.early_m = 0.0;
@@ -126,12 +127,12 @@ impl Locator {
                 self.take_standing(now, pulse.marker, log);
             } else {
                 let age_s = f64::from(pulse.age_us) / 1e6;
-                let sighting = Sighting {
+                let detection = MarkerDetection {
                     marker: pulse.marker,
-                    way_m: self.odometer.way_ago_m(age_s),
+                    distance_m: self.odometer.distance_ago_m(age_s),
                     slid_m: self.slid_m,
                 };
-                self.pass_marker(now, sighting, log);
+                self.pass_marker(now, detection, log);
             }
         }
         if movement.driven && self.unsure_since_m.is_none() {
@@ -151,68 +152,71 @@ impl Locator {
         self.expected = marker % MARKERS + 1;
     }
 
-    /// A pulse on the way. One that is not believed is reported and changes nothing.
-    fn pass_marker(&mut self, now: Instant, sighting: Sighting, log: &mut EventLog) {
+    /// A marker pulse. One that is not believed is reported and changes nothing.
+    fn pass_marker(&mut self, now: Instant, detection: MarkerDetection, log: &mut EventLog) {
         let Some(section) = &self.section else { return };
         let wheels = self.wheels();
-        let doubtful = Doubtful {
-            sighting: self.doubtful,
+        let pending = PendingDetection {
+            detection: self.pending,
             unsure: self.unsure_since_m.is_some(),
         };
         let config = &self.config;
-        match judge(section, &self.fix, sighting, doubtful, &wheels, config) {
-            Judgement::Believed => self.believe(now, sighting, log),
-            Judgement::OutOfOrder => {
-                log.push(now, Event::MarkerOrder, i32::from(sighting.marker));
+        match judge(section, &self.fix, detection, pending, &wheels, config) {
+            MarkerCheck::Accepted => self.believe(now, detection, log),
+            MarkerCheck::OutOfOrder => {
+                log.push(now, Event::MarkerOrder, i32::from(detection.marker));
             }
-            Judgement::Away(error_m) => {
+            MarkerCheck::Away(error_m) => {
                 let error_cm = libm::round(error_m * 100.0) as i32;
                 log.push(now, Event::MarkerPosition, error_cm);
-                let further_m = further_m(&self.fix, sighting, error_m, &wheels, config);
+                let further_m = further_m(&self.fix, detection, error_m, &wheels, config);
                 self.early_m = self.early_m.max(further_m);
-                self.doubtful = Some(sighting);
+                self.pending = Some(detection);
             }
         }
     }
 
     /// Takes the marker's place as the position.
-    fn believe(&mut self, now: Instant, sighting: Sighting, log: &mut EventLog) {
-        let marker = sighting.marker;
+    fn believe(&mut self, now: Instant, detection: MarkerDetection, log: &mut EventLog) {
+        let marker = detection.marker;
         let place = self.section.as_ref().and_then(|s| place_m(s, marker));
         let Some(place_m) = place else { return };
         for missing in self.fix.marker + 1..marker {
             // The one before may have been heard and not believed.
-            if self.doubtful.is_none_or(|d| d.marker != missing) {
+            if self.pending.is_none_or(|d| d.marker != missing) {
                 log.push(now, Event::MarkerMissing, i32::from(missing));
             }
         }
         // A span on sliding wheels tells nothing of their diameter.
-        if let Some((from_m, way_m)) = self.span_from(&sighting).filter(|_| self.slid_m == 0.0) {
-            self.wheel.learn(place_m - from_m, sighting.way_m - way_m);
+        if let Some((from_m, distance_m)) =
+            self.span_from(&detection).filter(|_| self.slid_m == 0.0)
+        {
+            self.wheel
+                .learn(place_m - from_m, detection.distance_m - distance_m);
             self.report_wheel(now, log);
         }
         self.fix = Fix {
             place_m,
-            way_m: sighting.way_m,
+            distance_m: detection.distance_m,
             marker,
         };
         self.expected = marker % MARKERS + 1;
-        self.doubtful = None;
+        self.pending = None;
         self.slid_m = 0.0;
         self.unsure_since_m = None;
         self.early_m = 0.0;
     }
 
-    /// Where a span that ends at a believed marker begins, place and way told, m: at the marker of the
-    /// fix, or, where only the way from the section's start is known, at a marker that waits for
+    /// Where a span that ends at a believed marker begins, place and distance told, m: at the marker of the
+    /// fix, or, where only the distance from the section's start is known, at a marker that waits for
     /// a second one to agree with.
-    fn span_from(&self, end: &Sighting) -> Option<(f64, f64)> {
+    fn span_from(&self, end: &MarkerDetection) -> Option<(f64, f64)> {
         if self.fix.marker != 0 {
-            return Some((self.fix.place_m, self.fix.way_m));
+            return Some((self.fix.place_m, self.fix.distance_m));
         }
-        let first = self.doubtful.filter(|first| first.marker < end.marker)?;
+        let first = self.pending.filter(|first| first.marker < end.marker)?;
         let place_m = place_m(self.section.as_ref()?, first.marker)?;
-        Some((place_m, first.way_m))
+        Some((place_m, first.distance_m))
     }
 
     fn report_wheel(&mut self, now: Instant, log: &mut EventLog) {
@@ -233,7 +237,7 @@ impl Locator {
         };
         let run_m = self.position_m() - self.fix.place_m;
         if self.position_m() > place_m + window_m(&self.fix, run_m, &self.wheels(), &self.config) {
-            self.unsure_since_m = Some(self.odometer.way_m());
+            self.unsure_since_m = Some(self.odometer.distance_m());
             log.push(now, Event::PositionUnsure, i32::from(next));
         }
     }
@@ -243,7 +247,7 @@ impl Locator {
         self.fix.marker == MARKERS
             && self
                 .to_stop_m()
-                .is_some_and(|way| libm::fabs(way) <= tolerance_m)
+                .is_some_and(|distance| libm::fabs(distance) <= tolerance_m)
     }
 
     /// Distance to the stop point, m.
@@ -253,7 +257,7 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m())
     }
 
-    /// What is added to the way the wheels tell, as a share.
+    /// What is added to the distance the wheels tell, as a share.
     pub fn wheel_correction(&self) -> f64 {
         self.wheel.correction()
     }
@@ -265,20 +269,20 @@ impl Locator {
 
     /// Position, m.
     pub fn position_m(&self) -> f64 {
-        let told_m = self.odometer.way_m() - self.fix.way_m;
+        let told_m = self.odometer.distance_m() - self.fix.distance_m;
         self.fix.place_m + self.wheels().run_m(told_m)
     }
 
-    /// Wheels have slid: way was run that they did not tell, m.
-    pub fn slide(&mut self, way_m: f64) {
-        self.slid_m += way_m;
+    /// Wheels have slid: the distance run that they did not count, m.
+    pub fn slide(&mut self, distance_m: f64) {
+        self.slid_m += distance_m;
     }
 
     fn wheels(&self) -> Wheels {
         Wheels {
             scale: 1.0 + self.wheel_correction(),
             // 4σ: a marker that is not believed costs more than one that is.
-            doubt: 2.0 * self.wheel.uncertainty(),
+            uncertainty: 2.0 * self.wheel.uncertainty(),
             slid_m: self.slid_m,
         }
     }
@@ -286,9 +290,9 @@ impl Locator {
     /// How much further the train may be, m; 0 as long as markers come when they should.
     pub fn ahead_m(&self) -> f64 {
         let unsure_m = self.unsure_since_m.map_or(0.0, |since_m| {
-            let way_m = self.odometer.way_m();
-            let run_m = libm::fabs(way_m - self.fix.way_m);
-            let grown_m = libm::fabs(way_m - since_m) * AHEAD_SHARE;
+            let distance_m = self.odometer.distance_m();
+            let run_m = libm::fabs(distance_m - self.fix.distance_m);
+            let grown_m = libm::fabs(distance_m - since_m) * AHEAD_SHARE;
             (run_m * self.wheel.uncertainty()).min(grown_m)
         });
         unsure_m.max(self.early_m)

@@ -1,8 +1,8 @@
 //! PSM: where the train is in its section, from distance run, corrected at markers whose order and
 //! place are checked; and the health of TRA [S0 §3.3].
 
-mod belief;
 mod locator;
+mod marker_check;
 mod odometer;
 
 mod tra;

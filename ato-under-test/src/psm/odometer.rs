@@ -1,4 +1,4 @@
-//! Way between tachometer pulses: a pulse is centimetres, a stop is to be known to one.
+//! Distance between tachometer pulses: a pulse is centimetres, a stop is to be known to one.
 //!
 //! The way to the last pulse edge is counted; what has been run since follows from the speed and its
 //! change. So does where the train was when a marker's edge came, some milliseconds ago.
@@ -75,7 +75,7 @@ impl Odometer {
         }
     }
 
-    /// Way from the last edge to `seconds` after it, m, ahead positive.
+    /// Distance from the last edge to `seconds` after it, m, ahead positive.
     fn since_edge_m(&self, seconds: f64) -> f64 {
         // A train that slows comes to a stop, it does not turn round.
         let stops_s = if self.accel_mps2 < 0.0 {
@@ -87,16 +87,16 @@ impl Odometer {
         self.speed_mps * t + self.accel_mps2 * t * t / 2.0
     }
 
-    /// Way since power-up, m, by the configured wheel.
-    pub fn way_m(&self) -> f64 {
+    /// Distance since power-up, m, by the configured wheel.
+    pub fn distance_m(&self) -> f64 {
         self.counted_m + self.direction * self.beyond_m
     }
 
-    /// Way as it was `age_s` before the inputs were sampled, m.
-    pub fn way_ago_m(&self, age_s: f64) -> f64 {
+    /// Distance as it was `age_s` before the inputs were sampled, m.
+    pub fn distance_ago_m(&self, age_s: f64) -> f64 {
         let now_m = self.since_edge_m(self.edge_age_s);
         let then_m = self.since_edge_m(self.edge_age_s - age_s);
-        self.way_m() - self.direction * (now_m - then_m)
+        self.distance_m() - self.direction * (now_m - then_m)
     }
 }
 
@@ -106,18 +106,22 @@ mod tests {
 
     const PULSE_M: f64 = 0.027;
 
-    /// Steps an odometer along `way(t)` with `speed(t)` for `seconds`; the greatest error.
-    fn follow(way: impl Fn(f64) -> f64, speed: impl Fn(f64) -> f64, seconds: f64) -> (f64, f64) {
+    /// Steps an odometer along `distance(t)` with `speed(t)` for `seconds`; the greatest error.
+    fn follow(
+        distance: impl Fn(f64) -> f64,
+        speed: impl Fn(f64) -> f64,
+        seconds: f64,
+    ) -> (f64, f64) {
         let mut odometer = Odometer::new(PULSE_M, 0.1);
         let (mut counted, mut edge_s) = (0.0, 0.0);
         let (mut worst, mut worst_ago) = (0.0f64, 0.0f64);
         for scan in 1..=libm::round(seconds / 0.01) as u32 {
             let t = f64::from(scan) * 0.01;
-            let pulses = libm::floor(way(t) / PULSE_M);
+            let pulses = libm::floor(distance(t) / PULSE_M);
             let moved = pulses - counted;
             if moved > 0.0 {
-                // The edge lies where the way crosses a whole pulse.
-                let back_m = way(t) - pulses * PULSE_M;
+                // The edge lies where the distance crosses a whole pulse.
+                let back_m = distance(t) - pulses * PULSE_M;
                 edge_s = t - back_m / speed(t).max(1e-3);
                 counted = pulses;
             }
@@ -129,16 +133,16 @@ mod tests {
                 ..Movement::default()
             });
             if t > 1.0 {
-                worst = worst.max(libm::fabs(odometer.way_m() - way(t)));
-                let ago = odometer.way_ago_m(0.02);
-                worst_ago = worst_ago.max(libm::fabs(ago - way(t - 0.02)));
+                worst = worst.max(libm::fabs(odometer.distance_m() - distance(t)));
+                let ago = odometer.distance_ago_m(0.02);
+                worst_ago = worst_ago.max(libm::fabs(ago - distance(t - 0.02)));
             }
         }
         (worst, worst_ago)
     }
 
     #[test]
-    fn way_is_known_to_millimetres_between_pulses_while_braking_from_60() {
+    fn distance_is_known_to_millimetres_between_pulses_while_braking_from_60() {
         let (v, a) = (60.0 / 3.6, 0.9);
         let (worst, ago) = follow(|t| v * t - a * t * t / 2.0, |t| v - a * t, 15.0);
         assert!(worst < 0.003 && ago < 0.003, "{worst} {ago}");
@@ -148,8 +152,8 @@ mod tests {
     fn the_last_centimetres_before_a_stop_are_known_to_one() {
         let (v, a) = (1.5, 0.33);
         let stop_s = v / a;
-        let way = |t: f64| v * t.min(stop_s) - a * t.min(stop_s) * t.min(stop_s) / 2.0;
-        let (worst, _) = follow(way, |t| (v - a * t).max(0.0), stop_s + 0.4);
+        let distance = |t: f64| v * t.min(stop_s) - a * t.min(stop_s) * t.min(stop_s) / 2.0;
+        let (worst, _) = follow(distance, |t| (v - a * t).max(0.0), stop_s + 0.4);
         assert!(worst < 0.01, "{worst}");
     }
 }

@@ -1,9 +1,9 @@
-//! Wheel calibration: way by pulses between two believed markers against the track database.
+//! Wheel calibration: distance by pulses between two believed markers against the track database.
 //!
 //! One number is estimated, by how much the configured wheel is too small, with its variance: a span
 //! tells the more the longer it is, because markers lie some centimetres off their places.
 
-/// Share of the way by which creep and short slips falsify any span, however long [default].
+/// Share of the distance by which creep and short slips falsify any span, however long [default].
 const CREEP: f64 = 5e-4;
 /// Share by which a wheel may change from one span to the next [default].
 const WEAR: f64 = 1e-4;
@@ -38,14 +38,14 @@ impl WheelCalibration {
         }
         let measured = track_m / wheel_m - 1.0;
         let places = core::f64::consts::SQRT_2 * self.scatter_m / track_m;
-        let doubt = places * places + CREEP * CREEP;
+        let variance = places * places + CREEP * CREEP;
         self.variance += WEAR * WEAR;
-        let gain = self.variance / (self.variance + doubt);
+        let gain = self.variance / (self.variance + variance);
         self.share += gain * (measured - self.share);
         self.variance *= 1.0 - gain;
     }
 
-    /// What is added to the way the wheel tells, as a share; bounded.
+    /// What is added to the distance the wheel tells, as a share; bounded.
     pub fn correction(&self) -> f64 {
         self.share.clamp(-self.bound, self.bound)
     }
@@ -55,7 +55,7 @@ impl WheelCalibration {
         (libm::fabs(self.share) > self.bound).then_some(self.share)
     }
 
-    /// Share of the way by which it may still be wrong (2σ, and what the bound keeps back).
+    /// Share of the distance by which it may still be wrong (2σ, and what the bound keeps back).
     pub fn uncertainty(&self) -> f64 {
         let kept_back = libm::fabs(self.share - self.correction());
         2.0 * (libm::sqrt(self.variance + CREEP * CREEP) + kept_back)

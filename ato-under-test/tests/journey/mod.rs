@@ -18,7 +18,7 @@ pub struct Journey {
     pub x_m: f64,
     pub v_mps: f64,
     pub accel_mps2: f64,
-    /// Way the wheels tell over way run.
+    /// Distance the wheels count over distance run.
     pub wheels_tell: f64,
     /// Marker and where its pulse comes, m.
     pub markers: Vec<(u8, f64)>,

@@ -1,15 +1,15 @@
 //! Trains of a few lines for the speed controllers: S1's ideal one, and one whose effort comes late.
 
-use ato_under_test::ato::controller::{Demand, Situation, SpeedController};
+use ato_under_test::ato::controller::{ControllerInput, Demand, SpeedController};
 use protocol::config::{AtoConfig, UnitConfig};
 
 /// Control cycle, s.
 pub const CYCLE_S: f64 = 0.05;
 pub const KMH: f64 = 1.0 / 3.6;
 const G: f64 = 9.80665;
-/// Way from the markers of section 61 to its stop point, m.
+/// Distance from the markers of section 61 to its stop point, m.
 pub const MARKERS_TO_STOP_M: [f64; 4] = [546.0, 108.5, 21.0, 3.5];
-/// Way of one tachometer pulse, m.
+/// Distance of one tachometer pulse, m.
 const PULSE_M: f64 = 0.027;
 
 pub fn config() -> AtoConfig {
@@ -28,12 +28,12 @@ pub struct Run {
     pub unknown_permille: f64,
     /// Braking effort given for one asked.
     pub brake_factor: f64,
-    /// Speed is known to ± this, m/s, and way to a tachometer pulse; 0 = exactly.
+    /// Speed is known to ± this, m/s, and distance to a tachometer pulse; 0 = exactly.
     pub speed_noise_mps: f64,
     /// Powering is cut until then, s.
     pub cut_until_s: f64,
-    /// Way to the stop point at the start, m.
-    pub way_m: Option<f64>,
+    /// Distance to the stop point at the start, m.
+    pub distance_m: Option<f64>,
 }
 
 impl Run {
@@ -44,7 +44,7 @@ impl Run {
         brake_factor: 1.0,
         speed_noise_mps: 0.0,
         cut_until_s: 0.0,
-        way_m: None,
+        distance_m: None,
     };
 }
 
@@ -107,7 +107,7 @@ impl<'a> Train<'a> {
         (self.random >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
     }
 
-    fn situation(&mut self, cruise_mps: f64) -> Situation {
+    fn input(&mut self, cruise_mps: f64) -> ControllerInput {
         let noisy = self.run.speed_noise_mps > 0.0;
         let (mut position, mut speed) = (self.position_m, self.speed_mps);
         if noisy {
@@ -126,11 +126,11 @@ impl<'a> Train<'a> {
         let lag_s = self.config.train.lag_ms / 1000.0;
         position += (speed + 0.5 * accel * lag_s) * lag_s;
         speed += accel * lag_s;
-        Situation {
+        ControllerInput {
             cruise_mps,
             speed_mps: speed.max(0.0),
             accel_mps2: accel,
-            to_stop_m: self.run.way_m.map(|way| way - position),
+            to_stop_m: self.run.distance_m.map(|distance| distance - position),
             markers_to_stop_m: MARKERS_TO_STOP_M,
             mass_kg: self.mass_kg(),
             brake_mps2: 3.5 / 3.6 - known,
@@ -194,8 +194,8 @@ pub fn drive(
     (0..cycles)
         .map(|cycle| {
             let at_s = f64::from(cycle) * CYCLE_S;
-            let situation = train.situation(cruise_mps(train.position_m));
-            let demand = controller.step(&situation);
+            let input = train.input(cruise_mps(train.position_m));
+            let demand = controller.step(&input);
             let (position_m, before) = (train.position_m, train.speed_mps);
             train.act(demand, at_s);
             Row {
@@ -219,7 +219,7 @@ pub fn s1_errors(controller: &mut dyn SpeedController) -> Vec<f64> {
     let (mut speed, mut accel, mut granted_n) = (0.0_f64, 0.0, 0.0);
     (0..(51.0 / CYCLE_S) as u32)
         .map(|cycle| {
-            let demand = controller.step(&Situation {
+            let demand = controller.step(&ControllerInput {
                 cruise_mps: 60.0 * KMH,
                 speed_mps: speed,
                 accel_mps2: accel,

@@ -2,7 +2,7 @@
 
 use protocol::Instant;
 
-use super::words::described;
+use super::log_text::described;
 use super::{DrivePlan, Row};
 use crate::procedure::{EventSource, UnitEvent};
 

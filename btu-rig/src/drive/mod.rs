@@ -12,13 +12,13 @@
 //! * [`manual`]: the same train driven by hand, by a sequence of notches and switches.
 
 pub mod landmarks;
+mod log_text;
 pub mod manual;
 pub mod metrics;
 mod plan;
 mod recording;
 mod row;
 pub mod scatter;
-mod words;
 
 use protocol::message::{EbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
@@ -33,7 +33,7 @@ pub use landmarks::Landmark;
 pub use metrics::Metrics;
 pub use plan::{Codes, DrivePlan, PlanError};
 pub use row::Row;
-pub use scatter::{Drawn, Scatter};
+pub use scatter::{Scatter, ScatterDraw};
 
 use recording::Recording;
 
@@ -53,7 +53,7 @@ const RUN_BASE: Duration = Duration::from_ms(60_000);
 const SLOWEST_MPS: f64 = 4.0;
 /// A train nobody drives any more is watched for so long, should nothing brake it.
 const COASTS: Duration = Duration::from_ms(60_000);
-/// Way after which the train has left the departure station's loop, m.
+/// Distance after which the train has left the departure station's loop, m.
 const LOOP_LEFT_M: f64 = 50.0;
 
 /// How a run ended.
@@ -101,7 +101,9 @@ pub enum Ending {
 }
 
 fn lacking(refusals: Option<u16>) -> String {
-    refusals.map_or_else(String::new, |bits| format!(": {}", words::refusals(bits)))
+    refusals.map_or_else(String::new, |bits| {
+        format!(": {}", log_text::refusals(bits))
+    })
 }
 
 fn because(cause: Option<EbCause>) -> String {

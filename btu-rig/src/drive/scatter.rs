@@ -99,7 +99,7 @@ pub struct Scatter {
 
 /// What was drawn for one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn {
+pub struct ScatterDraw {
     /// Passengers, kg.
     pub load_kg: f64,
     /// The rest.
@@ -136,9 +136,9 @@ impl Scatter {
     }
 
     /// Draws a run's train and day; the same for the same `seed`.
-    pub fn draw(&self, seed: u64, full_load_kg: f64) -> Drawn {
+    pub fn draw(&self, seed: u64, full_load_kg: f64) -> ScatterDraw {
         let random = &mut Random::new(seed);
-        Drawn {
+        ScatterDraw {
             load_kg: self.load_kg.draw(random).clamp(0.0, full_load_kg),
             conditions: Conditions {
                 gradient_offset_permille: self.gradient_offset_permille.draw(random),
@@ -166,7 +166,7 @@ mod tests {
         let drawn: Vec<_> = (0..10_000)
             .map(|seed| scatter.draw(seed, 160_000.0))
             .collect();
-        let spread = |of: fn(&Drawn) -> f64| {
+        let spread = |of: fn(&ScatterDraw) -> f64| {
             let mean = drawn.iter().map(of).sum::<f64>() / 1e4;
             let var = drawn.iter().map(|d| (of(d) - mean).powi(2)).sum::<f64>() / 1e4;
             (mean, var.sqrt())

@@ -75,14 +75,14 @@ pub(super) type Captured = [Option<f64>];
 
 /// The data a condition or limit needed and did not get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Lack {
+pub(super) enum MissingData {
     /// A signal is not known.
     Signal(Signal),
     /// An earlier measurement has no value.
     Measurement,
 }
 
-impl std::fmt::Display for Lack {
+impl std::fmt::Display for MissingData {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Signal(signal) => write!(f, "no data for {}", signal.name()),
@@ -99,19 +99,21 @@ pub(super) enum Truth {
     /// It does not.
     No,
     /// It cannot be told.
-    NoData(Lack),
+    NoData(MissingData),
 }
 
 impl Operand {
     /// Its value now.
-    pub(super) fn value(&self, captured: &Captured) -> Result<f64, Lack> {
+    pub(super) fn value(&self, captured: &Captured) -> Result<f64, MissingData> {
         let value = match self {
             Self::Literal(value) => Some(*value),
             Self::Measured { slot, offset, .. } => {
                 captured.get(*slot).copied().flatten().map(|v| v + offset)
             }
         };
-        value.filter(|v| v.is_finite()).ok_or(Lack::Measurement)
+        value
+            .filter(|v| v.is_finite())
+            .ok_or(MissingData::Measurement)
     }
 }
 
@@ -167,7 +169,7 @@ fn fold(
     for part in parts {
         match part.truth(sample, captured) {
             truth if truth == decisive => return decisive,
-            lack @ Truth::NoData(_) => result = lack,
+            missing_data @ Truth::NoData(_) => result = missing_data,
             _ => {}
         }
     }
@@ -184,11 +186,11 @@ fn compare(
     captured: &Captured,
 ) -> Truth {
     let Some(found) = sample.get(signal).filter(|v| v.is_finite()) else {
-        return Truth::NoData(Lack::Signal(signal));
+        return Truth::NoData(MissingData::Signal(signal));
     };
     let wanted = match operand.value(captured) {
         Ok(wanted) => wanted,
-        Err(lack) => return Truth::NoData(lack),
+        Err(missing_data) => return Truth::NoData(missing_data),
     };
     let lsb = match signal.definition().kind {
         Kind::Number { lsb } => lsb,
@@ -252,7 +254,7 @@ mod tests {
             }
             for value in [f64::NAN, f64::INFINITY] {
                 let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
-                assert_eq!(truth, Truth::NoData(Lack::Signal(Signal::Limit)));
+                assert_eq!(truth, Truth::NoData(MissingData::Signal(Signal::Limit)));
             }
         }
     }
@@ -273,8 +275,8 @@ mod tests {
                 let condition = is(Signal::Lamps, comparison, f64::from(wanted));
                 let truth = condition.truth(&sample, &[]);
                 assert_eq!(truth == Truth::Yes, expected, "{found:b} {condition:?}");
-                let lack = Truth::NoData(Lack::Signal(Signal::Lamps));
-                assert_eq!(condition.truth(&Sample::default(), &[]), lack);
+                let missing_data = Truth::NoData(MissingData::Signal(Signal::Lamps));
+                assert_eq!(condition.truth(&Sample::default(), &[]), missing_data);
             }
         }
     }
@@ -284,15 +286,18 @@ mod tests {
         let known = is(Signal::Limit, Comparison::Above, 50.0);
         let known_false = is(Signal::Limit, Comparison::Below, 50.0);
         let missing = is(Signal::Eb, Comparison::Equal, 1.0);
-        let lack = Truth::NoData(Lack::Signal(Signal::Eb));
+        let missing_data = Truth::NoData(MissingData::Signal(Signal::Eb));
         let cases = [
-            (Condition::All(vec![known.clone(), missing.clone()]), lack),
+            (
+                Condition::All(vec![known.clone(), missing.clone()]),
+                missing_data,
+            ),
             (
                 Condition::All(vec![missing.clone(), known_false.clone()]),
                 Truth::No,
             ),
             (Condition::Any(vec![missing.clone(), known]), Truth::Yes),
-            (Condition::Any(vec![known_false, missing]), lack),
+            (Condition::Any(vec![known_false, missing]), missing_data),
         ];
         for (condition, expected) in cases {
             assert_eq!(
@@ -319,7 +324,7 @@ mod tests {
         for captured in [&[None][..], &[Some(f64::NAN)], &[]] {
             assert_eq!(
                 condition.truth(&sample(55.0), captured),
-                Truth::NoData(Lack::Measurement)
+                Truth::NoData(MissingData::Measurement)
             );
         }
     }

@@ -4,7 +4,7 @@ use protocol::Instant;
 
 use super::EventSource;
 use super::action_run::{Problem, Scan};
-use super::condition::{Lack, Truth};
+use super::condition::{MissingData, Truth};
 use super::describe::bits_seen;
 use super::event_set::EventSet;
 use super::evidence::LogState;
@@ -12,13 +12,13 @@ use super::plan::Expectation;
 
 /// What is known about an expectation so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Watch {
+pub(super) struct ExpectationRun {
     decided: bool,
-    lack: Option<Lack>,
+    missing_data: Option<MissingData>,
     problem: Option<Problem>,
 }
 
-impl Watch {
+impl ExpectationRun {
     /// Looks at one scan. `actions_end` is set as soon as the actions are done and the sample is
     /// newer than the last stimulus.
     pub(super) fn look(
@@ -58,7 +58,7 @@ impl Watch {
             }
             Expectation::Never { condition } => match condition.truth(scan.sample, scan.captured) {
                 truth @ Truth::Yes => self.fail(truth, || format!("{condition} came true")),
-                Truth::NoData(lack) => self.lack = Some(lack),
+                Truth::NoData(missing_data) => self.missing_data = Some(missing_data),
                 Truth::No => {}
             },
             Expectation::Logs { event, within } => {
@@ -96,12 +96,12 @@ impl Watch {
 
     /// Ends watching; the problem, if there is one.
     pub(super) fn finish(self, expectation: &Expectation) -> Option<Problem> {
-        match (self.problem, self.lack, expectation) {
+        match (self.problem, self.missing_data, expectation) {
             (Some(problem), _, _) => Some(problem),
             // A condition that could not be told in a single scan may have been true in it.
-            (None, Some(lack), Expectation::Never { condition }) => Some(Problem::NoData(format!(
-                "{lack}, so never {condition} cannot be told"
-            ))),
+            (None, Some(missing_data), Expectation::Never { condition }) => Some(Problem::NoData(
+                format!("{missing_data}, so never {condition} cannot be told"),
+            )),
             _ => None,
         }
     }
@@ -109,7 +109,7 @@ impl Watch {
     fn fail(&mut self, truth: Truth, text: impl FnOnce() -> String) {
         self.decided = true;
         self.problem = Some(match truth {
-            Truth::NoData(lack) => Problem::NoData(format!("{}: {lack}", text())),
+            Truth::NoData(missing_data) => Problem::NoData(format!("{}: {missing_data}", text())),
             Truth::Yes | Truth::No => Problem::Failed(text()),
         });
     }

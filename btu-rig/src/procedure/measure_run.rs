@@ -1,10 +1,10 @@
-//! Taking one measurement while its step runs.
+//! One measurement while its step runs: watches each scan and yields the value when the step ends.
 
 use protocol::Instant;
 use protocol::signal::Signal;
 
 use super::action_run::Scan;
-use super::condition::{Captured, Lack, Truth};
+use super::condition::{Captured, MissingData, Truth};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::{Measurement, Verdict};
@@ -17,7 +17,12 @@ struct Edge {
 }
 
 impl Edge {
-    fn look(&mut self, condition: &Condition, scan: Scan<'_>, lack: &mut Option<Lack>) -> bool {
+    fn look(
+        &mut self,
+        condition: &Condition,
+        scan: Scan<'_>,
+        missing_data: &mut Option<MissingData>,
+    ) -> bool {
         match condition.truth(scan.sample, scan.captured) {
             Truth::Yes => self.was_false,
             Truth::No => {
@@ -25,16 +30,16 @@ impl Edge {
                 false
             }
             Truth::NoData(missing) => {
-                *lack = Some(missing);
+                *missing_data = Some(missing);
                 false
             }
         }
     }
 }
 
-/// What is known about a measurement so far.
+/// A measurement in progress.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Taking {
+pub(super) struct MeasurementRun {
     from: Edge,
     to: Edge,
     /// When the time measured began.
@@ -44,13 +49,13 @@ pub(super) struct Taking {
     latest: Option<f64>,
     wrapped: f64,
     value: Option<f64>,
-    lack: Option<Lack>,
+    missing_data: Option<MissingData>,
     done: bool,
     /// The step need not wait for it any longer.
     late: bool,
 }
 
-impl Taking {
+impl MeasurementRun {
     /// Looks at one scan; `actions_end` as in [`super::expectation_run::Watch::look`].
     pub(super) fn look(
         &mut self,
@@ -65,9 +70,9 @@ impl Taking {
         match &measure.what {
             What::Time { from, to } => self.time(from, to, scan, step_start, actions_end),
             What::At { signal, when } => {
-                if self.to.look(when, scan, &mut self.lack) {
+                if self.to.look(when, scan, &mut self.missing_data) {
                     self.done = true;
-                    self.lack = None;
+                    self.missing_data = None;
                     self.value = self.known(*signal, scan);
                 }
             }
@@ -99,7 +104,7 @@ impl Taking {
                 self.value = self.first.zip(last).map(change);
             }
             // A gap in the data may have hidden the greatest or least value.
-            What::Maximum(_) | What::Minimum(_) if self.lack.is_some() => self.value = None,
+            What::Maximum(_) | What::Minimum(_) if self.missing_data.is_some() => self.value = None,
             _ => {}
         }
         let measurement = measured(measure, self.value, scan.captured);
@@ -108,7 +113,7 @@ impl Taking {
     }
 
     /// Ends the measurement without a value.
-    pub(super) fn untaken(self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+    pub(super) fn without_value(self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
         let measurement = measured(measure, None, scan.captured);
         let message = self.message(measure, &measurement);
         (measurement, message)
@@ -127,12 +132,12 @@ impl Taking {
                 TimeFrom::StepStart => Some(step_start),
                 TimeFrom::ActionsEnd => actions_end,
                 TimeFrom::Condition(condition) => {
-                    let begins = self.from.look(condition, scan, &mut self.lack);
+                    let begins = self.from.look(condition, scan, &mut self.missing_data);
                     begins.then_some(scan.now)
                 }
             };
         }
-        let reached = self.to.look(to, scan, &mut self.lack);
+        let reached = self.to.look(to, scan, &mut self.missing_data);
         // An end before the beginning is passed over; the next one counts.
         match self.start {
             Some(start) if reached => {
@@ -164,7 +169,7 @@ impl Taking {
     fn known(&mut self, signal: Signal, scan: Scan<'_>) -> Option<f64> {
         let value = scan.sample.get(signal).filter(|v| v.is_finite());
         if value.is_none() {
-            self.lack = Some(Lack::Signal(signal));
+            self.missing_data = Some(MissingData::Signal(signal));
         }
         value
     }
@@ -172,7 +177,7 @@ impl Taking {
     /// Why it did not pass; empty if it did.
     fn message(&self, measure: &Measure, measurement: &Measurement) -> String {
         let name = &measure.name;
-        match (measurement.verdict, measurement.value, self.lack) {
+        match (measurement.verdict, measurement.value, self.missing_data) {
             (Verdict::Passed, ..) => String::new(),
             (Verdict::Failed, Some(value), _) => {
                 let limits = super::describe::limits(measurement.low, measurement.high);
@@ -185,7 +190,7 @@ impl Taking {
                 .into()
             }
             (_, Some(_), _) => format!("{name}: a limit refers to a measurement without a value"),
-            (_, None, Some(lack)) => format!("{name}: {lack}"),
+            (_, None, Some(missing_data)) => format!("{name}: {missing_data}"),
             (_, None, None) => match &measure.what {
                 What::Time { to: end, .. } | What::At { when: end, .. } => {
                     format!("{name}: no value, {end} did not come about in time")

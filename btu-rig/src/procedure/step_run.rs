@@ -6,8 +6,8 @@ use protocol::{CYCLE, Duration, Instant};
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
 use super::event_set::EventSet;
 use super::evidence::{Evidence, LogState, counted};
-use super::expectation_run::Watch;
-use super::measure_run::Taking;
+use super::expectation_run::ExpectationRun;
+use super::measure_run::MeasurementRun;
 use super::plan::Step;
 use super::report::{Measurement, RunEvent, Verdict};
 use super::{Driver, UnitEvent};
@@ -23,8 +23,8 @@ pub(super) struct StepRun {
     started: Instant,
     actions: ActionRun,
     actions_done: Option<Instant>,
-    watches: Vec<Watch>,
-    takings: Vec<Taking>,
+    expectations: Vec<ExpectationRun>,
+    measurements: Vec<MeasurementRun>,
     /// Each once, with how often it came.
     problems: Vec<(Problem, u32)>,
     logged: EventSet,
@@ -60,8 +60,8 @@ impl StepRun {
             started: now,
             actions: ActionRun::default(),
             actions_done: None,
-            watches: vec![Watch::default(); step.expectations.len()],
-            takings: vec![Taking::default(); step.measures.len()],
+            expectations: vec![ExpectationRun::default(); step.expectations.len()],
+            measurements: vec![MeasurementRun::default(); step.measures.len()],
             problems: Vec::new(),
             logged: EventSet::default(),
             blamed: None,
@@ -227,23 +227,23 @@ impl StepRun {
         let bench_time = scan.now.since(self.started);
         let complete = !self.given_up && !aborted;
         let blamed = self.has_failed();
-        for (watch, expectation) in std::mem::take(&mut self.watches)
+        for (run, expectation) in std::mem::take(&mut self.expectations)
             .into_iter()
             .zip(&step.expectations)
         {
-            let decided = complete || !watch.is_open(expectation);
-            if let Some(problem) = watch.finish(expectation).filter(|_| decided) {
+            let decided = complete || !run.is_open(expectation);
+            if let Some(problem) = run.finish(expectation).filter(|_| decided) {
                 self.hold(problem);
             }
         }
         let mut measurements = Vec::with_capacity(step.measures.len());
-        for (taking, measure) in std::mem::take(&mut self.takings)
+        for (run, measure) in std::mem::take(&mut self.measurements)
             .into_iter()
             .zip(&step.measures)
         {
             let (measurement, message) = match self.broken_off {
-                true => taking.untaken(measure, scan),
-                false => taking.finish(measure, scan),
+                true => run.without_value(measure, scan),
+                false => run.finish(measure, scan),
             };
             match measurement.verdict {
                 Verdict::Passed => {}
@@ -282,11 +282,11 @@ impl StepRun {
     }
 
     fn look(&mut self, step: &Step, scan: Scan<'_>, actions_end: Option<Instant>) {
-        for (watch, expectation) in self.watches.iter_mut().zip(&step.expectations) {
-            watch.look(expectation, scan, actions_end, (self.logged, self.log));
+        for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
+            run.look(expectation, scan, actions_end, (self.logged, self.log));
         }
-        for (taking, measure) in self.takings.iter_mut().zip(&step.measures) {
-            taking.look(measure, scan, self.started, actions_end);
+        for (run, measure) in self.measurements.iter_mut().zip(&step.measures) {
+            run.look(measure, scan, self.started, actions_end);
         }
     }
 
@@ -294,8 +294,8 @@ impl StepRun {
         // After a stimulus one more scan, so that the last sample shows its effect.
         self.actions_done.is_some()
             && !self.actions.sample_is_stale(now)
-            && !(self.watches.iter().zip(&step.expectations)).any(|(w, e)| w.is_open(e))
-            && !(self.takings.iter().zip(&step.measures)).any(|(t, m)| t.is_open(m))
+            && !(self.expectations.iter().zip(&step.expectations)).any(|(w, e)| w.is_open(e))
+            && !(self.measurements.iter().zip(&step.measures)).any(|(t, m)| t.is_open(m))
     }
 
     /// What the step is still waiting for, as the end of a sentence.
@@ -303,7 +303,7 @@ impl StepRun {
         if self.actions_done.is_none() {
             return " in its actions".into();
         }
-        let open = (self.watches.iter().zip(&step.expectations)).find(|(w, e)| w.is_open(e));
+        let open = (self.expectations.iter().zip(&step.expectations)).find(|(w, e)| w.is_open(e));
         open.map_or(String::new(), |(_, e)| format!(" waiting for: {e}"))
     }
 }

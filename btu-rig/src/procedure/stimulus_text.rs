@@ -14,7 +14,7 @@ impl fmt::Display for Stimulus {
 /// Each stimulus in words; long because it is a table.
 pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
     let on_off = |on: bool| if on { "on" } else { "off" };
-    let way = |backward: bool| if backward { "backward" } else { "forward" };
+    let direction = |backward: bool| if backward { "backward" } else { "forward" };
     match *stimulus {
         Stimulus::Code {
             carrier_hz,
@@ -32,7 +32,7 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::Travel {
             distance_m, speed, ..
         } => format!("travel {} m at {speed}", number(distance_m)),
-        Stimulus::Direction { backward } => format!("wheels turn {}", way(backward)),
+        Stimulus::Direction { backward } => format!("wheels turn {}", direction(backward)),
         Stimulus::Tacho { channel, condition } => {
             format!("tachometer {channel} {}", tacho_text(condition))
         }
@@ -106,7 +106,7 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
             ..
         } => {
             let inputs = ["none", "1", "2", "1 and 2"][usize::from(channels & 3)];
-            format!("test speed {to} {} on input {inputs}", way(backward))
+            format!("test speed {to} {} on input {inputs}", direction(backward))
         }
         Stimulus::PtuMarker { psm } => format!("pulse of test marker PSM{psm}"),
         Stimulus::PtuTwc(data) => format!("test TWC frame {}", station_text(&data)),

@@ -13,7 +13,7 @@ pub const MAX_RATE_HZ: f64 = 655.0;
 /// What is put into the antenna, and what arrives there.
 #[derive(Debug)]
 pub struct Antenna {
-    wanted: Wanted,
+    wanted: AntennaCommand,
     sensors: Sensors,
     random: Random,
     /// Noise of this scan: of the rate, Hz, and of the level as a share of it.
@@ -23,7 +23,7 @@ pub struct Antenna {
 
 /// The signal that is put in; all 0 = none.
 #[derive(Debug, Default)]
-struct Wanted {
+struct AntennaCommand {
     carrier_hz: f64,
     rate_hz: f64,
     level_mv: f64,
@@ -35,7 +35,7 @@ impl Antenna {
     /// No signal; `random` is for noise.
     pub fn new(random: Random) -> Self {
         Self {
-            wanted: Wanted::default(),
+            wanted: AntennaCommand::default(),
             sensors: Sensors::default(),
             random,
             rate_noise_hz: 0.0,
@@ -50,11 +50,11 @@ impl Antenna {
 
     /// Puts a steady signal into the antenna.
     pub fn set(&mut self, carrier_hz: f64, rate_hz: f64, level_mv: f64) {
-        self.wanted = Wanted {
+        self.wanted = AntennaCommand {
             carrier_hz,
             rate_hz,
             level_mv,
-            ..Wanted::default()
+            ..AntennaCommand::default()
         };
     }
 
@@ -66,13 +66,13 @@ impl Antenna {
 
     /// Takes the signal away.
     pub fn off(&mut self) {
-        self.wanted = Wanted::default();
+        self.wanted = AntennaCommand::default();
     }
 
     /// One scan of drift and noise.
     pub fn step(&mut self) {
         let seconds = SCAN.as_secs();
-        let Wanted {
+        let AntennaCommand {
             rate_hz_per_s,
             level_mv_per_s,
             ..

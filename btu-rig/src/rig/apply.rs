@@ -15,7 +15,7 @@ use super::{Rig, Track, test_signals};
 const MAX_SPEED_KMH: f64 = 200.0;
 /// Hardest acceleration of a wheel, m/s²: far beyond any train, for tests of plausibility.
 const MAX_ACCEL_MPS2: f64 = 100.0;
-/// Longest way of one travel, m.
+/// Longest distance of one travel, m.
 const MAX_TRAVEL_M: f64 = 100_000.0;
 /// Farthest a marker can be moved, m.
 const MAX_MOVE_M: f64 = 100.0;
@@ -222,9 +222,9 @@ impl Rig {
         self.track = None;
         self.desk.reset();
         self.wayside.reset(&self.line.sections[0]);
-        let way_m = self.wheel.axle().way_m;
+        let distance_m = self.wheel.axle().distance_m;
         for tacho in &mut self.tachos {
-            tacho.set_condition(TachoCondition::Good, way_m);
+            tacho.set_condition(TachoCondition::Good, distance_m);
         }
     }
 
@@ -246,13 +246,13 @@ impl Rig {
             }
             TachoCondition::Good | TachoCondition::Dead => {}
         }
-        let way_m = self.wheel.axle().way_m;
+        let distance_m = self.wheel.axle().distance_m;
         let tacho = usize::from(channel)
             .checked_sub(1)
             .and_then(|i| self.tachos.get_mut(i));
         tacho
             .ok_or_else(|| Refusal(format!("there is no tachometer {channel}: use 1 or 2")))?
-            .set_condition(condition, way_m);
+            .set_condition(condition, distance_m);
         Ok(())
     }
 

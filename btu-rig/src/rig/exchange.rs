@@ -194,7 +194,7 @@ impl Exchange {
     }
 
     /// Takes the unit's challenge; the next step answers it.
-    pub fn hear_challenge(&mut self, heard: &ArmChallenge) {
+    pub fn on_challenge(&mut self, heard: &ArmChallenge) {
         if let Some(current) = &mut self.current
             && matches!(current.request, Request::Arm)
             && heard.session == self.session
@@ -204,7 +204,7 @@ impl Exchange {
     }
 
     /// Takes the outcome of arming, or the notice that it lapsed.
-    pub fn hear_arm_state(&mut self, now: Instant, state: &ArmState) {
+    pub fn on_arm_state(&mut self, now: Instant, state: &ArmState) {
         if state.session != self.session {
             return;
         }
@@ -230,7 +230,7 @@ impl Exchange {
     }
 
     /// Takes the answer to a stimulus.
-    pub fn hear_answer(&mut self, heard: &StimulusAnswer) {
+    pub fn on_answer(&mut self, heard: &StimulusAnswer) {
         let Some(current) = &self.current else { return };
         let asked = current.seqs[..current.attempts].contains(&heard.request_seq);
         if !asked || !matches!(current.request, Request::Stimulus { .. }) {
@@ -244,7 +244,7 @@ impl Exchange {
     }
 
     /// Takes the armed bit of the unit's status.
-    pub fn hear_armed_bit(&mut self, now: Instant, armed: bool) {
+    pub fn on_armed_bit(&mut self, now: Instant, armed: bool) {
         // A status made just before arming may still be on its way.
         if !armed && self.armed_at.is_some_and(|at| now.since(at) >= ANSWER_TIME) {
             self.armed_at = None;
@@ -252,7 +252,7 @@ impl Exchange {
     }
 
     /// The unit was started again: nothing it agreed to holds.
-    pub fn hear_restart(&mut self) {
+    pub fn on_restart(&mut self) {
         self.armed_at = None;
         if !self.idle() {
             self.fail("the unit restarted before it answered".to_owned());

@@ -98,9 +98,9 @@ impl LineWatch {
         self.clock = None;
     }
 
-    /// This bench was held up by its own computer: its frames came late, those of the unit waited or were lost
-    /// here, and the line is not to blame for either.
-    pub fn note_held_up(&mut self, now: Instant) {
+    /// This bench's own computer did not keep up: its frames left late and the unit's frames waited or were
+    /// lost here. Neither is counted against the line.
+    pub fn note_stalled(&mut self, now: Instant) {
         self.settles_until = self.settles_until.map(|_| now + SETTLES);
         self.clock = None;
         self.past.clear();
@@ -108,7 +108,7 @@ impl LineWatch {
     }
 
     /// Takes when a frame of the unit came, and the unit's clock when it was made, ms.
-    pub fn hear_clock(&mut self, at: Instant, stamp_ms: u32) {
+    pub fn on_clock(&mut self, at: Instant, stamp_ms: u32) {
         if !self.settled(at) {
             return;
         }
@@ -120,7 +120,7 @@ impl LineWatch {
     }
 
     /// Takes the unit's own count, which wraps.
-    pub fn hear_refused(&mut self, now: Instant, refused: u16) {
+    pub fn on_refused(&mut self, now: Instant, refused: u16) {
         let more = self
             .told
             .replace(refused)

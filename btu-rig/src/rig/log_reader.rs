@@ -140,7 +140,7 @@ impl LogReader {
     }
 
     /// Takes an entry.
-    pub fn hear_entry(&mut self, now: Instant, entry: &LogEntry) {
+    pub fn on_entry(&mut self, now: Instant, entry: &LogEntry) {
         self.heard = Some(now);
         if entry.index > self.next && !self.probing {
             // Lost on the wire, or overwritten in the unit: asking again tells which.
@@ -165,7 +165,7 @@ impl LogReader {
     }
 
     /// Takes the end of an answer.
-    pub fn hear_end(&mut self, now: Instant, end: &LogEnd) {
+    pub fn on_end(&mut self, now: Instant, end: &LogEnd) {
         self.heard = Some(now);
         self.asked = None;
         self.probing = false;
@@ -300,7 +300,7 @@ mod tests {
             match under_way {
                 Some(256) => {
                     under_way = None;
-                    reader.hear_end(
+                    reader.on_end(
                         now,
                         &LogEnd {
                             next_index: 256,
@@ -310,7 +310,7 @@ mod tests {
                 }
                 Some(index) => {
                     under_way = Some(index + 1);
-                    reader.hear_entry(now, &entry(index));
+                    reader.on_entry(now, &entry(index));
                 }
                 None => {}
             }
@@ -329,7 +329,7 @@ mod tests {
         let mut reader = LogReader::default();
         reader.note_logged(4);
         for index in [0, 0, 1, 3, 2, 1, 3] {
-            reader.hear_entry(Instant::ZERO, &entry(index));
+            reader.on_entry(Instant::ZERO, &entry(index));
         }
         assert_eq!(indices(&mut reader), [0, 1, 2, 3]);
         assert!(reader.up_to_date());
@@ -339,8 +339,8 @@ mod tests {
     fn overwritten_entries_are_skipped_and_counted() {
         let mut reader = LogReader::default();
         reader.note_logged(12);
-        reader.hear_entry(Instant::ZERO, &entry(10));
-        reader.hear_end(
+        reader.on_entry(Instant::ZERO, &entry(10));
+        reader.on_end(
             Instant::ZERO,
             &LogEnd {
                 next_index: 12,
@@ -348,7 +348,7 @@ mod tests {
             },
         );
         for index in [10, 11] {
-            reader.hear_entry(Instant::ZERO, &entry(index));
+            reader.on_entry(Instant::ZERO, &entry(index));
         }
         assert_eq!(indices(&mut reader), [10, 11]);
         assert_eq!(reader.overwritten(), 10);

@@ -66,7 +66,7 @@ impl LogSession {
                 Message::Taken(taken) => self.watch.note_taken(*taken),
                 _ => {}
             }
-            self.tester.hear(now, &received.message);
+            self.tester.receive(now, &received.message);
         }
     }
 

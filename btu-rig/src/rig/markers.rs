@@ -138,7 +138,7 @@ mod tests {
     use super::super::wheel::Wheel;
     use super::*;
 
-    /// Each marker pulses once, and position minus way since the edge is its place to 1 mm.
+    /// Each marker pulses once, and position minus distance since the edge is its place to 1 mm.
     #[test]
     fn markers_pulse_at_their_places() {
         let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();

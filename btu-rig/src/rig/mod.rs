@@ -4,15 +4,15 @@
 //! A scan is [`Rig::step`], the exchange of bytes, [`Rig::receive`]. Read in this order: this
 //! file, `apply` (what each stimulus does), `wheel` and `tacho` (pulses), `tester` (the session).
 //!
-//! Terms: *way* is distance rolled, never falling; *position* is distance run, forward positive;
+//! Terms: *distance* is what the wheels have rolled, never falling; *position* is distance run, forward positive;
 //! *quiescent* is the state after [`Rig::new`] and after making safe, in which a healthy unit logs
 //! no fault.
 
 mod antenna;
 mod apply;
 mod bench;
+mod cab_desk;
 mod codes_along;
-mod desk;
 mod exchange;
 mod line_watch;
 mod link_watch;
@@ -59,12 +59,12 @@ pub use train_faults::{Misplaced, check_places};
 pub use truth::{PairEfforts, Truth};
 
 use antenna::Antenna;
-use desk::Desk;
+use cab_desk::CabDesk;
 use line_watch::LineWatch;
 use link_watch::LinkWatch;
 use markers::Markers;
 use rolling::weight_shares;
-use sample::Recorder;
+use sample::LatestSample;
 use tacho::Tacho;
 use tcms::{PairCars, pair_cars};
 use tcms_port::TcmsPort;
@@ -82,7 +82,7 @@ pub struct Rig {
     /// The unit's code table and the level its receiver is made for, mV.
     codes: Vec<SpeedCode>,
     level_mv: f64,
-    /// Way the configured wheel rolls for a pulse, m.
+    /// Distance the configured wheel rolls for a pulse, m.
     metres_per_pulse: f64,
     pulses_per_turn: u32,
     conditions: Conditions,
@@ -117,7 +117,7 @@ pub struct Rig {
     tcms_dropped: u64,
     injected: Injected,
     faults: TrainFaults,
-    desk: Desk,
+    desk: CabDesk,
     tester: Tester,
     /// Slowing down to a standstill, after which the rest is made quiescent.
     making_safe: bool,
@@ -129,7 +129,7 @@ pub struct Rig {
     link: Link,
     watch: LinkWatch,
     line_watch: LineWatch,
-    recorder: Recorder,
+    latest: LatestSample,
     now: Instant,
     /// When a frame of the unit came last, and its stamp.
     unit_stamp: Option<(Instant, u32)>,
@@ -179,7 +179,7 @@ impl Rig {
             track: None,
             markers: Markers::default(),
             wayside,
-            desk: Desk::default(),
+            desk: CabDesk::default(),
             tester: Tester::new(session),
             making_safe: false,
             quiescent: false,
@@ -188,7 +188,7 @@ impl Rig {
             link: Link::new(End::Bench),
             watch: LinkWatch::default(),
             line_watch: LineWatch::new(config.link.rejected_per_10s),
-            recorder: Recorder::default(),
+            latest: LatestSample::default(),
             now: Instant::ZERO,
             unit_stamp: None,
         };
@@ -210,7 +210,7 @@ impl Rig {
             self.line_watch.note_on_purpose(now);
         }
         self.line_watch.step(now, self.link.counters());
-        self.recorder.step(now);
+        self.latest.step(now);
         if self.quiescent {
             // The unit may ask for the holding brake a little longer: the next procedure knows nothing
             // of it.
@@ -245,41 +245,41 @@ impl Rig {
             self.watch
                 .note_frame(received.header.channel, self.link.counters());
             match &received.message {
-                Message::IoOutput(io) => self.recorder.hear_io(now, io),
+                Message::IoOutput(io) => self.latest.on_io(now, io),
                 Message::AtcToTcms(command) => {
                     if !self.tcms_port.silent() {
-                        self.tcms.hear(now, command);
+                        self.tcms.receive(now, command);
                     }
-                    self.recorder.hear_tcms(now, command);
+                    self.latest.on_tcms(now, command);
                 }
                 Message::TwcTrain(answer) => {
-                    self.wayside.hear_answer();
-                    self.recorder.hear_twc(now, answer, self.wayside.answers());
+                    self.wayside.on_answer();
+                    self.latest.on_twc(now, answer, self.wayside.answers());
                 }
                 Message::Taken(taken) => self.watch.note_taken(*taken),
-                message => self.hear_tester(now, message),
+                message => self.on_tester(now, message),
             }
         }
     }
 
-    fn hear_tester(&mut self, now: Instant, message: &Message) {
+    fn on_tester(&mut self, now: Instant, message: &Message) {
         let restarts = self.tester.restarts();
-        self.tester.hear(now, message);
+        self.tester.receive(now, message);
         if self.tester.restarts() != restarts {
             self.line_watch.note_restart(now);
         }
         if let Message::Status(status) = message {
-            self.recorder.hear_status(now, status);
+            self.latest.on_status(now, status);
             if let Some((at, stamp_ms)) = self.unit_stamp {
-                self.line_watch.hear_clock(at, stamp_ms);
+                self.line_watch.on_clock(at, stamp_ms);
             }
-            self.line_watch.hear_refused(now, status.rejected_frames);
+            self.line_watch.on_refused(now, status.rejected_frames);
         }
     }
 
     /// The present value of every signal. What the unit has not said for 500 ms is not known.
     pub fn sample(&self) -> &Sample {
-        &self.recorder.sample
+        &self.latest.sample
     }
 
     /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
@@ -312,10 +312,10 @@ impl Rig {
         self.tester.identity()
     }
 
-    /// This bench was held up by its own computer, longer than the unit bears: what got lost meanwhile says
-    /// nothing of the line.
-    pub fn note_held_up(&mut self, now: Instant) {
-        self.line_watch.note_held_up(now);
+    /// This bench's own computer stalled for longer than the unit tolerates: frames lost meanwhile are not
+    /// counted against the line.
+    pub fn note_stalled(&mut self, now: Instant) {
+        self.line_watch.note_stalled(now);
     }
 
     /// When a frame of the unit came last, and what the unit's clock was when it was made, ms.
@@ -394,9 +394,9 @@ impl Rig {
 
     /// Records what the rig makes, as it is sent.
     fn record(&mut self) {
-        self.recorder.note_lines(self.desk.lines(self.now));
+        self.latest.note_lines(self.desk.lines(self.now));
         let data = self.wayside.data();
-        let sample = &mut self.recorder.sample;
+        let sample = &mut self.latest.sample;
         for (signal, value) in [
             (Signal::CarrierHz, f64::from(self.antenna.carrier_hz())),
             (

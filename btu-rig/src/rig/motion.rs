@@ -1,11 +1,11 @@
 //! What a wheel did in one scan, exactly enough to time each pulse within it.
 //!
-//! Way: distance rolled whatever the direction, never falling. Position: forward counts up,
+//! Distance: rolled whatever the direction, never falling. Position: forward counts up,
 //! backward down.
 
 use crate::train::Piece;
 
-/// Pieces one scan can need: three legs of a travel and the rest after it.
+/// Pieces one scan can need: three segments of a travel and the rest after it.
 const MAX_PIECES: usize = 4;
 
 /// The motion of one scan.
@@ -14,10 +14,10 @@ pub struct Motion {
     pieces: [Piece; MAX_PIECES],
     len: usize,
     seconds: f64,
-    /// Way at the scan's start, m.
-    pub way_before_m: f64,
-    /// Way at its end, m.
-    pub way_m: f64,
+    /// Distance at the scan's start, m.
+    pub distance_before_m: f64,
+    /// Distance at its end, m.
+    pub distance_m: f64,
     /// Position at the scan's start, m.
     pub position_before_m: f64,
     /// Position at its end, m.
@@ -29,14 +29,14 @@ impl Motion {
     pub fn begin_scan(&mut self) {
         self.len = 0;
         self.seconds = 0.0;
-        self.way_before_m = self.way_m;
+        self.distance_before_m = self.distance_m;
         self.position_before_m = self.position_m;
     }
 
     /// Adds a piece to the scan.
     pub fn roll(&mut self, piece: Piece) {
         let distance = piece.distance_m();
-        self.way_m += distance.abs();
+        self.distance_m += distance.abs();
         self.position_m += distance;
         self.seconds += piece.seconds;
         assert!(
@@ -48,16 +48,16 @@ impl Motion {
     }
 
     /// Moves the end of the scan by what rounding has added up, so that a whole travel is exact.
-    pub fn correct(&mut self, way_m: f64, position_m: f64) {
-        self.way_m = way_m.max(self.way_before_m);
+    pub fn correct(&mut self, distance_m: f64, position_m: f64) {
+        self.distance_m = distance_m.max(self.distance_before_m);
         self.position_m = position_m;
     }
 
-    /// The motion of something that moves with this one but for a constant distance of its way.
-    pub fn shifted(&self, way_m: f64) -> Self {
+    /// The motion of something that moves with this one but for a constant difference in distance.
+    pub fn shifted(&self, distance_m: f64) -> Self {
         Self {
-            way_before_m: self.way_before_m + way_m,
-            way_m: self.way_m + way_m,
+            distance_before_m: self.distance_before_m + distance_m,
+            distance_m: self.distance_m + distance_m,
             ..*self
         }
     }
@@ -68,17 +68,17 @@ impl Motion {
         moving.copied().next().unwrap_or_default()
     }
 
-    /// How long before the scan's end the wheel had rolled up to `way_m`, s.
-    pub fn age_of_way_s(&self, way_m: f64) -> f64 {
-        let mut way_left = way_m - self.way_before_m;
+    /// How long before the scan's end the wheel had rolled up to `distance_m`, s.
+    pub fn age_of_distance_s(&self, distance_m: f64) -> f64 {
+        let mut distance_left = distance_m - self.distance_before_m;
         let mut time_left = self.seconds;
         for piece in &self.pieces[..self.len] {
             let rolled = piece.distance_m().abs();
             // The last pieces may be a rest in which nothing is rolled.
-            if way_left <= rolled {
-                return time_left - piece.time_of_way(way_left.max(0.0));
+            if distance_left <= rolled {
+                return time_left - piece.time_of_distance(distance_left.max(0.0));
             }
-            way_left -= rolled;
+            distance_left -= rolled;
             time_left -= piece.seconds;
         }
         0.0
@@ -90,7 +90,7 @@ impl Motion {
         let (from, to) = (self.position_before_m, self.position_m);
         let reached =
             (from < position_m && position_m <= to) || (to <= position_m && position_m < from);
-        reached.then(|| self.age_of_way_s(self.way_before_m + (position_m - from).abs()))
+        reached.then(|| self.age_of_distance_s(self.distance_before_m + (position_m - from).abs()))
     }
 }
 
@@ -114,14 +114,14 @@ mod tests {
             speed_mps: 0.0,
             accel_mps2: 0.0,
         });
-        let age = motion.age_of_way_s(0.003);
+        let age = motion.age_of_distance_s(0.003);
         assert!((age - 7.008_946e-3).abs() < 1e-9, "{age}");
         assert_eq!(motion.age_of_position_s(0.003), Some(age));
         assert_eq!(motion.age_of_position_s(0.2), None);
     }
 
     #[test]
-    fn backward_rolls_the_same_way_and_falls_in_position() {
+    fn backward_rolls_the_same_distance_and_falls_in_position() {
         let mut motion = Motion::default();
         motion.begin_scan();
         motion.roll(Piece {
@@ -129,7 +129,9 @@ mod tests {
             speed_mps: -2.0,
             accel_mps2: 0.0,
         });
-        assert!((motion.way_m - 0.02).abs() < 1e-15 && (motion.position_m + 0.02).abs() < 1e-15);
+        assert!(
+            (motion.distance_m - 0.02).abs() < 1e-15 && (motion.position_m + 0.02).abs() < 1e-15
+        );
         let age = motion.age_of_position_s(-0.005);
         assert!((age.unwrap_or_default() - 0.0075).abs() < 1e-12);
     }

@@ -32,9 +32,9 @@ impl Rig {
         self.train.set_conditions(&conditions);
         self.markers.set_offsets(conditions.marker_offsets_m);
         let pulse_m = self.metres_per_pulse * conditions.wheel_factor;
-        let way_m = self.wheel.axle().way_m;
+        let distance_m = self.wheel.axle().distance_m;
         for tacho in &mut self.tachos {
-            tacho.set_metres_per_pulse(pulse_m, way_m);
+            tacho.set_metres_per_pulse(pulse_m, distance_m);
         }
         self.conditions = conditions;
     }

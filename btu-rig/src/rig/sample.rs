@@ -76,16 +76,16 @@ const STATUS_SIGNALS: [Signal; 23] = [
     Signal::TestSpeed,
 ];
 
-/// The sample and how fresh its parts are.
+/// The latest value of every signal, and when each source of the unit was last heard.
 #[derive(Debug, Default)]
-pub struct Recorder {
+pub struct LatestSample {
     /// The sample.
     pub sample: Sample,
     heard: [Option<Instant>; CARRIED.len()],
     outputs: Outputs,
 }
 
-impl Recorder {
+impl LatestSample {
     /// Contacts of the unit, unless it has not been heard lately.
     pub fn outputs(&self) -> Option<Outputs> {
         self.heard[Source::Io as usize].map(|_| self.outputs)
@@ -101,7 +101,7 @@ impl Recorder {
                 signals
                     .iter()
                     .for_each(|&signal| self.sample.forget(signal));
-                if both_ways.iter().all(|&way| self.heard[way].is_none()) {
+                if both_ways.iter().all(|&source| self.heard[source].is_none()) {
                     self.sample.forget(Signal::Mode);
                     self.sample.forget(Signal::Target);
                 }
@@ -112,7 +112,7 @@ impl Recorder {
     }
 
     /// Takes the unit's contacts and cab display.
-    pub fn hear_io(&mut self, now: Instant, io: &IoOutput) {
+    pub fn on_io(&mut self, now: Instant, io: &IoOutput) {
         self.heard[Source::Io as usize] = Some(now);
         self.outputs = io.outputs;
         let sample = &mut self.sample;
@@ -137,7 +137,7 @@ impl Recorder {
     }
 
     /// Takes the unit's commands to TCMS.
-    pub fn hear_tcms(&mut self, now: Instant, tcms: &AtcToTcms) {
+    pub fn on_tcms(&mut self, now: Instant, tcms: &AtcToTcms) {
         self.heard[Source::Tcms as usize] = Some(now);
         let sample = &mut self.sample;
         sample.set(Signal::Mode, f64::from(tcms.mode.code()));
@@ -148,7 +148,7 @@ impl Recorder {
     }
 
     /// Takes the unit's status.
-    pub fn hear_status(&mut self, now: Instant, status: &Status) {
+    pub fn on_status(&mut self, now: Instant, status: &Status) {
         self.heard[Source::Status as usize] = Some(now);
         let sample = &mut self.sample;
         for (signal, bit) in [
@@ -193,7 +193,7 @@ impl Recorder {
     }
 
     /// Takes the train's answer to the wayside, one of `answers` so far.
-    pub fn hear_twc(&mut self, now: Instant, answer: &TwcTrain, answers: u16) {
+    pub fn on_twc(&mut self, now: Instant, answer: &TwcTrain, answers: u16) {
         self.heard[Source::Twc as usize] = Some(now);
         self.sample.set(Signal::TwcAnswers, f64::from(answers));
         self.sample
@@ -230,31 +230,31 @@ mod tests {
     /// count of TWC answers is the wayside's own knowledge and stays.
     #[test]
     fn what_is_not_said_again_is_forgotten() {
-        let mut recorder = Recorder::default();
-        recorder.hear_io(Instant::ZERO, &IoOutput::default());
-        recorder.hear_tcms(Instant::ZERO, &AtcToTcms::default());
-        recorder.hear_status(Instant::ZERO, &Status::default());
-        recorder.hear_twc(Instant::ZERO, &TwcTrain::default(), 1);
-        let known = |recorder: &Recorder| {
+        let mut latest = LatestSample::default();
+        latest.on_io(Instant::ZERO, &IoOutput::default());
+        latest.on_tcms(Instant::ZERO, &AtcToTcms::default());
+        latest.on_status(Instant::ZERO, &Status::default());
+        latest.on_twc(Instant::ZERO, &TwcTrain::default(), 1);
+        let known = |latest: &LatestSample| {
             let all = Signal::ALL.iter().copied();
             all.filter(|&s| s.definition().origin == Origin::Unit && s != Signal::TwcAnswers)
-                .filter(|&s| recorder.sample.get(s).is_some())
+                .filter(|&s| latest.sample.get(s).is_some())
                 .count()
         };
         let unit_signals = Signal::ALL
             .iter()
             .filter(|s| s.definition().origin == Origin::Unit);
         let expected = unit_signals.count() - 1;
-        recorder.step(Instant::from_ms(490));
-        assert_eq!(known(&recorder), expected);
-        recorder.hear_tcms(Instant::from_ms(490), &AtcToTcms::default());
-        recorder.step(Instant::from_ms(500));
+        latest.step(Instant::from_ms(490));
+        assert_eq!(known(&latest), expected);
+        latest.on_tcms(Instant::from_ms(490), &AtcToTcms::default());
+        latest.step(Instant::from_ms(500));
         assert_eq!(
-            known(&recorder),
+            known(&latest),
             5,
             "effort, power, brake, and mode and target with them"
         );
-        recorder.step(Instant::from_ms(990));
-        assert_eq!(known(&recorder), 0);
+        latest.step(Instant::from_ms(990));
+        assert_eq!(known(&latest), 0);
     }
 }

@@ -24,8 +24,8 @@ pub struct Tacho {
     condition: TachoCondition,
     metres_per_pulse: f64,
     random: Random,
-    /// Way at which the present condition began, and the phase there: no error adds up.
-    base_way_m: f64,
+    /// Distance at which the present condition began, and the phase there: no error adds up.
+    base_distance_m: f64,
     base_phase: f64,
     phase: f64,
     /// How far each tooth of a turn lies from its place, pitches; none = all lie right.
@@ -47,7 +47,7 @@ impl Tacho {
             condition: TachoCondition::Good,
             metres_per_pulse,
             random,
-            base_way_m: 0.0,
+            base_distance_m: 0.0,
             base_phase: PHASES[channel],
             phase: PHASES[channel],
             teeth: Vec::new(),
@@ -60,16 +60,16 @@ impl Tacho {
     }
 
     /// Sets how far the wheel rolls for a pulse from now on.
-    pub fn set_metres_per_pulse(&mut self, metres_per_pulse: f64, way_m: f64) {
+    pub fn set_metres_per_pulse(&mut self, metres_per_pulse: f64, distance_m: f64) {
         self.base_phase = self.phase;
-        self.base_way_m = way_m;
+        self.base_distance_m = distance_m;
         self.metres_per_pulse = metres_per_pulse;
     }
 
     /// Sets the condition from now on.
-    pub fn set_condition(&mut self, condition: TachoCondition, way_m: f64) {
+    pub fn set_condition(&mut self, condition: TachoCondition, distance_m: f64) {
         self.base_phase = self.phase;
-        self.base_way_m = way_m;
+        self.base_distance_m = distance_m;
         self.condition = condition;
         self.await_noise();
     }
@@ -132,7 +132,7 @@ impl Tacho {
             _ => 1.0,
         };
         let pulse_m = self.metres_per_pulse / factor;
-        let phase = self.base_phase + (motion.way_m - self.base_way_m) / pulse_m;
+        let phase = self.base_phase + (motion.distance_m - self.base_distance_m) / pulse_m;
         let passed = self.tooth_at(phase);
         let edges = passed - self.passed;
         (self.phase, self.passed) = (phase, passed);
@@ -140,9 +140,12 @@ impl Tacho {
             return;
         }
         if edges > 0.0 {
-            let edge_way_m = motion.way_m - (phase - (passed + self.displaced(passed))) * pulse_m;
+            let edge_distance_m =
+                motion.distance_m - (phase - (passed + self.displaced(passed))) * pulse_m;
             self.count = self.count.wrapping_add(edges as u16);
-            self.age_us = self.age_us.min(motion.age_of_way_s(edge_way_m) * 1e6);
+            self.age_us = self
+                .age_us
+                .min(motion.age_of_distance_s(edge_distance_m) * 1e6);
         }
         let per_s = self.noise_per_s();
         if per_s > 0.0 {
@@ -207,7 +210,7 @@ mod tests {
         }
     }
 
-    /// Method: as a measuring instrument would, speed = pulses · way / time between first and last
+    /// Method: as a measuring instrument would, speed = pulses · distance / time between first and last
     /// edge of a 100 ms window, at constant speed, against the true speed.
     #[test]
     fn edge_ages_agree_with_speed() {
@@ -269,21 +272,21 @@ mod tests {
             (
                 f64::from(good.count().wrapping_sub(before.0)),
                 f64::from(bad.count().wrapping_sub(before.1)),
-                wheel.motion().way_m,
+                wheel.motion().distance_m,
             )
         };
-        let (a, b, way) = run(&mut good, &mut bad);
+        let (a, b, distance) = run(&mut good, &mut bad);
         assert!((a - b).abs() <= 1.0);
-        bad.set_condition(TachoCondition::Scaled { factor: 0.5 }, way);
-        let (a, b, way) = run(&mut good, &mut bad);
+        bad.set_condition(TachoCondition::Scaled { factor: 0.5 }, distance);
+        let (a, b, distance) = run(&mut good, &mut bad);
         assert!((a / 2.0 - b).abs() <= 1.0);
-        bad.set_condition(TachoCondition::Noisy { per_s: 100.0 }, way);
-        let (a, b, way) = run(&mut good, &mut bad);
+        bad.set_condition(TachoCondition::Noisy { per_s: 100.0 }, distance);
+        let (a, b, distance) = run(&mut good, &mut bad);
         assert!((b - a - 1000.0).abs() < 100.0, "{}", b - a);
-        bad.set_condition(TachoCondition::Dead, way);
-        let (_, b, way) = run(&mut good, &mut bad);
+        bad.set_condition(TachoCondition::Dead, distance);
+        let (_, b, distance) = run(&mut good, &mut bad);
         assert_eq!((b, bad.age_us()), (0.0, u16::MAX));
-        bad.set_condition(TachoCondition::Good, way);
+        bad.set_condition(TachoCondition::Good, distance);
         let (a, b, _) = run(&mut good, &mut bad);
         assert!((a - b).abs() <= 1.0);
     }

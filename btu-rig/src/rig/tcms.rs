@@ -68,7 +68,7 @@ impl Rig {
             turn_back: on(TrainSwitch::TurnBack),
             brakes_cut_out: desk.brakes_cut_out,
             inverters_cut_out: desk.inverters_cut_out,
-            contacts: self.recorder.outputs(),
+            contacts: self.latest.outputs(),
             load_kg: self.tcms_port.load_kg,
             equipment: equipment.as_ref(),
             speed_mps: self.wheel.velocity_mps().abs(),
@@ -85,7 +85,7 @@ impl Rig {
     /// Keeps TCMS's new events with what stood around them.
     fn log_tcms(&mut self) {
         let events = self.tcms.take_events();
-        let sample = &self.recorder.sample;
+        let sample = &self.latest.sample;
         let value = |signal| sample.get(signal).unwrap_or(0.0);
         for TcmsEvent { event, parameter } in events {
             let index = self.tcms_logged;
@@ -113,7 +113,7 @@ impl Rig {
     /// Records what TCMS does: bits each scan, efforts once in a cycle, as rows have them.
     pub(super) fn record_tcms(&mut self) {
         let view = self.tcms.view();
-        let sample = &mut self.recorder.sample;
+        let sample = &mut self.latest.sample;
         record_words(sample, view);
         let alive = self.tcms_port.alive(self.now);
         sample.set_bit(Signal::TcmsAlive, alive);

@@ -101,29 +101,29 @@ impl Tester {
     }
 
     /// Takes a message of the PTU channel.
-    pub fn hear(&mut self, now: Instant, message: &Message) {
+    pub fn receive(&mut self, now: Instant, message: &Message) {
         match message {
-            Message::Identity(identity) => self.hear_identity(now, identity),
-            Message::Status(status) => self.hear_status(now, status),
-            Message::ArmChallenge(challenge) => self.exchange.hear_challenge(challenge),
-            Message::ArmState(state) => self.exchange.hear_arm_state(now, state),
-            Message::StimulusAnswer(answer) => self.exchange.hear_answer(answer),
-            Message::LogEntry(entry) => self.log.hear_entry(now, entry),
-            Message::LogEnd(end) => self.hear_log_end(now, end),
+            Message::Identity(identity) => self.on_identity(now, identity),
+            Message::Status(status) => self.on_status(now, status),
+            Message::ArmChallenge(challenge) => self.exchange.on_challenge(challenge),
+            Message::ArmState(state) => self.exchange.on_arm_state(now, state),
+            Message::StimulusAnswer(answer) => self.exchange.on_answer(answer),
+            Message::LogEntry(entry) => self.log.on_entry(now, entry),
+            Message::LogEnd(end) => self.on_log_end(now, end),
             _ => {}
         }
     }
 
-    fn hear_log_end(&mut self, now: Instant, end: &LogEnd) {
+    fn on_log_end(&mut self, now: Instant, end: &LogEnd) {
         let wanted = self.log.next_index();
-        self.log.hear_end(now, end);
+        self.log.on_end(now, end);
         let since_contact = self.events_at_contact.unwrap_or(u32::MAX).max(wanted);
         if !self.clears_log {
             self.missed += u64::from(end.oldest_index.saturating_sub(since_contact));
         }
     }
 
-    fn hear_identity(&mut self, now: Instant, identity: &Identity) {
+    fn on_identity(&mut self, now: Instant, identity: &Identity) {
         let first = self.first.get_or_insert(*identity);
         if self.changed.is_none() {
             self.changed = difference(first, identity);
@@ -131,16 +131,16 @@ impl Tester {
         let before = self.identity.replace(*identity);
         let fallen = before.map_or(0, |b| b.uptime_ms.saturating_sub(identity.uptime_ms));
         if fallen > 0 && fallen < UPTIME_WRAP_MS {
-            self.hear_restart(now);
+            self.on_restart(now);
         }
         self.self_test |= identity.self_test;
     }
 
-    fn hear_status(&mut self, now: Instant, status: &Status) {
+    fn on_status(&mut self, now: Instant, status: &Status) {
         if self.logged.is_some_and(|before| status.events < before) {
             // The identity that follows has a lower uptime, too: that is the same restart.
             self.identity = None;
-            self.hear_restart(now);
+            self.on_restart(now);
         }
         self.self_test |= status.self_test;
         self.logged = Some(status.events);
@@ -150,16 +150,16 @@ impl Tester {
         self.events_at_contact.get_or_insert(status.events);
         self.log.note_logged(status.events);
         self.exchange
-            .hear_armed_bit(now, status.bits.contains(StatusBits::ARMED));
+            .on_armed_bit(now, status.bits.contains(StatusBits::ARMED));
     }
 
-    fn hear_restart(&mut self, now: Instant) {
+    fn on_restart(&mut self, now: Instant) {
         self.restarts += 1;
         self.logged = None;
         self.events_at_contact = Some(0);
         self.identify_due = now;
         self.self_test = SelfTest::empty();
-        self.exchange.hear_restart();
+        self.exchange.on_restart();
         self.log.restart();
     }
 

@@ -1,11 +1,11 @@
-//! The section the train is on: gradient and curve under the whole train, the way to the stop point
+//! The section the train is on: gradient and curve under the whole train, the distance to the stop point
 //! and the speed code at the head.
 
 use protocol::line::Section;
 
 use super::step_profile::StepProfile;
 
-/// A section laid along the rig's way.
+/// A section laid along the track ahead of the rig.
 #[derive(Clone, Debug)]
 pub struct Track {
     section: Section,
@@ -50,7 +50,7 @@ impl Track {
         position_m - self.starts_at_m + self.section.start_m
     }
 
-    /// Way from there to the stop point, m; negative past it.
+    /// Distance from there to the stop point, m; negative past it.
     pub fn to_stop_m(&self, position_m: f64) -> f64 {
         self.section.stop_m - self.in_section_m(position_m)
     }

@@ -12,7 +12,7 @@ use super::random::Random;
 
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeskFaults {
+pub struct CabDeskFaults {
     /// What the door contact says, whatever the doors do.
     pub doors: Option<bool>,
     /// What the head control relay does, whatever it is told.
@@ -36,7 +36,7 @@ pub struct TrainFaults {
     /// Equipment of cars.
     pub equipment: EquipmentFaults,
     /// Desk and train lines.
-    pub desk: DeskFaults,
+    pub desk: CabDeskFaults,
     /// What becomes of TCMS's frames, if anything.
     pub tcms: Option<TcmsCondition>,
 }
@@ -46,13 +46,13 @@ pub struct TrainFaults {
 /// Each has a generator of its own: whatever is injected, the bench draws as without it.
 #[derive(Debug)]
 pub struct Injected {
-    modes: Vec<Acting>,
+    modes: Vec<ActiveFault>,
     random: Random,
     from: Instant,
 }
 
 #[derive(Debug)]
-struct Acting {
+struct ActiveFault {
     mode: FaultMode,
     occurs: OccurrenceState,
     random: Random,
@@ -75,7 +75,7 @@ impl Injected {
         let random = &mut self.random;
         let on_train = modes.iter().filter(|mode| mode.place.on_train());
         self.modes = on_train
-            .map(|mode| Acting {
+            .map(|mode| ActiveFault {
                 mode: mode.clone(),
                 occurs: OccurrenceState::new(
                     mode.occurs,
@@ -102,7 +102,7 @@ impl Injected {
         }
         changed.then(|| {
             let mut faults = TrainFaults::default();
-            for Acting { mode, strength, .. } in &self.modes {
+            for ActiveFault { mode, strength, .. } in &self.modes {
                 if let Some(effect) = mode.effect.at_strength(*strength) {
                     add(mode, effect, &mut faults);
                 }

@@ -9,7 +9,7 @@ pub struct Truth {
     pub accel_mps2: f64,
     /// Position in the section laid along the way, or on the rig's own scale when none is, m.
     pub position_m: f64,
-    /// Way to the section's stop point, m, negative past it; none without a section.
+    /// Distance to the section's stop point, m, negative past it; none without a section.
     pub to_stop_m: Option<f64>,
     /// Traction power at the wheels, W; this and the forces are 0 while generators turn the wheels.
     pub tractive_power_w: f64,

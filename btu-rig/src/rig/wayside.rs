@@ -100,7 +100,7 @@ impl Wayside {
     }
 
     /// Takes one answer of the train; what it says is for the sample.
-    pub fn hear_answer(&mut self) {
+    pub fn on_answer(&mut self) {
         self.answers = self.answers.wrapping_add(1);
     }
 

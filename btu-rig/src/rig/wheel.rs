@@ -1,4 +1,4 @@
-//! The generator's wheel: goes to a speed at an acceleration, or runs an exact way and stops.
+//! The generator's wheel: goes to a speed at an acceleration, or runs an exact distance and stops.
 
 use protocol::{SCAN, Speed};
 
@@ -11,33 +11,33 @@ use super::motion::Motion;
 /// Slowing down when a step or a run ends: brisk, yet believable for a wheel [default].
 const SAFE_DECEL_MPS2: f64 = 3.0;
 
-/// What rounding may leave of a leg, s: its end belongs to the scan that reached it.
+/// What rounding may leave of a segment, s: its end belongs to the scan that reached it.
 const RESIDUE_S: f64 = 1e-9;
 
 /// A part of a plan at constant acceleration.
 #[derive(Clone, Copy, Debug, Default)]
-struct Leg {
+struct Segment {
     seconds: f64,
     accel_mps2: f64,
     end_speed_mps: f64,
 }
 
-/// What the wheel is about to do; when no leg is left it keeps its speed.
+/// What the wheel is about to do; when no segment is left it keeps its speed.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
-    legs: [Leg; 3],
+    segments: [Segment; 3],
     next: usize,
-    /// Way and position at which it ends, exactly.
+    /// Distance and position at which it ends, exactly.
     ends_at_m: Option<(f64, f64)>,
 }
 
 impl Default for Plan {
     /// Nothing to do.
     fn default() -> Self {
-        let legs = [Leg::default(); 3];
+        let segments = [Segment::default(); 3];
         Self {
-            legs,
-            next: legs.len(),
+            segments,
+            next: segments.len(),
             ends_at_m: None,
         }
     }
@@ -65,7 +65,7 @@ impl Wheel {
         let mut plan = Plan::default();
         if change != 0.0 {
             plan.next = 2;
-            plan.legs[2] = Leg {
+            plan.segments[2] = Segment {
                 seconds: change.abs() / accel_mps2,
                 accel_mps2: accel_mps2.copysign(change),
                 end_speed_mps: to.mps(),
@@ -87,36 +87,36 @@ impl Wheel {
                 Speed::from_mps(from)
             )));
         }
-        // Highest speed from which the rest of the way is just enough to stop.
+        // Highest speed from which the rest of the distance is just enough to stop.
         let top = cruise.min((accel * distance_m + from * from / 2.0).sqrt());
         let change_m = (top * top - from * from).abs() / (2.0 * accel);
         let cruise_m = (distance_m - change_m - top * top / (2.0 * accel)).max(0.0);
         let change_s = (top - from).abs() / accel;
-        let legs = [
-            Leg {
+        let segments = [
+            Segment {
                 seconds: change_s,
                 accel_mps2: accel.copysign(top - from),
                 end_speed_mps: top,
             },
-            Leg {
+            Segment {
                 seconds: cruise_m / top,
                 accel_mps2: 0.0,
                 end_speed_mps: top,
             },
-            Leg {
+            Segment {
                 seconds: top / accel,
                 accel_mps2: -accel,
                 end_speed_mps: 0.0,
             },
         ];
         let sign = if self.backward { -1.0 } else { 1.0 };
-        let end_way = self.motion.way_m + distance_m;
+        let end_distance = self.motion.distance_m + distance_m;
         let end_position = self.motion.position_m + sign * distance_m;
         self.forward_at_rest = false;
         self.plan = Plan {
-            legs,
+            segments,
             next: 0,
-            ends_at_m: Some((end_way, end_position)),
+            ends_at_m: Some((end_distance, end_position)),
         };
         Ok(())
     }
@@ -148,30 +148,30 @@ impl Wheel {
         self.motion.begin_scan();
         let sign = if self.backward { -1.0 } else { 1.0 };
         let mut left = SCAN.as_secs();
-        while let Some(leg) = self.plan.legs.get_mut(self.plan.next) {
-            let seconds = leg.seconds.min(left);
+        while let Some(segment) = self.plan.segments.get_mut(self.plan.next) {
+            let seconds = segment.seconds.min(left);
             if seconds > 0.0 {
                 let speed_mps = sign * self.speed_mps;
-                let accel_mps2 = sign * leg.accel_mps2;
+                let accel_mps2 = sign * segment.accel_mps2;
                 self.motion.roll(Piece {
                     seconds,
                     speed_mps,
                     accel_mps2,
                 });
-                self.speed_mps += leg.accel_mps2 * seconds;
-                leg.seconds -= seconds;
+                self.speed_mps += segment.accel_mps2 * seconds;
+                segment.seconds -= seconds;
                 left -= seconds;
             }
-            if leg.seconds > RESIDUE_S {
+            if segment.seconds > RESIDUE_S {
                 break;
             }
-            self.speed_mps = leg.end_speed_mps;
+            self.speed_mps = segment.end_speed_mps;
             self.plan.next += 1;
         }
         if self.settled()
-            && let Some((way, position)) = self.plan.ends_at_m.take()
+            && let Some((distance, position)) = self.plan.ends_at_m.take()
         {
-            self.motion.correct(way, position);
+            self.motion.correct(distance, position);
         }
         if left > 0.0 {
             let speed_mps = sign * self.speed_mps;
@@ -216,15 +216,15 @@ impl Wheel {
         }
     }
 
-    /// The axle rolls as the train does; what it slid before stays between their ways.
+    /// The axle rolls as the train does; what it slid before stays between their distances.
     fn roll_axle_along(&mut self) {
-        let slid_m = self.axle.way_m - self.motion.way_before_m;
+        let slid_m = self.axle.distance_m - self.motion.distance_before_m;
         self.axle = self.motion.shifted(slid_m);
     }
 
     /// The plan is carried out.
     pub fn settled(&self) -> bool {
-        self.plan.next >= self.plan.legs.len()
+        self.plan.next >= self.plan.segments.len()
     }
 
     /// It does not turn and is not about to.
@@ -277,13 +277,13 @@ mod tests {
 
     /// 0 → 20 m/s at 0.8 m/s² takes 25 s and 250 m, also when 25 s is not a whole number of scans.
     #[test]
-    fn ramp_takes_its_time_and_way() {
+    fn a_ramp_takes_its_calculated_time_and_distance() {
         let mut wheel = Wheel::default();
         wheel.go_to(Speed::from_mps(20.0), 0.8);
         let scans = run_until_settled(&mut wheel);
         assert!((2500..=2501).contains(&scans), "{scans}");
         let late = scans as f64 * 0.01 - 25.0;
-        assert!((wheel.motion().way_m - (250.0 + late * 20.0)).abs() < 1e-6);
+        assert!((wheel.motion().distance_m - (250.0 + late * 20.0)).abs() < 1e-6);
         assert_eq!(wheel.speed(), Speed::from_mps(20.0));
     }
 
@@ -300,7 +300,7 @@ mod tests {
                 .travel(distance, Speed::from_mps(speed), accel)
                 .unwrap();
             run_until_settled(&mut wheel);
-            assert_eq!(wheel.motion().way_m, distance);
+            assert_eq!(wheel.motion().distance_m, distance);
             wheel.step();
             assert_eq!(wheel.motion().position_m, distance);
             assert!(wheel.standing());
@@ -312,11 +312,11 @@ mod tests {
         let mut wheel = Wheel::default();
         wheel.go_to(Speed::from_mps(10.0), 1.0);
         run_until_settled(&mut wheel);
-        let from = wheel.motion().way_m;
+        let from = wheel.motion().distance_m;
         assert!(wheel.travel(49.0, Speed::from_mps(5.0), 1.0).is_err());
         wheel.travel(60.0, Speed::from_mps(5.0), 1.0).unwrap();
         run_until_settled(&mut wheel);
-        assert_eq!(wheel.motion().way_m, from + 60.0);
+        assert_eq!(wheel.motion().distance_m, from + 60.0);
         assert!(wheel.standing());
     }
 

@@ -48,7 +48,7 @@ impl AtcLink {
     /// safe side.
     ///
     /// [`driving_control`]: super::driving_control()
-    pub fn hear(&mut self, now: Instant, frame: &AtcToTcms) {
+    pub fn receive(&mut self, now: Instant, frame: &AtcToTcms) {
         let power = frame.bits.contains(AtcToTcmsBits::POWER);
         let brake = frame.bits.contains(AtcToTcmsBits::BRAKE);
         let beyond = !(FULL_BRAKE..=FULL_POWER).contains(&frame.effort);

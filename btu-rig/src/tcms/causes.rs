@@ -2,12 +2,12 @@
 
 use protocol::message::Outputs;
 
+use super::cause_bits::{Lamps, PowerCuts};
 use super::emergency_line::Line;
+use super::equipment_monitor::EquipmentFailures;
 use super::full_service_brake::BrakeOutputs;
 use super::inputs::TcmsInputs;
 use super::mode::TcmsMode;
-use super::watch::Found;
-use super::words::{Lamps, PowerCuts};
 
 /// What a scan has found by the time powering is decided.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub(super) struct Findings<'a> {
     /// Full service brake.
     pub brake: &'a BrakeOutputs,
     /// State of the equipment.
-    pub found: &'a Found,
+    pub found: &'a EquipmentFailures,
     /// ATO asks for the holding brake by message.
     pub holding_asked: bool,
 }
@@ -59,7 +59,7 @@ pub(super) fn power_cuts(inputs: &TcmsInputs<'_>, findings: &Findings<'_>) -> Po
 }
 
 /// Lamps of both cabs.
-pub(super) fn lamps(inputs: &TcmsInputs<'_>, line: &Line, found: &Found) -> Lamps {
+pub(super) fn lamps(inputs: &TcmsInputs<'_>, line: &Line, found: &EquipmentFailures) -> Lamps {
     let forced = inputs.active_cab().is_some_and(|cab| cab.forced_release);
     let failed = found
         .inverters

@@ -1,6 +1,6 @@
 //! The emergency brake train line: released only while energised, and anything opens it (S4).
 
-use super::words::EbSources;
+use super::cause_bits::EbSources;
 
 /// What the line runs through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

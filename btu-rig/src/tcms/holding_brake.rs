@@ -3,7 +3,7 @@
 use protocol::{Duration, Instant};
 
 use super::data::TcmsData;
-use super::timer::Lasting;
+use super::timer::OnDelay;
 
 /// What the holding brake looks at in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,7 +31,7 @@ pub struct HoldingBrake {
     below_mps: f64,
     after: Duration,
     release: f64,
-    lasts: Lasting,
+    lasts: OnDelay,
     driverless: bool,
     applied: bool,
 }
@@ -43,7 +43,7 @@ impl HoldingBrake {
             below_mps: data.holding_below_kmh / 3.6,
             after: Duration::from_secs(data.holding_after_s),
             release: data.holding_release / 100.0,
-            lasts: Lasting::default(),
+            lasts: OnDelay::default(),
             driverless: false,
             applied: false,
         }
@@ -51,7 +51,7 @@ impl HoldingBrake {
 
     /// Released, and whatever asks for it begins anew.
     pub fn reset(&mut self) {
-        self.lasts = Lasting::default();
+        self.lasts = OnDelay::default();
         self.driverless = false;
         self.applied = false;
     }

@@ -3,7 +3,7 @@
 //! give it.
 //!
 //! A scan, in this order (`system`): the cab that counts (`inputs`), orders of ATO (`atc_link`), the
-//! `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`watch`,
+//! `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`equipment_monitor`,
 //! `not_released`), the full service brake (`full_service_brake`), the holding brake
 //! (`holding_brake`), what cuts powering (`causes`), the value (`driving_control`, `controller`), the
 //! effort of each car (`effort`: `powering`, `braking`, `consist`), and what to tell of it (`view`,
@@ -11,6 +11,7 @@
 
 mod atc_link;
 mod braking;
+mod cause_bits;
 mod causes;
 mod consist;
 mod controller;
@@ -18,6 +19,7 @@ mod data;
 mod driving_control;
 mod effort;
 mod emergency_line;
+mod equipment_monitor;
 mod feedback;
 mod full_service_brake;
 mod holding_brake;
@@ -30,20 +32,18 @@ mod speed;
 mod system;
 mod timer;
 mod view;
-mod watch;
-mod words;
 
+pub use cause_bits::{EbSources, Lamps, PowerCuts};
 pub use consist::Consist;
 pub use controller::{ControllerInputs, FULL_BRAKE, FULL_POWER};
 pub use data::TcmsData;
 pub use driving_control::{DrivingInputs, DrivingOutputs, driving_control};
 pub use effort::{Demands, Effort, Order};
 pub use emergency_line::{Line, LineInputs, emergency_line};
+pub use equipment_monitor::EquipmentFailures;
 pub use full_service_brake::{BrakeInputs, BrakeOutputs, full_service_brake};
 pub use holding_brake::{HoldingBrake, HoldingInputs};
 pub use inputs::{CabInputs, TcmsInputs};
 pub use mode::TcmsMode;
 pub use system::Tcms;
 pub use view::{TcmsEvent, TcmsView};
-pub use watch::Found;
-pub use words::{EbSources, Lamps, PowerCuts};

@@ -13,11 +13,11 @@ use protocol::{Duration, Instant};
 
 use crate::train::CarSet;
 
-use super::timer::LastingCars;
+use super::timer::OnDelayCars;
 
 /// What is known in a scan.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
+pub(super) struct ReleaseCheck {
     /// Nothing brakes but what was found here: no brake, holding, full service, emergency, security
     /// or parking brake.
     pub nobody_brakes: bool,
@@ -33,7 +33,7 @@ pub(super) struct Asked {
 #[derive(Clone, Debug)]
 pub(super) struct NotReleased {
     after: Duration,
-    pressed: LastingCars,
+    pressed: OnDelayCars,
     found: CarSet,
     /// Somebody has braked since it was found.
     braked: bool,
@@ -45,7 +45,7 @@ impl NotReleased {
     pub fn new(after: Duration) -> Self {
         Self {
             after,
-            pressed: LastingCars::default(),
+            pressed: OnDelayCars::default(),
             found: CarSet::NONE,
             braked: false,
             asks_again: false,
@@ -60,7 +60,7 @@ impl NotReleased {
     }
 
     /// The cars found, and whether they bring the full service brake (BCXNRB).
-    pub fn step(&mut self, now: Instant, asked: &Asked) -> (CarSet, bool) {
+    pub fn step(&mut self, now: Instant, asked: &ReleaseCheck) -> (CarSet, bool) {
         if asked.by_force {
             self.clear();
             return (CarSet::NONE, false);
@@ -124,7 +124,7 @@ mod tests {
             let mut last = (CarSet::NONE, false);
             for _ in 0..ms / 10 {
                 self.ms += 10;
-                let asked = Asked {
+                let asked = ReleaseCheck {
                     nobody_brakes,
                     by_force: false,
                     pressed,
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(train.run(1000, false, true), (true, true));
     }
 
-    /// Asked again after a brake: gone if it is released, back on if it is not.
+    /// ReleaseCheck again after a brake: gone if it is released, back on if it is not.
     #[test]
     fn is_asked_again_after_a_brake() {
         let mut train = Train::new();
@@ -176,7 +176,7 @@ mod tests {
     fn force_and_cut_out_end_it() {
         let mut train = Train::new();
         train.run(3010, true, true);
-        let asked = Asked {
+        let asked = ReleaseCheck {
             nobody_brakes: true,
             by_force: true,
             pressed: CarSet::one(CAR),
@@ -185,7 +185,7 @@ mod tests {
         let now = Instant::from_ms(train.ms + 10);
         assert_eq!(train.search.step(now, &asked), (CarSet::NONE, false));
         train.run(3010, true, true);
-        let cut_out = Asked {
+        let cut_out = ReleaseCheck {
             by_force: false,
             pressed: CarSet::NONE,
             cut_out: CarSet::one(CAR),

@@ -7,10 +7,10 @@ use crate::train::CarSet;
 
 use super::atc_link::AtcLink;
 use super::data::TcmsData;
+use super::equipment_monitor::EquipmentFailures;
 use super::inputs::TcmsInputs;
 use super::timer::Burst;
 use super::view::{TcmsEvent, TcmsView};
-use super::watch::Found;
 
 /// What it goes by in one scan.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +35,7 @@ pub(super) struct Report {
     events: Vec<TcmsEvent>,
     /// Events nobody took in time.
     lost: u32,
-    found: Found,
+    found: EquipmentFailures,
     regeneration: CarSet,
     /// All inverters have cut out together: the line takes nothing.
     line_takes_nothing: bool,
@@ -55,7 +55,7 @@ impl Report {
         Self {
             events: Vec::new(),
             lost: 0,
-            found: Found::default(),
+            found: EquipmentFailures::default(),
             regeneration: CarSet::NONE,
             line_takes_nothing: false,
             conditions: 0,

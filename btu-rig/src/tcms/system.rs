@@ -13,15 +13,15 @@ use super::data::TcmsData;
 use super::driving_control::{DrivingInputs, DrivingOutputs, driving_control};
 use super::effort::{Demands, Effort, Order};
 use super::emergency_line::{Line, LineInputs, emergency_line};
+use super::equipment_monitor::{EquipmentFailures, EquipmentMonitor, MonitorInputs};
 use super::feedback;
 use super::full_service_brake::{BrakeInputs, BrakeOutputs, full_service_brake};
 use super::holding_brake::{HoldingBrake, HoldingInputs};
 use super::inputs::{CabInputs, TcmsInputs};
 use super::mode::TcmsMode;
 use super::report::{Report, Scan};
-use super::timer::Lasting;
+use super::timer::OnDelay;
 use super::view::{TcmsEvent, TcmsView};
-use super::watch::{Found, Watch, WatchInputs};
 
 /// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
 const LONGEST_STEP_S: f64 = 0.05;
@@ -36,9 +36,9 @@ pub struct Tcms {
     full_load_kg: f64,
     /// Holding brake, share of full service.
     holding_share: f64,
-    watch: Watch,
+    monitor: EquipmentMonitor,
     holding: HoldingBrake,
-    dead_man: Lasting,
+    dead_man: OnDelay,
     dead_man_acts: bool,
     /// Something else than brakes found not released orders the full service brake.
     full_service_otherwise: bool,
@@ -50,7 +50,7 @@ pub struct Tcms {
 
 /// What the first steps of a scan find and the others go by.
 #[derive(Clone, Copy, Debug)]
-struct Now<'a> {
+struct ScanContext<'a> {
     now: Instant,
     inputs: &'a TcmsInputs<'a>,
     cab: Option<&'a CabInputs>,
@@ -76,9 +76,9 @@ impl Tcms {
             atc: AtcLink::new(Duration::from_secs(data.order_timeout_s)),
             full_load_kg: train.full_load_kg(),
             holding_share,
-            watch: Watch::new(&data, full_service_n),
+            monitor: EquipmentMonitor::new(&data, full_service_n),
             holding: HoldingBrake::new(&data),
-            dead_man: Lasting::default(),
+            dead_man: OnDelay::default(),
             dead_man_acts: false,
             full_service_otherwise: false,
             stepped: None,
@@ -100,7 +100,7 @@ impl Tcms {
         if let Some(effort) = &mut self.effort {
             effort.reset();
         }
-        self.watch.clear();
+        self.monitor.clear();
         self.unlatch();
     }
 
@@ -110,8 +110,8 @@ impl Tcms {
     }
 
     /// Takes a frame of the unit.
-    pub fn hear(&mut self, now: Instant, frame: &AtcToTcms) {
-        self.atc.hear(now, frame);
+    pub fn receive(&mut self, now: Instant, frame: &AtcToTcms) {
+        self.atc.receive(now, frame);
     }
 
     /// What it did in the last scan.
@@ -133,7 +133,7 @@ impl Tcms {
     pub fn step(&mut self, now: Instant, inputs: &TcmsInputs<'_>) -> TrainInputs {
         let cab = inputs.active_cab();
         let order = self.atc.step(now);
-        let scan = Now {
+        let scan = ScanContext {
             now,
             inputs,
             cab,
@@ -204,23 +204,23 @@ impl Tcms {
             && effort.consist.load_kg() != load_kg
         {
             effort.consist.weigh(load_kg);
-            self.watch.weigh(effort.consist.full_service_n);
+            self.monitor.weigh(effort.consist.full_service_n);
         }
         load_kg
     }
 
     /// State of the equipment, judged by what was asked of it in the last scan.
-    fn look(&mut self, scan: &Now<'_>, line: &Line) -> Found {
+    fn look(&mut self, scan: &ScanContext<'_>, line: &Line) -> EquipmentFailures {
         let inputs = scan.inputs;
         let Some(equipment) = inputs.equipment else {
-            self.watch.clear();
-            return Found::default();
+            self.monitor.clear();
+            return EquipmentFailures::default();
         };
         let wired = line.applied || inputs.security_brake || inputs.parking_brake;
         let ordered = self.view.driving.dryinb || self.view.holding || self.full_service_otherwise;
-        self.watch.step(
+        self.monitor.step(
             scan.now,
-            &WatchInputs {
+            &MonitorInputs {
                 equipment,
                 // Air takes its time: what cylinders hold is judged by what they should by now.
                 air_n: self
@@ -236,7 +236,7 @@ impl Tcms {
     }
 
     /// The full-service-brake module. It hears of the controller at B7 one scan later.
-    fn full_service(&mut self, scan: &Now<'_>, found: &Found) -> BrakeOutputs {
+    fn full_service(&mut self, scan: &ScanContext<'_>, found: &EquipmentFailures) -> BrakeOutputs {
         // The time begins with the mode: who takes the train over from ATO has to reach for it.
         let released = !scan.mode.by_ato() && scan.cab.is_some_and(|cab| !cab.dead_man);
         let limit = Duration::from_secs(self.data.dead_man_s);
@@ -270,7 +270,7 @@ impl Tcms {
         brake
     }
 
-    fn hold(&mut self, scan: &Now<'_>, speed_mps: f64) -> bool {
+    fn hold(&mut self, scan: &ScanContext<'_>, speed_mps: f64) -> bool {
         let ordered = self.view.driving.drytebe;
         self.holding.step(
             scan.now,
@@ -287,7 +287,7 @@ impl Tcms {
     }
 
     /// The driving-control module, and the mask of the emergency brake behind it.
-    fn drive(&self, scan: &Now<'_>, volts: f64, cut: bool, line: &Line) -> DrivingOutputs {
+    fn drive(&self, scan: &ScanContext<'_>, volts: f64, cut: bool, line: &Line) -> DrivingOutputs {
         let (mode, order) = (scan.mode, &scan.order);
         let controller = scan.cab.map(|cab| cab.controller);
         let driving = driving_control(&DrivingInputs {
@@ -315,7 +315,7 @@ impl Tcms {
         }
     }
 
-    fn share_out(&mut self, scan: &Now<'_>, order: &Order) -> Demands {
+    fn share_out(&mut self, scan: &ScanContext<'_>, order: &Order) -> Demands {
         let before = self.stepped.replace(scan.now).unwrap_or(scan.now);
         let dt_s = scan.now.since(before).as_secs().min(LONGEST_STEP_S);
         self.effort
@@ -325,7 +325,7 @@ impl Tcms {
             })
     }
 
-    fn log(&mut self, scan: &Now<'_>) {
+    fn log(&mut self, scan: &ScanContext<'_>) {
         let failed = scan.cab.is_some() && self.data.controller_failed(self.view.volts);
         self.report.step(
             scan.now,
@@ -344,7 +344,7 @@ impl Tcms {
     }
 
     /// What the train is told.
-    fn tell(&self, scan: &Now<'_>, share: f64, load_kg: f64) -> TrainInputs {
+    fn tell(&self, scan: &ScanContext<'_>, share: f64, load_kg: f64) -> TrainInputs {
         let (inputs, view) = (scan.inputs, &self.view);
         let held = if view.holding {
             -self.holding_share
@@ -368,7 +368,7 @@ impl Tcms {
     }
 }
 
-fn line_inputs(scan: &Now<'_>) -> LineInputs {
+fn line_inputs(scan: &ScanContext<'_>) -> LineInputs {
     LineInputs {
         cab_valid: scan.cab.is_some(),
         controller: scan.cab.is_some_and(|cab| cab.controller.emergency),

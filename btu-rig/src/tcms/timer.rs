@@ -1,17 +1,17 @@
-//! How long something has lasted, and how often it came.
+//! On-delay timers, for one condition and for one of each car, and a detector of frequent events.
 
 use protocol::{Duration, Instant};
 
 use crate::train::{CarSet, MAX_CARS};
 
-/// Since when a condition holds.
+/// On-delay timer: true once its condition has held without a break for a given time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Lasting {
+pub(super) struct OnDelay {
     since: Option<Instant>,
 }
 
-impl Lasting {
-    /// Whether it has held for a time.
+impl OnDelay {
+    /// Takes the present value; true once it has held for `at_least`.
     pub fn update(&mut self, now: Instant, holds: bool, at_least: Duration) -> bool {
         if !holds {
             self.since = None;
@@ -22,14 +22,14 @@ impl Lasting {
     }
 }
 
-/// Since when a condition holds, for each car.
+/// An on-delay timer for each car.
 #[derive(Clone, Debug)]
-pub(super) struct LastingCars {
+pub(super) struct OnDelayCars {
     holds: CarSet,
     since: [Instant; MAX_CARS],
 }
 
-impl Default for LastingCars {
+impl Default for OnDelayCars {
     fn default() -> Self {
         Self {
             holds: CarSet::NONE,
@@ -38,8 +38,8 @@ impl Default for LastingCars {
     }
 }
 
-impl LastingCars {
-    /// The cars it has held for a time, of those it holds for.
+impl OnDelayCars {
+    /// Takes the cars for which the condition holds now; those for which it has held for `at_least`.
     pub fn update(&mut self, now: Instant, holds: CarSet, at_least: Duration) -> CarSet {
         let before = std::mem::replace(&mut self.holds, holds);
         let mut lasting = CarSet::NONE;
@@ -56,13 +56,13 @@ impl LastingCars {
         lasting
     }
 
-    /// It holds for none.
+    /// Starts again, as if it had held for no car.
     pub fn clear(&mut self) {
         self.holds = CarSet::NONE;
     }
 }
 
-/// Something that matters only when it comes often.
+/// Detects events that come often: at least so many within a time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Burst {
     at_least: u32,
@@ -118,8 +118,8 @@ mod tests {
 
     #[test]
     fn lasts_without_a_gap() {
-        let mut lasting = Lasting::default();
-        let held = |lasting: &mut Lasting, ms: u64, holds: bool| {
+        let mut lasting = OnDelay::default();
+        let held = |lasting: &mut OnDelay, ms: u64, holds: bool| {
             lasting.update(Instant::from_ms(ms), holds, Duration::from_ms(50))
         };
         assert!(!held(&mut lasting, 0, true));
@@ -133,7 +133,7 @@ mod tests {
     /// Each car has its own time.
     #[test]
     fn cars_last_one_by_one() {
-        let mut lasting = LastingCars::default();
+        let mut lasting = OnDelayCars::default();
         let mut held = |ms: u64, holds: CarSet| {
             lasting.update(Instant::from_ms(ms), holds, Duration::from_ms(50))
         };

@@ -2,13 +2,13 @@
 
 use protocol::event::Event;
 
+use super::cause_bits::{Lamps, PowerCuts};
 use super::driving_control::DrivingOutputs;
 use super::effort::Demands;
 use super::emergency_line::Line;
+use super::equipment_monitor::EquipmentFailures;
 use super::full_service_brake::BrakeOutputs;
 use super::mode::TcmsMode;
-use super::watch::Found;
-use super::words::{Lamps, PowerCuts};
 
 /// What TCMS did in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +28,7 @@ pub struct TcmsView {
     /// Lamps.
     pub lamps: Lamps,
     /// What is wrong with the equipment.
-    pub found: Found,
+    pub found: EquipmentFailures,
     /// Voltage of the controller that counts, V.
     pub volts: f64,
     /// Speed as TCMS sees it, m/s.

@@ -187,16 +187,16 @@ mod tests {
     #[test]
     fn follows_equation_9() {
         let mut train = train(|_| (), &Conditions::default());
-        let (mut way, steps) = (0.0, 2000);
+        let (mut distance, steps) = (0.0, 2000);
         for _ in 0..steps {
             let state = train.step(DT, &demand(0.6));
-            way += state.pieces[0].distance_m();
+            distance += state.pieces[0].distance_m();
         }
         let (accel, r, t) = (0.6 * 3.0 / 3.6, 0.001, f64::from(steps) * DT);
         let speed = accel / r * (1.0 - (-r * t).exp());
         assert!((train.velocity_mps() - speed).abs() < 1e-10);
-        let distance = accel / r * (t - (1.0 - (-r * t).exp()) / r);
-        assert!((way - distance).abs() < 1e-6, "{way} {distance}");
+        let expected = accel / r * (t - (1.0 - (-r * t).exp()) / r);
+        assert!((distance - expected).abs() < 1e-6, "{distance} {expected}");
     }
 
     /// Full brake from 10 m/s without drag: 10²/(2·3.5/3.6) m, then it stays.
@@ -204,13 +204,13 @@ mod tests {
     fn brakes_stop_it_and_hold_it() {
         let mut train = train(|d| d.drag_per_s = 0.0, &Conditions::default());
         train.place(10.0);
-        let mut way = 0.0;
+        let mut distance = 0.0;
         for _ in 0..4000 {
             let state = train.step(DT, &demand(-1.0));
-            way += state.pieces[0].distance_m();
+            distance += state.pieces[0].distance_m();
         }
         assert_eq!(train.velocity_mps(), 0.0);
-        assert!((way - 50.0 * 3.6 / 3.5).abs() < 1e-6, "{way}");
+        assert!((distance - 50.0 * 3.6 / 3.5).abs() < 1e-6, "{distance}");
     }
 
     /// S1's plant: 432 t coasting under f_d = 2e4·sin(2πt) has lost nothing after each period, and

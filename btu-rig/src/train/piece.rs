@@ -21,7 +21,7 @@ impl Piece {
     }
 
     /// The motion of one step from one speed to another: one piece, or, when it comes to a stand,
-    /// the way there and the rest.
+    /// the distance there and the rest.
     pub(super) fn between(from_mps: f64, to_mps: f64, dt_s: f64) -> [Self; 2] {
         let accel_mps2 = (to_mps - from_mps) / dt_s;
         let stops = from_mps != 0.0 && to_mps * from_mps <= 0.0;
@@ -44,13 +44,13 @@ impl Piece {
         self.speed_mps + self.accel_mps2 * self.seconds
     }
 
-    /// Time from its start until `way_m` has been rolled, s.
-    pub(crate) fn time_of_way(&self, way_m: f64) -> f64 {
+    /// Time from its start until `distance_m` has been rolled, s.
+    pub(crate) fn time_of_distance(&self, distance_m: f64) -> f64 {
         let sign = if self.distance_m() < 0.0 { -1.0 } else { 1.0 };
         let (speed, accel) = (sign * self.speed_mps, sign * self.accel_mps2);
         // The stable form of the quadratic's root: no difference of near-equal numbers.
-        let root = (speed * speed + 2.0 * accel * way_m).max(0.0).sqrt();
-        let seconds = 2.0 * way_m / (speed + root);
+        let root = (speed * speed + 2.0 * accel * distance_m).max(0.0).sqrt();
+        let seconds = 2.0 * distance_m / (speed + root);
         if seconds.is_finite() {
             seconds.clamp(0.0, self.seconds)
         } else {

@@ -20,7 +20,7 @@ struct Ride {
     inputs: TrainInputs,
     state: TrainState,
     speeds_mps: Vec<f64>,
-    way_m: f64,
+    distance_m: f64,
 }
 
 impl Ride {
@@ -36,7 +36,7 @@ impl Ride {
             inputs,
             state: TrainState::default(),
             speeds_mps: vec![kmh / 3.6],
-            way_m: 0.0,
+            distance_m: 0.0,
         }
     }
 
@@ -50,7 +50,7 @@ impl Ride {
         }
         (self.inputs.motor_n, self.inputs.air_n) = (self.demands.motor_n, self.demands.air_n);
         self.state = self.train.step(DT, &self.inputs);
-        self.way_m += self.state.pieces.iter().map(Piece::distance_m).sum::<f64>();
+        self.distance_m += self.state.pieces.iter().map(Piece::distance_m).sum::<f64>();
         self.speeds_mps.push(self.train.velocity_mps());
     }
 
@@ -182,7 +182,11 @@ fn emergency_brake_stops_in_its_distance_by_air_alone() {
         ride.inputs.load_kg = load_kg;
         ride.run_until(|r| r.kmh() == 0.0 || r.state.electric_brake_n > 0.0 || r.state.sliding);
         assert_eq!(ride.kmh(), 0.0);
-        assert!((196.0..208.0).contains(&ride.way_m), "{}", ride.way_m);
+        assert!(
+            (196.0..208.0).contains(&ride.distance_m),
+            "{}",
+            ride.distance_m
+        );
     }
 }
 
@@ -250,13 +254,17 @@ fn the_holding_brake_holds_where_it_would_roll() {
         };
         let mut free = Ride::new(Conditions::default(), 0.0, inputs);
         free.run(2.0);
-        assert!(free.way_m * gradient_permille < 0.0, "{}", free.way_m);
+        assert!(
+            free.distance_m * gradient_permille < 0.0,
+            "{}",
+            free.distance_m
+        );
         free.holding = true;
         free.run(10.0);
         assert_eq!(free.kmh(), 0.0);
-        let stood_m = free.way_m;
+        let stood_m = free.distance_m;
         free.run(60.0);
-        assert_eq!(free.way_m, stood_m);
+        assert_eq!(free.distance_m, stood_m);
     }
 }
 
@@ -274,7 +282,7 @@ fn it_departs_without_rolling_back_or_jumping() {
         let mut ride = Ride::new(Conditions::default(), 0.0, inputs);
         ride.holding = true;
         ride.run(3.0);
-        let stood_m = ride.way_m;
+        let stood_m = ride.distance_m;
         ride.speeds_mps.clear();
         ride.inputs.demand = 1.0;
         let tenth_n = 0.1 * ride.effort.consist.traction_n();
@@ -283,7 +291,7 @@ fn it_departs_without_rolling_back_or_jumping() {
         let mut least_m = stood_m;
         for _ in 0..1200 {
             ride.step();
-            least_m = least_m.min(ride.way_m);
+            least_m = least_m.min(ride.distance_m);
         }
         assert_eq!(least_m, stood_m, "{gradient_permille} {load_kg}");
         let peak = ride.peak_jerk_mps3();
@@ -293,7 +301,7 @@ fn it_departs_without_rolling_back_or_jumping() {
 }
 
 /// On rails that carry 0.05 full service slides: deceleration is what friction gives, the axle with
-/// the tachometers rolls less way than the train. On good rails again, everything recovers.
+/// the tachometers rolls less distance than the train. On good rails again, everything recovers.
 #[test]
 fn it_slides_on_leaves_and_recovers() {
     let leaves = Conditions {
@@ -311,7 +319,11 @@ fn it_slides_on_leaves_and_recovers() {
     let lost = (60.0 - ride.kmh()) / 3.6 / 8.0;
     assert!((0.2..0.5).contains(&lost), "mean deceleration {lost} m/s²");
     assert!(sliding_steps > 400, "{sliding_steps}");
-    assert!(axle_m < ride.way_m - 1.0, "{axle_m} {}", ride.way_m);
+    assert!(
+        axle_m < ride.distance_m - 1.0,
+        "{axle_m} {}",
+        ride.distance_m
+    );
 
     ride.train.set_conditions(&Conditions::default());
     ride.run(3.0);
@@ -384,11 +396,11 @@ fn energy_is_kept() {
         ride.inputs.demand = demand;
         ride.inputs.gradient_permille = gradient;
         for _ in 0..(seconds / DT) as usize {
-            let before = ride.way_m;
+            let before = ride.distance_m;
             ride.step();
             let s = ride.state;
             let against = s.electric_brake_n + s.air_brake_n + s.resistance_n + s.gradient_n;
-            work += (s.traction_n - against) * (ride.way_m - before);
+            work += (s.traction_n - against) * (ride.distance_m - before);
             traction += s.tractive_power_w * DT;
         }
     }

@@ -180,7 +180,7 @@ proptest! {
             for _ in 0..*times {
                 now += Duration::from_ms(*ms);
                 if let Some(frame) = frame {
-                    tcms.hear(now, frame);
+                    tcms.receive(now, frame);
                 }
                 let told = tcms.step(now, &inputs);
                 let view = tcms.view();

@@ -111,7 +111,7 @@ impl Bench {
             if self.now.since(self.sent) >= CYCLE {
                 self.sent = self.now;
                 if let Some(order) = &self.order {
-                    self.tcms.hear(self.now, order);
+                    self.tcms.receive(self.now, order);
                 }
             }
             self.follow();

@@ -1,7 +1,7 @@
 //! I/O channel: what the bench harness carries, once per 10 ms scan each way.
 
+use super::enums::ModeSwitch;
 use super::layout::{layout, wire_bits};
-use super::words::ModeSwitch;
 
 wire_bits! {
     /// Train lines and cab contacts; a set bit is an energised line.

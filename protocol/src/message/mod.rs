@@ -1,16 +1,20 @@
 //! Typed messages of the four channels. `WIRE.md` describes them for people; a test holds the two
 //! together.
 
+mod enums;
 mod io;
 mod layout;
 mod ptu;
 mod tcms;
 mod twc;
-mod words;
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
+pub use enums::{
+    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause, Mode,
+    ModeSwitch, Refusals, RunningMode,
+};
 pub use io::{IoInput, IoOutput, Outputs, TrainLines};
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
@@ -22,10 +26,6 @@ pub use ptu::{
 };
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
-pub use words::{
-    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause, Mode,
-    ModeSwitch, Refusals, RunningMode,
-};
 
 /// The four channels of the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -3,10 +3,10 @@
 //! A session number chosen by the tester ties requests together. Stimuli act through the TEST
 //! board only while the unit is armed for that session.
 
-use super::layout::{layout, wire_bits};
-use super::words::{
+use super::enums::{
     Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, Refusals, RunningMode,
 };
+use super::layout::{layout, wire_bits};
 
 wire_bits! {
     /// States in `Status`.

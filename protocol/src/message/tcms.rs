@@ -1,8 +1,8 @@
 //! TCMS channel: RS-485 between the unit and the train control and monitoring system, once per
 //! 50 ms cycle each way [S0, S4].
 
+use super::enums::Mode;
 use super::layout::{layout, wire_bits};
-use super::words::Mode;
 
 wire_bits! {
     /// States TCMS reports to the unit.

@@ -1,7 +1,7 @@
 //! TWC channel: station and train data through the loop.
 
+use super::enums::{DoorSide, Mode, RunningMode};
 use super::layout::{layout, wire_bits};
-use super::words::{DoorSide, Mode, RunningMode};
 
 wire_bits! {
     /// Train states in the answer.

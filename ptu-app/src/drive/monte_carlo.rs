@@ -1,6 +1,6 @@
 //! A case driven many times, each with another train and day.
 
-use btu_rig::drive::{Drawn, Ending, Metrics, Scatter};
+use btu_rig::drive::{Ending, Metrics, Scatter, ScatterDraw};
 
 use super::Case;
 use crate::pool;
@@ -20,7 +20,7 @@ pub struct Trial {
     /// Its own seed: `--scattered --seed` repeats it.
     pub seed: u64,
     /// Its train and day.
-    pub drawn: Drawn,
+    pub drawn: ScatterDraw,
     /// How it ended.
     pub ending: Ending,
     /// Head of the train at rest less stop point, m.
@@ -49,7 +49,7 @@ pub fn run(case: Case, count: usize, scatter: &Scatter, jobs: usize, stop: &Stop
         let outcome = drawn.drive();
         Trial {
             seed: drawn.seed,
-            drawn: Drawn {
+            drawn: ScatterDraw {
                 load_kg: drawn.plan.load_kg,
                 conditions: drawn.plan.conditions,
             },

@@ -1,14 +1,14 @@
 //! Doing again what was done, on the embedded unit.
 
+use btu_rig::recorded::StimulusPlayer;
 use btu_rig::rig::UnitLink;
-use btu_rig::tape::Player;
 use fault_db::TraceData;
 use protocol::{CYCLE, Instant};
 
 use super::{Original, Rule};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
-use crate::run::{BEFORE, BenchSetup, Session, Taped};
+use crate::run::{BEFORE, BenchSetup, RecordedStimuli, Session};
 use crate::run::{READY_WITHIN, settled};
 use crate::stop::Stop;
 
@@ -20,7 +20,7 @@ pub(super) struct Again {
     /// How it compares with the original.
     pub rule: Rule,
     /// What was done, on the clock of this bench.
-    pub taped: Taped,
+    pub recorded: RecordedStimuli,
     /// What this bench refused to do.
     pub refused: Vec<String>,
 }
@@ -83,23 +83,23 @@ fn play<L: UnitLink>(
     shift_us: i64,
     rule: Rule,
 ) -> Result<Again, Failure> {
-    let tape = &original.stimuli.tape;
+    let record = &original.stimuli.record;
     let mut refused = Vec::new();
     let window = original.window(shift_us);
-    let trace = session.play(Player::new(tape, shift_us), window, &mut refused);
+    let trace = session.play(StimulusPlayer::new(record, shift_us), window, &mut refused);
     let trace = trace.ok_or_else(|| {
         let why = session.link_error();
         Failure::bench(why.unwrap_or_else(|| "stopped before anything was recorded".into()))
     })?;
-    let mut tape = tape.clone();
-    for deed in &mut tape.deeds {
-        deed.at_us = deed.at_us.saturating_add_signed(shift_us);
+    let mut record = record.clone();
+    for entry in &mut record.entries {
+        entry.at_us = entry.at_us.saturating_add_signed(shift_us);
     }
     let began = Instant::from_us(original.stimuli.began_us.saturating_add_signed(shift_us));
     Ok(Again {
         trace,
         rule,
-        taped: Taped { began, tape },
+        recorded: RecordedStimuli { began, record },
         refused,
     })
 }

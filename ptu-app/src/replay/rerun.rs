@@ -256,7 +256,7 @@ fn write(
 ) -> Result<Id, Failure> {
     let mut trace = again.trace.clone();
     trace.t0_us = clock::now_us() - bench_time_us(&trace);
-    let began_us = again.taped.began.since(Instant::ZERO).as_us() as i64;
+    let began_us = again.recorded.began.since(Instant::ZERO).as_us() as i64;
     writer.step(StepRecord {
         index: 0,
         procedure: original.procedure.clone(),
@@ -269,7 +269,7 @@ fn write(
         measurements: Vec::new(),
     })?;
     let id = writer.trace(&[], &trace)?;
-    let recording = made.recording(&original.procedure, &again.taped);
+    let recording = made.recording(&original.procedure, &again.recorded);
     writer.recording(
         &fault_db::RecordingRecord {
             ordinal: 1,

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
 use ato_under_test::Setup;
-use btu_rig::bench_scatter::{BenchScatter, DrawnBench};
+use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
 use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::train::TrainData;
 use protocol::Instant;
@@ -112,7 +112,7 @@ impl BenchSetup {
     }
 
     /// What was drawn for this run.
-    fn drawn(&self) -> Option<DrawnBench> {
+    fn drawn(&self) -> Option<BenchDraw> {
         let scatter = self.scatter.as_ref()?;
         Some(scatter.draw(self.seed, self.train.full_load_kg()))
     }
@@ -169,10 +169,10 @@ impl Connected {
         }
     }
 
-    /// From now on this stop is heeded.
-    pub fn heed(&mut self, stop: &Stop) {
+    /// Listens to `stop` from now on.
+    pub fn set_stop(&mut self, stop: &Stop) {
         if let Self::Port(session, ..) = self {
-            session.heed(stop);
+            session.set_stop(stop);
         }
     }
 }

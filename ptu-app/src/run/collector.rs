@@ -7,7 +7,7 @@ use protocol::Duration;
 
 use super::made::BenchMade;
 use super::recorder::Cut;
-use super::session::{SessionEvent, Taped};
+use super::session::{RecordedStimuli, SessionEvent};
 use super::store_thread::{RunStore, Speaker};
 use super::{FaultSeen, Task};
 use crate::clock;
@@ -119,7 +119,7 @@ impl<'a> Collector<'a> {
             SessionEvent::LinkLost(_) => self.link_lost = true,
             SessionEvent::Fault(fault) => self.fault(fault),
             SessionEvent::Trace(cut) => self.trace(*cut),
-            SessionEvent::Recording(taped) => self.recording(&procedure.id, &taped),
+            SessionEvent::Recording(stimuli) => self.recording(&procedure.id, &stimuli),
             SessionEvent::Ended { bench_time } => self.before += bench_time,
         }
         if let Some(line) = line {
@@ -196,8 +196,8 @@ impl<'a> Collector<'a> {
         self.store.trace(faults, trace);
     }
 
-    fn recording(&mut self, procedure: &str, taped: &Taped) {
-        let recording = self.made.recording(procedure, taped);
+    fn recording(&mut self, procedure: &str, stimuli: &RecordedStimuli) {
+        let recording = self.made.recording(procedure, stimuli);
         self.store.recording(RecordingRecord {
             ordinal: self.ordinal,
             t0_bench_us: self.before.as_us() as i64,

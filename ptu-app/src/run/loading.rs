@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use btu_rig::procedure::Procedure;
-use btu_rig::procedure::loader::{self, LoadError, Loaded, Scripts, Told};
+use btu_rig::procedure::loader::{self, LoadError, LoadEvent, Loaded, Scripts};
 use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
@@ -327,11 +327,11 @@ fn say_all(order: &Order<'_>) -> std::io::Result<()> {
         line,
         train,
     } = order;
-    let loaded = loader::load_telling(scripts, unit, line, train, &mut |told| {
+    let loaded = loader::load_each(scripts, unit, line, train, &mut |told| {
         let done = match told {
             // What comes next may be the last.
-            Told::Evaluates(path) => say(&Said::Evaluates(Cow::Borrowed(path)), true),
-            Told::Loaded(procedure) => say(&Said::Loaded(procedure), false),
+            LoadEvent::Evaluates(path) => say(&Said::Evaluates(Cow::Borrowed(path)), true),
+            LoadEvent::Loaded(procedure) => say(&Said::Loaded(procedure), false),
         };
         if went_well.is_ok() {
             went_well = done;

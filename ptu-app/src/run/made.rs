@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use btu_rig::bench_scatter::BenchScatter;
-use btu_rig::tape::Tape;
+use btu_rig::recorded::StimulusRecord;
 use btu_rig::train::TrainData;
 use fault_db::{Recording, RecordingRecord};
 use protocol::Instant;
 use serde::{Deserialize, Serialize};
 
-use super::{BenchSetup, Taped};
+use super::{BenchSetup, RecordedStimuli};
 use crate::data::{ScriptsDirectory, sha256};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
@@ -56,7 +56,8 @@ pub struct Stimuli {
     /// When the procedure began, µs on the bench's clock: 0 where the unit was powered up for it.
     pub began_us: u64,
     /// What was done.
-    pub tape: Tape,
+    #[serde(rename = "tape")]
+    pub record: StimulusRecord,
 }
 
 impl BenchMade {
@@ -88,10 +89,10 @@ impl BenchMade {
     }
 
     /// What was done in a procedure on such a bench, to be kept; its place in the run is left open.
-    pub fn recording(&self, procedure: &str, taped: &Taped) -> RecordingRecord {
+    pub fn recording(&self, procedure: &str, recorded: &RecordedStimuli) -> RecordingRecord {
         let stimuli = Stimuli {
-            began_us: taped.began.since(Instant::ZERO).as_us(),
-            tape: taped.tape.clone(),
+            began_us: recorded.began.since(Instant::ZERO).as_us(),
+            record: recorded.record.clone(),
         };
         // Structs of numbers and texts always have a JSON form.
         let json = |written: serde_json::Result<String>| written.unwrap_or_default();
@@ -117,10 +118,10 @@ impl BenchMade {
         };
         let made = serde_json::from_str(&recording.bench_json).map_err(other)?;
         let stimuli: Stimuli = serde_json::from_str(&recording.stimuli_json).map_err(other)?;
-        if stimuli.tape.lost > 0 {
+        if stimuli.record.lost > 0 {
             return Err(Failure::bench(format!(
                 "the recording of {} is not whole: {} stimuli found no room in it",
-                recording.procedure, stimuli.tape.lost
+                recording.procedure, stimuli.record.lost
             )));
         }
         Ok((made, stimuli))

@@ -46,8 +46,8 @@ pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use made::{BenchMade, Made, Stimuli};
 pub(crate) use recorder::BEFORE;
+pub use session::{RecordedStimuli, SessionEvent};
 pub(crate) use session::{Session, Window};
-pub use session::{SessionEvent, Taped};
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;
 
@@ -132,7 +132,7 @@ pub fn run_on(
     stop: &Stop,
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
-    connected.heed(stop);
+    connected.set_stop(stop);
     let record = run_record(plan, setup, connected.serial(), began.at_us);
     let run_store = RunStore::begin(store, record, listener.speaker(), stop)?;
     let id = run_store.id;

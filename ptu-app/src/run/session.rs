@@ -7,8 +7,8 @@ use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{
     EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent, Verdict,
 };
+use btu_rig::recorded::{RecordingDriver, StimulusPlayer, StimulusRecord};
 use btu_rig::rig::{Bench, UnitLink};
-use btu_rig::tape::{Player, Tape, Taping};
 use fault_db::TraceData;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant, SCAN};
@@ -34,7 +34,7 @@ pub enum SessionEvent {
     /// The window around faults is complete.
     Trace(Box<Cut>),
     /// What was done to the bench in a procedure whose traces came before.
-    Recording(Box<Taped>),
+    Recording(Box<RecordedStimuli>),
     /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
     /// be read.
     LinkLost(String),
@@ -47,11 +47,11 @@ pub enum SessionEvent {
 
 /// What was done to the bench in one procedure, on the bench's clock.
 #[derive(Clone, Debug)]
-pub struct Taped {
+pub struct RecordedStimuli {
     /// When the procedure began.
     pub began: Instant,
     /// What was done.
-    pub tape: Tape,
+    pub record: StimulusRecord,
 }
 
 /// A bench, its recorder and its pace.
@@ -63,9 +63,9 @@ pub struct Session<L: UnitLink> {
     sample: Sample,
     link_error: Option<String>,
     /// How far the bench may be behind the clock; none for a unit whose clock is the bench's.
-    bears: Option<Duration>,
-    /// How far it was behind at most since that was asked, if too far.
-    held_up: Option<Duration>,
+    max_lag: Option<Duration>,
+    /// Longest lag above `max_lag` since it was last read.
+    stalled: Option<Duration>,
     fresh_unit: bool,
     attendant: Option<Arc<dyn Attendant>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
@@ -104,8 +104,8 @@ impl<L: UnitLink> Session<L> {
             recorder: Recorder::default(),
             sample: Sample::default(),
             link_error: None,
-            bears: None,
-            held_up: None,
+            max_lag: None,
+            stalled: None,
             fresh_unit,
             attendant: None,
             with_person: false,
@@ -120,13 +120,13 @@ impl<L: UnitLink> Session<L> {
 
     /// The unit's time goes on by itself: a bench further behind it than this cannot tell what the unit does,
     /// and makes it brake by its silence.
-    pub fn keeping_up(mut self, bears: Duration) -> Self {
-        self.bears = Some(bears);
+    pub fn keeping_up(mut self, max_lag: Duration) -> Self {
+        self.max_lag = Some(max_lag);
         self
     }
 
-    /// From now on this stop is heeded.
-    pub fn heed(&mut self, stop: &Stop) {
+    /// Listens to `stop` from now on.
+    pub fn set_stop(&mut self, stop: &Stop) {
         self.stop = stop.clone();
     }
 
@@ -166,9 +166,9 @@ impl<L: UnitLink> Session<L> {
         false
     }
 
-    /// Whether this computer has held the bench up since the last call, longer than the unit bears.
+    /// Whether this computer has stalled the bench for longer than `max_lag` since the last call.
     pub fn was_held_up(&mut self) -> bool {
-        self.held_up.take().is_some()
+        self.stalled.take().is_some()
     }
 
     /// Makes up the scans that were missed; events go to `seen`.
@@ -196,7 +196,7 @@ impl<L: UnitLink> Session<L> {
 
     /// How far the bench is behind a unit that goes on by itself.
     fn behind(&self) -> Duration {
-        self.bears.map_or(Duration::ZERO, |_| self.pace.behind())
+        self.max_lag.map_or(Duration::ZERO, |_| self.pace.behind())
     }
 
     /// Why nothing can be sent or received any more, if so.
@@ -231,10 +231,10 @@ impl<L: UnitLink> Session<L> {
             self.link_error.get_or_insert(failure.to_string());
         }
         let behind = self.behind();
-        if self.bears.is_some_and(|bears| behind > bears) {
-            self.held_up = self.held_up.max(Some(behind));
+        if self.max_lag.is_some_and(|max_lag| behind > max_lag) {
+            self.stalled = self.stalled.max(Some(behind));
             let now = self.bench.now();
-            self.bench.rig_mut().note_held_up(now);
+            self.bench.rig_mut().note_stalled(now);
         }
         self.sample.clone_from(self.bench.rig().sample());
         let now = self.bench.now();
@@ -284,9 +284,9 @@ impl<L: UnitLink> Session<L> {
             sink(event);
         };
         let sink = &mut sink;
-        let mut taped = Taped {
+        let mut recorded = RecordedStimuli {
             began: self.bench.now(),
-            tape: Tape::default(),
+            record: StimulusRecord::default(),
         };
         let mut rounds = Rounds::new(options.repeat);
         let mut runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
@@ -307,20 +307,20 @@ impl<L: UnitLink> Session<L> {
         loop {
             let mut cut = |cut| sink(SessionEvent::Trace(Box::new(cut)));
             self.scan(&mut cut);
-            if self.held_up.is_some() {
+            if self.stalled.is_some() {
                 // What the unit logs meanwhile is not its own doing.
                 self.make_up(&mut cut, &mut |_, _, _| {});
             }
             let pressed = self.stop.presses();
             for press in presses..pressed {
                 match self.stop.reason().filter(|_| press == 0) {
-                    Some(reason) => runner.held_up(reason.to_owned()),
+                    Some(reason) => runner.bench_stalled(reason.to_owned()),
                     None => runner.stop(),
                 }
             }
             presses = pressed;
-            if let Some(behind) = self.held_up.take() {
-                runner.held_up(held_up(behind));
+            if let Some(behind) = self.stalled.take() {
+                runner.bench_stalled(stalled(behind));
             }
             runner.behind(self.behind());
             let now = self.bench.now();
@@ -334,7 +334,7 @@ impl<L: UnitLink> Session<L> {
                 attendant.direct(&mut runner);
             }
             self.wait_with(runner.awaits_operator());
-            let mut rig = Taping::new(self.bench.rig_mut(), &mut taped.tape);
+            let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
             for event in runner.take_events() {
                 self.note(&event, &mut progress, sink);
@@ -366,7 +366,7 @@ impl<L: UnitLink> Session<L> {
             rounds.finished(link_lost, self.bench.now()),
         ));
         if traced.get() {
-            sink(SessionEvent::Recording(Box::new(taped)));
+            sink(SessionEvent::Recording(Box::new(recorded)));
         }
     }
 
@@ -392,11 +392,11 @@ impl<L: UnitLink> Session<L> {
         !stopped
     }
 
-    /// Does again what is on a tape, up to `until`, and keeps every scan from `from` on as a trace.
+    /// Repeats recorded stimuli up to `until` and keeps every scan from `from` on as a trace.
     /// `None` when nothing could be recorded. What the bench refused goes to `refused`.
     pub fn play(
         &mut self,
-        mut player: Player<'_>,
+        mut player: StimulusPlayer<'_>,
         window: Window,
         refused: &mut Vec<String>,
     ) -> Option<TraceData> {
@@ -513,7 +513,7 @@ impl<L: UnitLink> Session<L> {
     }
 }
 
-fn held_up(behind: Duration) -> String {
+fn stalled(behind: Duration) -> String {
     format!(
         "the tester was held up for {:.2} s by its own computer, which says nothing about the unit; end other \
          programs and run this again",

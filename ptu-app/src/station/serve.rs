@@ -142,7 +142,7 @@ impl Server {
                 (leave, self.let_go(&mut session))
             }
             Connected::Port(session, ..) => {
-                session.heed(&Stop::default());
+                session.set_stop(&Stop::default());
                 let leave = self.watch_session(session, connection, orders);
                 (leave, self.let_go(session))
             }

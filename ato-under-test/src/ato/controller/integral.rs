@@ -2,7 +2,7 @@
 
 use protocol::CYCLE;
 
-use super::Situation;
+use super::ControllerInput;
 
 /// Difference between asked and granted that is only rounding, m/s²: a few steps of the 10 bits.
 const ROUNDING_MPS2: f64 = 0.005;
@@ -23,9 +23,9 @@ impl Integral {
     }
 
     /// One cycle at `rate` per second, which has the sign of the error.
-    pub(super) fn add(&mut self, rate: f64, situation: &Situation) {
-        let withheld_n = self.asked_n - situation.granted_n;
-        let clipped = libm::fabs(withheld_n) > ROUNDING_MPS2 * situation.mass_kg;
+    pub(super) fn add(&mut self, rate: f64, input: &ControllerInput) {
+        let withheld_n = self.asked_n - input.granted_n;
+        let clipped = libm::fabs(withheld_n) > ROUNDING_MPS2 * input.mass_kg;
         if !(clipped && (withheld_n > 0.0) == (rate > 0.0)) {
             self.value += rate * CYCLE.as_secs();
         }

@@ -1,14 +1,14 @@
 //! SPR: the speed controllers behind one seam [S0 §3.1, S1, S2 §3.2].
 //!
-//! Each makes its own target speed from the cruising target and the way to the stop point, and a
+//! Each makes its own target speed from the cruising target and the distance to the stop point, and a
 //! force that brings the train there. What gravity and resistance by the track database cost is
 //! added outside (`feed_forward`); REG limits the sum and tells the controller what was
 //! granted.
 
-mod doubt;
 mod fuzzy;
 mod integral;
 mod pi;
+mod plausibility;
 mod pole_placement;
 mod pss;
 mod servo;
@@ -18,7 +18,7 @@ use core::fmt::Debug;
 
 use protocol::config::{AtoConfig, ControllerKind};
 
-use super::profile::{GuideInputs, Setpoint};
+use super::profile::{ReferenceInputs, Setpoint};
 
 pub use fuzzy::Fuzzy;
 pub use pi::Pi;
@@ -28,16 +28,16 @@ pub use servo::Servo;
 
 /// What a controller is given each 50 ms cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Situation {
+pub struct ControllerInput {
     /// Speed to run at: the most restrictive of limit and order, m/s.
     pub cruise_mps: f64,
     /// Speed at which the coming effort will meet the train, m/s.
     pub speed_mps: f64,
     /// Acceleration then, m/s².
     pub accel_mps2: f64,
-    /// Way to the stop point then, m; `None` = not known.
+    /// Distance to the stop point then, m; `None` = not known.
     pub to_stop_m: Option<f64>,
-    /// Way from each marker to the stop point, m.
+    /// Distance from each marker to the stop point, m.
     pub markers_to_stop_m: [f64; 4],
     /// Mass to be accelerated, kg.
     pub mass_kg: f64,
@@ -47,15 +47,15 @@ pub struct Situation {
     pub granted_n: f64,
 }
 
-impl From<&Situation> for GuideInputs {
-    fn from(situation: &Situation) -> Self {
+impl From<&ControllerInput> for ReferenceInputs {
+    fn from(input: &ControllerInput) -> Self {
         Self {
-            cruise_mps: situation.cruise_mps,
+            cruise_mps: input.cruise_mps,
             train: Setpoint {
-                speed_mps: situation.speed_mps,
-                accel_mps2: situation.accel_mps2,
+                speed_mps: input.speed_mps,
+                accel_mps2: input.accel_mps2,
             },
-            to_stop_m: situation.to_stop_m,
+            to_stop_m: input.to_stop_m,
         }
     }
 }
@@ -72,7 +72,7 @@ pub struct Demand {
 /// Turns a situation into a demand.
 pub trait SpeedController: Debug + Send {
     /// One cycle.
-    fn step(&mut self, situation: &Situation) -> Demand;
+    fn step(&mut self, input: &ControllerInput) -> Demand;
     /// The train stands and is not driven: begin anew.
     fn reset(&mut self);
 }

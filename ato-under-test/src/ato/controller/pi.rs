@@ -12,16 +12,16 @@
 
 use protocol::config::{AtoConfig, GainUnit};
 
-use super::doubt::Doubt;
 use super::integral::Integral;
-use super::{Demand, Situation, SpeedController};
-use crate::ato::profile::Guide;
+use super::plausibility::PlausibilityCheck;
+use super::{ControllerInput, Demand, SpeedController};
+use crate::ato::profile::ReferenceGenerator;
 
 /// The controller.
 #[derive(Debug)]
 pub struct Pi {
-    guide: Guide,
-    doubt: Doubt,
+    generator: ReferenceGenerator,
+    plausibility: PlausibilityCheck,
     feed_forward: bool,
     /// N per m/s at `mass_kg`.
     proportional: f64,
@@ -41,8 +41,8 @@ impl Pi {
             GainUnit::Kmh => 3.6,
         };
         Self {
-            guide: Guide::new(config),
-            doubt: Doubt::new(config),
+            generator: ReferenceGenerator::new(config),
+            plausibility: PlausibilityCheck::new(config),
             feed_forward: config.profile.feed_forward,
             proportional: pi.proportional_n * per_mps,
             integral_rate: pi.integral_n_per_s * per_mps,
@@ -53,28 +53,28 @@ impl Pi {
 }
 
 impl SpeedController for Pi {
-    fn step(&mut self, situation: &Situation) -> Demand {
-        if let Some(brake) = self.doubt.brake(situation) {
+    fn step(&mut self, input: &ControllerInput) -> Demand {
+        if let Some(brake) = self.plausibility.brake(input) {
             return brake;
         }
-        let guidance = self.guide.step(situation.into());
-        let error = guidance.setpoint.speed_mps - situation.speed_mps;
-        self.integral.add(self.integral_rate * error, situation);
+        let reference = self.generator.step(input.into());
+        let error = reference.setpoint.speed_mps - input.speed_mps;
+        self.integral.add(self.integral_rate * error, input);
         let law_n = self.proportional * error + self.integral.value();
-        let mut force_n = law_n * situation.mass_kg / self.mass_kg;
-        if self.feed_forward || guidance.stopping {
-            force_n += situation.mass_kg * guidance.setpoint.accel_mps2;
+        let mut force_n = law_n * input.mass_kg / self.mass_kg;
+        if self.feed_forward || reference.stopping {
+            force_n += input.mass_kg * reference.setpoint.accel_mps2;
         }
-        force_n = force_n.min(guidance.most_mps2 * situation.mass_kg);
+        force_n = force_n.min(reference.most_mps2 * input.mass_kg);
         self.integral.asked(force_n);
         Demand {
-            target_mps: guidance.setpoint.speed_mps,
+            target_mps: reference.setpoint.speed_mps,
             force_n,
         }
     }
 
     fn reset(&mut self) {
-        self.guide.reset();
+        self.generator.reset();
         self.integral = Integral::default();
     }
 }

@@ -13,16 +13,16 @@
 
 use protocol::config::AtoConfig;
 
-use super::doubt::Doubt;
 use super::integral::Integral;
-use super::{Demand, Situation, SpeedController};
+use super::plausibility::PlausibilityCheck;
+use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::{Descent, Setpoint, correction_mps2};
 
 /// The controller.
 #[derive(Debug)]
 pub struct Pss {
     descent: Descent,
-    doubt: Doubt,
+    plausibility: PlausibilityCheck,
     ahead_s: f64,
     gain_per_s: f64,
     jerk_mps3: f64,
@@ -41,7 +41,7 @@ impl Pss {
         let pss = &config.pss;
         Self {
             descent: Descent::new(pss),
-            doubt: Doubt::new(config),
+            plausibility: PlausibilityCheck::new(config),
             ahead_s: (config.train.dead_time_ms + config.train.lag_ms) / 1000.0,
             gain_per_s: config.decel_kmh_per_s / pss.full_effort_error_kmh,
             jerk_mps3: pss.jerk_mps3,
@@ -54,48 +54,48 @@ impl Pss {
     }
 
     /// The printed target where the train is now: the situation is that much ahead.
-    fn target_mps(&self, situation: &Situation) -> f64 {
-        let ahead_m = situation.speed_mps * self.ahead_s;
-        situation.to_stop_m.map_or(situation.cruise_mps, |way| {
-            let curve_mps = self.descent.curve().at(way + ahead_m).0;
-            situation.cruise_mps.min(curve_mps)
+    fn target_mps(&self, input: &ControllerInput) -> f64 {
+        let ahead_m = input.speed_mps * self.ahead_s;
+        input.to_stop_m.map_or(input.cruise_mps, |distance| {
+            let curve_mps = self.descent.curve().at(distance + ahead_m).0;
+            input.cruise_mps.min(curve_mps)
         })
     }
 
     /// The reference: the cruising speed, or what leads from there to the curve and along it.
-    fn reference(&mut self, situation: &Situation) -> Setpoint {
+    fn reference(&mut self, input: &ControllerInput) -> Setpoint {
         let cruise = Setpoint {
-            speed_mps: situation.cruise_mps.max(0.0),
+            speed_mps: input.cruise_mps.max(0.0),
             accel_mps2: 0.0,
         };
         let from = self.stop.unwrap_or(cruise);
-        self.stop = situation
+        self.stop = input
             .to_stop_m
-            .map(|way| self.descent.follow(from, way))
+            .map(|distance| self.descent.follow(from, distance))
             .filter(|stop| stop.speed_mps < cruise.speed_mps);
         self.stop.unwrap_or(cruise)
     }
 }
 
 impl SpeedController for Pss {
-    fn step(&mut self, situation: &Situation) -> Demand {
-        if let Some(brake) = self.doubt.brake(situation) {
+    fn step(&mut self, input: &ControllerInput) -> Demand {
+        if let Some(brake) = self.plausibility.brake(input) {
             return brake;
         }
-        let reference = self.reference(situation);
-        let error = reference.speed_mps - situation.speed_mps;
+        let reference = self.reference(input);
+        let error = reference.speed_mps - input.speed_mps;
         let correction_mps2 = correction_mps2(error, self.gain_per_s, self.jerk_mps3);
         let near = libm::fabs(error) < self.near_mps;
-        if near && situation.speed_mps > self.integral_above_mps {
+        if near && input.speed_mps > self.integral_above_mps {
             let rate = self.gain_per_s * self.integral_per_s * error;
-            self.integral.add(rate, situation);
+            self.integral.add(rate, input);
         }
         let asked_mps2 = reference.accel_mps2 + correction_mps2 + self.integral.value();
-        let most_mps2 = self.descent.most_mps2(situation.to_stop_m);
-        let force_n = asked_mps2.min(most_mps2) * situation.mass_kg;
+        let most_mps2 = self.descent.most_mps2(input.to_stop_m);
+        let force_n = asked_mps2.min(most_mps2) * input.mass_kg;
         self.integral.asked(force_n);
         Demand {
-            target_mps: self.target_mps(situation),
+            target_mps: self.target_mps(input),
             force_n,
         }
     }

@@ -13,14 +13,14 @@
 //! * **Feed-forward** of the profile's acceleration, so that the compensator has only errors to correct.
 //! * **Speed at PSM1** no higher than the brake on the gradients of the approach allows eq. (2): on −35 ‰ the
 //!   full brake has 0.64 m/s² left of the 0.85 it asks for from 40 km/h.
-//! * **Pull** toward the profile's own way between PSM2 and PSM4, since eq. (2) runs by time.
+//! * **Pull** toward the profile's own distance between PSM2 and PSM4, since eq. (2) runs by time.
 
 use protocol::CYCLE;
 use protocol::config::{AtoConfig, ServoConfig};
 
-use super::doubt::Doubt;
-use super::{Demand, Gains, Situation, SpeedController, place};
-use crate::ato::profile::{LastMetres, LastRates, MarkerApproach, SCurve, Setpoint};
+use super::plausibility::PlausibilityCheck;
+use super::{ControllerInput, Demand, Gains, SpeedController, place};
+use crate::ato::profile::{FinalStop, FinalStopLimits, MarkerApproach, SCurve, Setpoint};
 
 /// Cycles at rest too far from the stop point after which it begins anew.
 const REST_CYCLES: u32 = 20;
@@ -35,7 +35,7 @@ enum Phase {
     /// PSM2 to PSM4 by eq. (2).
     Approach(MarkerApproach),
     /// From PSM4 by eq. (3).
-    LastMetres(LastMetres),
+    FinalStop(FinalStop),
 }
 
 /// The controller.
@@ -45,11 +45,11 @@ pub struct Servo {
     /// Gains for one kilogram.
     gains: Gains,
     drag_per_s: f64,
-    rates: LastRates,
+    rates: FinalStopLimits,
     /// A cruising speed below the station stop's profile, led to by eq. (1).
     order: Option<SCurve>,
     rest_cycles: u32,
-    doubt: Doubt,
+    plausibility: PlausibilityCheck,
     phase: Phase,
     reference: Setpoint,
     /// Integrals of the error: triple, double, single.
@@ -65,7 +65,7 @@ impl Servo {
             config: config.servo.clone(),
             gains: place(&config.servo.poles, 1.0, config.train.drag_per_s),
             drag_per_s: config.train.drag_per_s,
-            rates: LastRates {
+            rates: FinalStopLimits {
                 jerk_mps3: config.train.jerk_mps3,
                 most_mps2: config.decel_kmh_per_s / 3.6,
                 rest_mps2: config.servo.rest_mps2,
@@ -73,7 +73,7 @@ impl Servo {
             },
             order: None,
             rest_cycles: 0,
-            doubt: Doubt::new(config),
+            plausibility: PlausibilityCheck::new(config),
             phase: Phase::Cruise(SCurve::hold(0.0)),
             reference: Setpoint::default(),
             integrals: [0.0; 3],
@@ -83,31 +83,32 @@ impl Servo {
     }
 
     /// Moves the profile on; gives the speed to follow, pull included.
-    fn advance(&mut self, situation: &Situation) -> f64 {
+    fn advance(&mut self, input: &ControllerInput) -> f64 {
         let dt = CYCLE.as_secs();
-        let to_stop = situation.to_stop_m.unwrap_or(f64::INFINITY);
-        self.change_phase(situation, to_stop);
+        let to_stop = input.to_stop_m.unwrap_or(f64::INFINITY);
+        self.change_phase(input, to_stop);
         let before = self.reference;
         let mut pull = 0.0;
         match &mut self.phase {
             Phase::Cruise(curve) => self.reference = curve.step(dt),
             Phase::Approach(approach) => {
-                let (reference, way_m) = approach.step(dt);
-                let from_psm4 = to_stop - situation.markers_to_stop_m[3];
+                let (reference, distance_m) = approach.step(dt);
+                let from_psm4 = to_stop - input.markers_to_stop_m[3];
                 let most = self.config.pull_share * reference.speed_mps + self.config.pull_mps;
-                pull = (self.config.position_gain_per_s * (from_psm4 - way_m)).clamp(-most, most);
+                pull =
+                    (self.config.position_gain_per_s * (from_psm4 - distance_m)).clamp(-most, most);
                 self.reference = reference;
             }
-            Phase::LastMetres(last) => {
-                let rests = self.reference.speed_mps <= 0.0 && situation.speed_mps <= 0.0;
+            Phase::FinalStop(last) => {
+                let rests = self.reference.speed_mps <= 0.0 && input.speed_mps <= 0.0;
                 self.rest_cycles = if rests { self.rest_cycles + 1 } else { 0 };
-                if self.rest_cycles > REST_CYCLES && situation.cruise_mps > 0.0 {
+                if self.rest_cycles > REST_CYCLES && input.cruise_mps > 0.0 {
                     last.creep();
                 }
                 self.reference = last.step(dt, to_stop);
             }
         }
-        match self.ordered(before, situation, dt) {
+        match self.ordered(before, input, dt) {
             Some(order) => {
                 self.reference = order;
                 order.speed_mps
@@ -118,19 +119,19 @@ impl Servo {
 
     /// What is to be followed instead of the station stop's profile because the cruising speed is lower.
     /// When it rises again the profile goes on from where the train is.
-    fn ordered(&mut self, from: Setpoint, situation: &Situation, dt: f64) -> Option<Setpoint> {
+    fn ordered(&mut self, from: Setpoint, input: &ControllerInput, dt: f64) -> Option<Setpoint> {
         let profile = self.reference;
-        let lower = situation.cruise_mps < profile.speed_mps - ORDER_MPS;
+        let lower = input.cruise_mps < profile.speed_mps - ORDER_MPS;
         if matches!(self.phase, Phase::Cruise(_)) || (!lower && self.order.is_none()) {
             self.order = None;
             return None;
         }
         if !lower {
             self.order = None;
-            self.begin_from(situation);
+            self.begin_from(input);
             return None;
         }
-        let target_mps = situation.cruise_mps;
+        let target_mps = input.cruise_mps;
         if self
             .order
             .is_none_or(|curve| curve.target_mps() != target_mps)
@@ -141,36 +142,36 @@ impl Servo {
         (order.speed_mps < profile.speed_mps).then_some(order)
     }
 
-    fn change_phase(&mut self, situation: &Situation, to_stop: f64) {
-        let [psm1, psm2, _, psm4] = situation.markers_to_stop_m;
+    fn change_phase(&mut self, input: &ControllerInput, to_stop: f64) {
+        let [psm1, psm2, _, psm4] = input.markers_to_stop_m;
         let end_mps = self.config.psm4_mps;
-        if matches!(self.phase, Phase::LastMetres(_)) {
+        if matches!(self.phase, Phase::FinalStop(_)) {
             return;
         }
-        let begins_m = LastMetres::begins_before_m(end_mps, psm4, self.rates.jerk_mps3);
+        let begins_m = FinalStop::begins_before_m(end_mps, psm4, self.rates.jerk_mps3);
         if to_stop <= psm4 + begins_m {
-            self.phase = Phase::LastMetres(LastMetres::new(self.reference, self.rates));
+            self.phase = Phase::FinalStop(FinalStop::new(self.reference, self.rates));
             return;
         }
         if matches!(self.phase, Phase::Approach(_)) {
-            let behind_mps = self.reference.speed_mps - situation.speed_mps;
+            let behind_mps = self.reference.speed_mps - input.speed_mps;
             if behind_mps < self.config.left_behind_mps {
                 return;
             }
-            self.begin_from(situation);
+            self.begin_from(input);
         }
         if to_stop <= psm2 && self.reference.speed_mps > end_mps {
-            let way_m = to_stop - psm4;
+            let distance_m = to_stop - psm4;
             self.phase = Phase::Approach(MarkerApproach::new(
                 self.reference.speed_mps,
                 end_mps,
-                way_m,
+                distance_m,
             ));
             return;
         }
-        let mut target = situation.cruise_mps;
+        let mut target = input.cruise_mps;
         if to_stop <= psm1 {
-            let brake_mps2 = self.config.brake_share * situation.brake_mps2;
+            let brake_mps2 = self.config.brake_share * input.brake_mps2;
             let fastest = MarkerApproach::fastest_mps(end_mps, psm2 - psm4, brake_mps2);
             target = target.min(self.config.psm1_kmh / 3.6).min(fastest);
         }
@@ -192,13 +193,13 @@ impl Servo {
     }
 
     /// The profile goes on from where the train is.
-    fn begin_from(&mut self, situation: &Situation) {
+    fn begin_from(&mut self, input: &ControllerInput) {
         self.reference = Setpoint {
-            speed_mps: situation.speed_mps,
+            speed_mps: input.speed_mps,
             accel_mps2: 0.0,
         };
         self.integrals = [0.0; 3];
-        self.phase = Phase::Cruise(SCurve::hold(situation.speed_mps));
+        self.phase = Phase::Cruise(SCurve::hold(input.speed_mps));
     }
 
     /// Compensator [S0 eq. 7], conditioned on what was granted of the last demand.
@@ -221,19 +222,19 @@ impl Servo {
 }
 
 impl SpeedController for Servo {
-    fn step(&mut self, situation: &Situation) -> Demand {
-        if let Some(brake) = self.doubt.brake(situation) {
+    fn step(&mut self, input: &ControllerInput) -> Demand {
+        if let Some(brake) = self.plausibility.brake(input) {
             return brake;
         }
-        self.compensate(situation.granted_n / situation.mass_kg);
-        let follow_mps = self.advance(situation);
+        self.compensate(input.granted_n / input.mass_kg);
+        let follow_mps = self.advance(input);
         let reference = self.reference;
-        self.error_mps = follow_mps - situation.speed_mps;
+        self.error_mps = follow_mps - input.speed_mps;
         let correction = self.drag_per_s * follow_mps
             + self.gains.speed * self.error_mps
             + dot(&self.gains.integrals, &self.integrals);
         self.asked_mps2 = reference.accel_mps2 + correction;
-        let ends = matches!(self.phase, Phase::LastMetres(_)) && reference.accel_mps2 < 0.0;
+        let ends = matches!(self.phase, Phase::FinalStop(_)) && reference.accel_mps2 < 0.0;
         // Where the profile has ended nothing but a brake is right.
         let most = if ends && reference.speed_mps <= 0.0 {
             0.0
@@ -244,7 +245,7 @@ impl SpeedController for Servo {
         let given = correction.clamp(-self.config.correction_mps2, most);
         Demand {
             target_mps: reference.speed_mps,
-            force_n: (reference.accel_mps2 + given) * situation.mass_kg,
+            force_n: (reference.accel_mps2 + given) * input.mass_kg,
         }
     }
 

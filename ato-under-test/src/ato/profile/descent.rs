@@ -41,7 +41,7 @@ impl Descent {
     /// creeping on at a speed nobody can measure.
     pub fn most_mps2(&self, to_stop_m: Option<f64>) -> f64 {
         to_stop_m
-            .and_then(|way| self.curve.halt_mps2(way))
+            .and_then(|distance| self.curve.halt_mps2(distance))
             .map_or(f64::INFINITY, |halt| -0.5 * halt)
     }
 
@@ -59,7 +59,7 @@ impl Descent {
         let step = self.jerk_mps3 * dt;
         let met = libm::fabs(correction_mps2) <= step
             && libm::fabs(from.accel_mps2 - accel_mps2) <= 2.0 * step;
-        // Or the way has become known, or shorter, too late to be smooth.
+        // Or the distance has become known, or shorter, too late to be smooth.
         let late = gap < -self.jerk_mps3 / (self.gain_per_s * self.gain_per_s);
         if met || late {
             return curve;
@@ -104,10 +104,10 @@ mod tests {
                 speed_mps,
                 accel_mps2,
             };
-            let mut way_m = 400.0;
+            let mut distance_m = 400.0;
             let mut begun = false;
-            while way_m > 0.01 && now.speed_mps > 0.01 {
-                let next = descent.follow(now, way_m);
+            while distance_m > 0.01 && now.speed_mps > 0.01 {
+                let next = descent.follow(now, distance_m);
                 begun |= next.accel_mps2 < now.accel_mps2;
                 if begun {
                     let jerk = (next.accel_mps2 - now.accel_mps2) / dt;
@@ -117,23 +117,29 @@ mod tests {
                         .max(config.brake_rate_mps2 * config.slope_per_s);
                     assert!(
                         jerk.abs() < 1.1 * most,
-                        "{speed_mps}: {jerk} m/s³ at {way_m} m"
+                        "{speed_mps}: {jerk} m/s³ at {distance_m} m"
                     );
                     now = next;
                 } else {
                     now.speed_mps += now.accel_mps2 * dt;
                 }
-                let over = now.speed_mps - descent.curve().at(way_m).0;
-                assert!(over < 0.05, "{speed_mps}: over by {over} m/s at {way_m} m");
-                way_m -= now.speed_mps * dt;
+                let over = now.speed_mps - descent.curve().at(distance_m).0;
+                assert!(
+                    over < 0.05,
+                    "{speed_mps}: over by {over} m/s at {distance_m} m"
+                );
+                distance_m -= now.speed_mps * dt;
             }
-            assert!(way_m.abs() < 0.02, "{speed_mps}: ends at {way_m} m");
+            assert!(
+                distance_m.abs() < 0.02,
+                "{speed_mps}: ends at {distance_m} m"
+            );
         }
     }
 
     /// The stop point comes nearer by 30 m at 60 km/h: the curve itself, at once.
     #[test]
-    fn a_way_that_shrinks_too_much_is_braked_for_at_once() {
+    fn a_distance_that_shrinks_too_fast_is_braked_for_at_once() {
         let descent = Descent::new(&config().pss);
         let from = Setpoint {
             speed_mps: 16.0,

@@ -1,6 +1,6 @@
 //! Speed over time from one speed to another under an acceleration and a jerk limit [S1 eq. 2-4].
 //!
-//! Terms: *ramp* = the way from one speed to another in three phases: jerk to the peak acceleration,
+//! Terms: *ramp* = the change from one speed to another in three phases: jerk to the peak acceleration,
 //! constant acceleration, jerk back to none; *peak* = the greatest acceleration of a ramp.
 //!
 //! The printed formulas begin at standstill and hold for changes of at least `a_L²/J`. Here each

@@ -1,6 +1,6 @@
 //! Station stop by distance [S2 §3.2]: a square root with constant brake rate, then a line.
 //!
-//! Terms: *way* = distance to the stop point; *join* = where two parts of the curve meet.
+//! Terms: *join* = where two parts of the curve meet.
 //!
 //! The two printed parts meet in value and slope: with `T_s = sqrt(2·B_r·(D − E_off))` and
 //! `T_s = S_l·D + V_stop` that is at `D = E_off + B_r/(2·S_l²)`, and `V_stop = B_r/(2·S_l) − S_l·E_off`.
@@ -103,11 +103,14 @@ mod tests {
     #[test]
     fn the_acceleration_belongs_to_the_speed() {
         let curve = curve(0.63, 0.1, 1.2);
-        for way_m in [200.0, 98.0, 10.0, 1.0, 0.3, 0.2, 0.1, 0.01] {
+        for distance_m in [200.0, 98.0, 10.0, 1.0, 0.3, 0.2, 0.1, 0.01] {
             let h = 1e-6;
-            let slope = (curve.at(way_m + h).0 - curve.at(way_m - h).0) / (2.0 * h);
-            let (speed, accel) = curve.at(way_m);
-            assert!((accel + speed * slope).abs() < 1e-5, "{way_m} m: {accel}");
+            let slope = (curve.at(distance_m + h).0 - curve.at(distance_m - h).0) / (2.0 * h);
+            let (speed, accel) = curve.at(distance_m);
+            assert!(
+                (accel + speed * slope).abs() < 1e-5,
+                "{distance_m} m: {accel}"
+            );
         }
     }
 
@@ -128,8 +131,8 @@ mod tests {
     #[test]
     fn at_and_past_the_stop_point_the_target_is_standstill_and_the_brake_stays() {
         let curve = StopCurve::new(&config().pss);
-        for way_m in [0.0, -0.1, -50.0, f64::NEG_INFINITY] {
-            let (speed, accel) = curve.at(way_m);
+        for distance_m in [0.0, -0.1, -50.0, f64::NEG_INFINITY] {
+            let (speed, accel) = curve.at(distance_m);
             assert_eq!(speed, 0.0);
             assert_eq!(accel, -config().pss.brake_rate_mps2);
         }

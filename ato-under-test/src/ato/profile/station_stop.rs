@@ -1,10 +1,10 @@
 //! Station stop of S0: from PSM2 to PSM4 by eq. (2), from there by eq. (3).
 //!
-//! Two things differ from the printed text. t_a of eq. (2) is not set by hand but follows from the way
+//! Two things differ from the printed text. t_a of eq. (2) is not set by hand but follows from the distance
 //! between the markers and the speed at the beginning, so that 1.5 m/s is reached where PSM4 lies: the mean
-//! of W is 0.55, so t_a = way / (0.55·v_end + 0.45·v_begin), 18.04 s for the printed 105 m, 11.1 and 1.5 m/s.
+//! of W is 0.55, so t_a = distance / (0.55·v_end + 0.45·v_begin), 18.04 s for the printed 105 m, 11.1 and 1.5 m/s.
 //! Eq. (3), v = 1.5 − 0.33·t, stops in 3.409 m, 9.1 cm short of the 3.5 m; here the rate is the one that
-//! stops at the stop point, taken anew each cycle from speed and way left, so that a train that is not where
+//! stops at the stop point, taken anew each cycle from speed and distance left, so that a train that is not where
 //! the curve has it still arrives; and it is built up at a jerk that brakes can follow, half of it before
 //! PSM4.
 
@@ -16,32 +16,32 @@ pub struct MarkerApproach {
     from_mps: f64,
     to_mps: f64,
     seconds: f64,
-    way_m: f64,
+    distance_m: f64,
     elapsed_s: f64,
 }
 
 impl MarkerApproach {
-    /// From a speed to a speed in a way.
-    pub fn new(from_mps: f64, to_mps: f64, way_m: f64) -> Self {
+    /// From one speed to another over a distance.
+    pub fn new(from_mps: f64, to_mps: f64, distance_m: f64) -> Self {
         Self {
             from_mps,
             to_mps,
-            seconds: way_m / (0.55 * to_mps + 0.45 * from_mps),
-            way_m,
+            seconds: distance_m / (0.55 * to_mps + 0.45 * from_mps),
+            distance_m,
             elapsed_s: 0.0,
         }
     }
 
     /// Greatest speed from which it asks for no more than `most_mps2`: 1.6·(v − v_end)/t_a.
-    pub fn fastest_mps(to_mps: f64, way_m: f64, most_mps2: f64) -> f64 {
-        // 1.6·(v − e)·(0.55·e + 0.45·v) = a·way, solved for v.
+    pub fn fastest_mps(to_mps: f64, distance_m: f64, most_mps2: f64) -> f64 {
+        // 1.6·(v − e)·(0.55·e + 0.45·v) = a·distance, solved for v.
         let (square, linear) = (0.45, (0.55 - 0.45) * to_mps);
-        let rest = 0.55 * to_mps * to_mps + most_mps2.max(0.0) * way_m.max(0.0) / 1.6;
+        let rest = 0.55 * to_mps * to_mps + most_mps2.max(0.0) * distance_m.max(0.0) / 1.6;
         let root = libm::sqrt(linear * linear + 4.0 * square * rest);
         ((root - linear) / (2.0 * square)).max(to_mps)
     }
 
-    /// Moves on by `dt_s`; gives the target and the way it has left, m.
+    /// Moves on by `dt_s`; gives the target and the distance it has left, m.
     pub fn step(&mut self, dt_s: f64) -> (Setpoint, f64) {
         self.elapsed_s += dt_s;
         let x = (self.elapsed_s / self.seconds).min(1.0);
@@ -53,7 +53,7 @@ impl MarkerApproach {
             speed_mps: self.from_mps + change * w,
             accel_mps2: change * slope / self.seconds,
         };
-        (reference, self.way_m - run_m)
+        (reference, self.distance_m - run_m)
     }
 }
 
@@ -81,17 +81,17 @@ fn share(x: f64) -> (f64, f64, f64) {
 
 /// From PSM4 to the stop point by eq. (3).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LastMetres {
+pub struct FinalStop {
     setpoint: Setpoint,
-    rates: LastRates,
+    rates: FinalStopLimits,
     creeping: bool,
 }
 
-/// Way to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
+/// Distance to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
 const HOLD_M: f64 = 0.1;
 /// Bounds of the last metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LastRates {
+pub struct FinalStopLimits {
     /// Jerk at which the rate changes, m/s³.
     pub jerk_mps3: f64,
     /// Rate that is never asked to be exceeded, m/s².
@@ -102,9 +102,9 @@ pub struct LastRates {
     pub creep: (f64, f64),
 }
 
-impl LastMetres {
+impl FinalStop {
     /// From a setpoint.
-    pub fn new(from: Setpoint, rates: LastRates) -> Self {
+    pub fn new(from: Setpoint, rates: FinalStopLimits) -> Self {
         Self {
             setpoint: from,
             rates,
@@ -112,7 +112,7 @@ impl LastMetres {
         }
     }
 
-    /// Way before PSM4 at which to begin, m, so that building up the rate is half done there.
+    /// Distance before PSM4 at which to begin, m, so that building up the rate is half done there.
     pub fn begins_before_m(speed_mps: f64, from_m: f64, jerk_mps3: f64) -> f64 {
         let rate = speed_mps * speed_mps / (2.0 * from_m);
         speed_mps * rate / jerk_mps3 / 2.0
@@ -149,24 +149,24 @@ impl LastMetres {
 mod tests {
     use super::*;
 
-    /// S0's own numbers: 11.1 → 1.5 m/s in 105 m takes 18.04 s, peak deceleration 3.07 km/h/s, and way is
+    /// S0's own numbers: 11.1 → 1.5 m/s in 105 m takes 18.04 s, peak deceleration 3.07 km/h/s, and distance is
     /// the integral of speed.
     #[test]
     fn the_printed_approach_reaches_psm4_at_its_speed() {
         let mut approach = MarkerApproach::new(11.1, 1.5, 105.0);
         assert!((approach.seconds - 18.04).abs() < 0.01);
         let dt = 0.001;
-        let (mut way, mut peak, mut last) = (105.0, 0.0f64, 11.1);
+        let (mut distance, mut peak, mut last) = (105.0, 0.0f64, 11.1);
         for _ in 0..18_041 {
             let (reference, left) = approach.step(dt);
-            way -= (reference.speed_mps + last) / 2.0 * dt;
+            distance -= (reference.speed_mps + last) / 2.0 * dt;
             last = reference.speed_mps;
             peak = peak.max(-reference.accel_mps2 * 3.6);
-            assert!((left - way).abs() < 1e-3);
+            assert!((left - distance).abs() < 1e-3);
         }
         assert!(
-            (last - 1.5).abs() < 1e-3 && way.abs() < 0.01,
-            "{last} {way}"
+            (last - 1.5).abs() < 1e-3 && distance.abs() < 0.01,
+            "{last} {distance}"
         );
         assert!((peak - 3.07).abs() < 0.01, "{peak}");
     }
@@ -188,29 +188,29 @@ mod tests {
     #[test]
     fn the_last_metres_end_at_the_stop_point() {
         for correction in [0.0, -0.1, 0.1] {
-            let begins = 3.5 + LastMetres::begins_before_m(1.5, 3.5, 0.8);
+            let begins = 3.5 + FinalStop::begins_before_m(1.5, 3.5, 0.8);
             let from = Setpoint {
                 speed_mps: 1.5,
                 accel_mps2: 0.0,
             };
-            let rates = LastRates {
+            let rates = FinalStopLimits {
                 jerk_mps3: 0.8,
                 most_mps2: 3.5 / 3.6,
                 rest_mps2: 0.25,
                 creep: (0.25, 0.5),
             };
-            let mut last = LastMetres::new(from, rates);
-            let (mut way, mut peak) = (begins, 0.0f64);
+            let mut last = FinalStop::new(from, rates);
+            let (mut distance, mut peak) = (begins, 0.0f64);
             for cycle in 0..400 {
                 let before = from.speed_mps.min(last.setpoint.speed_mps);
-                let setpoint = last.step(0.05, way);
-                way -= (before + setpoint.speed_mps) / 2.0 * 0.05;
+                let setpoint = last.step(0.05, distance);
+                distance -= (before + setpoint.speed_mps) / 2.0 * 0.05;
                 peak = peak.max(-setpoint.accel_mps2);
                 if cycle == 20 {
-                    way += correction;
+                    distance += correction;
                 }
             }
-            assert!(way.abs() < 0.01, "{correction}: {way}");
+            assert!(distance.abs() < 0.01, "{correction}: {distance}");
             assert!((peak - 0.3214).abs() < 0.03, "{correction}: {peak}");
         }
     }

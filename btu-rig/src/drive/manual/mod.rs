@@ -6,7 +6,7 @@
 //! * `row`, `recording`: what is recorded each cycle;
 //! * `settle`, `figures`, `outcome`: what it came to.
 //!
-//! Terms: a *step* waits for its condition and then does its actions; a *deed* is a step done.
+//! Terms: a *step* waits for its condition and then performs its actions; [`Done`] is a step performed.
 
 mod action;
 mod figures;

@@ -19,7 +19,7 @@ const DEMANDS: [[Signal; 3]; PAIRS] = [
     [Signal::Motor4, Signal::AirTrailer4, Signal::AirMotor4],
 ];
 
-/// Rows, deeds and logs so far.
+/// Rows, steps done and logs so far.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
     /// When the sequence began: rows are kept from here on.

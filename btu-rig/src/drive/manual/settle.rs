@@ -1,10 +1,10 @@
-//! How the brake follows its demand: the transient after each deed, and the deviation outside of it.
+//! How the brake follows its demand: the transient after each step, and the deviation outside of it.
 
 use super::{Done, Row};
 
 /// Deviation of the brake from its demand that counts as none [2 %: required of blending].
 pub const WITHIN: f64 = 0.02;
-/// A deed that disturbs the brake does so within this time, s.
+/// A step that disturbs the brake does so within this time, s.
 const DISTURBS_WITHIN_S: f64 = 1.0;
 /// Undisturbed for so long, the transient is over, s.
 const QUIET_S: f64 = 0.5;
@@ -13,7 +13,7 @@ pub const TRANSIENT_S: f64 = 1.0;
 /// Change of the demand in a cycle that counts as one, share of the demand.
 const MOVES: f64 = 1e-4;
 
-/// What a deed did to the brake.
+/// How a step disturbed the brake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
     /// Until the brake was within 2 % of its demand again, s; 0 = it never left.
@@ -22,7 +22,7 @@ pub struct Settled {
     pub worst: f64,
 }
 
-/// How the brake settled after a deed at `t_s`, before the one at `until_s`; none when no brake was
+/// How the brake settled after a step at `t_s`, before the one at `until_s`; none when no brake was
 /// demanded in that time, or it never settled.
 pub fn settled(rows: &[Row], t_s: f64, until_s: f64) -> Option<Settled> {
     let first = rows.partition_point(|row| row.t_s <= t_s);
@@ -46,8 +46,8 @@ pub fn settled(rows: &[Row], t_s: f64, until_s: f64) -> Option<Settled> {
         let quiet_s = row.t_s + QUIET_S;
         let mut next = rows[at..].iter().take_while(|later| later.t_s <= quiet_s);
         if quiet_s <= end_s && next.all(|later| off(later).abs() <= WITHIN) {
-            let way = rows[begins..at].iter().map(off);
-            let worst = way.fold(
+            let transient = rows[begins..at].iter().map(off);
+            let worst = transient.fold(
                 0.0,
                 |worst: f64, off| if off.abs() > worst.abs() { off } else { worst },
             );
@@ -61,16 +61,16 @@ pub fn settled(rows: &[Row], t_s: f64, until_s: f64) -> Option<Settled> {
 }
 
 /// Greatest deviation of the brake from its demand outside transients, and when: more than a second
-/// after the last deed and after the demand last moved, at speeds above `above_kmh`. None without such
+/// after the last step and after the demand last moved, at speeds above `above_kmh`. None without such
 /// a time.
 pub fn steady_deviation(rows: &[Row], done: &[Done], above_kmh: f64) -> Option<(f64, f64)> {
     let mut moved_s = f64::NEG_INFINITY;
-    let mut deeds = done.iter().map(|done| done.t_s).peekable();
+    let mut steps = done.iter().map(|done| done.t_s).peekable();
     let mut worst: Option<(f64, f64)> = None;
     let mut before_n = 0.0;
     for row in rows {
-        while let Some(deed_s) = deeds.next_if(|deed_s| *deed_s <= row.t_s) {
-            moved_s = deed_s;
+        while let Some(step_s) = steps.next_if(|step_s| *step_s <= row.t_s) {
+            moved_s = step_s;
         }
         if (row.brake_demand_n - before_n).abs() > MOVES * row.brake_demand_n {
             moved_s = row.t_s;
@@ -129,22 +129,22 @@ mod tests {
         assert_eq!(steady_deviation(&rows, &[], 0.0), None);
     }
 
-    /// The first second belongs to the demand's own appearance, the one from 1.9 s to the deed.
+    /// The first second belongs to the demand's own appearance, the one from 1.9 s to the step.
     #[test]
     fn deviation_is_told_outside_of_transients() {
-        let deed = Done {
+        let step = Done {
             line: 1,
             t_s: 1.9,
             x_m: 0.0,
             speed_kmh: 40.0,
             actions: Vec::new(),
         };
-        let (off, at_s) = steady_deviation(&braking(), &[deed], 0.0).unwrap();
+        let (off, at_s) = steady_deviation(&braking(), &[step], 0.0).unwrap();
         assert!((off + 0.05).abs() < 1e-9 && (at_s - 8.0).abs() < 0.051);
         let (off, _) = steady_deviation(&braking(), &[], 0.0).unwrap();
         assert!(
             (off + 0.3).abs() < 1e-9,
-            "without the deed it is a deviation: {off}"
+            "without the step it is a deviation: {off}"
         );
     }
 }

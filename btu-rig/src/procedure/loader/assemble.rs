@@ -16,7 +16,7 @@ use crate::procedure::plan::{
 const LONGEST: Duration = Duration::from_ms(24 * 3600 * 1000);
 
 /// A measurement that later steps may refer to.
-struct Known {
+struct NamedMeasurement {
     step: String,
     name: String,
     unit: &'static str,
@@ -37,7 +37,7 @@ pub(super) fn assemble(
     let mut errors = Vec::new();
     let mut head: Option<ProcedureDraft> = None;
     let mut steps: Vec<Step> = Vec::new();
-    let mut known: Vec<Known> = Vec::new();
+    let mut known: Vec<NamedMeasurement> = Vec::new();
     for (declaration, places) in declared {
         // The place in this file; a step may be declared by a function of a library.
         let place = places
@@ -104,7 +104,7 @@ fn sha256(text: &str) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn step(draft: StepDraft, line: u32, known: &mut Vec<Known>) -> Result<Step, String> {
+fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Result<Step, String> {
     let mut step = Step {
         name: draft.name,
         line,
@@ -125,7 +125,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<Known>) -> Result<Step, Str
     resolve_step(&mut step, known)?;
     for measure in &mut step.measures {
         measure.slot = known.len();
-        known.push(Known {
+        known.push(NamedMeasurement {
             step: step.name.clone(),
             name: measure.name.clone(),
             unit: measure.unit(),
@@ -134,7 +134,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<Known>) -> Result<Step, Str
     Ok(step)
 }
 
-fn resolve_step(step: &mut Step, known: &[Known]) -> Result<(), String> {
+fn resolve_step(step: &mut Step, known: &[NamedMeasurement]) -> Result<(), String> {
     resolve_actions(&mut step.actions, known)?;
     for expectation in &mut step.expectations {
         match expectation {
@@ -153,7 +153,7 @@ fn resolve_step(step: &mut Step, known: &[Known]) -> Result<(), String> {
     }
 }
 
-fn resolve_measure(measure: &mut Measure, known: &[Known]) -> Result<(), String> {
+fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<(), String> {
     let unit = measure.unit();
     for limit in [&mut measure.low, &mut measure.high].into_iter().flatten() {
         resolve(limit, unit, known)?;
@@ -170,7 +170,7 @@ fn resolve_measure(measure: &mut Measure, known: &[Known]) -> Result<(), String>
     }
 }
 
-fn resolve_actions(actions: &mut [Action], known: &[Known]) -> Result<(), String> {
+fn resolve_actions(actions: &mut [Action], known: &[NamedMeasurement]) -> Result<(), String> {
     for action in actions {
         if let Action::Until { condition, .. } = action {
             resolve_condition(condition, known)?;
@@ -179,18 +179,19 @@ fn resolve_actions(actions: &mut [Action], known: &[Known]) -> Result<(), String
     Ok(())
 }
 
-fn resolve_condition(condition: &mut Condition, known: &[Known]) -> Result<(), String> {
+fn resolve_condition(condition: &mut Condition, known: &[NamedMeasurement]) -> Result<(), String> {
     condition.try_for_each_operand(&mut |signal, operand| {
         resolve(operand, signal.definition().unit, known)
     })
 }
 
 /// Finds the latest earlier measurement an operand names, as `name` or `step/name`.
-fn resolve(operand: &mut Operand, unit: &str, known: &[Known]) -> Result<(), String> {
+fn resolve(operand: &mut Operand, unit: &str, known: &[NamedMeasurement]) -> Result<(), String> {
     let Operand::Measured { slot, name, .. } = operand else {
         return Ok(());
     };
-    let is_meant = |k: &Known| k.name == *name || format!("{}/{}", k.step, k.name) == *name;
+    let is_meant =
+        |k: &NamedMeasurement| k.name == *name || format!("{}/{}", k.step, k.name) == *name;
     let Some(at) = known.iter().rposition(is_meant) else {
         let hint = hint(name, known.iter().map(|k| k.name.as_str()));
         return Err(format!("no earlier step measures \"{name}\"{hint}"));

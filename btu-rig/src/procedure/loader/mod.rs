@@ -2,7 +2,7 @@
 //!
 //! Layers, bottom up:
 //! * `quantity`, `item`: the values of the script language, free of Starlark;
-//! * `verb`, `want`, `args`, `verbs`: its words, each a table entry with typed parameters;
+//! * `verb`, `param_type`, `args`, `verbs`: its words, each a table entry with typed parameters;
 //! * `context`, `globals`: unit configuration, line, signals: the names a script knows;
 //! * `handle`: those values inside Starlark;
 //! * `nesting`, `check`: find errors without running a script, also where it would never run;
@@ -19,11 +19,11 @@ mod globals;
 mod handle;
 mod item;
 mod nesting;
+mod param_type;
 mod quantity;
 mod suggest;
 mod verb;
 mod verbs;
-mod want;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -77,9 +77,9 @@ pub struct Loaded {
     pub printed: Vec<String>,
 }
 
-/// What is told while scripts are loaded.
+/// Progress while scripts are loaded.
 #[derive(Debug)]
-pub enum Told<'a> {
+pub enum LoadEvent<'a> {
     /// The script of this path is being evaluated from now on.
     Evaluates(&'a str),
     /// This procedure was loaded.
@@ -96,8 +96,8 @@ pub enum Told<'a> {
 /// characters (`[0] * 10**9`) is not. Scripts that may be hostile are loaded in a process with limits.
 pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData) -> Loaded {
     let mut procedures = Vec::new();
-    let loaded = load_telling(scripts, unit, line, train, &mut |told| {
-        if let Told::Loaded(procedure) = told {
+    let loaded = load_each(scripts, unit, line, train, &mut |event| {
+        if let LoadEvent::Loaded(procedure) = event {
             procedures.push(Arc::new(*procedure));
         }
     });
@@ -107,16 +107,16 @@ pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData
     }
 }
 
-/// The same as [`load`], with each procedure told as soon as it is there instead of returned: many scripts
+/// The same as [`load`], with each procedure passed on as soon as it is loaded: many scripts
 /// take no more memory than one.
-pub fn load_telling(
+pub fn load_each(
     scripts: &Scripts,
     unit: &UnitConfig,
     line: &Line,
     train: &TrainData,
-    tell: &mut dyn FnMut(Told<'_>),
+    on_event: &mut dyn FnMut(LoadEvent<'_>),
 ) -> Loaded {
-    let mut loaded = load_for(scripts, unit, line, train, tell);
+    let mut loaded = load_for(scripts, unit, line, train, on_event);
     if matches!(train, TrainData::Ideal(_)) && !loaded.errors.is_empty() {
         let mut readable = Vec::new();
         let with_cars = load_for(
@@ -124,9 +124,9 @@ pub fn load_telling(
             unit,
             line,
             &TrainData::line6(),
-            &mut |told| match told {
-                Told::Evaluates(_) => tell(told),
-                Told::Loaded(procedure) => readable.push((procedure.path, procedure.id)),
+            &mut |event| match event {
+                LoadEvent::Evaluates(_) => on_event(event),
+                LoadEvent::Loaded(procedure) => readable.push((procedure.path, procedure.id)),
             },
         );
         let wrong: BTreeSet<_> = with_cars.errors.iter().map(|e| e.file.as_str()).collect();
@@ -148,14 +148,14 @@ fn load_for(
     unit: &UnitConfig,
     line: &Line,
     train: &TrainData,
-    tell: &mut dyn FnMut(Told<'_>),
+    on_event: &mut dyn FnMut(LoadEvent<'_>),
 ) -> Loaded {
-    let tell = RefCell::new(tell);
+    let on_event = RefCell::new(on_event);
     let context = Context::new(unit.clone(), line.clone(), train.clone());
     let predeclared = globals::predeclared(&context);
     let globals = globals::build(&predeclared);
     let names = globals::names(&globals);
-    let evaluates = |path: &str| tell.borrow_mut()(Told::Evaluates(path));
+    let evaluates = |path: &str| on_event.borrow_mut()(LoadEvent::Evaluates(path));
     let evaluation = Evaluation::new(
         scripts,
         &context,
@@ -175,7 +175,7 @@ fn load_for(
             .procedure(path, text)
             .and_then(|declared| assemble::assemble(path, text, declared));
         match procedure {
-            Ok(procedure) => tell.borrow_mut()(Told::Loaded(Box::new(procedure))),
+            Ok(procedure) => on_event.borrow_mut()(LoadEvent::Loaded(Box::new(procedure))),
             Err(errors) => loaded.errors.extend(errors.into_iter().take(MOST_ERRORS)),
         }
     }

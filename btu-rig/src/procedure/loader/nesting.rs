@@ -13,7 +13,7 @@ const NESTING_WORDS: [&str; 8] = ["not", "if", "else", "lambda", "and", "or", "i
 
 /// Line and column, from 1, where `text` becomes too deep.
 pub(super) fn too_deep(text: &str) -> Option<(u32, u32)> {
-    let mut meter = Meter::default();
+    let mut meter = NestingMeter::default();
     let mut chars = text.char_indices().peekable();
     let (mut line, mut line_start) = (1, 0);
     while let Some((at, c)) = chars.next() {
@@ -76,7 +76,7 @@ fn string_length(text: &str, quote: char) -> usize {
 }
 
 #[derive(Default)]
-struct Meter {
+struct NestingMeter {
     indent: usize,
     /// Weight of the part before each open bracket.
     outer: Vec<usize>,
@@ -85,7 +85,7 @@ struct Meter {
     elifs: usize,
 }
 
-impl Meter {
+impl NestingMeter {
     fn depth(&self) -> usize {
         self.indent + self.outer.len() + self.outer_sum + self.here
     }

@@ -6,20 +6,20 @@
 use super::args::Args;
 use super::context::Context;
 use super::item::Item;
+use super::param_type::ParamType;
 use super::suggest::hint;
 use super::verbs;
-use super::want::Want;
 
 /// One parameter of a verb.
 #[derive(Debug)]
 pub(super) struct Param {
     pub name: &'static str,
-    pub want: Want,
+    pub want: ParamType,
     pub required: bool,
 }
 
 /// A parameter that must be given.
-pub(super) const fn needs(name: &'static str, want: Want) -> Param {
+pub(super) const fn needs(name: &'static str, want: ParamType) -> Param {
     Param {
         name,
         want,
@@ -28,7 +28,7 @@ pub(super) const fn needs(name: &'static str, want: Want) -> Param {
 }
 
 /// A parameter that may be given.
-pub(super) const fn takes(name: &'static str, want: Want) -> Param {
+pub(super) const fn takes(name: &'static str, want: ParamType) -> Param {
     Param {
         name,
         want,
@@ -98,7 +98,7 @@ impl Verb {
         matches!(
             self.params,
             [Param {
-                want: Want::Conditions,
+                want: ParamType::Conditions,
                 ..
             }]
         )

@@ -1,4 +1,4 @@
-//! What ends a run early: a lost link, a tester that was held up, and the operator's stop.
+//! What ends a run early: a lost link, a stalled tester, and the operator's stop.
 
 use protocol::Instant;
 use protocol::signal::Sample;

@@ -21,7 +21,7 @@ use protocol::{Duration, Instant};
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
 use pause::Pause;
 pub use schedule::{PromptPolicy, RunOptions};
-use schedule::{Turn, schedule};
+use schedule::{ScheduledStep, schedule};
 
 use super::action_run::{ActionRun, Operator, Progress, Scan};
 use super::describe::meanings;
@@ -65,7 +65,7 @@ enum Stop {
 pub struct Runner {
     procedure: Arc<Procedure>,
     options: RunOptions,
-    schedule: Vec<Turn>,
+    schedule: Vec<ScheduledStep>,
     phase: Phase,
     captured: Vec<Option<f64>>,
     provoked: EventSet,
@@ -76,7 +76,7 @@ pub struct Runner {
     answer: Option<bool>,
     link_lost: bool,
     /// Why nothing since the last scan can be judged.
-    held_up: Option<String>,
+    stalled: Option<String>,
     /// How far what is heard can be trusted, as of the present scan.
     evidence: Evidence,
     /// Entries of the unit's log not kept before this procedure.
@@ -109,7 +109,7 @@ impl Runner {
             stop: Stop::No,
             answer: None,
             link_lost: false,
-            held_up: None,
+            stalled: None,
             evidence: Evidence::default(),
             not_kept_before: None,
             self_test: SelfTest::empty(),
@@ -137,10 +137,10 @@ impl Runner {
         };
     }
 
-    /// The tester itself did not keep time since the last scan: what the unit did meanwhile says nothing
-    /// about the unit. The present step is an error with this reason, the others are not run.
-    pub fn held_up(&mut self, reason: String) {
-        self.held_up = Some(reason);
+    /// The tester's computer did not keep up since the last scan, so nothing the unit did meanwhile can be
+    /// judged. The present step becomes an error with this reason; the remaining steps are not run.
+    pub fn bench_stalled(&mut self, reason: String) {
+        self.stalled = Some(reason);
     }
 
     /// A fault was found while the unit was brought up, before any step.
@@ -200,7 +200,7 @@ impl Runner {
         self.begin(now);
         self.take_evidence(driver.evidence());
         // First: what comes in with this scan is the hold-up's doing.
-        if let Some(reason) = self.held_up.take() {
+        if let Some(reason) = self.stalled.take() {
             self.break_off(now, sample, reason);
         }
         self.take_unit_events(events);

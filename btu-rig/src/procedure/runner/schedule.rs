@@ -42,13 +42,13 @@ impl Default for RunOptions {
 
 /// One entry of the schedule.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turn {
+pub(super) struct ScheduledStep {
     pub index: usize,
     number: u32,
     of: u32,
 }
 
-impl Turn {
+impl ScheduledStep {
     pub(super) fn name(self, step: &Step) -> String {
         if self.of == 1 {
             step.name.clone()
@@ -59,13 +59,17 @@ impl Turn {
 }
 
 /// The chosen steps, each with its own repetitions, in one of the procedure's, counted from 0.
-pub(super) fn schedule(procedure: &Procedure, options: &RunOptions, round: u32) -> Vec<Turn> {
+pub(super) fn schedule(
+    procedure: &Procedure,
+    options: &RunOptions,
+    round: u32,
+) -> Vec<ScheduledStep> {
     let all: Vec<usize> = (0..procedure.steps.len()).collect();
     let chosen = options.chosen.as_ref().unwrap_or(&all);
     let mut turns = Vec::new();
     for &index in chosen.iter().filter(|&&i| i < procedure.steps.len()) {
         let repeat = procedure.steps[index].repeat;
-        turns.extend((1..=repeat).map(|k| Turn {
+        turns.extend((1..=repeat).map(|k| ScheduledStep {
             index,
             number: round * repeat + k,
             of: options.repeat * repeat,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
-use super::schedule::Turn;
+use super::schedule::ScheduledStep;
 use super::{Phase, Runner};
 use crate::procedure::Driver;
 use crate::procedure::action_run::{ActionRun, Scan};
@@ -62,7 +62,13 @@ impl Runner {
     }
 
     /// Begins the next step; `false` if its condition lets it be skipped or cannot be told.
-    fn start_step(&mut self, step: &Step, turn: Turn, now: Instant, sample: &Sample) -> bool {
+    fn start_step(
+        &mut self,
+        step: &Step,
+        turn: ScheduledStep,
+        now: Instant,
+        sample: &Sample,
+    ) -> bool {
         let truth = step
             .when
             .as_ref()
@@ -73,8 +79,13 @@ impl Runner {
                 self.pass_over(turn, now, Verdict::Skipped, "its condition does not hold");
                 return false;
             }
-            Truth::NoData(lack) => {
-                self.pass_over(turn, now, Verdict::Error, &format!("its condition: {lack}"));
+            Truth::NoData(missing_data) => {
+                self.pass_over(
+                    turn,
+                    now,
+                    Verdict::Error,
+                    &format!("its condition: {missing_data}"),
+                );
                 self.stop_unless_passed(turn, Verdict::Error, now);
                 return false;
             }
@@ -131,7 +142,7 @@ impl Runner {
     }
 
     /// Skips the rest after a step that did not pass, if it is to be so.
-    fn stop_unless_passed(&mut self, turn: Turn, verdict: Verdict, now: Instant) {
+    fn stop_unless_passed(&mut self, turn: ScheduledStep, verdict: Verdict, now: Instant) {
         let step = &self.procedure.steps[turn.index];
         let stops = self.options.stop_on_fail || step.on_fail == OnFail::Stop;
         if stops && verdict != Verdict::Passed {
@@ -154,7 +165,7 @@ impl Runner {
     }
 
     /// Reports a step that is not run.
-    fn pass_over(&mut self, turn: Turn, now: Instant, verdict: Verdict, reason: &str) {
+    fn pass_over(&mut self, turn: ScheduledStep, now: Instant, verdict: Verdict, reason: &str) {
         let step = &self.procedure.steps[turn.index];
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,

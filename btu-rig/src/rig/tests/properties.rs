@@ -126,7 +126,7 @@ proptest! {
 
     /// Two good channels count the same way, to a pulse, whatever the wheels do.
     #[test]
-    fn counts_follow_the_way(
+    fn counts_follow_the_distance(
         steps in prop::collection::vec((motion(), 0u64..300), 1..20),
     ) {
         let pulse_m = config().metres_per_pulse();
@@ -143,9 +143,9 @@ proptest! {
                     last[i] = tacho.count();
                 }
             }
-            let way = bench.rig().wheel.motion().way_m / pulse_m;
+            let distance = bench.rig().wheel.motion().distance_m / pulse_m;
             for counted in pulses {
-                prop_assert!((counted as f64 - way).abs() <= 1.0, "{counted} of {way}");
+                prop_assert!((counted as f64 - distance).abs() <= 1.0, "{counted} of {distance}");
             }
         }
     }

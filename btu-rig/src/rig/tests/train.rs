@@ -55,7 +55,7 @@ fn pulses(bench: &Bench<FakeUnit>) -> f64 {
 }
 
 #[test]
-fn truth_is_the_trains_and_the_way_to_its_stop() {
+fn true_values_are_the_trains_and_the_distance_to_its_stop() {
     let mut bench = at_departure(&section_61(), Conditions::default());
     bench.run_ms(100);
     assert_eq!(bench.rig().truth().to_stop_m, Some(850.03));
@@ -83,7 +83,7 @@ fn truth_is_the_trains_and_the_way_to_its_stop() {
     assert!(value(&bench, Signal::TrainJerk).abs() < 0.1, "steady");
 }
 
-/// A wheel 2 % larger makes 2 % fewer pulses for the way; markers pulse where they really lie.
+/// A wheel 2 % larger makes 2 % fewer pulses for the distance; markers pulse where they really lie.
 #[test]
 fn wheels_and_markers_are_what_they_are_not_what_is_configured() {
     let conditions = Conditions {
@@ -101,11 +101,14 @@ fn wheels_and_markers_are_what_they_are_not_what_is_configured() {
     let since_s = f64::from(rig.markers.age_us()) / 1e6;
     let marker_m = rig.truth().position_m - since_s * rig.truth().speed_mps;
     assert!((marker_m - (304.03 + 1.5)).abs() < 2e-3, "{marker_m}");
-    let way_m = pulses(&bench) * config().metres_per_pulse() * 1.02;
-    assert!((way_m - rig.truth().position_m).abs() < 0.06, "{way_m}");
+    let distance_m = pulses(&bench) * config().metres_per_pulse() * 1.02;
+    assert!(
+        (distance_m - rig.truth().position_m).abs() < 0.06,
+        "{distance_m}"
+    );
 }
 
-/// Braking on leaves the tachometers lose way the train rolls, and TrainPosition does not.
+/// Braking on leaves the tachometers lose distance the train rolls, and TrainPosition does not.
 #[test]
 fn a_slide_shows_in_the_tachometers_only() {
     let leaves = Conditions {
@@ -180,10 +183,10 @@ fn energy_is_kept_over_a_hill() {
             let before_m = bench.rig().truth().position_m;
             bench.run_ms(10);
             let state = bench.rig().train_state;
-            let way_m = bench.rig().truth().position_m - before_m;
+            let distance_m = bench.rig().truth().position_m - before_m;
             let brake_n = state.electric_brake_n + state.air_brake_n;
-            work_j += (state.traction_n - brake_n - state.resistance_n) * way_m;
-            traction_j += state.traction_n * way_m;
+            work_j += (state.traction_n - brake_n - state.resistance_n) * distance_m;
+            traction_j += state.traction_n * distance_m;
         }
     }
     let end = bench.rig().truth();
@@ -196,7 +199,7 @@ fn energy_is_kept_over_a_hill() {
 }
 
 #[test]
-fn the_antenna_follows_the_codes_along_the_way() {
+fn the_antenna_follows_the_codes_along_the_section() {
     let mut line = section_61();
     let code = |at_m, code: &str| CodeFrom {
         at_m,

@@ -12,7 +12,7 @@ use crate::stimulus::{Stimulus, WaysideCondition};
 
 /// What a bad line does to bytes, one in a hundred.
 #[derive(Clone, Copy, Debug)]
-enum Harm {
+enum LineDisturbance {
     Flips,
     Doubles,
     /// Adds a hundred random bytes after each scan.
@@ -24,7 +24,7 @@ enum Harm {
 /// A line that harms what passes, one way or both.
 struct BadLine {
     unit: FakeUnit,
-    harm: Harm,
+    harm: LineDisturbance,
     to_unit: bool,
     from_unit: bool,
     random: Random,
@@ -37,15 +37,15 @@ impl BadLine {
         for &byte in bytes {
             let hit = random.unit() < 0.01;
             match self.harm {
-                Harm::Flips if hit => out.push(byte ^ (1 << random.below(8))),
-                Harm::Doubles if hit => out.extend([byte, byte]),
+                LineDisturbance::Flips if hit => out.push(byte ^ (1 << random.below(8))),
+                LineDisturbance::Doubles if hit => out.extend([byte, byte]),
                 _ => out.push(byte),
             }
         }
         match self.harm {
-            Harm::Floods => out.extend((0..100).map(|_| random.below(256) as u8)),
-            Harm::Repeats => out.extend_from_slice(bytes),
-            Harm::Flips | Harm::Doubles => {}
+            LineDisturbance::Floods => out.extend((0..100).map(|_| random.below(256) as u8)),
+            LineDisturbance::Repeats => out.extend_from_slice(bytes),
+            LineDisturbance::Flips | LineDisturbance::Doubles => {}
         }
         out
     }
@@ -72,7 +72,7 @@ impl UnitLink for BadLine {
     }
 }
 
-fn on_bad_line(harm: Harm, to_unit: bool, from_unit: bool) -> Bench<BadLine> {
+fn on_bad_line(harm: LineDisturbance, to_unit: bool, from_unit: bool) -> Bench<BadLine> {
     let line = BadLine {
         unit: FakeUnit::default(),
         harm,
@@ -84,8 +84,13 @@ fn on_bad_line(harm: Harm, to_unit: bool, from_unit: bool) -> Bench<BadLine> {
 }
 
 #[test]
-fn a_bad_line_is_told_as_the_lines_whichever_way_it_harms() {
-    for harm in [Harm::Flips, Harm::Doubles, Harm::Floods, Harm::Repeats] {
+fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
+    for harm in [
+        LineDisturbance::Flips,
+        LineDisturbance::Doubles,
+        LineDisturbance::Floods,
+        LineDisturbance::Repeats,
+    ] {
         for (to_unit, from_unit) in [(true, false), (false, true), (true, true)] {
             let mut bench = on_bad_line(harm, to_unit, from_unit);
             for _ in 0..1_500 {

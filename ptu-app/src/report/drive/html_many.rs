@@ -1,6 +1,6 @@
 //! A Monte Carlo as part of a page: percentiles, how stop errors lie, and what they go with.
 
-use btu_rig::drive::Drawn;
+use btu_rig::drive::ScatterDraw;
 use maud::{Markup, html};
 
 use super::figures::{FIGURES, conditions, off, stop, title};
@@ -96,7 +96,7 @@ fn histogram(many: &MonteCarlo) -> Plot {
 }
 
 /// A number of what is drawn.
-type Of = fn(&Drawn) -> f64;
+type Of = fn(&ScatterDraw) -> f64;
 
 /// What is drawn, against which stop errors are shown.
 const DRAWN: [(&str, Of); 7] = [
@@ -156,7 +156,7 @@ fn worst(many: &MonteCarlo) -> Markup {
     }
 }
 
-fn day(many: &MonteCarlo, drawn: &Drawn) -> String {
+fn day(many: &MonteCarlo, drawn: &ScatterDraw) -> String {
     let mut case = many.case.clone();
     (case.plan.load_kg, case.plan.conditions) = (drawn.load_kg, drawn.conditions);
     let facts = conditions(&case).into_iter().skip(1);

@@ -19,15 +19,15 @@ mod inference;
 
 use protocol::config::AtoConfig;
 
-use super::doubt::Doubt;
-use super::{Demand, Situation, SpeedController};
-use crate::ato::profile::Guide;
+use super::plausibility::PlausibilityCheck;
+use super::{ControllerInput, Demand, SpeedController};
+use crate::ato::profile::ReferenceGenerator;
 
 /// The controller.
 #[derive(Debug)]
 pub struct Fuzzy {
-    guide: Guide,
-    doubt: Doubt,
+    generator: ReferenceGenerator,
+    plausibility: PlausibilityCheck,
     feed_forward: bool,
     big_error_mps: f64,
     change_mps2: f64,
@@ -40,8 +40,8 @@ impl Fuzzy {
     pub fn new(config: &AtoConfig) -> Self {
         let fuzzy = &config.fuzzy;
         Self {
-            guide: Guide::new(config),
-            doubt: Doubt::new(config),
+            generator: ReferenceGenerator::new(config),
+            plausibility: PlausibilityCheck::new(config),
             feed_forward: config.profile.feed_forward,
             big_error_mps: fuzzy.big_error_mps,
             change_mps2: fuzzy.change_mps2,
@@ -52,26 +52,26 @@ impl Fuzzy {
 }
 
 impl SpeedController for Fuzzy {
-    fn step(&mut self, situation: &Situation) -> Demand {
-        if let Some(brake) = self.doubt.brake(situation) {
+    fn step(&mut self, input: &ControllerInput) -> Demand {
+        if let Some(brake) = self.plausibility.brake(input) {
             return brake;
         }
-        let guidance = self.guide.step(situation.into());
-        let error = guidance.setpoint.speed_mps - situation.speed_mps;
-        let change = guidance.setpoint.accel_mps2 - situation.accel_mps2;
+        let reference = self.generator.step(input.into());
+        let error = reference.setpoint.speed_mps - input.speed_mps;
+        let change = reference.setpoint.accel_mps2 - input.accel_mps2;
         let share = inference::infer(error / self.big_error_mps, change / self.change_mps2);
-        let mut force_n = share * self.force_n * situation.mass_kg / self.mass_kg;
-        if self.feed_forward || guidance.stopping {
-            force_n += situation.mass_kg * guidance.setpoint.accel_mps2;
+        let mut force_n = share * self.force_n * input.mass_kg / self.mass_kg;
+        if self.feed_forward || reference.stopping {
+            force_n += input.mass_kg * reference.setpoint.accel_mps2;
         }
-        force_n = force_n.min(guidance.most_mps2 * situation.mass_kg);
+        force_n = force_n.min(reference.most_mps2 * input.mass_kg);
         Demand {
-            target_mps: guidance.setpoint.speed_mps,
+            target_mps: reference.setpoint.speed_mps,
             force_n,
         }
     }
 
     fn reset(&mut self) {
-        self.guide.reset();
+        self.generator.reset();
     }
 }

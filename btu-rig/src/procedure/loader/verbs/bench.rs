@@ -5,10 +5,10 @@ use protocol::Speed;
 use super::{at_once, with_wait};
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::quantity::Dimension::{Acceleration, Distance, Frequency, Level};
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::procedure::plan::Action;
 use crate::stimulus::{Stimulus, TachoCondition};
 
@@ -23,8 +23,8 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "antenna.code",
         params: &[
-            needs("code", Want::Code),
-            takes("level", Want::Amount(Level)),
+            needs("code", ParamType::Code),
+            takes("level", ParamType::Amount(Level)),
         ],
         make: |args| {
             let (carrier_hz, rate_hz, level_mv) = code_signal(args)?;
@@ -38,9 +38,9 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "antenna.raw",
         params: &[
-            takes("carrier", Want::Amount(Frequency)),
-            needs("rate", Want::Amount(Frequency)),
-            takes("level", Want::Amount(Level)),
+            takes("carrier", ParamType::Amount(Frequency)),
+            needs("rate", ParamType::Amount(Frequency)),
+            takes("level", ParamType::Amount(Level)),
         ],
         make: |args| {
             let (carrier_hz, rate_hz, level_mv) = raw_signal(args)?;
@@ -54,8 +54,8 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "antenna.unmodulated",
         params: &[
-            takes("carrier", Want::Amount(Frequency)),
-            takes("level", Want::Amount(Level)),
+            takes("carrier", ParamType::Amount(Frequency)),
+            takes("level", ParamType::Amount(Level)),
         ],
         make: |args| {
             at_once(Stimulus::Code {
@@ -68,8 +68,8 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "antenna.drift",
         params: &[
-            takes("rate_per_s", Want::Amount(Frequency)),
-            takes("level_per_s", Want::Amount(Level)),
+            takes("rate_per_s", ParamType::Amount(Frequency)),
+            takes("level_per_s", ParamType::Amount(Level)),
         ],
         make: |args| {
             at_once(Stimulus::CodeDrift {
@@ -80,7 +80,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "antenna.along",
-        params: &[needs("on", Want::Bool)],
+        params: &[needs("on", ParamType::Bool)],
         make: |args| {
             at_once(Stimulus::CodesAlong {
                 on: args.flag("on", true),
@@ -95,28 +95,28 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "tacho.speed",
         params: &[
-            needs("to", Want::Amount(Dimension::Speed)),
-            takes("accel", Want::Amount(Acceleration)),
-            takes("wait", Want::Bool),
+            needs("to", ParamType::Amount(Dimension::Speed)),
+            takes("accel", ParamType::Amount(Acceleration)),
+            takes("wait", ParamType::Bool),
         ],
         make: |args| motion(args, "accel", true),
     },
     Verb {
         name: "tacho.ramp",
         params: &[
-            needs("to", Want::Amount(Dimension::Speed)),
-            needs("rate", Want::Amount(Acceleration)),
-            takes("wait", Want::Bool),
+            needs("to", ParamType::Amount(Dimension::Speed)),
+            needs("rate", ParamType::Amount(Acceleration)),
+            takes("wait", ParamType::Bool),
         ],
         make: |args| motion(args, "rate", false),
     },
     Verb {
         name: "tacho.travel",
         params: &[
-            needs("distance", Want::Amount(Distance)),
-            needs("speed", Want::Amount(Dimension::Speed)),
-            takes("accel", Want::Amount(Acceleration)),
-            takes("wait", Want::Bool),
+            needs("distance", ParamType::Amount(Distance)),
+            needs("speed", ParamType::Amount(Dimension::Speed)),
+            takes("accel", ParamType::Amount(Acceleration)),
+            takes("wait", ParamType::Bool),
         ],
         make: |args| {
             args.positive("speed")?;
@@ -141,19 +141,19 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "tacho.channel",
         params: &[
-            needs("channel", Want::Int(1, 2)),
+            needs("channel", ParamType::Int(1, 2)),
             needs(
                 "condition",
-                Want::Choice(&["good", "dead", "noisy", "scaled"]),
+                ParamType::Choice(&["good", "dead", "noisy", "scaled"]),
             ),
-            takes("per_s", Want::Number),
-            takes("factor", Want::Number),
+            takes("per_s", ParamType::Number),
+            takes("factor", ParamType::Number),
         ],
         make: channel,
     },
     Verb {
         name: "train.drive",
-        params: &[needs("on", Want::Bool)],
+        params: &[needs("on", ParamType::Bool)],
         make: |args| {
             at_once(Stimulus::TrainDriven {
                 on: args.flag("on", true),
@@ -162,7 +162,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "train.adhesion",
-        params: &[takes("coefficient", Want::Number)],
+        params: &[takes("coefficient", ParamType::Number)],
         make: |args| {
             let coefficient = match args.get("coefficient") {
                 Some(_) => Some(args.number("coefficient")?),
@@ -173,7 +173,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "psm.pulse",
-        params: &[needs("marker", Want::Int(1, 4))],
+        params: &[needs("marker", ParamType::Int(1, 4))],
         make: |args| {
             at_once(Stimulus::Marker {
                 psm: marker(args, "marker")?,
@@ -182,7 +182,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "psm.missing",
-        params: &[needs("marker", Want::Int(1, 4))],
+        params: &[needs("marker", ParamType::Int(1, 4))],
         make: |args| {
             at_once(Stimulus::MarkerMoved {
                 psm: marker(args, "marker")?,
@@ -193,8 +193,8 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "psm.moved",
         params: &[
-            needs("marker", Want::Int(1, 4)),
-            needs("by", Want::Amount(Distance)),
+            needs("marker", ParamType::Int(1, 4)),
+            needs("by", ParamType::Amount(Distance)),
         ],
         make: |args| {
             at_once(Stimulus::MarkerMoved {
@@ -205,7 +205,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "psm.along",
-        params: &[takes("section", Want::Section)],
+        params: &[takes("section", ParamType::Section)],
         make: |args| {
             at_once(Stimulus::MarkersAlong {
                 section: args.section("section"),
@@ -214,7 +214,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "wait",
-        params: &[needs("time", Want::Amount(Dimension::Time))],
+        params: &[needs("time", ParamType::Amount(Dimension::Time))],
         make: |args| {
             let span = args.time_or("time", protocol::Duration::ZERO)?;
             Ok(Item::Actions(vec![Action::Wait(span)]))
@@ -223,8 +223,8 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "prompt",
         params: &[
-            needs("text", Want::Text),
-            takes("within", Want::Amount(Dimension::Time)),
+            needs("text", ParamType::Text),
+            takes("within", ParamType::Amount(Dimension::Time)),
         ],
         make: |args| {
             Ok(Item::Actions(vec![Action::Prompt {
@@ -235,7 +235,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "code",
-        params: &[needs("name", Want::Name)],
+        params: &[needs("name", ParamType::Name)],
         make: |args| args.context.code(args.text("name").unwrap_or_default()),
     },
 ];

@@ -6,9 +6,9 @@ use super::at_once;
 use crate::lever::Lever;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::stimulus::{Stimulus, TcmsCondition};
 
 macro_rules! plain {
@@ -25,7 +25,7 @@ macro_rules! switch {
     ($name:literal, $stimulus:ident) => {
         Verb {
             name: $name,
-            params: &[needs("on", Want::Bool)],
+            params: &[needs("on", ParamType::Bool)],
             make: |args| {
                 at_once(Stimulus::$stimulus {
                     on: args.flag("on", true),
@@ -42,7 +42,7 @@ pub(super) static VERBS: &[Verb] = &[
     switch!("cab.key", MaintenanceKey),
     Verb {
         name: "cab.mode",
-        params: &[needs("mode", Want::Choice(ModeSwitch::LABELS))],
+        params: &[needs("mode", ParamType::Choice(ModeSwitch::LABELS))],
         make: |args| {
             let mode = args.text("mode").and_then(ModeSwitch::from_label);
             at_once(Stimulus::ModeSwitch(mode.ok_or("no such mode")?))
@@ -50,12 +50,12 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "cab.controller",
-        params: &[needs("notch", Want::Number)],
+        params: &[needs("notch", ParamType::Number)],
         make: controller,
     },
     Verb {
         name: "cab.volts",
-        params: &[takes("volts", Want::Number)],
+        params: &[takes("volts", ParamType::Number)],
         make: |args| {
             let volts = args
                 .get("volts")
@@ -69,7 +69,10 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "cab.contacts",
-        params: &[takes("power", Want::Bool), takes("brake", Want::Bool)],
+        params: &[
+            takes("power", ParamType::Bool),
+            takes("brake", ParamType::Bool),
+        ],
         make: |args| {
             let given = args.get("power").is_some() || args.get("brake").is_some();
             let contacts = (args.flag("power", false), args.flag("brake", false));
@@ -89,7 +92,7 @@ pub(super) static VERBS: &[Verb] = &[
     switch!("tcms.ato_enable", AtoEnable),
     Verb {
         name: "tcms.passengers",
-        params: &[needs("passengers", Want::Amount(Dimension::Mass))],
+        params: &[needs("passengers", ParamType::Amount(Dimension::Mass))],
         make: |args| {
             let passengers_kg = args.amount("passengers")?;
             if !(0.0..=200_000.0).contains(&passengers_kg) {

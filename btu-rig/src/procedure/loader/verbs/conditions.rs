@@ -5,10 +5,10 @@ use protocol::signal::{Kind, Signal};
 
 use crate::procedure::loader::args::{Args, event};
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::suggest::hint;
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand};
 
 /// Time for something to become true if a script gives none.
@@ -16,7 +16,7 @@ const BECOMES_WITHIN: Duration = Duration::from_ms(2000);
 /// The same for `until`.
 const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 
-const TIME: Want = Want::Amount(Dimension::Time);
+const TIME: ParamType = ParamType::Amount(Dimension::Time);
 
 /// Ways to compare, by parameter.
 const COMPARISONS: [(&str, Comparison); 8] = [
@@ -36,17 +36,17 @@ macro_rules! about {
         Verb {
             name: $name,
             params: &[
-                needs("signal", Want::Subject),
-                takes("value", Want::Value),
-                takes("not_", Want::Value),
-                takes("above", Want::Value),
-                takes("below", Want::Value),
-                takes("at_least", Want::Value),
-                takes("at_most", Want::Value),
-                takes("near", Want::Value),
-                takes("tol", Want::Value),
-                takes("has", Want::Value),
-                takes("lacks", Want::Value),
+                needs("signal", ParamType::Subject),
+                takes("value", ParamType::Value),
+                takes("not_", ParamType::Value),
+                takes("above", ParamType::Value),
+                takes("below", ParamType::Value),
+                takes("at_least", ParamType::Value),
+                takes("at_most", ParamType::Value),
+                takes("near", ParamType::Value),
+                takes("tol", ParamType::Value),
+                takes("has", ParamType::Value),
+                takes("lacks", ParamType::Value),
                 $($more),*
             ],
             make: $make,
@@ -59,12 +59,12 @@ pub(super) static VERBS: &[Verb] = &[
     about!("when", [], |args| Ok(Item::Condition(condition(args)?))),
     Verb {
         name: "all_of",
-        params: &[takes("conditions", Want::Conditions)],
+        params: &[takes("conditions", ParamType::Conditions)],
         make: |args| Ok(Item::Condition(Condition::All(parts(args)?))),
     },
     Verb {
         name: "any_of",
-        params: &[takes("conditions", Want::Conditions)],
+        params: &[takes("conditions", ParamType::Conditions)],
         make: |args| Ok(Item::Condition(Condition::Any(parts(args)?))),
     },
     about!("until", [takes("within", TIME)], |args| {
@@ -92,7 +92,7 @@ pub(super) static VERBS: &[Verb] = &[
     }),
     Verb {
         name: "logs",
-        params: &[needs("event", Want::Name), takes("within", TIME)],
+        params: &[needs("event", ParamType::Name), takes("within", TIME)],
         make: |args| {
             Ok(Item::Expectation(Expectation::Logs {
                 event: event(args.text("event").unwrap_or_default())?,
@@ -102,7 +102,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "never_logs",
-        params: &[needs("event", Want::Name)],
+        params: &[needs("event", ParamType::Name)],
         make: |args| {
             Ok(Item::Expectation(Expectation::NeverLogs {
                 event: event(args.text("event").unwrap_or_default())?,
@@ -111,7 +111,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "measured",
-        params: &[needs("name", Want::Name)],
+        params: &[needs("name", ParamType::Name)],
         make: |args| {
             let name = args.text("name").unwrap_or_default();
             Ok(Item::Measured(name.to_owned(), None))

@@ -3,8 +3,8 @@
 use super::at_once;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TrainSwitch};
 use crate::train::MAX_CARS;
 
@@ -12,7 +12,7 @@ macro_rules! switch {
     ($name:literal, $switch:ident) => {
         Verb {
             name: $name,
-            params: &[needs("on", Want::Bool)],
+            params: &[needs("on", ParamType::Bool)],
             make: |args| {
                 at_once(Stimulus::Switch {
                     switch: TrainSwitch::$switch,
@@ -29,7 +29,10 @@ pub(super) static VERBS: &[Verb] = &[
     switch!("cab.forced_release", ForcedRelease),
     Verb {
         name: "cab.emergency_button",
-        params: &[needs("on", Want::Bool), takes("cab", Want::Int(1, 2))],
+        params: &[
+            needs("on", ParamType::Bool),
+            takes("cab", ParamType::Int(1, 2)),
+        ],
         make: |args| {
             let other = args.get("cab").is_some() && args.int("cab")? == 2;
             at_once(Stimulus::Switch {
@@ -60,7 +63,7 @@ pub(super) static VERBS: &[Verb] = &[
     },
     Verb {
         name: "train.gradient",
-        params: &[takes("permille", Want::Number)],
+        params: &[takes("permille", ParamType::Number)],
         make: |args| {
             let given = args.get("permille").map(|_| args.number("permille"));
             let permille = given.transpose()?;
@@ -75,8 +78,8 @@ pub(super) static VERBS: &[Verb] = &[
 ];
 
 const CAR_SWITCH: &[crate::procedure::loader::verb::Param] = &[
-    needs("car", Want::Int(1, MAX_CARS as i64)),
-    needs("on", Want::Bool),
+    needs("car", ParamType::Int(1, MAX_CARS as i64)),
+    needs("on", ParamType::Bool),
 ];
 
 fn cut_out(args: &Args<'_>, what: CutOut) -> Result<Item, String> {

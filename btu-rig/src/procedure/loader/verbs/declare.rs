@@ -3,9 +3,9 @@
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::draft::{Declaration, ProcedureDraft, StepDraft};
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::procedure::plan::{Connection, Measure, OnFail};
 
 /// More repetitions than this are a slip of the finger.
@@ -15,13 +15,13 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "procedure",
         params: &[
-            needs("title", Want::Name),
-            takes("title_ko", Want::Name),
-            takes("needs", Want::Choice(&["btu", "ptu"])),
-            takes("on_request", Want::Bool),
-            takes("suspect", Want::Name),
-            takes("setup", Want::Actions),
-            takes("cleanup", Want::Actions),
+            needs("title", ParamType::Name),
+            takes("title_ko", ParamType::Name),
+            takes("needs", ParamType::Choice(&["btu", "ptu"])),
+            takes("on_request", ParamType::Bool),
+            takes("suspect", ParamType::Name),
+            takes("setup", ParamType::Actions),
+            takes("cleanup", ParamType::Actions),
         ],
         make: |args| {
             declare(Declaration::Procedure(ProcedureDraft {
@@ -41,17 +41,17 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "step",
         params: &[
-            needs("name", Want::Name),
-            takes("do", Want::Actions),
-            takes("expect", Want::Expectations),
-            takes("measure", Want::Measures),
-            takes("provokes", Want::Events),
-            takes("when", Want::Condition),
-            takes("repeat", Want::Int(1, MOST_REPETITIONS)),
-            takes("on_fail", Want::Choice(&["continue", "stop"])),
-            takes("limit", Want::Amount(Dimension::Time)),
-            takes("suspect", Want::Name),
-            takes("note", Want::Text),
+            needs("name", ParamType::Name),
+            takes("do", ParamType::Actions),
+            takes("expect", ParamType::Expectations),
+            takes("measure", ParamType::Measures),
+            takes("provokes", ParamType::Events),
+            takes("when", ParamType::Condition),
+            takes("repeat", ParamType::Int(1, MOST_REPETITIONS)),
+            takes("on_fail", ParamType::Choice(&["continue", "stop"])),
+            takes("limit", ParamType::Amount(Dimension::Time)),
+            takes("suspect", ParamType::Name),
+            takes("note", ParamType::Text),
         ],
         make: step,
     },

@@ -5,9 +5,9 @@ use protocol::Duration;
 use super::conditions::{amount, operand};
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::procedure::plan::{Measure, Operand, TimeFrom, What};
 
 /// Time a measurement waits for its condition if neither `within` nor `high` says.
@@ -15,7 +15,7 @@ const MEASURE_WITHIN: Duration = Duration::from_ms(10_000);
 /// How much longer than its upper limit a time is waited for, so that a late one has a value.
 const BEYOND_LIMIT_MS: f64 = 1000.0;
 
-const TIME: Want = Want::Amount(Dimension::Time);
+const TIME: ParamType = ParamType::Amount(Dimension::Time);
 
 /// A measurement of one signal that needs nothing but the step.
 macro_rules! of_signal {
@@ -23,10 +23,10 @@ macro_rules! of_signal {
         Verb {
             name: $name,
             params: &[
-                needs("name", Want::Name),
-                needs("signal", Want::Signal),
-                takes("low", Want::Value),
-                takes("high", Want::Value),
+                needs("name", ParamType::Name),
+                needs("signal", ParamType::Signal),
+                takes("low", ParamType::Value),
+                takes("high", ParamType::Value),
             ],
             make: |args| measure(args, What::$what(args.signal("signal")?)),
         }
@@ -37,11 +37,11 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "time",
         params: &[
-            needs("name", Want::Name),
-            needs("to", Want::Condition),
-            takes("from_", Want::TimeFrom),
-            takes("low", Want::Value),
-            takes("high", Want::Value),
+            needs("name", ParamType::Name),
+            needs("to", ParamType::Condition),
+            takes("from_", ParamType::TimeFrom),
+            takes("low", ParamType::Value),
+            takes("high", ParamType::Value),
             takes("within", TIME),
         ],
         make: |args| {
@@ -61,11 +61,11 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "at",
         params: &[
-            needs("name", Want::Name),
-            needs("signal", Want::Signal),
-            needs("when", Want::Condition),
-            takes("low", Want::Value),
-            takes("high", Want::Value),
+            needs("name", ParamType::Name),
+            needs("signal", ParamType::Signal),
+            needs("when", ParamType::Condition),
+            takes("low", ParamType::Value),
+            takes("high", ParamType::Value),
             takes("within", TIME),
         ],
         make: |args| {

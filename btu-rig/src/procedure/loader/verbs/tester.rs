@@ -6,9 +6,9 @@ use super::track::{Place, STATION, station};
 use super::{at_once, with_wait};
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension::{Acceleration, Frequency, Level, Speed};
 use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::procedure::loader::want::Want;
 use crate::stimulus::Stimulus;
 
 macro_rules! request {
@@ -28,7 +28,7 @@ pub(super) static VERBS: &[Verb] = &[
     request!("ptu.clear_log", Stimulus::PtuClearLog),
     Verb {
         name: "ptu.silent",
-        params: &[needs("on", Want::Bool)],
+        params: &[needs("on", ParamType::Bool)],
         make: |args| {
             at_once(Stimulus::PtuSilent {
                 on: args.flag("on", true),
@@ -38,33 +38,33 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "ptu.code",
         params: &[
-            needs("code", Want::Code),
-            takes("level", Want::Amount(Level)),
+            needs("code", ParamType::Code),
+            takes("level", ParamType::Amount(Level)),
         ],
         make: |args| test_code(code_signal(args)?),
     },
     Verb {
         name: "ptu.raw",
         params: &[
-            takes("carrier", Want::Amount(Frequency)),
-            needs("rate", Want::Amount(Frequency)),
-            takes("level", Want::Amount(Level)),
+            takes("carrier", ParamType::Amount(Frequency)),
+            needs("rate", ParamType::Amount(Frequency)),
+            takes("level", ParamType::Amount(Level)),
         ],
         make: |args| test_code(raw_signal(args)?),
     },
     Verb {
         name: "ptu.speed",
         params: &[
-            needs("to", Want::Amount(Speed)),
-            takes("channels", Want::Ints),
-            takes("backward", Want::Bool),
-            takes("accel", Want::Amount(Acceleration)),
+            needs("to", ParamType::Amount(Speed)),
+            takes("channels", ParamType::Ints),
+            takes("backward", ParamType::Bool),
+            takes("accel", ParamType::Amount(Acceleration)),
         ],
         make: test_speed,
     },
     Verb {
         name: "ptu.marker",
-        params: &[needs("marker", Want::Int(1, 4))],
+        params: &[needs("marker", ParamType::Int(1, 4))],
         make: |args| {
             let psm = marker(args, "marker")?;
             with_wait(Stimulus::PtuMarker { psm }, true)

@@ -5,23 +5,23 @@ use protocol::message::{DoorSide, RunningMode};
 
 use super::at_once;
 use crate::procedure::loader::args::Args;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Param, Verb, takes};
-use crate::procedure::loader::want::Want;
 use crate::stimulus::{StationData, Stimulus, WaysideCondition};
 
-const NUMBER: Want = Want::Int(0, 65535);
+const NUMBER: ParamType = ParamType::Int(0, 65535);
 
 /// Parameters of all verbs that send station data.
 pub(super) const STATION: &[Param] = &[
-    takes("section", Want::Section),
+    takes("section", ParamType::Section),
     takes("station", NUMBER),
     takes("next_station", NUMBER),
     takes("loop", NUMBER),
-    takes("fixed_speed", Want::Amount(Dimension::Speed)),
-    takes("running_mode", Want::Choice(RunningMode::LABELS)),
-    takes("door_side", Want::Choice(DoorSide::LABELS)),
-    takes("departure", Want::Bool),
+    takes("fixed_speed", ParamType::Amount(Dimension::Speed)),
+    takes("running_mode", ParamType::Choice(RunningMode::LABELS)),
+    takes("door_side", ParamType::Choice(DoorSide::LABELS)),
+    takes("departure", ParamType::Bool),
     takes("train_number", NUMBER),
     takes("route", NUMBER),
 ];

@@ -2,11 +2,11 @@
 
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
+use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::{Dimension, Quantity};
 use crate::procedure::loader::verb::{Param, Verb, needs};
-use crate::procedure::loader::want::Want;
 
-const NUMBER: &[Param] = &[needs("value", Want::Number)];
+const NUMBER: &[Param] = &[needs("value", ParamType::Number)];
 
 macro_rules! unit {
     ($name:literal, $dimension:ident, $factor:expr) => {

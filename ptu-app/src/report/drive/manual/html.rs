@@ -3,9 +3,9 @@
 use maud::{Markup, html};
 
 use super::super::html::page;
-use super::deeds::{HEADINGS, cells, deeds};
 use super::figures::{FIGURES, facts};
 use super::plots::plots;
+use super::steps::{HEADINGS, cells, step_results};
 use crate::drive::manual::ManualRun;
 
 /// The page.
@@ -59,8 +59,8 @@ fn steps(run: &ManualRun) -> Markup {
     html! {
         table {
             tr { @for (at, heading) in HEADINGS.iter().enumerate() { th.number[at != 2] { (heading) } } }
-            @for deed in deeds(run) {
-                tr { @for (at, cell) in cells(&deed).iter().enumerate() { td.number[at != 2] { (cell) } } }
+            @for step in step_results(run) {
+                tr { @for (at, cell) in cells(&step).iter().enumerate() { td.number[at != 2] { (cell) } } }
             }
         }
         p { "Efforts are those of MT pair 1 3 s later, or before the next step." }

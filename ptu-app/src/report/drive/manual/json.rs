@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::deeds::{Deed, deeds};
 use super::figures::FIGURES;
+use super::steps::{StepResult, step_results};
 use crate::drive::manual::ManualRun;
 
 /// All of it.
@@ -40,14 +40,14 @@ pub fn json(run: &ManualRun) -> Value {
     for figure in &FIGURES {
         put(figure.key, (figure.of)(&outcome.figures).into());
     }
-    put("steps", deeds(run).iter().map(step).collect());
+    put("steps", step_results(run).iter().map(step).collect());
     let event = |l: &btu_rig::drive::Landmark| json!({"t_s": l.t_s, "x_m": l.x_m, "what": l.what});
     put("events", outcome.landmarks.iter().map(event).collect());
     object.into()
 }
 
-fn step(deed: &Deed<'_>) -> Value {
-    let pair = deed.pair.map(|pair| {
+fn step(result: &StepResult<'_>) -> Value {
+    let pair = result.pair.map(|pair| {
         json!({
             "te_n": pair.traction_n,
             "electric_n": pair.electric_n,
@@ -57,12 +57,12 @@ fn step(deed: &Deed<'_>) -> Value {
         })
     });
     json!({
-        "t_s": deed.done.t_s,
-        "x_m": deed.done.x_m,
-        "speed_kmh": deed.done.speed_kmh,
-        "what": deed.done.what(),
-        "brake_settled_s": deed.settled.map(|settled| settled.after_s),
-        "brake_worst_share": deed.settled.map(|settled| settled.worst),
+        "t_s": result.done.t_s,
+        "x_m": result.done.x_m,
+        "speed_kmh": result.done.speed_kmh,
+        "what": result.done.what(),
+        "brake_settled_s": result.settled.map(|settled| settled.after_s),
+        "brake_worst_share": result.settled.map(|settled| settled.worst),
         "pair1_later": pair,
     })
 }

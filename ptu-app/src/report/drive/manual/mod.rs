@@ -2,11 +2,11 @@
 //! to 7.
 
 mod csv;
-mod deeds;
 mod figures;
 mod html;
 mod json;
 mod plots;
+mod steps;
 mod text;
 
 pub use text::text;

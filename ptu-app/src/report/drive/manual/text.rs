@@ -1,7 +1,7 @@
 //! A run by hand as text for people.
 
-use super::deeds::{HEADINGS, cells, deeds};
 use super::figures::{FIGURES, facts};
+use super::steps::{HEADINGS, cells, step_results};
 use crate::drive::manual::ManualRun;
 use crate::table::Table;
 
@@ -28,8 +28,8 @@ pub fn text(run: &ManualRun) -> String {
         other => other,
     });
     let mut steps = Table::new(&headings);
-    for deed in deeds(run) {
-        steps.row(cells(&deed));
+    for step in step_results(run) {
+        steps.row(cells(&step));
     }
     let mut events = Table::new(&["TIME s", "PLACE m", "EVENT"]);
     for mark in &outcome.landmarks {

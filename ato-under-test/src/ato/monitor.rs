@@ -32,7 +32,7 @@ const SAME_MPS: f64 = 5e-4;
 const OUTSIDE_M: f64 = 100.0;
 /// Longest section, m [default].
 const LONGEST_M: f64 = 50e3;
-/// Way past the stop point at which an overrun is told although the train still moves, m [default].
+/// Distance past the stop point at which an overrun is told although the train still moves, m [default].
 const FAR_PAST_M: f64 = 10.0;
 /// Time standing short of the stop point after which nothing more is expected, s [default].
 const STANDS_S: f64 = 5.0;
@@ -41,7 +41,7 @@ const STANDS_S: f64 = 5.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrainReport {
     /// TCMS brakes by itself, or gives no power.
-    pub hinders: bool,
+    pub overrides: bool,
     /// Effort last sent to it.
     pub sent: i16,
     /// Effort the train gives; `None` = not known.
@@ -50,7 +50,7 @@ pub struct TrainReport {
 
 /// What the watch looks at besides ATO's inputs.
 #[derive(Clone, Copy, Debug)]
-pub struct Watched {
+pub struct MonitorInputs {
     /// State until now.
     pub state: AtoState,
     /// Acceleration the last effort asks for, track and resistance taken off, m/s².
@@ -72,15 +72,15 @@ pub struct Findings {
     pub not_following_mps: Option<f64>,
     /// The same of a train that withholds effort, by TCMS's own word; told once until it is over.
     pub withheld_mps: Option<f64>,
-    /// Way past the stop point, m; told once a run.
+    /// Distance past the stop point, m; told once a run.
     pub overrun_m: Option<f64>,
-    /// Way short of the stop point, m; told once a run.
+    /// Distance short of the stop point, m; told once a run.
     pub short_m: Option<f64>,
 }
 
 /// The watch.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Watch {
+pub struct Monitor {
     before_mps: Option<f64>,
     expected_mps2: f64,
     deviation_mps: f64,
@@ -94,9 +94,14 @@ pub struct Watch {
     told: bool,
 }
 
-impl Watch {
+impl Monitor {
     /// One cycle.
-    pub fn step(&mut self, inputs: &AtoInputs<'_>, on: Watched, config: &AtoConfig) -> Findings {
+    pub fn step(
+        &mut self,
+        inputs: &AtoInputs<'_>,
+        on: MonitorInputs,
+        config: &AtoConfig,
+    ) -> Findings {
         let mut absurd = absurd(inputs, config);
         let speed_mps = inputs.speed.mps();
         let before_mps = self.before_mps.replace(speed_mps);
@@ -200,7 +205,7 @@ impl Watch {
     fn stop_error(
         &mut self,
         inputs: &AtoInputs<'_>,
-        on: Watched,
+        on: MonitorInputs,
         config: &AtoConfig,
     ) -> (Option<f64>, Option<f64>) {
         let running = inputs.section.filter(|_| on.state == AtoState::Run);
@@ -229,7 +234,7 @@ impl Watch {
 
 /// What the train does is not what ATO asks of it: powering is cut, or TCMS brakes by itself.
 fn cut(inputs: &AtoInputs<'_>) -> bool {
-    inputs.power_cut || inputs.train.hinders
+    inputs.power_cut || inputs.train.overrides
 }
 
 /// Acceleration an effort stands for at a speed, m/s².
@@ -309,17 +314,17 @@ mod tests {
             load_kg: 0.0,
             checks: Checks::Passed,
         };
-        let on = Watched {
+        let on = MonitorInputs {
             state: AtoState::Run,
             asked_mps2,
             may_go: true,
             stands: false,
             arrived: false,
         };
-        let mut watch = Watch::default();
+        let mut monitor = Monitor::default();
         let mut steps = 1..=600;
         let found = steps.find(|_| {
-            let findings = watch.step(&inputs, on, &config());
+            let findings = monitor.step(&inputs, on, &config());
             assert_eq!(findings.not_following_mps, None);
             findings.absurd == AbsurdInputs::FROZEN_SPEED
         });

@@ -7,15 +7,14 @@ use protocol::injection::{Effect, Place};
 use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
 use protocol::{Instant, Speed};
 
+use super::{Unit, report};
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
 use crate::atp::{Atp, Code, ModeInputs};
 use crate::kernel::RunCycle;
-use crate::report;
-use crate::unit::Unit;
 
 impl Unit {
     /// One cycle.
-    pub(crate) fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
+    pub(super) fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
         if let Some(data) = self.board.take_twc(now) {
             self.take_station(now, None, data, out);
         }
@@ -99,7 +98,7 @@ impl Unit {
         let tachometers = self.atp.tachometers();
         // ATO goes by the wheel that markers calibrate; ATP keeps its own, safe speed.
         let wheel = 1.0 + self.locator.wheel_correction();
-        let speed = tachometers.channel(tachometers.way_channel()).mps() * wheel;
+        let speed = tachometers.channel(tachometers.distance_channel()).mps() * wheel;
         let inputs = AtoInputs {
             mode: self.atp.sequence().mode(),
             limit: self.atp.limit(),
@@ -115,7 +114,7 @@ impl Unit {
             standstill: tachometers.standstill(),
             power_cut: self.atp.power_cut() || self.tcms.cuts_power(),
             train: TrainReport {
-                hinders: self.tcms.hinders(),
+                overrides: self.tcms.overrides(),
                 sent: self.ato_outputs.effort,
                 given: self.tcms.given(),
             },

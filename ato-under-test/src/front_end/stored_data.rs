@@ -1,12 +1,12 @@
-//! Faults of stored data: there from power-up on, and sound in themselves, so that no check of the
-//! unit's own sees them.
+//! Faults of stored data (track database, wheel diameter). They are present from power-up and plausible in
+//! themselves, so that no check of the unit itself detects them.
 
 use protocol::injection::{Effect, Place};
 
-use crate::unit::Setup;
+use crate::setup::Setup;
 
-/// What the unit's memory really holds.
-pub fn spoil_stored_data(mut setup: Setup) -> Setup {
+/// The setup as the unit's memory holds it, with injected faults applied.
+pub fn apply_stored_data_faults(mut setup: Setup) -> Setup {
     for fault in &setup.faults {
         match (fault.place, fault.effect) {
             (Place::TrackDatabase, Effect::Offset { by }) => {

@@ -2,7 +2,7 @@
 
 use protocol::config::AtoConfig;
 
-use super::{Demand, Situation};
+use super::{ControllerInput, Demand};
 
 /// Speed of sound, m/s: no train is faster, and no sum of such speeds leaves the range of numbers.
 const FASTEST_MPS: f64 = 340.0;
@@ -13,12 +13,12 @@ const MASSES_KG: core::ops::RangeInclusive<f64> = 1e3..=1e7;
 
 /// Full braking of the configured train.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Doubt {
+pub(super) struct PlausibilityCheck {
     decel_mps2: f64,
     empty_kg: f64,
 }
 
-impl Doubt {
+impl PlausibilityCheck {
     pub(super) fn new(config: &AtoConfig) -> Self {
         Self {
             decel_mps2: config.decel_kmh_per_s / 3.6,
@@ -28,24 +28,17 @@ impl Doubt {
 
     /// The brake, if anything in the situation is no number or absurd. The caller's state is to stay
     /// as it was, so that one bad cycle leaves no trace.
-    pub(super) fn brake(&self, situation: &Situation) -> Option<Demand> {
-        let mass = MASSES_KG.contains(&situation.mass_kg);
+    pub(super) fn brake(&self, input: &ControllerInput) -> Option<Demand> {
+        let mass = MASSES_KG.contains(&input.mass_kg);
         let sound = mass
-            && [situation.cruise_mps, situation.speed_mps]
+            && [input.cruise_mps, input.speed_mps]
                 .iter()
                 .all(|v| libm::fabs(*v) <= FASTEST_MPS)
-            && [
-                situation.accel_mps2,
-                situation.granted_n / situation.mass_kg,
-            ]
-            .iter()
-            .all(|a| libm::fabs(*a) <= HARDEST_MPS2)
-            && situation.to_stop_m.is_none_or(f64::is_finite);
-        let mass_kg = if mass {
-            situation.mass_kg
-        } else {
-            self.empty_kg
-        };
+            && [input.accel_mps2, input.granted_n / input.mass_kg]
+                .iter()
+                .all(|a| libm::fabs(*a) <= HARDEST_MPS2)
+            && input.to_stop_m.is_none_or(f64::is_finite);
+        let mass_kg = if mass { input.mass_kg } else { self.empty_kg };
         (!sound).then_some(Demand {
             target_mps: 0.0,
             force_n: -self.decel_mps2 * mass_kg,

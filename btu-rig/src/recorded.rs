@@ -1,5 +1,5 @@
-//! What was done to a bench and when, so that it can be done again: open loop, whatever the unit
-//! answers this time.
+//! Recorded stimuli: every stimulus a procedure gave the bench, with its time, so that a run can be repeated
+//! open loop, whatever the unit answers this time.
 
 use protocol::{Duration, Instant, SCAN};
 use serde::{Deserialize, Serialize};
@@ -8,13 +8,13 @@ use crate::procedure::{Driver, Evidence, Refusal};
 use crate::rig::Rig;
 use crate::stimulus::Stimulus;
 
-/// Deeds kept of one procedure; those beyond are counted, and the tape is then of no use for a replay.
-pub const MAX_DEEDS: usize = 100_000;
+/// Entries kept of one procedure. Those beyond are counted, and the record then cannot be replayed.
+pub const MAX_RECORDED: usize = 100_000;
 
-/// Something that was done.
+/// What a procedure can do to a bench.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Act {
+pub enum BenchAction {
     /// A stimulus, whether the bench took it or refused it.
     Apply(Stimulus),
     /// The bench was made safe in so many scans one after the other.
@@ -24,73 +24,75 @@ pub enum Act {
     },
 }
 
-/// What was done, and when on the bench's clock.
+/// One action, with its time on the bench's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Deed {
+pub struct RecordedStimulus {
     /// Time of the scan after which it was done, µs.
     pub at_us: u64,
-    /// What.
-    pub act: Act,
+    /// The action.
+    #[serde(rename = "act")]
+    pub action: BenchAction,
 }
 
-/// All that was done to a bench, in order.
+/// All actions of one procedure, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tape {
-    /// The deeds.
-    pub deeds: Vec<Deed>,
-    /// Deeds that found no room.
+pub struct StimulusRecord {
+    /// The actions; `deeds` in stored recordings.
+    #[serde(rename = "deeds")]
+    pub entries: Vec<RecordedStimulus>,
+    /// Actions that found no room.
     pub lost: u32,
 }
 
-impl Tape {
-    fn note(&mut self, now: Instant, act: Act) {
-        if self.deeds.len() == MAX_DEEDS {
+impl StimulusRecord {
+    fn note(&mut self, now: Instant, action: BenchAction) {
+        if self.entries.len() == MAX_RECORDED {
             self.lost += 1;
             return;
         }
         let at_us = now.as_us();
-        self.deeds.push(Deed { at_us, act });
+        self.entries.push(RecordedStimulus { at_us, action });
     }
 
     fn note_safe(&mut self, now: Instant) {
-        if let Some(Deed { at_us, act }) = self.deeds.last_mut()
-            && let Act::MakeSafe { scans } = act
+        if let Some(RecordedStimulus { at_us, action }) = self.entries.last_mut()
+            && let BenchAction::MakeSafe { scans } = action
             && now.as_us() == *at_us + u64::from(*scans) * SCAN.as_us()
         {
             *scans += 1;
             return;
         }
-        self.note(now, Act::MakeSafe { scans: 1 });
+        self.note(now, BenchAction::MakeSafe { scans: 1 });
     }
 
-    /// Time of the last deed, µs; making safe counts to its last scan.
+    /// Time of the last entry, µs; making safe counts to its last scan.
     pub fn end_us(&self) -> u64 {
-        let end = |deed: &Deed| match deed.act {
-            Act::Apply(_) => deed.at_us,
-            Act::MakeSafe { scans } => {
-                deed.at_us + u64::from(scans.saturating_sub(1)) * SCAN.as_us()
+        let end = |entry: &RecordedStimulus| match entry.action {
+            BenchAction::Apply(_) => entry.at_us,
+            BenchAction::MakeSafe { scans } => {
+                entry.at_us + u64::from(scans.saturating_sub(1)) * SCAN.as_us()
             }
         };
-        self.deeds.last().map_or(0, end)
+        self.entries.last().map_or(0, end)
     }
 }
 
-/// The rig, with all that is done to it going on the tape.
-pub struct Taping<'a> {
+/// A driver of the rig that records every action.
+pub struct RecordingDriver<'a> {
     rig: &'a mut Rig,
-    tape: &'a mut Tape,
+    record: &'a mut StimulusRecord,
 }
 
-impl<'a> Taping<'a> {
-    /// Drives `rig` and keeps what is done on `tape`.
-    pub fn new(rig: &'a mut Rig, tape: &'a mut Tape) -> Self {
-        Self { rig, tape }
+impl<'a> RecordingDriver<'a> {
+    /// Drives `rig` and appends every action to `record`.
+    pub fn new(rig: &'a mut Rig, record: &'a mut StimulusRecord) -> Self {
+        Self { rig, record }
     }
 }
 
-impl Driver for Taping<'_> {
+impl Driver for RecordingDriver<'_> {
     fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
-        self.tape.note(now, Act::Apply(*stimulus));
+        self.record.note(now, BenchAction::Apply(*stimulus));
         self.rig.apply(now, stimulus)
     }
 
@@ -99,7 +101,7 @@ impl Driver for Taping<'_> {
     }
 
     fn make_safe(&mut self, now: Instant) {
-        self.tape.note_safe(now);
+        self.record.note_safe(now);
         self.rig.make_safe(now);
     }
 
@@ -112,36 +114,36 @@ impl Driver for Taping<'_> {
     }
 }
 
-/// Does again what is on a tape.
+/// Repeats a recorded sequence of actions.
 #[derive(Clone, Debug)]
-pub struct Player<'a> {
-    tape: &'a Tape,
+pub struct StimulusPlayer<'a> {
+    record: &'a StimulusRecord,
     next: usize,
-    /// Scans of the present making safe that were done.
+    /// Scans already done of the `MakeSafe` in progress.
     safe_scans: u32,
-    /// How much later, or earlier, than on the tape, µs.
+    /// How much later than recorded, µs; negative = earlier.
     shift_us: i64,
 }
 
-impl<'a> Player<'a> {
-    /// A player at the beginning of the tape; deeds come `shift_us` later than on it.
-    pub fn new(tape: &'a Tape, shift_us: i64) -> Self {
+impl<'a> StimulusPlayer<'a> {
+    /// Starts at the first entry; every entry is due `shift_us` later than recorded.
+    pub fn new(record: &'a StimulusRecord, shift_us: i64) -> Self {
         Self {
-            tape,
+            record,
             next: 0,
             safe_scans: 0,
             shift_us,
         }
     }
 
-    /// Does what is due at `now`, after the scan; to be called in each. What this bench refuses is left
-    /// out: the next deed may not need it. Refusals come back for whoever wants to tell.
+    /// Performs what is due at `now`; call it after every scan. A stimulus that this bench refuses is
+    /// skipped, because the next one may not depend on it; the refusals are returned.
     pub fn play(&mut self, now: Instant, rig: &mut Rig) -> Vec<Refusal> {
         let mut refused = Vec::new();
-        while let Some(deed) = self.due(now) {
-            match deed.act {
-                Act::Apply(stimulus) => refused.extend(rig.apply(now, &stimulus).err()),
-                Act::MakeSafe { scans } => {
+        while let Some(entry) = self.due(now) {
+            match entry.action {
+                BenchAction::Apply(stimulus) => refused.extend(rig.apply(now, &stimulus).err()),
+                BenchAction::MakeSafe { scans } => {
                     rig.make_safe(now);
                     self.safe_scans += 1;
                     if self.safe_scans < scans {
@@ -155,15 +157,15 @@ impl<'a> Player<'a> {
         refused
     }
 
-    /// Everything on the tape is done.
+    /// Whether every entry has been performed.
     pub fn done(&self) -> bool {
-        self.next == self.tape.deeds.len()
+        self.next == self.record.entries.len()
     }
 
-    fn due(&self, now: Instant) -> Option<Deed> {
-        let deed = *self.tape.deeds.get(self.next)?;
-        let at_us = deed.at_us.saturating_add_signed(self.shift_us);
-        (Instant::from_us(at_us) + self.safe_time() <= now).then_some(deed)
+    fn due(&self, now: Instant) -> Option<RecordedStimulus> {
+        let entry = *self.record.entries.get(self.next)?;
+        let at_us = entry.at_us.saturating_add_signed(self.shift_us);
+        (Instant::from_us(at_us) + self.safe_time() <= now).then_some(entry)
     }
 
     fn safe_time(&self) -> Duration {
@@ -205,10 +207,10 @@ mod tests {
         }
     }
 
-    /// Goal: a tape read back does to a rig bit by bit what was done when it was made. Method: the wheel
-    /// of a rig driven through the tape, and of one that plays it from its text, at each scan.
+    /// Goal: a record read back moves a rig exactly as when it was recorded. Method: compare bytes and
+    /// samples of a rig driven through the recorder with those of one that replays the stored text.
     #[test]
-    fn a_tape_read_back_moves_a_rig_the_same_way() {
+    fn a_stored_record_moves_a_rig_exactly_as_when_it_was_recorded() {
         let stimuli = [
             Stimulus::ModeSwitch(ModeSwitch::Manual),
             Stimulus::Controller {
@@ -228,22 +230,22 @@ mod tests {
                 accel_mps2: 3.0 / 3.6,
             },
         ];
-        let run = |deed: &mut dyn FnMut(Instant, &mut Rig)| {
+        let run = |drive: &mut dyn FnMut(Instant, &mut Rig)| {
             let mut rig = rig();
             let mut bytes = Vec::new();
             let mut seen = Vec::new();
             for scan in 1..4_000 {
                 let now = Instant::from_us(scan * SCAN.as_us());
                 rig.step(now, &mut bytes);
-                deed(now, &mut rig);
+                drive(now, &mut rig);
                 seen.push(format!("{:?}", rig.sample().values()));
             }
             (bytes, seen)
         };
-        let mut tape = Tape::default();
+        let mut record = StimulusRecord::default();
         let mut to_come = stimuli.iter();
         let first = run(&mut |now, rig| {
-            let mut driver = Taping::new(rig, &mut tape);
+            let mut driver = RecordingDriver::new(rig, &mut record);
             if now.as_us().is_multiple_of(500_000)
                 && let Some(stimulus) = to_come.next()
             {
@@ -253,11 +255,14 @@ mod tests {
                 driver.make_safe(now);
             }
         });
-        let text = serde_json::to_string(&tape).expect("JSON");
-        let read: Tape = serde_json::from_str(&text).expect("a tape");
-        assert_eq!(read, tape);
-        assert!(tape.deeds.len() < 10, "making safe is one deed: {text}");
-        let mut player = Player::new(&read, 0);
+        let text = serde_json::to_string(&record).expect("JSON");
+        let read: StimulusRecord = serde_json::from_str(&text).expect("a stimulus record");
+        assert_eq!(read, record);
+        assert!(
+            record.entries.len() < 10,
+            "making safe is one entry: {text}"
+        );
+        let mut player = StimulusPlayer::new(&read, 0);
         let again = run(&mut |now, rig| assert!(player.play(now, rig).is_empty()));
         assert!(player.done());
         assert_eq!(first, again);

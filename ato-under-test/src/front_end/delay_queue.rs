@@ -9,11 +9,11 @@ const MOST: usize = 32;
 
 /// A queue of things that are due at a time.
 #[derive(Debug)]
-pub struct Late<T> {
+pub struct DelayQueue<T> {
     waiting: VecDeque<(Instant, T)>,
 }
 
-impl<T> Default for Late<T> {
+impl<T> Default for DelayQueue<T> {
     fn default() -> Self {
         Self {
             waiting: VecDeque::new(),
@@ -21,7 +21,7 @@ impl<T> Default for Late<T> {
     }
 }
 
-impl<T> Late<T> {
+impl<T> DelayQueue<T> {
     /// Lets one wait until `due`.
     pub fn push(&mut self, due: Instant, thing: T) {
         if self.waiting.len() == MOST {

@@ -3,8 +3,8 @@
 use protocol::Instant;
 use protocol::message::{AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits};
 
+use super::Unit;
 use crate::atp::Code;
-use crate::unit::Unit;
 
 /// Software version in the identity.
 const SOFTWARE: [u8; 3] = [0, 1, 0];

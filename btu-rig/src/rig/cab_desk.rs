@@ -8,14 +8,14 @@ use crate::stimulus::{CutOut, TrainSwitch};
 use crate::tcms::{CabInputs, ControllerInputs, TcmsData};
 use crate::train::CarSet;
 
-use super::train_faults::DeskFaults;
+use super::train_faults::CabDeskFaults;
 
 /// How long a button stays pressed.
 const PRESSED: Duration = Duration::from_ms(500);
 
 /// Contacts and levers of both cabs and of the train; the unit is in the first cab.
 #[derive(Debug)]
-pub struct Desk {
+pub struct CabDesk {
     /// Doors proved closed.
     pub doors_closed: bool,
     /// Head control relay.
@@ -33,7 +33,7 @@ pub struct Desk {
     /// Reverser: 1, 0 or −1.
     pub reverser: i8,
     /// What is wrong with desk and train lines.
-    pub faults: DeskFaults,
+    pub faults: CabDeskFaults,
     /// Brakes that are cut out.
     pub brakes_cut_out: CarSet,
     /// Inverters that are cut out.
@@ -70,7 +70,7 @@ impl Switches {
     }
 }
 
-impl Default for Desk {
+impl Default for CabDesk {
     /// A manned cab, ready to drive by hand.
     fn default() -> Self {
         Self {
@@ -82,7 +82,7 @@ impl Default for Desk {
             volts: None,
             contacts: None,
             reverser: 1,
-            faults: DeskFaults::default(),
+            faults: CabDeskFaults::default(),
             brakes_cut_out: CarSet::NONE,
             inverters_cut_out: CarSet::NONE,
             switches: Switches::default(),
@@ -94,7 +94,7 @@ impl Default for Desk {
     }
 }
 
-impl Desk {
+impl CabDesk {
     /// Everything back to where [`Self::default`] has it; loop and faults are the train's and stay.
     pub fn reset(&mut self) {
         *self = Self {
@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn buttons_spring_back() {
-        let mut desk = Desk::default();
+        let mut desk = CabDesk::default();
         desk.press_start(Instant::from_ms(100));
         assert!(
             desk.lines(Instant::from_ms(590))
@@ -234,7 +234,7 @@ mod tests {
     /// A broken contact says what it says, whatever the doors do, and making safe does not mend it.
     #[test]
     fn a_broken_contact_outlives_a_reset() {
-        let mut desk = Desk::default();
+        let mut desk = CabDesk::default();
         desk.faults.doors = Some(false);
         desk.reset();
         assert!(desk.doors_closed && !desk.doors_proved());

@@ -10,8 +10,8 @@ use protocol::{Duration, Instant};
 use crate::train::{CarSet, Equipment, MAX_CARS, PerCar};
 
 use super::data::TcmsData;
-use super::not_released::{Asked, NotReleased};
-use super::timer::LastingCars;
+use super::not_released::{NotReleased, ReleaseCheck};
+use super::timer::OnDelayCars;
 
 /// Demand on a car's air brake that shows whether its cylinders follow again, share of full service.
 /// Less would hide cylinders that get only part of their pressure.
@@ -19,12 +19,12 @@ const FULL_DEMAND: f64 = 0.9;
 
 /// What it looks at in one scan.
 #[derive(Clone, Copy, Debug)]
-pub struct WatchInputs<'a> {
+pub struct MonitorInputs<'a> {
     /// What the equipment reports.
     pub equipment: &'a Equipment,
     /// Air TCMS asks of each car, N.
     pub air_n: &'a PerCar,
-    /// Nothing brakes but what the watch itself has found: no brake, holding, full service, emergency,
+    /// Nothing brakes but what this monitor itself has found: no brake, holding, full service, emergency,
     /// security or parking brake.
     pub nobody_brakes: bool,
     /// Cars without a brake: cut out.
@@ -37,7 +37,7 @@ pub struct WatchInputs<'a> {
 
 /// What was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Found {
+pub struct EquipmentFailures {
     /// Inverters that do not answer and are not cut out (BCXVVVFF).
     pub inverters: CarSet,
     /// Brake control units that do not answer and are not cut out (BCXECUF).
@@ -52,13 +52,13 @@ pub struct Found {
 
 /// Something wrong with cars that lasts, until its opposite has lasted.
 #[derive(Clone, Debug, Default)]
-struct Kept {
-    wrong: LastingCars,
-    right: LastingCars,
+struct LatchedFault {
+    wrong: OnDelayCars,
+    right: OnDelayCars,
     found: CarSet,
 }
 
-impl Kept {
+impl LatchedFault {
     fn update(&mut self, now: Instant, wrong: CarSet, right: CarSet, after: Duration) -> CarSet {
         let lasting = self.wrong.update(now, wrong, after);
         if !self.found.is_empty() {
@@ -76,38 +76,38 @@ impl Kept {
     }
 }
 
-/// The watch.
+/// Finds failed equipment from what it reports, scan by scan.
 #[derive(Clone, Debug)]
-pub struct Watch {
+pub struct EquipmentMonitor {
     silent_after: Duration,
     not_released_above: f64,
     not_following_above: f64,
     not_following_after: Duration,
     full_service_n: PerCar,
     cars: CarSet,
-    inverters: Kept,
-    brake_units: Kept,
-    cylinders: Kept,
+    inverters: LatchedFault,
+    brake_units: LatchedFault,
+    cylinders: LatchedFault,
     not_released: NotReleased,
 }
 
-impl Watch {
+impl EquipmentMonitor {
     /// Nothing found yet. `full_service_n` is each car's share of full service, N.
     pub fn new(data: &TcmsData, full_service_n: PerCar) -> Self {
-        let mut watch = Self {
+        let mut monitor = Self {
             silent_after: Duration::from_secs(data.silent_after_s),
             not_released_above: data.not_released_above / 100.0,
             not_following_above: data.not_following_above / 100.0,
             not_following_after: Duration::from_secs(data.not_following_after_s),
             full_service_n,
             cars: CarSet::NONE,
-            inverters: Kept::default(),
-            brake_units: Kept::default(),
-            cylinders: Kept::default(),
+            inverters: LatchedFault::default(),
+            brake_units: LatchedFault::default(),
+            cylinders: LatchedFault::default(),
             not_released: NotReleased::new(Duration::from_secs(data.not_released_after_s)),
         };
-        watch.weigh(full_service_n);
-        watch
+        monitor.weigh(full_service_n);
+        monitor
     }
 
     /// Takes each car's full service anew, N.
@@ -120,19 +120,19 @@ impl Watch {
 
     /// Forgets what was found.
     pub fn clear(&mut self) {
-        for kept in [
+        for latched in [
             &mut self.inverters,
             &mut self.brake_units,
             &mut self.cylinders,
         ] {
-            kept.found = CarSet::NONE;
-            kept.wrong.clear();
+            latched.found = CarSet::NONE;
+            latched.wrong.clear();
         }
         self.not_released.clear();
     }
 
     /// One scan.
-    pub fn step(&mut self, now: Instant, inputs: &WatchInputs<'_>) -> Found {
+    pub fn step(&mut self, now: Instant, inputs: &MonitorInputs<'_>) -> EquipmentFailures {
         let equipment = inputs.equipment;
         let (no_inverter, no_brake) = (inputs.inverters_cut_out, inputs.brakes_cut_out);
         let silent = equipment.inverters_silent;
@@ -155,7 +155,7 @@ impl Watch {
         self.cylinders.drop(no_brake);
         let cylinders = self.cylinders(now, inputs, asked);
         let (not_released, not_released_brakes) = self.not_released(now, inputs, asked);
-        Found {
+        EquipmentFailures {
             inverters,
             brake_units,
             cylinders,
@@ -165,7 +165,7 @@ impl Watch {
     }
 
     /// Cars whose cylinders hold less than they were asked for. Other brakes hide it.
-    fn cylinders(&mut self, now: Instant, inputs: &WatchInputs<'_>, asked: CarSet) -> CarSet {
+    fn cylinders(&mut self, now: Instant, inputs: &MonitorInputs<'_>, asked: CarSet) -> CarSet {
         let (mut low, mut full) = (CarSet::NONE, CarSet::NONE);
         if !inputs.equipment.other_brakes {
             let (air_n, demands_n) = (&inputs.equipment.air_n, inputs.air_n);
@@ -186,7 +186,7 @@ impl Watch {
     fn not_released(
         &mut self,
         now: Instant,
-        inputs: &WatchInputs<'_>,
+        inputs: &MonitorInputs<'_>,
         asked: CarSet,
     ) -> (CarSet, bool) {
         let nobody_brakes = inputs.nobody_brakes && !inputs.equipment.other_brakes;
@@ -198,7 +198,7 @@ impl Watch {
         }
         self.not_released.step(
             now,
-            &Asked {
+            &ReleaseCheck {
                 nobody_brakes,
                 by_force: inputs.forced_release,
                 pressed: pressed.without(pressed.without(asked)),

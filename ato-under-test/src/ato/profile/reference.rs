@@ -1,4 +1,4 @@
-//! Guidance of the controllers that follow a profile over time: S1's jerk-limited ramps between
+//! Reference of the controllers that follow a profile over time: S1's jerk-limited ramps between
 //! speeds, and the stop curve when that is lower.
 //!
 //! S1 has no station stop and a train that is never too heavy for its ramp. Added here: the stop by
@@ -13,18 +13,18 @@ use super::{Descent, JerkLimited, Setpoint};
 
 /// What a reference depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GuideInputs {
+pub struct ReferenceInputs {
     /// Speed to run at, m/s.
     pub cruise_mps: f64,
     /// The train.
     pub train: Setpoint,
-    /// Way to the stop point, m; `None` = not known.
+    /// Distance to the stop point, m; `None` = not known.
     pub to_stop_m: Option<f64>,
 }
 
 /// Where a train is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guidance {
+pub struct Reference {
     /// Speed and acceleration.
     pub setpoint: Setpoint,
     /// The stop curve rules.
@@ -35,7 +35,7 @@ pub struct Guidance {
 
 /// The generator of references.
 #[derive(Clone, Copy, Debug)]
-pub struct Guide {
+pub struct ReferenceGenerator {
     ramp: JerkLimited,
     descent: Descent,
     lead_mps: f64,
@@ -43,7 +43,7 @@ pub struct Guide {
     command_mps: Option<f64>,
 }
 
-impl Guide {
+impl ReferenceGenerator {
     /// A generator for a configuration.
     pub fn new(config: &AtoConfig) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Guide {
     }
 
     /// One cycle.
-    pub fn step(&mut self, inputs: GuideInputs) -> Guidance {
+    pub fn step(&mut self, inputs: ReferenceInputs) -> Reference {
         let command_mps = inputs.cruise_mps.max(0.0);
         self.keep_to_the_train(command_mps, inputs.train);
         let from = self.ramp.setpoint();
@@ -64,13 +64,15 @@ impl Guide {
             self.ramp.place(Setpoint::default());
         }
         let ramp = self.ramp.setpoint();
-        let stop = inputs.to_stop_m.map(|way| self.descent.follow(from, way));
+        let stop = inputs
+            .to_stop_m
+            .map(|distance| self.descent.follow(from, distance));
         let lower = stop
             .filter(|stop| stop.accel_mps2 < ramp.accel_mps2 || stop.speed_mps < ramp.speed_mps);
         if let Some(stop) = lower {
             self.ramp.place(stop);
         }
-        Guidance {
+        Reference {
             setpoint: self.ramp.setpoint(),
             stopping: lower.is_some(),
             most_mps2: self.descent.most_mps2(inputs.to_stop_m),
@@ -105,8 +107,8 @@ mod tests {
     use super::*;
     use crate::ato::tests::config;
 
-    fn inputs(cruise_mps: f64, speed_mps: f64, accel_mps2: f64) -> GuideInputs {
-        GuideInputs {
+    fn inputs(cruise_mps: f64, speed_mps: f64, accel_mps2: f64) -> ReferenceInputs {
+        ReferenceInputs {
             cruise_mps,
             train: Setpoint {
                 speed_mps,
@@ -120,37 +122,37 @@ mod tests {
     /// command.
     #[test]
     fn the_ramp_waits_for_a_slow_train() {
-        let mut guide = Guide::new(&config());
+        let mut generator = ReferenceGenerator::new(&config());
         let mut speed = 0.0_f64;
         for _ in 0..2400 {
-            let ramp = guide.step(inputs(15.0, speed, 0.8)).setpoint.speed_mps;
+            let ramp = generator.step(inputs(15.0, speed, 0.8)).setpoint.speed_mps;
             assert!(ramp <= 15.0 + 1e-9, "{ramp} m/s");
             assert!(
-                ramp <= speed + guide.lead_mps + 0.05,
+                ramp <= speed + generator.lead_mps + 0.05,
                 "{ramp} at {speed} m/s"
             );
             speed = (speed + 0.2 * CYCLE.as_secs()).min(ramp);
         }
-        assert_eq!(guide.ramp.setpoint().speed_mps, 15.0);
+        assert_eq!(generator.ramp.setpoint().speed_mps, 15.0);
     }
 
     /// A train at 0.01 m/s that brakes with 0.8 m/s²: without jerk above the limit it cannot end there.
     #[test]
     fn the_reference_is_never_below_standstill() {
-        let mut guide = Guide::new(&config());
+        let mut generator = ReferenceGenerator::new(&config());
         for _ in 0..40 {
-            let ramp = guide.step(inputs(0.0, 0.01, -0.8)).setpoint.speed_mps;
+            let ramp = generator.step(inputs(0.0, 0.01, -0.8)).setpoint.speed_mps;
             assert!(ramp >= 0.0, "{ramp} m/s");
         }
     }
 
     #[test]
     fn a_lower_command_begins_at_the_train() {
-        let mut guide = Guide::new(&config());
+        let mut generator = ReferenceGenerator::new(&config());
         for _ in 0..400 {
-            guide.step(inputs(15.0, 9.0, 0.0));
+            generator.step(inputs(15.0, 9.0, 0.0));
         }
-        let after = guide.step(inputs(10.0, 9.0, 0.0)).setpoint.speed_mps;
+        let after = generator.step(inputs(10.0, 9.0, 0.0)).setpoint.speed_mps;
         assert!((9.0..9.1).contains(&after), "{after} m/s");
     }
 }

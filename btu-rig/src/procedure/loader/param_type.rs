@@ -12,7 +12,7 @@ const LONGEST_NAME: usize = 200;
 
 /// What a parameter takes.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Want {
+pub(super) enum ParamType {
     Amount(Dimension),
     Number,
     /// A whole number from .. to.
@@ -46,7 +46,7 @@ pub(super) enum Want {
     Conditions,
 }
 
-impl Want {
+impl ParamType {
     pub(super) fn wanted(self) -> String {
         match self {
             Self::Amount(dimension) => dimension.wanted().into(),

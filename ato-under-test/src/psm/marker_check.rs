@@ -1,20 +1,20 @@
 //! Which marker is believed.
 //!
 //! A marker is believed within a window around its place: some metres, and what wheels can be wrong by
-//! since the last fix: a share of the way run, small once markers have calibrated them, and what
+//! since the last fix: a share of the distance run, small once markers have calibrated them, and what
 //! they are thought to have slid. A pulse outside its window
 //! corrects nothing. Two such pulses in order, as far apart as their places, are believed
 //! together: then not the markers were wrong but the position. One alone that comes early, by no
-//! more than uncalibrated wheels of the wrong size make of the way, tells how much further the train
+//! more than uncalibrated wheels of the wrong size make of the distance, tells how much further the train
 //! may be ([`further_m`]).
 
 use protocol::config::MarkerConfig;
 use protocol::line::Section;
 
-/// Share of the way by which wheels of another size than the configured one may be wrong, so that two
-/// sightings still agree [default]: a wheel changed without telling the unit, with something to spare.
+/// Share of the distance by which wheels of another size than the configured one may be wrong, so that two
+/// detections still agree [default]: a wheel changed without telling the unit, with something to spare.
 const WRONG_WHEEL: f64 = 0.15;
-/// Way for which a sighting away from its place is remembered, m [default].
+/// Distance for which a detection away from its place is remembered, m [default].
 const REMEMBERED_M: f64 = 600.0;
 
 /// A place at which the train is known to have been.
@@ -22,46 +22,46 @@ const REMEMBERED_M: f64 = 600.0;
 pub struct Fix {
     /// Where, m from the section's start.
     pub place_m: f64,
-    /// Way the odometer told there, m.
-    pub way_m: f64,
+    /// Distance the odometer told there, m.
+    pub distance_m: f64,
     /// Marker that told it, 0 = the section's start.
     pub marker: u8,
 }
 
-/// A marker pulse and the way the odometer told when it came.
+/// A marker pulse and the distance the odometer told when it came.
 #[derive(Clone, Copy, Debug)]
-pub struct Sighting {
+pub struct MarkerDetection {
     /// 1 to 4.
     pub marker: u8,
     /// m.
-    pub way_m: f64,
-    /// Way run on sliding wheels from the fix until then, m.
+    pub distance_m: f64,
+    /// Distance run on sliding wheels from the fix until then, m.
     pub slid_m: f64,
 }
 
-/// How the way told is related to the way run since the last fix.
+/// How the distance told is related to the distance run since the last fix.
 #[derive(Clone, Copy, Debug)]
 pub struct Wheels {
-    /// Way run for a way told.
+    /// Distance run for a distance told.
     pub scale: f64,
-    /// Share of the way run by which that may be wrong.
-    pub doubt: f64,
-    /// Way run on sliding wheels, m.
+    /// Share of the distance run by which that may be wrong.
+    pub uncertainty: f64,
+    /// Distance run on sliding wheels, m.
     pub slid_m: f64,
 }
 
 impl Wheels {
-    /// Way run for a way told, m.
+    /// Distance run for a distance told, m.
     pub fn run_m(&self, told_m: f64) -> f64 {
         told_m * self.scale + self.slid_m
     }
 }
 
-/// What is made of a sighting.
+/// What is made of a detection.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Judgement {
+pub enum MarkerCheck {
     /// Its place is the train's position.
-    Believed,
+    Accepted,
     /// Not its turn: one that has been passed, or one at another's place.
     OutOfOrder,
     /// Away from its place by this, m, position ahead positive.
@@ -75,66 +75,66 @@ pub fn window_m(fix: &Fix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -
     } else {
         config.window_m
     };
-    let share = config.window_share.min(wheels.doubt);
+    let share = config.window_share.min(wheels.uncertainty);
     least + share * libm::fabs(run_m) + wheels.slid_m
 }
 
-/// The sighting that was away from its place before this one.
+/// The detection that was away from its place before this one.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Doubtful {
+pub struct PendingDetection {
     /// It, none since the fix.
-    pub sighting: Option<Sighting>,
+    pub detection: Option<MarkerDetection>,
     /// A marker is overdue: even the fix may have been wrong.
     pub unsure: bool,
 }
 
-/// Judges a sighting.
+/// Judges a detection.
 pub fn judge(
     section: &Section,
     fix: &Fix,
-    sighting: Sighting,
-    doubtful: Doubtful,
+    detection: MarkerDetection,
+    pending: PendingDetection,
     wheels: &Wheels,
     config: &MarkerConfig,
-) -> Judgement {
-    let Some(place_m) = place_m(section, sighting.marker) else {
-        return Judgement::OutOfOrder;
+) -> MarkerCheck {
+    let Some(place_m) = place_m(section, detection.marker) else {
+        return MarkerCheck::OutOfOrder;
     };
-    let run_m = wheels.run_m(sighting.way_m - fix.way_m);
+    let run_m = wheels.run_m(detection.distance_m - fix.distance_m);
     let at_m = fix.place_m + run_m;
     let window_m = window_m(fix, run_m, wheels, config);
     let near = |place_m: f64| libm::fabs(at_m - place_m) <= window_m;
     if near(place_m) {
-        return if sighting.marker > fix.marker {
-            Judgement::Believed
+        return if detection.marker > fix.marker {
+            MarkerCheck::Accepted
         } else {
-            Judgement::OutOfOrder
+            MarkerCheck::OutOfOrder
         };
     }
-    let onward = sighting.marker > fix.marker || doubtful.unsure;
-    let agrees = |first| agree(section, first, sighting, wheels, config);
-    if onward && doubtful.sighting.is_some_and(agrees) {
-        return Judgement::Believed;
+    let onward = detection.marker > fix.marker || pending.unsure;
+    let agrees = |first| agree(section, first, detection, wheels, config);
+    if onward && pending.detection.is_some_and(agrees) {
+        return MarkerCheck::Accepted;
     }
     if self::place_m(section, fix.marker + 1).is_some_and(near) {
-        return Judgement::OutOfOrder;
+        return MarkerCheck::OutOfOrder;
     }
-    Judgement::Away(at_m - place_m)
+    MarkerCheck::Away(at_m - place_m)
 }
 
-/// How much further than it seems the train may be after a sighting `error_m` from its place, m: wheels
+/// How much further than it seems the train may be after a detection `error_m` from its place, m: wheels
 /// greater than configured hear every marker early. Calibrated wheels do not, and the next marker alone
 /// tells it.
 pub fn further_m(
     fix: &Fix,
-    sighting: Sighting,
+    detection: MarkerDetection,
     error_m: f64,
     wheels: &Wheels,
     config: &MarkerConfig,
 ) -> f64 {
-    let run_m = wheels.run_m(sighting.way_m - fix.way_m);
-    let calibrated = wheels.doubt < config.window_share;
-    let possible = sighting.marker == fix.marker + 1 && -error_m <= WRONG_WHEEL * run_m;
+    let run_m = wheels.run_m(detection.distance_m - fix.distance_m);
+    let calibrated = wheels.uncertainty < config.window_share;
+    let possible = detection.marker == fix.marker + 1 && -error_m <= WRONG_WHEEL * run_m;
     if possible && !calibrated {
         (-error_m).max(0.0)
     } else {
@@ -142,16 +142,16 @@ pub fn further_m(
     }
 }
 
-/// Two sightings in order and as far apart as their places.
+/// Two detections in order and as far apart as their places.
 fn agree(
     section: &Section,
-    first: Sighting,
-    second: Sighting,
+    first: MarkerDetection,
+    second: MarkerDetection,
     wheels: &Wheels,
     config: &MarkerConfig,
 ) -> bool {
     let places = place_m(section, first.marker).zip(place_m(section, second.marker));
-    let told_m = second.way_m - first.way_m;
+    let told_m = second.distance_m - first.distance_m;
     let slid_m = second.slid_m - first.slid_m;
     first.marker < second.marker
         && libm::fabs(told_m) <= REMEMBERED_M
@@ -186,63 +186,63 @@ mod tests {
         let [_, second, third, fourth] = section.markers_m;
         let fix = Fix {
             place_m: second,
-            way_m: 0.0,
+            distance_m: 0.0,
             marker: 2,
         };
-        let at = |marker, position_m: f64| Sighting {
+        let at = |marker, position_m: f64| MarkerDetection {
             marker,
-            way_m: position_m - second,
+            distance_m: position_m - second,
             slid_m: 0.0,
         };
-        let judged_with = |wheels, sighting| {
-            let doubtful = Doubtful::default();
-            judge(section, &fix, sighting, doubtful, &wheels, &config)
+        let judged_with = |wheels, detection| {
+            let pending = PendingDetection::default();
+            judge(section, &fix, detection, pending, &wheels, &config)
         };
         let wheels = Wheels {
             scale: 1.0,
-            doubt: 0.004,
+            uncertainty: 0.004,
             slid_m: 0.0,
         };
-        let judged = |sighting, doubtful| {
-            let doubtful = Doubtful {
-                sighting: doubtful,
+        let judged = |detection, pending| {
+            let pending = PendingDetection {
+                detection: pending,
                 unsure: false,
             };
-            judge(section, &fix, sighting, doubtful, &wheels, &config)
+            judge(section, &fix, detection, pending, &wheels, &config)
         };
-        assert_eq!(judged(at(3, third + 0.8), None), Judgement::Believed);
+        assert_eq!(judged(at(3, third + 0.8), None), MarkerCheck::Accepted);
         // Wheels that nothing has calibrated can be wrong by more, and so can those that slid.
         let late = at(3, third + 2.0);
-        assert_eq!(judged(late, None), Judgement::Away(2.0));
+        assert_eq!(judged(late, None), MarkerCheck::Away(2.0));
         let worn = Wheels {
-            doubt: 0.03,
+            uncertainty: 0.03,
             ..wheels
         };
-        assert_eq!(judged_with(worn, late), Judgement::Believed);
+        assert_eq!(judged_with(worn, late), MarkerCheck::Accepted);
         let slid = Wheels {
             slid_m: 2.0,
             ..wheels
         };
-        assert_eq!(judged_with(slid, at(3, third - 2.9)), Judgement::Believed);
-        assert_eq!(judged(at(4, fourth - 0.8), None), Judgement::Believed);
-        assert_eq!(judged(at(2, second + 0.5), None), Judgement::OutOfOrder);
-        assert_eq!(judged(at(1, third), None), Judgement::OutOfOrder);
+        assert_eq!(judged_with(slid, at(3, third - 2.9)), MarkerCheck::Accepted);
+        assert_eq!(judged(at(4, fourth - 0.8), None), MarkerCheck::Accepted);
+        assert_eq!(judged(at(2, second + 0.5), None), MarkerCheck::OutOfOrder);
+        assert_eq!(judged(at(1, third), None), MarkerCheck::OutOfOrder);
         let early = judged(at(4, fourth - 10.0), None);
-        assert!(matches!(early, Judgement::Away(m) if (m + 10.0).abs() < 1e-9));
-        // A train that slid 12 m: both markers seem early, by the same way.
+        assert!(matches!(early, MarkerCheck::Away(m) if (m + 10.0).abs() < 1e-9));
+        // A train that slid 12 m: both markers seem early, by the same distance.
         let slid = at(3, third - 12.0);
-        assert!(matches!(judged(slid, None), Judgement::Away(_)));
+        assert!(matches!(judged(slid, None), MarkerCheck::Away(_)));
         let next = at(4, fourth - 12.2);
-        assert_eq!(judged(next, Some(slid)), Judgement::Believed);
+        assert_eq!(judged(next, Some(slid)), MarkerCheck::Accepted);
         // What slid between the two was run, too.
-        let tells_less = Sighting {
+        let tells_less = MarkerDetection {
             slid_m: 8.0,
             ..at(4, fourth - 20.2)
         };
-        assert_eq!(judged(tells_less, Some(slid)), Judgement::Believed);
+        assert_eq!(judged(tells_less, Some(slid)), MarkerCheck::Accepted);
         assert!(matches!(
             judged(at(4, fourth - 20.2), Some(slid)),
-            Judgement::Away(_)
+            MarkerCheck::Away(_)
         ));
     }
 
@@ -256,33 +256,33 @@ mod tests {
         let section = line.section(61).unwrap();
         let wheels = Wheels {
             scale: 1.0,
-            doubt: 0.004,
+            uncertainty: 0.004,
             slid_m: 0.0,
         };
-        let at = |marker, way_m| Sighting {
+        let at = |marker, distance_m| MarkerDetection {
             marker,
-            way_m,
+            distance_m,
             slid_m: 0.0,
         };
         let judged = |section: &Section, believed: u8, unsure| {
             let [first, second, ..] = section.markers_m;
             let fix = Fix {
                 place_m: section.markers_m[2],
-                way_m: 0.0,
+                distance_m: 0.0,
                 marker: believed,
             };
-            let doubtful = Doubtful {
-                sighting: Some(at(1, 40.0)),
+            let pending = PendingDetection {
+                detection: Some(at(1, 40.0)),
                 unsure,
             };
             let pair = at(2, 40.0 + second - first);
-            judge(section, &fix, pair, doubtful, &wheels, &config)
+            judge(section, &fix, pair, pending, &wheels, &config)
         };
-        assert!(matches!(judged(section, 3, false), Judgement::Away(_)));
-        assert_eq!(judged(section, 3, true), Judgement::Believed);
-        assert_eq!(judged(section, 1, false), Judgement::Believed);
+        assert!(matches!(judged(section, 3, false), MarkerCheck::Away(_)));
+        assert_eq!(judged(section, 3, true), MarkerCheck::Accepted);
+        assert_eq!(judged(section, 1, false), MarkerCheck::Accepted);
         let mut long = section.clone();
         long.markers_m[0] -= 200.0;
-        assert!(matches!(judged(&long, 1, false), Judgement::Away(_)));
+        assert!(matches!(judged(&long, 1, false), MarkerCheck::Away(_)));
     }
 }

@@ -1,0 +1,160 @@
+//! Frames in and out of the unit: requests of the tester, inputs, TCMS, and station data from the loop.
+//! Injected faults of receivers and transmitters act here.
+
+use alloc::vec::Vec;
+
+use protocol::injection::{Effect, Place};
+use protocol::link::Received;
+use protocol::message::{Channel, Message, TcmsToAtc, TrainLines, TwcWayside};
+use protocol::{Duration, Instant};
+
+use super::{Unit, report};
+use crate::com::ArmConditions;
+use crate::twc::TrainState;
+
+/// Bits that a damaged frame has wrong, in one byte.
+const DAMAGE: u8 = 0x12;
+
+impl Unit {
+    /// Latches what came; answers requests of the tester.
+    pub(super) fn receive_frames(&mut self, now: Instant, out: &mut Vec<u8>) {
+        while let Some(Received { header, message }) = self.link.poll(now) {
+            match message {
+                Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
+                Message::TcmsToAtc(frame) => self.on_tcms(now, frame),
+                Message::TwcWayside(data) => self.take_station(now, Some(header.seq), data, out),
+                Message::Identify(_) => {
+                    let identity = report::identity(self, now);
+                    self.link.send(now, &identity, out);
+                }
+                other if header.channel == Channel::Ptu => {
+                    let conditions = self.arm_conditions();
+                    let parts = (&mut self.board, &mut self.log);
+                    let request = (header.seq, other);
+                    self.maintenance
+                        .handle(now, request, conditions, parts, &mut self.replies);
+                }
+                _ => {}
+            }
+        }
+        while let Some((seq, data)) = self.late_stations.pop(now) {
+            self.handle_station(now, seq, data, out);
+        }
+        let conditions = self.arm_conditions();
+        let notice = self
+            .maintenance
+            .step(now, conditions, &mut self.board, &mut self.log);
+        self.replies.extend(notice);
+        for reply in self.replies.drain(..) {
+            self.link.send(now, &reply, out);
+        }
+    }
+
+    fn on_tcms(&mut self, now: Instant, frame: TcmsToAtc) {
+        if !self.loses(Place::TcmsReceiver) && !self.tcms.take(now, frame) {
+            self.reject_watch.count_lost(Channel::Tcms);
+        }
+    }
+
+    /// Station data from the loop (`seq` given, answered) or from the TWC TEST module.
+    pub(super) fn take_station(
+        &mut self,
+        now: Instant,
+        seq: Option<u16>,
+        mut data: TwcWayside,
+        out: &mut Vec<u8>,
+    ) {
+        // The TEST module is wired to the modem: only what comes from the loop passes the antenna.
+        if seq.is_some() && self.loses(Place::TwcAntenna) {
+            return;
+        }
+        if self.loses(Place::FskReceiver) {
+            return;
+        }
+        // While the TEST module talks to the modem the loop is not heard.
+        if seq.is_some() && self.board.makes_twc() {
+            return;
+        }
+        match self.faults.at(Place::TwcCpu) {
+            Some(Effect::Dead) => return,
+            Some(Effect::Delay { ms }) => {
+                let due = now + Duration::from_ms(u64::from(ms));
+                return self.late_stations.push(due, (seq, data));
+            }
+            Some(Effect::Offset { by }) => {
+                data.station = data.station.wrapping_add_signed(by as i16);
+            }
+            _ => {}
+        }
+        self.handle_station(now, seq, data, out);
+    }
+
+    /// Takes station data and answers those from the loop.
+    fn handle_station(
+        &mut self,
+        now: Instant,
+        seq: Option<u16>,
+        data: TwcWayside,
+        out: &mut Vec<u8>,
+    ) {
+        self.twc.take(now, data, &self.setup.line, &mut self.log);
+        let Some(seq) = seq else { return };
+        let answer = self.twc.answer(seq, &data, self.train_state());
+        if !self.loses(Place::TwcAntenna) {
+            self.send_through(Place::FskTransmitter, now, &answer.into(), out);
+        }
+    }
+
+    /// A frame is lost at `place`; one that arrives damaged is counted like any rejected frame.
+    pub(super) fn loses(&mut self, place: Place) -> bool {
+        let lost = self.faults.loses(place);
+        let damaged = lost && matches!(self.faults.at(place), Some(Effect::BitErrors { .. }));
+        match place {
+            Place::TcmsReceiver if damaged => self.reject_watch.count_lost(Channel::Tcms),
+            Place::FskReceiver | Place::TwcAntenna if damaged => {
+                self.reject_watch.count_lost(Channel::Twc);
+            }
+            _ => {}
+        }
+        lost
+    }
+
+    /// Sends by a modem or line driver that may lose or damage the frame.
+    pub(super) fn send_through(
+        &mut self,
+        place: Place,
+        now: Instant,
+        message: &Message,
+        out: &mut Vec<u8>,
+    ) {
+        if matches!(self.faults.at(place), Some(Effect::Dead)) {
+            return;
+        }
+        let begin = out.len();
+        self.link.send(now, message, out);
+        if self.faults.loses(place) {
+            let middle = (begin + out.len()) / 2;
+            if let Some(byte) = out.get_mut(middle) {
+                *byte ^= DAMAGE;
+            }
+        }
+    }
+
+    fn train_state(&self) -> TrainState {
+        TrainState {
+            mode: self.atp.sequence().mode(),
+            doors_closed: self.inputs.lines.contains(TrainLines::DOORS_CLOSED),
+            aligned: self.aligned(),
+            standstill: self.atp.tachometers().standstill(),
+            speed: self.atp.tachometers().speed(),
+        }
+    }
+
+    fn arm_conditions(&self) -> ArmConditions {
+        ArmConditions {
+            started: self.self_tester.finished(),
+            key_on: self.inputs.lines.contains(TrainLines::MAINTENANCE_KEY),
+            standing: self.atp.tachometers().train_stands(),
+        }
+    }
+}

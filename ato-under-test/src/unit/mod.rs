@@ -1,0 +1,267 @@
+//! The whole unit and its 10 ms scan, [`Unit::step`]: frames in, inputs, self-test, ATP, position, every
+//! fifth scan the 50 ms cycle (`cycle`), outputs. `frames` handles the links, `report` builds what the
+//! unit says of itself.
+
+mod cycle;
+mod frames;
+mod report;
+mod self_test;
+
+use alloc::vec::Vec;
+
+use protocol::event::Event;
+use protocol::injection::{Effect, Place};
+use protocol::link::{End, Link};
+use protocol::message::{IoOutput, Message, Mode, Outputs, TwcWayside};
+use protocol::{Duration, Instant};
+
+use crate::ato::{Ato, AtoOutputs};
+use crate::atp::{Atp, ScanContext};
+use crate::com::{IoImage, Maintenance, RejectWatch, TcmsLink};
+use crate::front_end::{
+    DelayQueue, EffortOutput, Faults, FrontEnd, OutputStage, PowerAndClock, Supply,
+    apply_stored_data_faults,
+};
+use crate::kernel::{EventLog, FreezeFrame, RunRecord, SelfTester, Watchdog};
+use crate::psm::{Locator, Movement, Tra};
+use crate::setup::Setup;
+use crate::signals::Inputs;
+use crate::test_board::TestBoard;
+use crate::twc::Twc;
+
+/// Scans in a control cycle.
+const SCANS_PER_CYCLE: u8 = 5;
+
+/// An on-board ATC unit.
+#[derive(Debug)]
+pub struct Unit {
+    setup: Setup,
+    link: Link,
+    log: EventLog,
+    maintenance: Maintenance,
+    board: TestBoard,
+    self_tester: SelfTester,
+    atp: Atp,
+    twc: Twc,
+    locator: Locator,
+    tra: Tra,
+    tcms: TcmsLink,
+    ato_outputs: AtoOutputs,
+    effort_output: EffortOutput,
+    inputs: Inputs,
+    image: IoImage,
+    ato: Ato,
+    /// Cycles ATO's processor has run, wrapping.
+    ato_cycles: u8,
+    ato_watchdog: Watchdog,
+    run_record: RunRecord,
+    faults: Faults,
+    power: PowerAndClock,
+    /// Station data that a slow TWC CPU has not handed on yet.
+    late_stations: DelayQueue<(Option<u16>, TwcWayside)>,
+    front_end: FrontEnd,
+    output_stage: OutputStage,
+    contacts: Outputs,
+    reject_watch: RejectWatch,
+    scan: u8,
+    replies: Vec<Message>,
+}
+
+impl Unit {
+    /// Powers a unit up at [`Instant::ZERO`].
+    pub fn new(setup: Setup) -> Self {
+        let faults = Faults::new(&setup.faults, setup.seed ^ 0x5EED);
+        Self::powered_up(apply_stored_data_faults(setup), faults)
+    }
+
+    fn powered_up(setup: Setup, faults: Faults) -> Self {
+        let config = &setup.config;
+        let link = &config.link;
+        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
+        let mut log = EventLog::default();
+        log.push(Instant::ZERO, Event::PowerUp, 0);
+        Self {
+            link: Link::new(End::Unit),
+            log,
+            maintenance: Maintenance::new(ms(link.tester_timeout_ms), setup.seed),
+            board: TestBoard::new(config.metres_per_pulse()),
+            self_tester: SelfTester::new(
+                Instant::ZERO,
+                ms(config.start.self_test_ms),
+                config,
+                &setup.line,
+            ),
+            atp: Atp::new(config),
+            twc: Twc::new(ms(link.twc_timeout_ms)),
+            locator: Locator::new(config),
+            tra: Tra::new(ms(config.marker.tra_test_ms)),
+            tcms: TcmsLink::new(ms(link.tcms_timeout_ms), config.ato.train.empty_kg),
+            ato: Ato::new(config),
+            ato_cycles: 0,
+            ato_watchdog: Watchdog::default(),
+            run_record: RunRecord::default(),
+            ato_outputs: AtoOutputs::default(),
+            effort_output: EffortOutput::default(),
+            inputs: Inputs::default(),
+            image: IoImage::new(ms(link.io_timeout_ms)),
+            faults,
+            power: PowerAndClock::default(),
+            late_stations: DelayQueue::default(),
+            front_end: FrontEnd::new(config.metres_per_pulse()),
+            output_stage: OutputStage::default(),
+            contacts: Outputs::empty(),
+            reject_watch: RejectWatch::new(link.rejected_per_10s),
+            scan: 0,
+            replies: Vec::new(),
+            setup,
+        }
+    }
+
+    /// Takes bytes from the wire; they are acted on in the next scan.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        if !self.power.down() {
+            self.link.push(bytes);
+        }
+    }
+
+    /// Another tester is connected from now on: nothing the last one sent is continued.
+    pub fn begin_anew(&mut self) {
+        self.link.reset_connection();
+    }
+
+    /// Frames accepted since power-up, on all channels.
+    pub fn frames_accepted(&self) -> u64 {
+        self.link.counters().accepted_total()
+    }
+
+    /// One scan, every 10 ms; frames to send are appended to `out`.
+    pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
+        self.faults.step(now);
+        match self.power.supply(now, &mut self.faults) {
+            Supply::Down => return,
+            Supply::Back => self.restart(now),
+            Supply::Up => {}
+        }
+        let clock_rate = self.faults.gain(Place::Clock);
+        let now = self.power.own(now, clock_rate);
+        self.image.set_clock_rate(clock_rate);
+        self.receive_frames(now, out);
+        self.read_inputs(now);
+        self.test_self(now);
+        self.protect(now);
+        self.locate(now);
+        if self.scan == 0 {
+            self.cycle(now, out);
+        }
+        self.scan = (self.scan + 1) % SCANS_PER_CYCLE;
+        self.drive_outputs(now, out);
+    }
+
+    /// Begins anew after a dip of the supply; the hardware, and what is wrong with it, stays the same.
+    fn restart(&mut self, now: Instant) {
+        let faults = core::mem::replace(&mut self.faults, Faults::new(&[], 0));
+        *self = Self::powered_up(self.setup.clone(), faults);
+        self.power = PowerAndClock::restarted(now);
+        self.log.push(Instant::ZERO, Event::SupplyDip, 0);
+    }
+
+    /// Reads all inputs through antennas, sensors and TEST board.
+    fn read_inputs(&mut self, now: Instant) {
+        self.image.step(now);
+        self.tcms.step(now);
+        self.board.set_dead(matches!(
+            self.faults.at(Place::TestBoard),
+            Some(Effect::Dead)
+        ));
+        let built_in = (!self.self_tester.finished())
+            .then(|| self.self_test_code())
+            .flatten();
+        let (image, board) = (&self.image, &mut self.board);
+        self.inputs = self
+            .front_end
+            .scan(now, image, board, built_in, &mut self.faults);
+    }
+
+    /// One scan of ATP.
+    fn protect(&mut self, now: Instant) {
+        let context = ScanContext {
+            vital_passed: self.self_tester.vital_passed(),
+            started: self.self_tester.finished(),
+            ever_alive: self.image.ever_heard(),
+            aligned: self.aligned(),
+            at_platform: self.at_platform(),
+            door_side: self
+                .twc
+                .data()
+                .map(|data| data.door_side)
+                .unwrap_or_default(),
+            twc_up: self.twc.up(),
+            tcms_up: self.tcms.alive(),
+            ato_ready: self.ato_outputs.ready,
+        };
+        self.log.freeze(FreezeFrame {
+            speed: self.atp.tachometers().speed(),
+            limit: self.atp.limit(),
+            position_m: self.locator.position_m(),
+            mode: self.atp.sequence().mode(),
+            eb_cause: self.atp.brake().cause(),
+        });
+        self.atp.scan(
+            now,
+            &self.inputs,
+            context,
+            &self.setup.config,
+            &mut self.log,
+        );
+    }
+
+    fn locate(&mut self, now: Instant) {
+        let tachometers = self.atp.tachometers();
+        let channel = tachometers.distance_channel();
+        let pulses = &self.inputs.pulses[channel];
+        let movement = Movement {
+            moved_m: tachometers.moved_m(),
+            edge_age_s: pulses.sampled_at.since(pulses.edge_at).as_secs(),
+            speed_mps: tachometers.channel(channel).mps(),
+            standstill: tachometers.standstill(),
+            driven: self.atp.sequence().mode() == Mode::AutomaticRun,
+        };
+        self.locator
+            .step(now, movement, self.inputs.marker, &mut self.log);
+    }
+
+    fn aligned(&self) -> bool {
+        self.atp.tachometers().standstill()
+            && self.locator.aligned(self.setup.config.doors.aligned_m)
+    }
+
+    /// On the arrival station's loop, with valid station data.
+    fn at_platform(&self) -> bool {
+        let on_loop = self.twc.data().zip(self.locator.section());
+        self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
+    }
+
+    /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
+    fn holds(&self) -> bool {
+        let left_alone = self.atp.sequence().failed()
+            && self.atp.tachometers().standstill()
+            && self.inputs.controller == 0;
+        self.ato_outputs.holding_brake || left_alone
+    }
+
+    /// Drives the contacts and tells the bench what they do.
+    fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
+        let healthy = self.self_tester.vital_passed() && self.inputs.alive;
+        let mut wanted = self.atp.outputs(healthy);
+        wanted.set(Outputs::HOLDING_BRAKE, self.holds());
+        self.contacts = self.output_stage.drive(now, wanted, &self.faults);
+        let output = IoOutput {
+            outputs: self.contacts,
+            limit_cms: self.atp.limit().to_cms(),
+            speed_cms: self.atp.tachometers().speed().to_cms(),
+            marker: self.locator.last_marker(),
+            marker_count: self.locator.count(),
+        };
+        self.link.send(now, &output.into(), out);
+    }
+}

@@ -1,0 +1,192 @@
+//! A stand-in for bench and unit whose signals the test sets by hand, and the run of one script on it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use btu_rig::procedure::loader::load;
+use btu_rig::procedure::{
+    Driver, EventSource, Evidence, Poll, Procedure, Refusal, RunEvent, RunOptions, Runner,
+    StepResult, UnitEvent, Verdict,
+};
+use btu_rig::stimulus::Stimulus;
+use btu_rig::train::TrainData;
+use protocol::config::UnitConfig;
+use protocol::event::Event;
+use protocol::line::Line;
+use protocol::message::{EbCause, Mode};
+use protocol::signal::{Sample, Signal};
+use protocol::{Instant, SCAN, Speed};
+
+/// Scans after which a run that does not end is a bug.
+const MOST_SCANS: u32 = 60_000;
+
+fn procedure(script: &str) -> Arc<Procedure> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let unit = UnitConfig::from_toml(&read("units/sg100.toml")).unwrap();
+    let line = Line::from_toml(&read("lines/line8.toml")).unwrap();
+    let scripts = BTreeMap::from([("test.star".to_owned(), script.to_owned())]);
+    let loaded = load(&scripts, &unit, &line, &TrainData::line6());
+    assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
+    Arc::clone(&loaded.procedures[0])
+}
+
+/// Records what is applied; says what it is told to.
+#[derive(Debug, Default)]
+pub struct Fake {
+    pub applied: Vec<Stimulus>,
+    pub refuse: bool,
+    pub unsettled: bool,
+    pub made_safe: u32,
+    pub never_safe: bool,
+    pub evidence: Evidence,
+}
+
+impl Driver for Fake {
+    fn apply(&mut self, _: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
+        self.applied.push(*stimulus);
+        if self.refuse {
+            return Err(Refusal("unit refused arming: key_off".into()));
+        }
+        Ok(())
+    }
+
+    fn settled(&mut self) -> Result<bool, Refusal> {
+        Ok(!self.unsettled)
+    }
+
+    fn make_safe(&mut self, _: Instant) {
+        self.made_safe += 1;
+    }
+
+    fn safe(&self) -> bool {
+        !self.never_safe
+    }
+
+    fn evidence(&self) -> Evidence {
+        self.evidence
+    }
+}
+
+/// What a test may change before each scan.
+pub struct World<'a> {
+    pub scan: u32,
+    pub sample: Sample,
+    pub events: Vec<UnitEvent>,
+    pub link_error: Option<&'static str>,
+    pub fake: Fake,
+    pub runner: &'a mut Runner,
+}
+
+impl World<'_> {
+    pub fn ms(&self) -> u32 {
+        self.scan * 10
+    }
+
+    pub fn log(&mut self, event: Event) {
+        self.log_by(EventSource::Unit, event);
+    }
+
+    pub fn log_by(&mut self, source: EventSource, event: Event) {
+        self.events.push(UnitEvent {
+            source,
+            index: 0,
+            code: event.definition().code,
+            at_ms: 0,
+            parameter: 0,
+            speed: Speed::ZERO,
+            limit: Speed::ZERO,
+            position_m: 0.0,
+            mode: Mode::Manual,
+            eb_cause: EbCause::None,
+        });
+    }
+}
+
+pub struct Outcome {
+    pub events: Vec<RunEvent>,
+    pub fake: Fake,
+    pub scans: u32,
+}
+
+impl Outcome {
+    pub fn steps(&self) -> Vec<&StepResult> {
+        let steps = self.events.iter().filter_map(|event| match event {
+            RunEvent::StepFinished(result) => Some(result),
+            _ => None,
+        });
+        steps.collect()
+    }
+
+    /// Name, verdict and message of each step.
+    pub fn summary(&self) -> Vec<(&str, Verdict, &str)> {
+        self.steps()
+            .into_iter()
+            .map(|r| (r.name.as_str(), r.verdict, r.message.as_str()))
+            .collect()
+    }
+
+    pub fn finished(&self) -> (Verdict, &str) {
+        match self.events.last() {
+            Some(RunEvent::ProcedureFinished {
+                verdict, message, ..
+            }) => (*verdict, message),
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+pub fn run_with(
+    script: &str,
+    options: RunOptions,
+    each_scan: impl FnMut(&mut World<'_>),
+) -> Outcome {
+    run_round(script, options, 0, each_scan)
+}
+
+pub fn run_round(
+    script: &str,
+    options: RunOptions,
+    round: u32,
+    mut each_scan: impl FnMut(&mut World<'_>),
+) -> Outcome {
+    let mut runner = Runner::new(procedure(script), options, round);
+    let mut sample = Sample::default();
+    sample.set(Signal::Eb, 0.0);
+    sample.set(Signal::Speed, 0.0);
+    let (mut fake, mut events) = (Fake::default(), Vec::new());
+    for scan in 0..MOST_SCANS {
+        let mut world = World {
+            scan,
+            sample: std::mem::take(&mut sample),
+            events: Vec::new(),
+            link_error: None,
+            fake: std::mem::take(&mut fake),
+            runner: &mut runner,
+        };
+        each_scan(&mut world);
+        let (logged, link_error) = (world.events, world.link_error);
+        (sample, fake) = (world.sample, world.fake);
+        let now = Instant::from_us(u64::from(scan) * SCAN.as_us());
+        let poll = runner.advance(now, &sample, &logged, link_error, &mut fake);
+        events.extend(runner.take_events());
+        if poll == Poll::Done {
+            return Outcome {
+                events,
+                fake,
+                scans: scan,
+            };
+        }
+    }
+    panic!("the run does not end: {:?}", events.last());
+}
+
+pub fn run(script: &str, each_scan: impl FnMut(&mut World<'_>)) -> Outcome {
+    run_with(script, RunOptions::default(), each_scan)
+}
+
+pub const HEAD: &str =
+    "procedure(title = 'x', setup = [cab.key(True)], cleanup = [cab.key(False)])\n";
+pub const ON: Stimulus = Stimulus::MaintenanceKey { on: true };
+pub const OFF: Stimulus = Stimulus::MaintenanceKey { on: false };

@@ -1,0 +1,257 @@
+//! What the runner may not judge: a lost link, a stalled tester, an unread log, lost frames.
+
+use btu_rig::procedure::{LogState, RunEvent, Verdict};
+use protocol::Duration;
+use protocol::event::Event;
+use protocol::message::SelfTest;
+use protocol::signal::Signal;
+
+use super::stand_in::{HEAD, OFF, ON, World, run};
+
+#[test]
+fn a_lost_link_ends_the_step_as_an_error_and_skips_the_rest() {
+    let script = format!("{HEAD}step('a', do = wait(s(5)))\nstep('b')");
+    let outcome = run(&script, |world| {
+        if world.ms() >= 1000 {
+            world.link_error = Some("unit silent for 1.0 s");
+        }
+    });
+    let text = "link to the unit: unit silent for 1.0 s";
+    let reason = format!("not run, {text}");
+    let expected = [
+        ("a", Verdict::Error, text),
+        ("b", Verdict::Skipped, &reason),
+    ];
+    assert_eq!(outcome.summary(), expected);
+    assert_eq!(outcome.finished(), (Verdict::Error, text));
+    assert_eq!(outcome.fake.applied, [ON, OFF]);
+    assert!(outcome.scans < 110);
+}
+
+/// Goal: a computer that stands still for a moment is no fault of the unit. Method: brake and event that
+/// come in with the scan after it, as the unit's inputs were gone meanwhile.
+#[test]
+fn a_stalled_tester_reports_an_error_and_no_fault() {
+    let script = format!(
+        "{HEAD}step('a')\nstep('b', do = wait(s(5)), measure = value('v', speed, low = kmh(5)))\nstep('c')"
+    );
+    let outcome = run(&script, |world| {
+        if world.ms() == 1000 {
+            world.runner.bench_stalled("held up for 0.50 s".into());
+            world.sample.set(Signal::Eb, 1.0);
+            world.log(Event::InputsLost);
+        }
+    });
+    let text = "held up for 0.50 s";
+    let expected = [
+        ("a", Verdict::Passed, ""),
+        ("b", Verdict::Error, text),
+        ("c", Verdict::Skipped, "not run, held up for 0.50 s"),
+    ];
+    assert_eq!(outcome.summary(), expected);
+    assert_eq!(outcome.finished(), (Verdict::Error, text));
+    assert_eq!(outcome.steps()[1].measurements[0].value, None);
+    let blamed = |event: &RunEvent| {
+        matches!(
+            event,
+            RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
+        )
+    };
+    assert!(!outcome.events.iter().any(blamed));
+    assert_eq!(outcome.fake.applied, [ON, OFF], "clean-up is run");
+}
+
+/// Goal: no verdict on time from a bench that was late. Method: the same failures, in time and behind.
+#[test]
+fn what_fails_while_the_bench_is_behind_is_an_error_unless_the_unit_said_so() {
+    let script =
+        format!("{HEAD}step('a', do = wait(s(1)), expect = becomes(eb, 'applied', within = s(1)))");
+    let verdict_of = |behind_ms: u64, says: bool| {
+        let outcome = run(&script, |world| {
+            if world.ms() == 500 {
+                world.runner.behind(Duration::from_ms(behind_ms));
+                if says {
+                    world.log(Event::TwcLost);
+                }
+            }
+        });
+        outcome.steps()[0].verdict
+    };
+    assert_eq!(verdict_of(40, false), Verdict::Failed);
+    assert_eq!(verdict_of(60, false), Verdict::Error);
+    assert_eq!(
+        verdict_of(60, true),
+        Verdict::Failed,
+        "an event is an event"
+    );
+}
+
+#[test]
+fn a_procedure_stalled_in_its_setup_runs_no_step_and_cleans_up() {
+    let script =
+        "procedure(title = 'x', setup = [wait(s(5))], cleanup = [cab.key(False)])\nstep('a')";
+    let outcome = run(script, |world| {
+        if world.ms() == 1000 {
+            world.runner.bench_stalled("held up".into());
+        }
+    });
+    assert_eq!(
+        outcome.summary(),
+        [("a", Verdict::Skipped, "not run, held up")]
+    );
+    assert_eq!(outcome.finished(), (Verdict::Error, "held up"));
+    assert_eq!(outcome.fake.applied, [OFF]);
+}
+
+/// Goal: no step passes whose log is not known. Method: the log falls silent in the last step, for a while
+/// and for good.
+#[test]
+fn a_step_ends_when_the_log_of_its_time_is_read_and_is_an_error_if_it_cannot_be() {
+    let script = format!("{HEAD}step('a', do = wait(s(1)), expect = never_logs('twc_lost'))");
+    let silent = |world: &mut World<'_>, until_ms: u32| {
+        world.fake.evidence.log = match world.ms() {
+            ms if ms >= 500 && ms < until_ms => LogState::Unanswered,
+            _ => LogState::Read,
+        };
+    };
+    let outcome = run(&script, |world| {
+        silent(world, 4_000);
+        if world.ms() == 4_000 {
+            world.log(Event::TwcLost);
+        }
+    });
+    assert_eq!(
+        outcome.steps()[0].verdict,
+        Verdict::Failed,
+        "what came late counts"
+    );
+    let lost = "the unit's log could not be read: asked 69 times, no answer";
+    let outcome = run(&script, |world| {
+        silent(world, u32::MAX);
+        world.link_error = (world.ms() >= 6_000).then_some(lost);
+    });
+    let text = format!("link to the unit: {lost}");
+    assert_eq!(outcome.summary(), [("a", Verdict::Error, text.as_str())]);
+    assert_eq!(outcome.finished(), (Verdict::Error, text.as_str()));
+    let forever = run(&script, |world| silent(world, u32::MAX));
+    assert_eq!(forever.steps()[0].verdict, Verdict::Error, "nobody gave up");
+    assert_eq!(forever.finished().0, Verdict::Error);
+}
+
+#[test]
+fn an_awaited_event_is_not_missing_while_the_log_is_not_read() {
+    let script =
+        format!("{HEAD}step('a', do = wait(s(1)), expect = logs('twc_lost', within = s(1)))");
+    let outcome = run(&script, |world| {
+        world.fake.evidence.log = match world.ms() {
+            500..3_000 => LogState::Behind,
+            _ => LogState::Read,
+        };
+        if world.ms() == 2_900 {
+            world.log(Event::TwcLost);
+        }
+    });
+    assert_eq!(outcome.summary(), [("a", Verdict::Passed, "")]);
+    let in_vain = run(&script, |world| {
+        world.fake.evidence.log = LogState::Unanswered;
+        world.link_error = (world.ms() >= 6_000).then_some("no answer");
+    });
+    let reason = "link to the unit: no answer";
+    assert_eq!(in_vain.summary(), [("a", Verdict::Error, reason)]);
+}
+
+#[test]
+fn a_procedure_ends_with_its_log_read() {
+    let script = format!("{HEAD}step('a', do = wait(s(1)))");
+    let behind_until = |until_ms: u32| {
+        run(&script, |world| {
+            world.fake.evidence.log = match world.ms() {
+                ms if ms >= 900 && ms < until_ms => LogState::Behind,
+                _ => LogState::Read,
+            };
+        })
+    };
+    let outcome = behind_until(3_000);
+    assert_eq!(
+        (outcome.finished().0, outcome.scans),
+        (Verdict::Passed, 300)
+    );
+    let message = "the unit's log was not read to its end within 25.000 s";
+    assert_eq!(behind_until(u32::MAX).finished(), (Verdict::Error, message));
+    let lost = run(&script, |world| {
+        if world.ms() >= 900 {
+            world.fake.evidence.log = LogState::Behind;
+        }
+        world.link_error = (world.ms() >= 2_000).then_some("no answer");
+    });
+    assert_eq!(
+        lost.finished(),
+        (Verdict::Error, "link to the unit: no answer")
+    );
+}
+
+/// Goal: what a bad line does is no fault of a part, and what a part does on a good line is one. Method: the
+/// same events, brake and missing reaction, with and without frames that did not come through.
+#[test]
+fn what_lost_frames_explain_is_an_error_and_no_fault() {
+    let script = format!("{HEAD}step('a', do = wait(s(2)))");
+    let expects =
+        format!("{HEAD}step('a', do = wait(s(2)), expect = becomes(alarm, True, within = s(1)))");
+    let came_to = |script: &str, harmed: u64, event: Option<Event>, brake: bool| {
+        let outcome = run(script, |world| {
+            world.sample.set(Signal::Alarm, 0.0);
+            if world.ms() == 500 {
+                world.fake.evidence.line.harmed = harmed;
+                world.fake.evidence.line.harmed_lately = harmed;
+                event.into_iter().for_each(|event| world.log(event));
+                if brake {
+                    world.sample.set(Signal::Eb, 1.0);
+                }
+            }
+        });
+        let faults = outcome.events.iter().filter(|event| {
+            matches!(
+                event,
+                RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
+            )
+        });
+        assert_eq!(outcome.finished().0, outcome.steps()[0].verdict);
+        (outcome.steps()[0].verdict, faults.count())
+    };
+    let (failed, error) = (Verdict::Failed, Verdict::Error);
+    for event in [
+        Event::TwcLost,
+        Event::TcmsLost,
+        Event::InputsLost,
+        Event::FramesRejected,
+    ] {
+        assert_eq!(
+            came_to(&script, 0, Some(event), false),
+            (failed, 1),
+            "{event:?}"
+        );
+        assert_eq!(
+            came_to(&script, 3, Some(event), false),
+            (error, 0),
+            "{event:?}"
+        );
+    }
+    assert_eq!(
+        came_to(&script, 3, Some(Event::EbRelayWelded), false),
+        (failed, 1)
+    );
+    assert_eq!(came_to(&script, 0, None, true), (failed, 1));
+    assert_eq!(came_to(&script, 3, None, true), (error, 0));
+    assert_eq!(came_to(&expects, 0, None, false).0, failed);
+    assert_eq!(came_to(&expects, 3, None, false).0, error);
+}
+
+#[test]
+fn a_failed_self_test_is_said_item_by_item_and_is_no_pass() {
+    let outcome = run(&format!("{HEAD}step('a', do = wait(s(1)))"), |world| {
+        world.fake.evidence.self_test = SelfTest::MEMORY | SelfTest::from_bits_retain(1 << 9);
+    });
+    let message = "the unit says its self-test failed: Memory pattern test; bit 9";
+    assert_eq!(outcome.summary(), [("a", Verdict::Passed, "")]);
+    assert_eq!(outcome.finished(), (Verdict::Failed, message));
+}
