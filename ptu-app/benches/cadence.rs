@@ -19,7 +19,7 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Context, RawInput, Rect, pos2, vec2};
 use protocol::{CYCLE, Speed};
 use ptu_app::data::ScriptsDirectory;
-use ptu_app::gui::library::Shelf;
+use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Settings};
 use ptu_app::station::Phase;
 
@@ -58,7 +58,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
     let options = Options {
-        shelf: Shelf {
+        paths: DataPaths {
             database: folder.path().join("history.db"),
             scripts: ScriptsDirectory::find(Some(&scripts)).expect("scripts"),
         },

@@ -91,16 +91,16 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
     window.wait_for_part("Run over: failed");
     window.click("Run");
     window.until("the next run", running);
-    let (go, held) = std::sync::mpsc::channel();
+    let (release, held) = std::sync::mpsc::channel();
     let question = move |_: &_| {
         held.recv().expect("let go");
         Ok(())
     };
-    let held_up = window.app().library().ask(question);
+    let held_up = window.app().queries().run(question);
     window.wait_for_part("Run over: failed");
     window.write("note on this run", "relay K3 ");
     assert!(!window.shows_part("cannot tell: "));
-    go.send(()).expect("held up");
+    release.send(()).expect("held up");
     window.wait_for_part("cannot tell: ");
     assert!(held_up.take().is_some());
     window.harness().event(Event::Text("clicks late".into()));

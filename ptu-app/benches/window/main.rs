@@ -21,7 +21,7 @@ use divan::Bencher;
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput, Rect, pos2, vec2};
 use protocol::Speed;
 use ptu_app::data::ScriptsDirectory;
-use ptu_app::gui::library::Shelf;
+use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Page, Settings};
 use ptu_app::station::Phase;
 use ptu_app::trace_view::TraceView;
@@ -123,7 +123,7 @@ impl Window {
         let scripts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts"));
         let context = Context::default();
         let options = Options {
-            shelf: Shelf {
+            paths: DataPaths {
                 database,
                 scripts: ScriptsDirectory::find(Some(scripts)).expect("scripts"),
             },

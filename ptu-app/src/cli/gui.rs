@@ -4,7 +4,7 @@ use clap::{Args, Parser};
 
 use super::{Database, ScriptsOption};
 use crate::failure::{Exit, Failure};
-use crate::gui::library::Shelf;
+use crate::gui::DataPaths;
 use crate::gui::{Options, Page, Settings, open};
 use crate::link::Endpoint;
 use crate::stop::Stop;
@@ -66,7 +66,7 @@ impl GuiArguments {
             .unwrap_or_default();
         settings.language = self.lang.unwrap_or(settings.language);
         settings.page = self.page.unwrap_or(settings.page);
-        let shelf = Shelf {
+        let paths = DataPaths {
             database: self.database.file()?,
             scripts: self.scripts.find()?,
         };
@@ -74,10 +74,10 @@ impl GuiArguments {
             settings.unit.endpoint = unit.to_string();
             settings.unit.faults = self.inject;
             // Before there is a window to say it in.
-            settings.unit.named()?.setup(&shelf.scripts)?;
+            settings.unit.named()?.setup(&paths.scripts)?;
         }
         open(Options {
-            shelf,
+            paths,
             settings,
             settings_file,
             connect: self.unit.is_some(),

@@ -5,10 +5,14 @@ use std::time::Duration;
 
 use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
 
-use super::desk::{Desk, Go, Messages};
+use super::messages::Messages;
+use super::page_context::Destination;
+use super::page_context::PageContext;
 use super::frame::Frame;
-use super::library::{Library, Shelf};
-use super::pages::{Page, Pages};
+use super::data_paths::DataPaths;
+use super::query_worker::QueryWorker;
+use super::page::Page;
+use super::pages::Pages;
 use super::settings::Settings;
 use super::units::Units;
 use super::{fonts, theme};
@@ -22,7 +26,7 @@ const CLOSING: Duration = Duration::from_millis(50);
 /// What a window is opened with.
 pub struct Options {
     /// Where database and scripts are.
-    pub shelf: Shelf,
+    pub paths: DataPaths,
     /// What was kept from the last time.
     pub settings: Settings,
     /// Where it is kept; none = nowhere.
@@ -35,7 +39,7 @@ pub struct Options {
 
 /// The window.
 pub struct App {
-    library: Library,
+    queries: QueryWorker,
     units: Units,
     settings: Settings,
     saved: Settings,
@@ -43,7 +47,7 @@ pub struct App {
     messages: Messages,
     frame: Frame,
     pages: Pages,
-    go: Vec<Go>,
+    go_to: Vec<Destination>,
     closing: bool,
     closed: bool,
     /// The person knows that outputs were not confirmed safe.
@@ -62,20 +66,20 @@ impl App {
         theme::set(context);
         let settings = options.settings;
         let mut units = Units::new(settings.unit.clone(), wake.clone())?;
-        let library = Library::new(options.shelf, wake)?;
+        let queries = QueryWorker::new(options.paths, wake)?;
         if options.connect {
-            units.chosen_mut().connect(&library);
+            units.chosen_mut().connect(&queries);
         }
         Ok(Self {
             units,
-            library,
+            queries,
             saved: settings.clone(),
             settings,
             settings_file: options.settings_file,
             messages: Messages::default(),
             frame: Frame::default(),
             pages: Pages::default(),
-            go: Vec::new(),
+            go_to: Vec::new(),
             closing: false,
             closed: false,
             noted_not_safe: false,
@@ -89,28 +93,28 @@ impl App {
         self.units.poll(words, &mut self.messages);
         self.apply_settings(ui.ctx());
         self.close_in_order(ui.ctx());
-        let mut desk = Desk {
+        let mut page_context = PageContext {
             words,
-            library: &self.library,
+            queries: &self.queries,
             units: &mut self.units,
             settings: &mut self.settings,
             messages: &mut self.messages,
-            go: &mut self.go,
+            go_to: &mut self.go_to,
         };
-        self.frame.keys(ui, &mut desk);
-        self.pages.poll(&mut desk);
-        Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut desk));
-        Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut desk));
-        Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut desk));
-        let page = desk.settings.page;
-        desk.units.watch(page == Page::Bench);
-        CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut desk));
+        self.frame.keys(ui, &mut page_context);
+        self.pages.poll(&mut page_context);
+        Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut page_context));
+        Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut page_context));
+        Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut page_context));
+        let page = page_context.settings.page;
+        page_context.units.watch(page == Page::Bench);
+        CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut page_context));
         if self.closing {
-            let not_safe = desk.units.any_not_safe() && !self.noted_not_safe;
+            let not_safe = page_context.units.any_not_safe() && !self.noted_not_safe;
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
-        for to in std::mem::take(desk.go) {
-            desk.settings.page = self.pages.go(to, &mut desk);
+        for to in std::mem::take(page_context.go_to) {
+            page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }
     }
@@ -121,8 +125,8 @@ impl App {
     }
 
     /// Questions to the database and to files, likewise.
-    pub fn library(&self) -> &Library {
-        &self.library
+    pub fn queries(&self) -> &QueryWorker {
+        &self.queries
     }
 
     /// It is closed: every run recorded, every unit disarmed.

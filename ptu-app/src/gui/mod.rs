@@ -1,24 +1,31 @@
 //! The technician's window: one frame with a connection bar, and pages below it.
 //!
-//! Widgets show what other rooms compute: a [`crate::station`] drives the unit on its own thread, the
-//! [`library`] asks the database on another, and no page waits for either.
+//! Drawing never waits: each unit is driven by its own bench thread ([`crate::station`]), and queries to the
+//! database and to files run on the thread of a [`QueryWorker`].
 
 mod app;
-mod desk;
+mod data_paths;
 mod display;
 mod fonts;
 pub mod frame;
-pub mod library;
+mod messages;
+mod page;
+mod page_context;
 mod pages;
 mod parts;
+mod query_worker;
+mod request;
 mod settings;
 mod theme;
 mod units;
 
 pub use app::{App, Options};
-pub use desk::{Desk, Go, Messages};
+pub use data_paths::DataPaths;
 pub use display::open;
-pub use pages::Page;
+pub use messages::{Message, Messages};
+pub use page::Page;
+pub use page_context::{Destination, PageContext};
+pub use query_worker::{Pending, QueryWorker};
 pub use settings::Settings;
 pub use theme::Palette;
 pub use units::{Unit, UnitChoice, Units};

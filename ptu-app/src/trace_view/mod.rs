@@ -8,7 +8,7 @@
 //! * [`Axis`]: time or distance; [`Camera`]: the part of it in view;
 //! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;
 //! * [`choose`]: the signals to show first;
-//! * [`shelf`]: which traces there are, and one read from the database with what happened in it;
+//! * [`listing`]: which traces there are, and one read from the database with what happened in it;
 //! * [`Overlay`]: another trace or the good twin behind it;
 //! * [`Scene`]: all of this as one picture: lanes, view, cursors, what is laid behind.
 
@@ -21,7 +21,7 @@ mod overlay;
 mod pyramid;
 mod runs;
 mod scene;
-pub mod shelf;
+pub mod listing;
 pub mod spans;
 pub mod statistics;
 pub mod ticks;

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::overlay::{Against, Overlay, Parting};
-use super::shelf::Opened;
+use super::listing::Opened;
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
 use super::{Axis, Camera, Kind, choose, ticks};

@@ -7,7 +7,7 @@ use eframe::egui::{Event, Modifiers, PointerButton, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_app::data::ScriptsDirectory;
-use ptu_app::gui::library::Shelf;
+use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Page, Settings};
 
 use super::{Place, scripts};
@@ -34,13 +34,13 @@ impl Window {
 
     /// A window with these settings on these scripts.
     pub fn with(place: Place, scripts: impl AsRef<std::path::Path>, settings: Settings) -> Self {
-        let shelf = Shelf {
+        let paths = DataPaths {
             database: place.path("history.db"),
             scripts: ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts"),
         };
         let settings_file = Some(place.path("config/window.json"));
         let mut options = Some(Options {
-            shelf,
+            paths,
             settings,
             settings_file,
             connect: false,

@@ -4,7 +4,7 @@ use eframe::egui::{CollapsingHeader, Grid, Id, Key, RichText, ScrollArea, Ui, Wi
 
 use super::keys::{CONNECT, STOP_ALL};
 use crate::fonts::PRETENDARD_LICENCE;
-use crate::gui::{Desk, Page, Palette};
+use crate::gui::{PageContext, Page, Palette};
 
 /// The window about the program.
 #[derive(Default)]
@@ -14,8 +14,8 @@ pub struct About {
 
 impl About {
     /// The button that opens it, and the window while it is open.
-    pub fn button(&mut self, ui: &mut Ui, desk: &Desk<'_>) {
-        let words = &desk.words.frame;
+    pub fn button(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
+        let words = &context.words.frame;
         if ui.selectable_label(self.open, words.about).clicked() {
             self.open = !self.open;
         }
@@ -28,17 +28,17 @@ impl About {
             .open(&mut open)
             .collapsible(false)
             .default_width(560.0)
-            .show(ui.ctx(), |ui| contents(ui, desk));
+            .show(ui.ctx(), |ui| contents(ui, context));
         self.open = open;
     }
 }
 
-fn contents(ui: &mut Ui, desk: &Desk<'_>) {
-    let words = desk.words;
+fn contents(ui: &mut Ui, context: &PageContext<'_>) {
+    let words = context.words;
     let quiet = Palette::of(ui).quiet;
     let name = format!("{} {}", words.frame.title, env!("CARGO_PKG_VERSION"));
     ui.label(RichText::new(name).strong());
-    let shelf = desk.library.shelf();
+    let paths = context.queries.paths();
     Grid::new("about").num_columns(2).show(ui, |ui| {
         let row = |ui: &mut Ui, what: &str, value: String| {
             ui.label(RichText::new(what).color(quiet));
@@ -48,12 +48,12 @@ fn contents(ui: &mut Ui, desk: &Desk<'_>) {
         row(
             ui,
             words.frame.database,
-            shelf.database.display().to_string(),
+            paths.database.display().to_string(),
         );
         row(
             ui,
             words.frame.scripts,
-            shelf.scripts.path().display().to_string(),
+            paths.scripts.path().display().to_string(),
         );
         for page in Page::ALL {
             row(ui, page.key().name(), page.name(words).into());

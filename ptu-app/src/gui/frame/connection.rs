@@ -7,72 +7,72 @@ use protocol::message::Identity;
 use super::keys::STOP_ALL;
 use super::setup::Setup;
 use crate::gui::parts::chip;
-use crate::gui::{Desk, Page, Palette};
+use crate::gui::{PageContext, Page, Palette};
 use crate::station::Phase;
 use crate::words::{Words, fill};
 
 /// The bar.
-pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>, setup: &mut Setup) {
+pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
     ui.horizontal(|ui| {
-        units(ui, desk);
-        setup.endpoint(ui, desk);
-        connect(ui, desk);
-        identity(ui, desk);
-        running(ui, desk);
+        units(ui, context);
+        setup.endpoint(ui, context);
+        connect(ui, context);
+        identity(ui, context);
+        running(ui, context);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            stop_button(ui, desk);
-            arming(ui, desk);
+            stop_button(ui, context);
+            arming(ui, context);
         });
     });
 }
 
 /// Units side by side; the pages show the chosen one.
-fn units(ui: &mut Ui, desk: &mut Desk<'_>) {
-    if desk.units.count() > 1 {
-        for place in 0..desk.units.count() {
-            let Some(unit) = desk.units.iter().nth(place) else {
+fn units(ui: &mut Ui, context: &mut PageContext<'_>) {
+    if context.units.count() > 1 {
+        for place in 0..context.units.count() {
+            let Some(unit) = context.units.iter().nth(place) else {
                 continue;
             };
             let label = format!("{}: {}", place + 1, unit.name());
             if ui
-                .selectable_label(place == desk.units.chosen_place(), label)
+                .selectable_label(place == context.units.chosen_place(), label)
                 .clicked()
             {
-                desk.units.choose(place);
+                context.units.choose(place);
             }
         }
-        let free = desk.units.chosen().phase() == Phase::Offline;
-        let remove = ui.add_enabled(free, Button::new(desk.words.frame.remove_unit));
+        let free = context.units.chosen().phase() == Phase::Offline;
+        let remove = ui.add_enabled(free, Button::new(context.words.frame.remove_unit));
         if remove.clicked() {
-            desk.units.remove(desk.units.chosen_place());
+            context.units.remove(context.units.chosen_place());
         }
     }
     if ui
         .button("+")
-        .on_hover_text(desk.words.frame.add_unit)
+        .on_hover_text(context.words.frame.add_unit)
         .clicked()
     {
-        let choice = desk.units.chosen().choice.clone();
-        if let Err(failure) = desk.units.add(choice) {
-            desk.messages
-                .trouble(desk.words.frame.cannot_connect, failure.message);
+        let choice = context.units.chosen().choice.clone();
+        if let Err(failure) = context.units.add(choice) {
+            context.messages
+                .trouble(context.words.frame.cannot_connect, failure.message);
         }
     }
 }
 
-fn connect(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let frame = &desk.words.frame;
-    let unit = desk.units.chosen_mut();
+fn connect(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let frame = &context.words.frame;
+    let unit = context.units.chosen_mut();
     match unit.phase() {
         Phase::Offline => {
             if ui.button(RichText::new(frame.connect).strong()).clicked() {
-                unit.connect(desk.library);
+                unit.connect(context.queries);
             }
         }
         Phase::Connecting => {
             ui.spinner();
             ui.label(frame.connecting);
-            if ui.button(desk.words.common.cancel).clicked() {
+            if ui.button(context.words.common.cancel).clicked() {
                 unit.disconnect();
             }
         }
@@ -84,11 +84,11 @@ fn connect(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
 }
 
-fn identity(ui: &mut Ui, desk: &Desk<'_>) {
-    let words = desk.words;
+fn identity(ui: &mut Ui, context: &PageContext<'_>) {
+    let words = context.words;
     let frame = &words.frame;
     let palette = Palette::of(ui);
-    let unit = desk.units.chosen();
+    let unit = context.units.chosen();
     let (phase, identity, share) = {
         let live = unit.station.live();
         (live.phase, live.identity, live.link.share())
@@ -143,18 +143,18 @@ fn versions(identity: &Identity, words: &Words) -> String {
     )
 }
 
-fn arming(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let frame = &desk.words.frame;
-    let chosen = desk.units.chosen_place();
+fn arming(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let frame = &context.words.frame;
+    let chosen = context.units.chosen_place();
     for (_, other) in (0..)
-        .zip(desk.units.iter())
+        .zip(context.units.iter())
         .filter(|(place, _)| *place != chosen)
     {
         if other.is_armed() {
             armed_sign(ui, &fill(frame.armed_unit, &[("unit", &other.name())]));
         }
     }
-    let unit = desk.units.chosen();
+    let unit = context.units.chosen();
     let phase = unit.phase();
     if matches!(phase, Phase::Offline | Phase::Connecting) {
         return;
@@ -194,10 +194,10 @@ fn armed_sign(ui: &mut Ui, text: &str) {
 }
 
 /// What a run is at, whatever page is in front.
-fn running(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let frame = &desk.words.frame;
+fn running(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let frame = &context.words.frame;
     let palette = Palette::of(ui);
-    let Some(run) = desk
+    let Some(run) = context
         .units
         .chosen()
         .run
@@ -212,7 +212,7 @@ fn running(ui: &mut Ui, desk: &mut Desk<'_>) {
             .button(RichText::new(frame.asks).color(palette.warn).strong())
             .clicked()
         {
-            desk.settings.page = Page::Procedures;
+            context.settings.page = Page::Procedures;
         }
     } else if present.is_some_and(|present| present.paused.is_some()) {
         chip(ui, frame.is_paused, palette.warn);
@@ -226,9 +226,9 @@ fn running(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
 }
 
-fn stop_button(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn stop_button(ui: &mut Ui, context: &mut PageContext<'_>) {
     let palette = Palette::of(ui);
-    let text = RichText::new(desk.words.frame.stop_all)
+    let text = RichText::new(context.words.frame.stop_all)
         .color(Color32::WHITE)
         .strong()
         .size(16.0);
@@ -236,6 +236,6 @@ fn stop_button(ui: &mut Ui, desk: &mut Desk<'_>) {
         .fill(palette.armed)
         .shortcut_text(RichText::new(STOP_ALL.name()).color(Color32::WHITE));
     if ui.add(button).clicked() {
-        desk.units.stop_all();
+        context.units.stop_all();
     }
 }

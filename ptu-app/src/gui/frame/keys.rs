@@ -2,7 +2,7 @@
 
 use eframe::egui::{Context, Key, Modifiers};
 
-use crate::gui::{Desk, Page};
+use crate::gui::{PageContext, Page};
 use crate::station::Phase;
 
 /// Stops everything, whatever has the keyboard.
@@ -12,21 +12,21 @@ pub const STOP_ALL: Key = Key::F12;
 pub const CONNECT: Key = Key::F9;
 
 /// Acts on them.
-pub fn keys(context: &Context, desk: &mut Desk<'_>) {
-    if context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
-        desk.units.stop_all();
+pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
+    if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
+        context.units.stop_all();
     }
-    if context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
-        let unit = desk.units.chosen_mut();
+    if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
+        let unit = context.units.chosen_mut();
         if unit.phase() == Phase::Offline {
-            unit.connect(desk.library);
+            unit.connect(context.queries);
         } else {
             unit.disconnect();
         }
     }
     for page in Page::ALL {
-        if context.input_mut(|input| input.consume_key(Modifiers::NONE, page.key())) {
-            desk.settings.page = page;
+        if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, page.key())) {
+            context.settings.page = page;
         }
     }
 }

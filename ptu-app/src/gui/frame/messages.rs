@@ -3,21 +3,21 @@
 use eframe::egui::{RichText, ScrollArea, Ui};
 
 use crate::clock;
-use crate::gui::desk::Message;
-use crate::gui::{Desk, Palette};
+use crate::gui::messages::Message;
+use crate::gui::{PageContext, Palette};
 
 /// The bar.
-pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let all = desk.messages.all();
+pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let all = context.messages.all();
     let Some(last) = all.last() else {
         let quiet = Palette::of(ui).quiet;
-        ui.label(RichText::new(desk.words.frame.title).color(quiet));
+        ui.label(RichText::new(context.words.frame.title).color(quiet));
         return;
     };
     let mut clear = false;
     let mut noted = false;
     ui.horizontal(|ui| {
-        let button = format!("{} ({})", desk.words.frame.messages, all.len());
+        let button = format!("{} ({})", context.words.frame.messages, all.len());
         ui.menu_button(button, |ui| {
             ui.set_min_width(560.0);
             ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
@@ -28,10 +28,10 @@ pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
                     });
                 }
             });
-            clear = ui.button(desk.words.frame.clear).clicked();
+            clear = ui.button(context.words.frame.clear).clicked();
         });
-        if let Some(trouble) = desk.messages.unread_trouble() {
-            noted = ui.button(desk.words.frame.dismiss).clicked();
+        if let Some(trouble) = context.messages.unread_trouble() {
+            noted = ui.button(context.words.frame.dismiss).clicked();
             said(ui, trouble);
         }
         // Trouble is shown until it was taken note of, and not again as the latest message.
@@ -40,10 +40,10 @@ pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
     });
     if noted {
-        desk.messages.take_note();
+        context.messages.acknowledge();
     }
     if clear {
-        desk.messages.clear();
+        context.messages.clear();
     }
 }
 

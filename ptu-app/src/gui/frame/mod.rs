@@ -9,7 +9,7 @@ mod setup;
 
 use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
-use super::{Desk, Palette};
+use super::{PageContext, Palette};
 use crate::words::Words;
 use about::About;
 use setup::Setup;
@@ -23,23 +23,23 @@ pub struct Frame {
 
 impl Frame {
     /// Keys that work on every page.
-    pub fn keys(&mut self, ui: &Ui, desk: &mut Desk<'_>) {
-        keys::keys(ui.ctx(), desk);
+    pub fn keys(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
+        keys::keys(ui.ctx(), context);
     }
 
     /// The connection bar.
-    pub fn connection(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        connection::bar(ui, desk, &mut self.setup);
+    pub fn connection(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        connection::bar(ui, context, &mut self.setup);
     }
 
     /// Pages, language, light, size.
-    pub fn navigation(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        navigation::bar(ui, desk, &mut self.about);
+    pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        navigation::bar(ui, context, &mut self.about);
     }
 
     /// The latest message, and all of them.
-    pub fn messages(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        messages::bar(ui, desk);
+    pub fn messages(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        messages::bar(ui, context);
     }
 
     /// Over everything while the window is being closed; true once the person has taken note that

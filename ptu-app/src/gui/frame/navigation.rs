@@ -5,32 +5,32 @@ use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 use super::about::About;
 use crate::gui::parts::named_combo;
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
-use crate::gui::{Desk, Page};
+use crate::gui::{PageContext, Page};
 use crate::words::Language;
 
 const STEP: f32 = 0.1;
 
 /// The bar.
-pub fn bar(ui: &mut Ui, desk: &mut Desk<'_>, about: &mut About) {
+pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, about: &mut About) {
     ui.horizontal(|ui| {
         for page in Page::ALL {
-            let chosen = desk.settings.page == page;
-            let text = RichText::new(page.name(desk.words)).size(16.0);
+            let chosen = context.settings.page == page;
+            let text = RichText::new(page.name(context.words)).size(16.0);
             let button = ui.selectable_label(chosen, text);
             if button.on_hover_text(page.key().name()).clicked() {
-                desk.settings.page = page;
+                context.settings.page = page;
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            about.button(ui, desk);
-            look(ui, desk);
+            about.button(ui, context);
+            look(ui, context);
         });
     });
 }
 
-fn look(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let frame = &desk.words.frame;
-    let settings = &mut *desk.settings;
+fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let frame = &context.words.frame;
+    let settings = &mut *context.settings;
     let smaller = ui.button("A-").on_hover_text(frame.scale);
     if smaller.clicked() {
         settings.zoom = (settings.zoom - STEP).max(SMALLEST_ZOOM);

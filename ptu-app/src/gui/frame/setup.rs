@@ -5,10 +5,10 @@ use eframe::egui::{
     TextEdit, Ui, Window,
 };
 
-use crate::gui::library::Asked;
+use crate::gui::request::Request;
 use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::units::UnitChoice;
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::link::ports;
 use crate::station::Phase;
 use crate::words::Words;
@@ -25,7 +25,7 @@ struct Names {
 /// The setup's own state.
 #[derive(Default)]
 pub struct Setup {
-    names: Asked<Names>,
+    names: Request<Names>,
     find: String,
     open: bool,
     /// It has just been opened.
@@ -34,19 +34,19 @@ pub struct Setup {
 
 impl Setup {
     /// Where the unit is; what is around it behind a button.
-    pub fn endpoint(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        if self.names.is_not() {
-            self.ask(desk);
+    pub fn endpoint(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        if self.names.is_idle() {
+            self.ask(context);
         }
         if self.names.poll()
-            && let Asked::Failed(why) = &self.names
+            && let Request::Failed(why) = &self.names
         {
-            desk.messages
-                .trouble(desk.words.frame.cannot_list, why.clone());
+            context.messages
+                .trouble(context.words.frame.cannot_list, why.clone());
         }
-        let free = desk.units.chosen().phase() == Phase::Offline;
-        let words = desk.words;
-        let choice = &mut desk.units.chosen_mut().choice;
+        let free = context.units.chosen().phase() == Phase::Offline;
+        let words = context.words;
+        let choice = &mut context.units.chosen_mut().choice;
         let shown = if choice.is_simulated() {
             words.frame.simulated.to_owned()
         } else {
@@ -70,19 +70,19 @@ impl Setup {
             below = setup.rect.left_bottom();
         });
         if opened {
-            self.ask(desk);
+            self.ask(context);
         }
         self.open &= free;
         if self.open {
-            self.window(ui, below, desk);
+            self.window(ui, below, context);
         }
     }
 
     /// A window rather than a menu: lists open over it, and several things are chosen before it is closed.
-    fn window(&mut self, ui: &Ui, below: Pos2, desk: &mut Desk<'_>) {
-        let words = desk.words;
+    fn window(&mut self, ui: &Ui, below: Pos2, context: &mut PageContext<'_>) {
+        let words = context.words;
         let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
-        let choice = &mut desk.units.chosen_mut().choice;
+        let choice = &mut context.units.chosen_mut().choice;
         Window::new(words.frame.setup)
             .id(Id::unique("setup"))
             .open(&mut open)
@@ -93,9 +93,9 @@ impl Setup {
         self.open = open;
     }
 
-    fn ask(&mut self, desk: &Desk<'_>) {
-        self.names = Asked::Pending(desk.library.ask(|shelf| {
-            let scripts = &shelf.scripts;
+    fn ask(&mut self, context: &PageContext<'_>) {
+        self.names = Request::Pending(context.queries.run(|paths| {
+            let scripts = &paths.scripts;
             let faults = scripts.faults()?.faults;
             Ok(Names {
                 ports: ports::found()?.into_iter().map(|port| port.path).collect(),

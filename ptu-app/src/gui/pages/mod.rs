@@ -7,87 +7,11 @@ mod procedures;
 mod report;
 mod traces;
 
-use eframe::egui::{Key, Ui};
-use serde::{Deserialize, Serialize};
+use eframe::egui::Ui;
 
-use super::desk::{Desk, Go};
-use crate::words::Words;
-
-/// A page.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Page {
-    /// The unit live, and stimuli by hand.
-    #[default]
-    Bench,
-    /// Choosing and running procedures.
-    Procedures,
-    /// Recorded traces.
-    Traces,
-    /// The fault history.
-    Faults,
-    /// The part to replace.
-    Diagnosis,
-    /// The test sheet of a run.
-    Report,
-}
-
-impl Page {
-    /// All, in the order they are shown.
-    pub const ALL: [Self; 6] = [
-        Self::Bench,
-        Self::Procedures,
-        Self::Traces,
-        Self::Faults,
-        Self::Diagnosis,
-        Self::Report,
-    ];
-
-    /// Its name on the command line.
-    fn word(self) -> &'static str {
-        match self {
-            Self::Bench => "bench",
-            Self::Procedures => "procedures",
-            Self::Traces => "traces",
-            Self::Faults => "faults",
-            Self::Diagnosis => "diagnosis",
-            Self::Report => "report",
-        }
-    }
-
-    /// Its name.
-    pub fn name(self, words: &Words) -> &'static str {
-        match self {
-            Self::Bench => words.bench.title,
-            Self::Procedures => words.procedures.title,
-            Self::Traces => words.traces.title,
-            Self::Faults => words.faults.title,
-            Self::Diagnosis => words.diagnosis.title,
-            Self::Report => words.report.title,
-        }
-    }
-
-    /// The key that shows it.
-    pub fn key(self) -> Key {
-        match self {
-            Self::Bench => Key::F1,
-            Self::Procedures => Key::F2,
-            Self::Traces => Key::F3,
-            Self::Faults => Key::F4,
-            Self::Diagnosis => Key::F5,
-            Self::Report => Key::F6,
-        }
-    }
-}
-
-impl std::str::FromStr for Page {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let known = Self::ALL.into_iter().find(|page| page.word() == text);
-        known.ok_or_else(|| format!("a page is one of {}", Self::ALL.map(Self::word).join(", ")))
-    }
-}
+use super::page::Page;
+use super::page_context::Destination;
+use super::page_context::PageContext;
 
 /// What the pages keep while the window is open.
 #[derive(Default)]
@@ -102,43 +26,43 @@ pub struct Pages {
 
 impl Pages {
     /// Takes what has come for the pages, whichever is in front.
-    pub fn poll(&mut self, desk: &mut Desk<'_>) {
-        self.procedures.poll(desk);
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        self.procedures.poll(context);
     }
 
     /// Shows a page.
-    pub fn show(&mut self, page: Page, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, page: Page, ui: &mut Ui, context: &mut PageContext<'_>) {
         match page {
-            Page::Bench => self.bench.show(ui, desk),
-            Page::Procedures => self.procedures.show(ui, desk),
-            Page::Traces => self.traces.show(ui, desk),
-            Page::Faults => self.faults.show(ui, desk),
-            Page::Diagnosis => self.diagnosis.show(ui, desk),
-            Page::Report => self.report.show(ui, desk),
+            Page::Bench => self.bench.show(ui, context),
+            Page::Procedures => self.procedures.show(ui, context),
+            Page::Traces => self.traces.show(ui, context),
+            Page::Faults => self.faults.show(ui, context),
+            Page::Diagnosis => self.diagnosis.show(ui, context),
+            Page::Report => self.report.show(ui, context),
         }
     }
 
     /// Goes where the person wants to; the page to show then.
-    pub fn go(&mut self, to: Go, desk: &mut Desk<'_>) -> Page {
+    pub fn go_to(&mut self, to: Destination, context: &mut PageContext<'_>) -> Page {
         match to {
-            Go::Trace(id) => {
-                self.traces.open(id, desk);
+            Destination::Trace(id) => {
+                self.traces.open(id, context);
                 Page::Traces
             }
-            Go::Report(run) => {
-                self.report.open(run, desk);
+            Destination::Report(run) => {
+                self.report.open(run, context);
                 Page::Report
             }
-            Go::Diagnosis(run) => {
-                self.diagnosis.open(run, desk);
+            Destination::Diagnosis(run) => {
+                self.diagnosis.open(run, context);
                 Page::Diagnosis
             }
-            Go::RunStep {
+            Destination::RunStep {
                 procedure,
                 step,
                 unit,
             } => {
-                self.procedures.run_step(procedure, step, &unit, desk);
+                self.procedures.run_step(procedure, step, &unit, context);
                 Page::Procedures
             }
         }

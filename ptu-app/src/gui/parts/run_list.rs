@@ -5,8 +5,9 @@ use fault_db::{Id, RunFilter, RunState, RunSummary};
 
 use super::chip;
 use crate::clock;
-use crate::gui::library::{Asked, Kept};
-use crate::gui::{Desk, Palette};
+use crate::gui::request::CachedResponse;
+use crate::gui::request::Request;
+use crate::gui::{PageContext, Palette};
 use crate::owner;
 use crate::words::Words;
 
@@ -16,7 +17,7 @@ const MOST: u32 = 2_000;
 /// The list's own state.
 #[derive(Default)]
 pub struct RunList {
-    runs: Kept<Vec<RunSummary>>,
+    runs: CachedResponse<Vec<RunSummary>>,
     /// Runs that had ended when it was asked for; none = not asked yet.
     ended: Option<usize>,
     find: String,
@@ -24,9 +25,9 @@ pub struct RunList {
 
 impl RunList {
     /// Shows it; the run that was clicked.
-    pub fn show(&mut self, ui: &mut Ui, desk: &Desk<'_>, chosen: Option<Id>) -> Option<Id> {
-        self.keep_up(desk);
-        let words = desk.words;
+    pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>, chosen: Option<Id>) -> Option<Id> {
+        self.keep_up(context);
+        let words = context.words;
         ui.horizontal(|ui| {
             let label = ui.label(words.procedures.find);
             ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
@@ -36,12 +37,12 @@ impl RunList {
             }
         });
         let runs = match self.runs.get() {
-            Asked::There(runs) => runs,
-            Asked::Failed(why) => {
+            Request::Ready(runs) => runs,
+            Request::Failed(why) => {
                 ui.label(RichText::new(why).color(Palette::of(ui).bad));
                 return None;
             }
-            Asked::Not | Asked::Pending(_) => {
+            Request::Idle | Request::Pending(_) => {
                 ui.label(words.common.loading);
                 return None;
             }
@@ -76,16 +77,16 @@ impl RunList {
     }
 
     /// Asks when it was not asked yet, and when a run has ended since.
-    fn keep_up(&mut self, desk: &Desk<'_>) {
-        let ended = desk.units.runs_ended();
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        let ended = context.units.runs_ended();
         if self.ended != Some(ended) {
             self.ended = Some(ended);
-            self.runs.ask(desk.library.ask(|shelf| {
+            self.runs.request(context.queries.run(|paths| {
                 let filter = RunFilter {
                     limit: Some(MOST),
                     ..RunFilter::default()
                 };
-                Ok(shelf.read()?.runs(&filter, &owner::is_alive)?)
+                Ok(paths.read()?.runs(&filter, &owner::is_alive)?)
             }));
         }
         self.runs.poll();

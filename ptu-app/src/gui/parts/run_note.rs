@@ -4,8 +4,9 @@ use eframe::egui::{Button, Ui};
 use fault_db::Id;
 
 use crate::clock::now_us;
-use crate::gui::desk::Messages;
-use crate::gui::library::{Asked, Library};
+use crate::gui::messages::Messages;
+use crate::gui::query_worker::QueryWorker;
+use crate::gui::request::Request;
 use crate::gui::parts::note_edit;
 use crate::words::Words;
 
@@ -18,7 +19,7 @@ pub struct RunNoteForm {
     text: String,
     run: Option<Id>,
     /// Answers with the run that was noted on.
-    under_way: Asked<Id>,
+    under_way: Request<Id>,
 }
 
 impl RunNoteForm {
@@ -28,23 +29,23 @@ impl RunNoteForm {
             return None;
         }
         match std::mem::take(&mut self.under_way) {
-            Asked::Failed(why) => {
+            Request::Failed(why) => {
                 messages.trouble(words.report.note_not_saved, why);
                 None
             }
-            Asked::There(noted) => {
-                messages.tell(words.report.note_saved);
+            Request::Ready(noted) => {
+                messages.note(words.report.note_saved);
                 if self.run == Some(noted) {
                     self.text.clear();
                 }
                 Some(noted)
             }
-            Asked::Not | Asked::Pending(_) => None,
+            Request::Idle | Request::Pending(_) => None,
         }
     }
 
     /// The field with its button, for this run.
-    pub fn show(&mut self, ui: &mut Ui, words: &Words, library: &Library, who: &str, run: Id) {
+    pub fn show(&mut self, ui: &mut Ui, words: &Words, queries: &QueryWorker, who: &str, run: Id) {
         if self.run != Some(run) {
             // What was begun on another run is not meant for this one.
             self.run = Some(run);
@@ -55,14 +56,14 @@ impl RunNoteForm {
         ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
-        let may = !who.is_empty() && !text.is_empty() && self.under_way.is_not();
+        let may = !who.is_empty() && !text.is_empty() && self.under_way.is_idle();
         let save = ui.add_enabled(may, Button::new(words.report.note_save));
         if save
             .on_disabled_hover_text(words.report.note_hint)
             .clicked()
         {
-            self.under_way = Asked::Pending(library.ask(move |shelf| {
-                shelf.open()?.add_run_note(run, &who, &text, now_us())?;
+            self.under_way = Request::Pending(queries.run(move |paths| {
+                paths.open()?.add_run_note(run, &who, &text, now_us())?;
                 Ok(run)
             }));
         }

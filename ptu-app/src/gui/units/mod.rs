@@ -6,7 +6,7 @@ mod unit;
 pub use choice::UnitChoice;
 pub use unit::Unit;
 
-use super::desk::Messages;
+use super::messages::Messages;
 use crate::failure::Failure;
 use crate::station::{Phase, Wake};
 use crate::words::Words;

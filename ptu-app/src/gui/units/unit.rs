@@ -8,8 +8,9 @@ use protocol::signal::Signal;
 
 use super::UnitChoice;
 use crate::failure::Failure;
-use crate::gui::desk::Messages;
-use crate::gui::library::{Asked, Library};
+use crate::gui::messages::Messages;
+use crate::gui::query_worker::QueryWorker;
+use crate::gui::request::Request;
 use crate::run::BenchSetup;
 use crate::station::{News, Phase, Progress, RunNews, RunOrder, Station, Wake};
 use crate::words::{Words, fill};
@@ -26,7 +27,7 @@ pub struct Unit {
     /// Its bench.
     pub station: Station,
     /// What its bench is made of, once it was asked to connect.
-    pub setup: Asked<BenchSetup>,
+    pub setup: Request<BenchSetup>,
     /// What it and TCMS logged outside runs, oldest first.
     pub log: VecDeque<UnitEvent>,
     /// Its present or last run.
@@ -45,7 +46,7 @@ impl Unit {
             id,
             choice,
             station: Station::new(wake)?,
-            setup: Asked::Not,
+            setup: Request::Idle,
             log: VecDeque::new(),
             run: None,
             runs_ended: 0,
@@ -57,7 +58,7 @@ impl Unit {
     /// What its bench's thread is at.
     pub fn phase(&self) -> Phase {
         match self.setup {
-            Asked::Pending(_) => Phase::Connecting,
+            Request::Pending(_) => Phase::Connecting,
             _ => self.station.live().phase,
         }
     }
@@ -87,16 +88,16 @@ impl Unit {
     }
 
     /// Reaches it.
-    pub fn connect(&mut self, library: &Library) {
+    pub fn connect(&mut self, queries: &QueryWorker) {
         let choice = self.choice.clone();
         self.setup =
-            Asked::Pending(library.ask(move |shelf| choice.named()?.setup(&shelf.scripts)));
+            Request::Pending(queries.run(move |paths| choice.named()?.setup(&paths.scripts)));
     }
 
     /// Lets it go, or gives up reaching it.
     pub fn disconnect(&mut self) {
-        if matches!(self.setup, Asked::Pending(_)) {
-            self.setup = Asked::Not;
+        if matches!(self.setup, Request::Pending(_)) {
+            self.setup = Request::Idle;
         }
         self.station.disconnect();
     }
@@ -129,10 +130,10 @@ impl Unit {
     pub(super) fn poll(&mut self, words: &Words, said: &mut Said<'_>) {
         if self.setup.poll() {
             match &self.setup {
-                Asked::There(setup) => self
+                Request::Ready(setup) => self
                     .station
                     .connect(setup.clone(), self.choice.connection()),
-                Asked::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
+                Request::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
                 _ => {}
             }
         }
@@ -153,10 +154,10 @@ impl Unit {
                 if self.run.as_ref().is_some_and(|run| run.unit != serial) {
                     self.run = None;
                 }
-                said.tell(fill(frame.is_connected, &[("unit", &serial)]));
+                said.note(fill(frame.is_connected, &[("unit", &serial)]));
             }
             News::NotConnected(why) => said.trouble(frame.cannot_connect, why),
-            News::Disconnected { safe: true } => said.tell(frame.is_disconnected),
+            News::Disconnected { safe: true } => said.note(frame.is_disconnected),
             News::Disconnected { safe: false } | News::NotSafe => {
                 self.not_safe = true;
                 said.trouble(frame.not_safe, "");
@@ -190,7 +191,7 @@ impl Unit {
             News::RunEnded(outcome) => {
                 self.runs_ended += 1;
                 let verdict = words.common.verdict(outcome.verdict);
-                said.tell(fill(frame.run_ended, &[("verdict", &verdict)]));
+                said.note(fill(frame.run_ended, &[("verdict", &verdict)]));
                 if let Some(run) = &mut self.run {
                     run.end(Some(outcome));
                 }
@@ -233,9 +234,9 @@ impl Said<'_> {
         self.messages.trouble(text, detail);
     }
 
-    fn tell(&mut self, text: impl Into<String>) {
+    fn note(&mut self, text: impl Into<String>) {
         let text = self.named(text);
-        self.messages.tell(text);
+        self.messages.note(text);
     }
 }
 

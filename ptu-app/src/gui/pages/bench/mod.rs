@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
-use crate::gui::Desk;
+use crate::gui::PageContext;
 use crate::run::BenchSetup;
 use crate::station::Phase;
 use forms::Forms;
@@ -60,12 +60,12 @@ pub struct BenchPage {
 
 impl BenchPage {
     /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.sheets
-            .retain(|id, _| desk.units.iter().any(|unit| unit.id == *id));
-        let unit = desk.units.chosen();
+            .retain(|id, _| context.units.iter().any(|unit| unit.id == *id));
+        let unit = context.units.chosen();
         let Some(setup) = unit.setup.value() else {
-            ui.label(desk.words.bench.connect_first);
+            ui.label(context.words.bench.connect_first);
             return;
         };
         let seen = Seen::of(&unit.station);
@@ -78,24 +78,24 @@ impl BenchPage {
             let mut hand = Hand {
                 station: &unit.station,
                 seen: &seen,
-                words: desk.words,
-                messages: desk.messages,
+                words: context.words,
+                messages: context.messages,
                 given: &mut sheet.given,
             };
             stimuli(ui, &mut sheet.forms, setup, &mut hand);
         });
         let shown = View {
-            words: desk.words,
+            words: context.words,
             seen: &seen,
             setup,
             laid: sheet.given.laid,
             given: sheet.given.station.as_ref(),
             events: &unit.log,
         };
-        let signals = chosen(&desk.settings.plotted);
+        let signals = chosen(&context.settings.plotted);
         self.plot.take(&unit.station, &signals);
         live_view(ui, &shown, |ui, height| {
-            let plotted = &mut desk.settings.plotted;
+            let plotted = &mut context.settings.plotted;
             self.plot.show(ui, height, &signals, plotted, &shown);
         });
     }

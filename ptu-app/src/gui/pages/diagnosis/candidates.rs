@@ -6,7 +6,7 @@ use fault_db::diagnosis::Candidate;
 use super::Named;
 use crate::diagnosis::Answer;
 use crate::gui::parts::share_bar;
-use crate::gui::{Desk, Go, Palette};
+use crate::gui::{PageContext, Destination, Palette};
 use crate::words::fill;
 
 /// Parts of less than this share of the likeliest are not named in the headline.
@@ -24,11 +24,11 @@ pub fn parts(answer: &Answer) -> String {
 }
 
 /// Candidates, two faults at once, and the rest.
-pub fn ranked(ui: &mut Ui, desk: &mut Desk<'_>, named: &Named) {
-    let words = &desk.words.diagnosis;
+pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &Named) {
+    let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
     for (place, candidate) in diagnosis.candidates.iter().enumerate() {
-        show(ui, desk, named, candidate, place == 0);
+        show(ui, context, named, candidate, place == 0);
     }
     for two in &diagnosis.two_faults {
         let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
@@ -45,12 +45,12 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
     });
 }
 
-fn show(ui: &mut Ui, desk: &mut Desk<'_>, named: &Named, candidate: &Candidate, open: bool) {
-    let words = &desk.words.diagnosis;
+fn show(ui: &mut Ui, context: &mut PageContext<'_>, named: &Named, candidate: &Candidate, open: bool) {
+    let words = &context.words.diagnosis;
     ui.horizontal(|ui| {
         share_bar(ui, candidate.probability, Palette::of(ui).accent);
         ui.label(RichText::new(&candidate.lru).strong().size(17.0));
-        ui.label(RichText::new(named.part(&candidate.lru, desk.words)).strong());
+        ui.label(RichText::new(named.part(&candidate.lru, context.words)).strong());
         ui.label(format!("{}: {}", candidate.fault, candidate.text));
     });
     CollapsingHeader::new(words.reasons)
@@ -83,7 +83,7 @@ fn show(ui: &mut Ui, desk: &mut Desk<'_>, named: &Named, candidate: &Candidate, 
                     ui.label(words.traces);
                     for trace in traces {
                         if ui.button(trace.short()).clicked() {
-                            desk.go.push(Go::Trace(*trace));
+                            context.go_to.push(Destination::Trace(*trace));
                         }
                     }
                 });

@@ -9,9 +9,9 @@ use protocol::injection::Lru;
 
 use crate::clock;
 use crate::diagnosis::{Answer, diagnose_run};
-use crate::gui::library::Asked;
+use crate::gui::request::Request;
 use crate::gui::parts::RunList;
-use crate::gui::{Desk, Go, Palette};
+use crate::gui::{PageContext, Destination, Palette};
 use crate::words::{Language, Words, fill};
 
 /// The page.
@@ -19,7 +19,7 @@ use crate::words::{Language, Words, fill};
 pub struct DiagnosisPage {
     runs: RunList,
     run: Option<Id>,
-    answer: Asked<Named>,
+    answer: Request<Named>,
 }
 
 /// An answer, and what people call the parts.
@@ -42,69 +42,69 @@ impl Named {
 
 impl DiagnosisPage {
     /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.answer.poll();
         let list = Panel::left("diagnosed runs").default_size(270.0);
-        let clicked = list.show(ui, |ui| self.runs.show(ui, desk, self.run)).inner;
+        let clicked = list.show(ui, |ui| self.runs.show(ui, context, self.run)).inner;
         let unasked = if self.run.is_none() {
             self.runs.foremost()
         } else {
             None
         };
         if let Some(run) = clicked.or(unasked) {
-            self.open(run, desk);
+            self.open(run, context);
         }
         CentralPanel::default().show(ui, |ui| {
             ScrollArea::vertical()
                 .auto_shrink(false)
-                .show(ui, |ui| self.answer(ui, desk));
+                .show(ui, |ui| self.answer(ui, context));
         });
     }
 
     /// Shows what this run comes to.
-    pub fn open(&mut self, run: Id, desk: &mut Desk<'_>) {
+    pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.run = Some(run);
-        self.answer = Asked::Pending(desk.library.ask(move |shelf| {
+        self.answer = Request::Pending(context.queries.run(move |paths| {
             Ok(Named {
-                answer: diagnose_run(&shelf.read()?, &shelf.scripts, run)?,
-                parts: shelf.scripts.faults()?.lrus,
+                answer: diagnose_run(&paths.read()?, &paths.scripts, run)?,
+                parts: paths.scripts.faults()?.lrus,
             })
         }));
     }
 
-    fn answer(&self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let words = &desk.words.diagnosis;
+    fn answer(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.diagnosis;
         let palette = Palette::of(ui);
         let named = match &self.answer {
-            Asked::There(named) => named,
-            Asked::Not => {
+            Request::Ready(named) => named,
+            Request::Idle => {
                 ui.label(words.choose_run);
                 return;
             }
-            Asked::Pending(_) => {
+            Request::Pending(_) => {
                 ui.spinner();
                 return;
             }
-            Asked::Failed(why) => {
+            Request::Failed(why) => {
                 ui.label(RichText::new(words.no_answer).color(palette.bad).strong());
                 ui.label(why);
                 return;
             }
         };
         let answer = &named.answer;
-        self.head(ui, desk, answer);
+        self.head(ui, context, answer);
         for warning in &answer.warnings {
             ui.label(RichText::new(format!("⚠ {warning}")).color(palette.warn));
         }
         ui.separator();
-        candidates::ranked(ui, desk, named);
-        let from = desk.words.report.origin(answer.dictionary_from);
+        candidates::ranked(ui, context, named);
+        let from = context.words.report.origin(answer.dictionary_from);
         let from = fill(words.dictionary, &[("from", &from)]);
         ui.label(RichText::new(from).small().color(palette.quiet));
     }
 
-    fn head(&self, ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
-        let words = desk.words;
+    fn head(&self, ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
+        let words = context.words;
         let run = &answer.run.run;
         let time = clock::local(run.started_at_us);
         let of_run = fill(
@@ -124,15 +124,15 @@ impl DiagnosisPage {
         if answer.diagnosis.finding != Finding::Found {
             ui.label(&answer.diagnosis.conclusion);
         }
-        next_check(ui, desk, answer);
+        next_check(ui, context, answer);
         if ui.button(words.diagnosis.report).clicked() {
-            desk.go.push(Go::Report(run.id));
+            context.go_to.push(Destination::Report(run.id));
         }
     }
 }
 
-fn next_check(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
-    let words = &desk.words.diagnosis;
+fn next_check(ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
+    let words = &context.words.diagnosis;
     let Some(next) = &answer.diagnosis.next_check else {
         ui.label(RichText::new(words.settled).color(Palette::of(ui).quiet));
         return;
@@ -149,7 +149,7 @@ fn next_check(ui: &mut Ui, desk: &mut Desk<'_>, answer: &Answer) {
         );
         ui.label(RichText::new(gains).color(Palette::of(ui).quiet));
         if ui.button(RichText::new(words.run_it).strong()).clicked() {
-            desk.go.push(Go::RunStep {
+            context.go_to.push(Destination::RunStep {
                 procedure: next.check.procedure.clone(),
                 step: next.check.step.clone(),
                 unit: answer.run.run.unit_serial.clone(),

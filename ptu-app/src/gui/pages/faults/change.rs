@@ -4,9 +4,9 @@ use eframe::egui::{Button, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
 use crate::clock::now_us;
-use crate::gui::library::Asked;
+use crate::gui::request::Request;
 use crate::gui::parts::{name_edit, note_edit};
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::words::Words;
 
 /// States a person can bring a fault to.
@@ -23,7 +23,7 @@ const TOWARDS: [FaultState; 5] = [
 pub struct Change {
     form: Form,
     /// Answers with the fault that was changed.
-    under_way: Asked<Id>,
+    under_way: Request<Id>,
 }
 
 /// What is written about one fault.
@@ -46,41 +46,41 @@ impl Form {
 
 impl Change {
     /// The fault a change of which has just been stored.
-    pub fn poll(&mut self, desk: &mut Desk<'_>) -> Option<Id> {
+    pub fn poll(&mut self, context: &mut PageContext<'_>) -> Option<Id> {
         if !self.under_way.poll() {
             return None;
         }
         match std::mem::take(&mut self.under_way) {
-            Asked::Failed(why) => {
-                desk.messages.trouble(desk.words.faults.not_changed, why);
+            Request::Failed(why) => {
+                context.messages.trouble(context.words.faults.not_changed, why);
                 None
             }
-            Asked::There(changed) => {
+            Request::Ready(changed) => {
                 if self.form.of == Some(changed) {
                     self.form = Form::about(changed);
                 }
                 Some(changed)
             }
-            Asked::Not | Asked::Pending(_) => None,
+            Request::Idle | Request::Pending(_) => None,
         }
     }
 
     /// Shows it: only what the fault's state allows, and nothing while that state is being read anew.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, fault: &FaultSummary, is_stale: bool) {
-        let words = desk.words;
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, fault: &FaultSummary, is_stale: bool) {
+        let words = context.words;
         if self.form.of != Some(fault.id) {
             // What was begun about another fault is not meant for this one.
             self.form = Form::about(fault.id);
         }
         ui.horizontal(|ui| {
             let label = ui.label(words.common.operator);
-            ui.add(name_edit(&mut desk.settings.operator, 110.0))
+            ui.add(name_edit(&mut context.settings.operator, 110.0))
                 .labelled_by(label.id);
             let label = ui.label(words.common.note);
             ui.add(note_edit(&mut self.form.note, f32::INFINITY))
                 .labelled_by(label.id);
         });
-        let who = desk.settings.operator.trim().to_owned();
+        let who = context.settings.operator.trim().to_owned();
         if fault.state.next(FaultAction::Repair).is_ok() {
             ui.horizontal(|ui| {
                 for (name, text) in [
@@ -92,22 +92,22 @@ impl Change {
                 }
             });
         }
-        let may = !who.is_empty() && self.under_way.is_not() && !is_stale;
+        let may = !who.is_empty() && self.under_way.is_idle() && !is_stale;
         ui.add_enabled_ui(may, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for state in TOWARDS {
                     if fault.state.next(FaultAction::towards(state)).is_ok()
                         && ui.button(name(state, words)).clicked()
                     {
-                        self.bring(desk, fault, state, &who);
+                        self.bring(context, fault, state, &who);
                     }
                 }
                 let written = !self.form.note.trim().is_empty();
                 let add = ui.add_enabled(written, Button::new(words.faults.add_note));
                 if add.clicked() {
                     let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
-                    self.under_way = Asked::Pending(desk.library.ask(move |shelf| {
-                        shelf.open()?.add_note(id, &who, &note, now_us())?;
+                    self.under_way = Request::Pending(context.queries.run(move |paths| {
+                        paths.open()?.add_note(id, &who, &note, now_us())?;
                         Ok(id)
                     }));
                 }
@@ -118,7 +118,7 @@ impl Change {
         }
     }
 
-    fn bring(&mut self, desk: &Desk<'_>, fault: &FaultSummary, state: FaultState, who: &str) {
+    fn bring(&mut self, context: &PageContext<'_>, fault: &FaultSummary, state: FaultState, who: &str) {
         let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         let repair = RepairRecord {
             part: fault.lru.clone(),
@@ -127,8 +127,8 @@ impl Change {
             note: self.form.note.clone(),
         };
         let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
-        self.under_way = Asked::Pending(desk.library.ask(move |shelf| {
-            let store = shelf.open()?;
+        self.under_way = Request::Pending(context.queries.run(move |paths| {
+            let store = paths.open()?;
             if state == FaultState::Repaired {
                 store.record_repair(id, &repair, &who, now_us())?;
             } else {

@@ -5,7 +5,7 @@ use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 
 use super::list::state_chip;
 use crate::clock;
-use crate::gui::{Go, Palette};
+use crate::gui::{Destination, Palette};
 use crate::limits::short;
 use crate::words::{Words, fill};
 
@@ -47,7 +47,7 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
 }
 
 /// Events, occurrences and the freeze frame of the latest.
-pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go: &mut Vec<Go>) {
+pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<Destination>) {
     ui.separator();
     ui.label(RichText::new(words.faults.what_was_done).strong());
     for event in &detail.events {
@@ -61,13 +61,13 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go: &mut Vec<Go>) 
             if let Some(trace) = seen.trace_id
                 && ui.small_button(words.faults.to_trace).clicked()
             {
-                go.push(Go::Trace(trace));
+                go_to.push(Destination::Trace(trace));
             }
             if ui.small_button(words.faults.to_run).clicked() {
-                go.push(Go::Report(seen.run_id));
+                go_to.push(Destination::Report(seen.run_id));
             }
             if ui.small_button(words.faults.to_diagnosis).clicked() {
-                go.push(Go::Diagnosis(seen.run_id));
+                go_to.push(Destination::Diagnosis(seen.run_id));
             }
             ui.label(RichText::new(&seen.message).color(Palette::of(ui).quiet));
         });

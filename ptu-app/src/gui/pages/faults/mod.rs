@@ -11,8 +11,10 @@ use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
 use crate::clock;
-use crate::gui::library::{Asked, Kept, Pending};
-use crate::gui::{Desk, Palette};
+use crate::gui::query_worker::Pending;
+use crate::gui::request::CachedResponse;
+use crate::gui::request::Request;
+use crate::gui::{PageContext, Palette};
 use change::Change;
 use filter::Filter;
 
@@ -29,50 +31,50 @@ struct History {
 #[derive(Default)]
 pub struct FaultsPage {
     filter: Filter,
-    history: Kept<History>,
+    history: CachedResponse<History>,
     /// What the history was asked for with: days, and runs that had ended.
     asked: Option<(Option<i64>, usize)>,
     chosen: Option<Id>,
-    detail: Kept<FaultDetail>,
+    detail: CachedResponse<FaultDetail>,
     change: Change,
 }
 
 impl FaultsPage {
     /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        self.keep_up(desk);
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_up(context);
         let list = Panel::left("fault list").default_size(640.0);
         let list = list.size_range(420.0..=900.0);
-        let clicked = list.show(ui, |ui| self.list(ui, desk)).inner;
+        let clicked = list.show(ui, |ui| self.list(ui, context)).inner;
         if let Some(id) = clicked {
-            self.open(id, desk);
+            self.open(id, context);
         }
         CentralPanel::default().show(ui, |ui| {
             ScrollArea::vertical()
                 .auto_shrink(false)
-                .show(ui, |ui| self.chosen(ui, desk));
+                .show(ui, |ui| self.chosen(ui, context));
         });
     }
 
     /// Shows this fault.
-    pub fn open(&mut self, id: Id, desk: &mut Desk<'_>) {
+    pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
         self.chosen = Some(id);
-        self.detail.ask_other(detail_of(id, desk));
+        self.detail.request_other(detail_of(id, context));
     }
 
     /// Asks anew when a run has ended or the span is another.
-    fn keep_up(&mut self, desk: &mut Desk<'_>) {
-        let wanted = (self.filter.days, desk.units.runs_ended());
+    fn keep_up(&mut self, context: &mut PageContext<'_>) {
+        let wanted = (self.filter.days, context.units.runs_ended());
         if self.asked != Some(wanted) {
             if let Some((_, ended)) = self.asked.replace(wanted)
                 && ended != wanted.1
             {
-                self.reread(desk);
+                self.reread(context);
             }
             let since_us = self.filter.since_us(clock::now_us());
             let utc_offset_us = clock::utc_offset_us();
-            self.history.ask(desk.library.ask(move |shelf| {
-                let store = shelf.read()?;
+            self.history.request(context.queries.run(move |paths| {
+                let store = paths.read()?;
                 let filter = FaultFilter {
                     since_us: Some(since_us),
                     limit: Some(MOST),
@@ -86,24 +88,24 @@ impl FaultsPage {
         }
         self.history.poll();
         self.detail.poll();
-        if let Some(changed) = self.change.poll(desk) {
+        if let Some(changed) = self.change.poll(context) {
             self.asked = None;
             if self.chosen == Some(changed) {
-                self.reread(desk);
+                self.reread(context);
             }
         }
     }
 
-    fn reread(&mut self, desk: &Desk<'_>) {
+    fn reread(&mut self, context: &PageContext<'_>) {
         if let Some(id) = self.chosen {
-            self.detail.ask(detail_of(id, desk));
+            self.detail.request(detail_of(id, context));
         }
     }
 
-    fn list(&mut self, ui: &mut Ui, desk: &Desk<'_>) -> Option<Id> {
-        let words = desk.words;
+    fn list(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
+        let words = context.words;
         match self.history.get() {
-            Asked::There(history) => {
+            Request::Ready(history) => {
                 list::filters(ui, words, &mut self.filter, &history.faults);
                 let counts = history
                     .daily
@@ -112,7 +114,7 @@ impl FaultsPage {
                 bars::charts(ui, words, &counts.collect::<Vec<_>>());
                 list::list(ui, words, &self.filter, &history.faults, self.chosen)
             }
-            Asked::Failed(why) => {
+            Request::Failed(why) => {
                 let said = RichText::new(words.faults.not_read).color(Palette::of(ui).bad);
                 ui.label(said.strong());
                 ui.label(why);
@@ -121,34 +123,34 @@ impl FaultsPage {
                 }
                 None
             }
-            Asked::Not | Asked::Pending(_) => {
+            Request::Idle | Request::Pending(_) => {
                 ui.label(words.common.loading);
                 None
             }
         }
     }
 
-    fn chosen(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn chosen(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let stale = self.detail.is_stale();
         match self.detail.get() {
-            Asked::There(detail) => {
-                detail::head(ui, desk.words, detail);
-                self.change.show(ui, desk, &detail.fault, stale);
-                detail::rest(ui, desk.words, detail, desk.go);
+            Request::Ready(detail) => {
+                detail::head(ui, context.words, detail);
+                self.change.show(ui, context, &detail.fault, stale);
+                detail::rest(ui, context.words, detail, context.go_to);
             }
-            Asked::Failed(why) => {
+            Request::Failed(why) => {
                 ui.label(RichText::new(why).color(Palette::of(ui).bad));
             }
-            Asked::Not => {
-                ui.label(desk.words.faults.choose);
+            Request::Idle => {
+                ui.label(context.words.faults.choose);
             }
-            Asked::Pending(_) => {
-                ui.label(desk.words.common.loading);
+            Request::Pending(_) => {
+                ui.label(context.words.common.loading);
             }
         }
     }
 }
 
-fn detail_of(id: Id, desk: &Desk<'_>) -> Pending<FaultDetail> {
-    desk.library.ask(move |shelf| Ok(shelf.read()?.fault(id)?))
+fn detail_of(id: Id, context: &PageContext<'_>) -> Pending<FaultDetail> {
+    context.queries.run(move |paths| Ok(paths.read()?.fault(id)?))
 }

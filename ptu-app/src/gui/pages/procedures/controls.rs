@@ -3,10 +3,10 @@
 use eframe::egui::{Button, DragValue, RichText, Ui};
 
 use super::ProceduresPage;
-use crate::gui::library::Asked;
+use crate::gui::request::Request;
 use crate::gui::parts::name_edit;
 use crate::gui::units::Unit;
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::station::Phase;
 use crate::words::Procedures;
 
@@ -14,39 +14,39 @@ use crate::words::Procedures;
 const MOST: u32 = 10_000;
 
 impl ProceduresPage {
-    pub(super) fn controls(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub(super) fn controls(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.horizontal_wrapped(|ui| {
-            let phase = desk.units.chosen().phase();
+            let phase = context.units.chosen().phase();
             if phase == Phase::Running {
-                running(ui, desk);
+                running(ui, context);
             } else {
-                self.begin(ui, desk, phase);
+                self.begin(ui, context, phase);
             }
         });
     }
 
-    fn begin(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, phase: Phase) {
-        let words = &desk.words.procedures;
-        let sound = matches!(&self.suite, Asked::There(suite) if suite.errors.is_empty());
-        let may = desk.units.chosen().may_run() && sound && self.orders.is_empty();
+    fn begin(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, phase: Phase) {
+        let words = &context.words.procedures;
+        let sound = matches!(&self.suite, Request::Ready(suite) if suite.errors.is_empty());
+        let may = context.units.chosen().may_run() && sound && self.orders.is_empty();
         let run = Button::new(RichText::new(words.run).strong().size(17.0));
         let run = ui.add_enabled(may, run);
-        let why_not = why_not(desk.units.chosen(), words);
+        let why_not = why_not(context.units.chosen(), words);
         if run.on_disabled_hover_text(why_not).clicked() {
-            self.order(desk.units.chosen().id, false, desk);
+            self.order(context.units.chosen().id, false, context);
         }
         let find = ui.add_enabled(may, Button::new(words.find_part));
         if find.on_hover_text(words.find_part_hint).clicked() {
-            self.order(desk.units.chosen().id, true, desk);
+            self.order(context.units.chosen().id, true, context);
         }
-        if desk.units.count() > 1 {
-            let idle = desk.units.iter().filter(|unit| unit.may_run());
+        if context.units.count() > 1 {
+            let idle = context.units.iter().filter(|unit| unit.may_run());
             let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
             let may = sound && !ready.is_empty() && self.orders.is_empty();
             let all = ui.add_enabled(may, Button::new(words.run_all));
             if all.clicked() {
                 for unit in ready {
-                    self.order(unit, false, desk);
+                    self.order(unit, false, context);
                 }
             }
         }
@@ -57,7 +57,7 @@ impl ProceduresPage {
         );
         ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
         let label = ui.label(words.operator);
-        ui.add(name_edit(&mut desk.settings.operator, 120.0))
+        ui.add(name_edit(&mut context.settings.operator, 120.0))
             .labelled_by(label.id);
         if phase != Phase::Idle {
             ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));
@@ -73,9 +73,9 @@ pub(super) fn why_not(unit: &Unit, words: &Procedures) -> &'static str {
     }
 }
 
-fn running(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let words = &desk.words.procedures;
-    let station = &desk.units.chosen().station;
+fn running(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let words = &context.words.procedures;
+    let station = &context.units.chosen().station;
     let board = station.board();
     let paused = board.paused();
     let pause = if paused { words.resume } else { words.pause };

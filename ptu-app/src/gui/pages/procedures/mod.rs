@@ -12,9 +12,9 @@ use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use crate::diagnosis::diagnose_run;
-use crate::gui::library::Asked;
+use crate::gui::request::Request;
 use crate::gui::parts::RunNoteForm;
-use crate::gui::{Desk, Palette, UnitChoice};
+use crate::gui::{PageContext, Palette, UnitChoice};
 use crate::run::Suite;
 use crate::words::fill;
 use prepare::{How, Prepared};
@@ -23,7 +23,7 @@ use selection::Selection;
 
 /// The page.
 pub struct ProceduresPage {
-    suite: Asked<Suite>,
+    suite: Request<Suite>,
     /// What the suite was loaded for.
     loaded_for: Option<UnitChoice>,
     /// Nothing = everything but what is on request.
@@ -39,7 +39,7 @@ pub struct ProceduresPage {
     wanted: Option<(String, String, u64)>,
     shown: Shown,
     /// What the last run comes to, by run.
-    conclusion: Asked<String>,
+    conclusion: Request<String>,
     concluded: Option<fault_db::Id>,
     note: RunNoteForm,
 }
@@ -48,13 +48,13 @@ pub struct ProceduresPage {
 struct Ordered {
     /// The unit it is for, by its own number.
     unit: u64,
-    order: Asked<Prepared>,
+    order: Request<Prepared>,
 }
 
 impl Default for ProceduresPage {
     fn default() -> Self {
         Self {
-            suite: Asked::Not,
+            suite: Request::Idle,
             loaded_for: None,
             selection: None,
             find: String::new(),
@@ -64,7 +64,7 @@ impl Default for ProceduresPage {
             stops: 0,
             wanted: None,
             shown: Shown::default(),
-            conclusion: Asked::Not,
+            conclusion: Request::Idle,
             concluded: None,
             note: RunNoteForm::default(),
         }
@@ -73,81 +73,81 @@ impl Default for ProceduresPage {
 
 impl ProceduresPage {
     /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        self.keep_loaded(desk);
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_loaded(context);
         Panel::left("procedures")
             .default_size(380.0)
             .size_range(260.0..=640.0)
-            .show(ui, |ui| self.tree(ui, desk));
+            .show(ui, |ui| self.tree(ui, context));
         CentralPanel::default().show(ui, |ui| {
-            self.controls(ui, desk);
-            overview::overview(ui, desk);
+            self.controls(ui, context);
+            overview::overview(ui, context);
             ui.separator();
-            if let Asked::There(suite) = &self.suite
+            if let Request::Ready(suite) = &self.suite
                 && !suite.errors.is_empty()
             {
-                script_errors(ui, suite, desk);
+                script_errors(ui, suite, context);
             }
-            self.run(ui, desk);
+            self.run(ui, context);
         });
     }
 
     /// Runs this step on the chosen unit if it is the one called `unit`.
-    pub fn run_step(&mut self, procedure: String, step: String, unit: &str, desk: &mut Desk<'_>) {
-        let words = &desk.words.procedures;
-        let chosen = desk.units.chosen();
+    pub fn run_step(&mut self, procedure: String, step: String, unit: &str, context: &mut PageContext<'_>) {
+        let words = &context.words.procedures;
+        let chosen = context.units.chosen();
         if !chosen.may_run() {
-            desk.messages.trouble(controls::why_not(chosen, words), "");
+            context.messages.trouble(controls::why_not(chosen, words), "");
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
-            desk.messages.trouble(said, "");
+            context.messages.trouble(said, "");
         } else {
             self.wanted = Some((procedure, step, chosen.id));
-            self.keep_loaded(desk);
+            self.keep_loaded(context);
         }
     }
 
     /// Scripts are loaded for the unit's configuration, line and train: anew when these change.
-    fn keep_loaded(&mut self, desk: &Desk<'_>) {
-        let choice = &desk.units.chosen().choice;
+    fn keep_loaded(&mut self, context: &PageContext<'_>) {
+        let choice = &context.units.chosen().choice;
         let same = self.loaded_for.as_ref().is_some_and(|loaded| {
             loaded.unit_config == choice.unit_config
                 && loaded.line == choice.line
                 && loaded.train == choice.train
         });
         if !same {
-            self.load(desk);
+            self.load(context);
         }
     }
 
-    fn load(&mut self, desk: &Desk<'_>) {
-        let choice = desk.units.chosen().choice.clone();
+    fn load(&mut self, context: &PageContext<'_>) {
+        let choice = context.units.chosen().choice.clone();
         self.loaded_for = Some(choice.clone());
-        self.suite = Asked::Pending(desk.library.ask(move |shelf| prepare::load(shelf, &choice)));
+        self.suite = Request::Pending(context.queries.run(move |paths| prepare::load(paths, &choice)));
     }
 
     /// Takes what has come, whatever page is in front.
-    pub fn poll(&mut self, desk: &mut Desk<'_>) {
-        if self.stops != desk.units.stops() {
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        if self.stops != context.units.stops() {
             // Nothing begins by itself after everything was stopped.
-            self.stops = desk.units.stops();
+            self.stops = context.units.stops();
             self.orders.clear();
             self.wanted = None;
         }
         if self.suite.poll()
-            && let Asked::Failed(why) = &self.suite
+            && let Request::Failed(why) = &self.suite
         {
-            let said = desk.words.procedures.not_loaded;
-            desk.messages.trouble(said, why.clone());
+            let said = context.words.procedures.not_loaded;
+            context.messages.trouble(said, why.clone());
         }
-        self.run_wanted(desk);
-        self.note.poll(desk.words, desk.messages);
-        self.poll_orders(desk);
-        self.conclude(desk);
+        self.run_wanted(context);
+        self.note.poll(context.words, context.messages);
+        self.poll_orders(context);
+        self.conclude(context);
     }
 
     /// Runs the step another page asked for, once the suite is there; what is chosen here stays chosen.
-    fn run_wanted(&mut self, desk: &mut Desk<'_>) {
+    fn run_wanted(&mut self, context: &mut PageContext<'_>) {
         let Some(suite) = self.suite.value() else {
             return;
         };
@@ -158,17 +158,17 @@ impl ProceduresPage {
         let only = found.map(|found| Selection::only(found, &step));
         let Some(only) = only.filter(|only| only.extent(&suite.procedures).0 > 0) else {
             let what = format!("{procedure} {step}");
-            desk.messages
-                .trouble(desk.words.procedures.no_such_step, what);
+            context.messages
+                .trouble(context.words.procedures.no_such_step, what);
             return;
         };
         let how = How {
-            operator: desk.settings.operator.clone(),
+            operator: context.settings.operator.clone(),
             repeat: 1,
             stop_on_fail: false,
             adaptive: false,
         };
-        self.order_of(unit, only, how, desk);
+        self.order_of(unit, only, how, context);
     }
 
     /// What is chosen, or would be run without a choice.
@@ -182,70 +182,70 @@ impl ProceduresPage {
     }
 
     /// Has an order of what is chosen made for a unit.
-    fn order(&mut self, unit: u64, adaptive: bool, desk: &mut Desk<'_>) {
+    fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
         let how = How {
-            operator: desk.settings.operator.clone(),
+            operator: context.settings.operator.clone(),
             repeat: if adaptive { 1 } else { self.repeat },
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
         };
-        let connection = desk.units.of_id(unit).map(|unit| unit.choice.connection());
+        let connection = context.units.of_id(unit).map(|unit| unit.choice.connection());
         if let Some(connection) = connection {
             let selection = self.chosen(connection);
-            self.order_of(unit, selection, how, desk);
+            self.order_of(unit, selection, how, context);
         }
     }
 
-    fn order_of(&mut self, id: u64, selection: Selection, how: How, desk: &mut Desk<'_>) {
+    fn order_of(&mut self, id: u64, selection: Selection, how: How, context: &mut PageContext<'_>) {
         let Some(shown) = self.suite.value().map(|suite| suite.sha256.clone()) else {
             return;
         };
-        let Some(unit) = desk.units.of_id(id) else {
+        let Some(unit) = context.units.of_id(id) else {
             return;
         };
         let (choice, serial) = (unit.choice.clone(), unit.name());
-        let order = desk
-            .library
-            .ask(move |shelf| prepare::order(shelf, &choice, &serial, &selection, how, &shown));
+        let order = context
+            .queries
+            .run(move |paths| prepare::order(paths, &choice, &serial, &selection, how, &shown));
         self.orders.push(Ordered {
             unit: id,
-            order: Asked::Pending(order),
+            order: Request::Pending(order),
         });
     }
 
     /// Begins what is ready, unless something else has the bench since.
-    fn poll_orders(&mut self, desk: &mut Desk<'_>) {
-        let words = &desk.words.procedures;
+    fn poll_orders(&mut self, context: &mut PageContext<'_>) {
+        let words = &context.words.procedures;
         for mut ordered in std::mem::take(&mut self.orders) {
             ordered.order.poll();
             match ordered.order {
-                Asked::There(Prepared::Order(order)) => {
-                    let unit = desk.units.of_id(ordered.unit);
+                Request::Ready(Prepared::Order(order)) => {
+                    let unit = context.units.of_id(ordered.unit);
                     if unit.is_some_and(|unit| unit.begin(*order)) {
                         self.shown = Shown::default();
                     } else {
-                        desk.messages.trouble(words.not_begun, "");
+                        context.messages.trouble(words.not_begun, "");
                     }
                 }
-                Asked::There(Prepared::Changed(suite)) => {
+                Request::Ready(Prepared::Changed(suite)) => {
                     let said = if suite.errors.is_empty() {
                         words.scripts_changed
                     } else {
                         words.script_errors
                     };
-                    desk.messages.trouble(said, "");
-                    self.suite = Asked::There(*suite);
+                    context.messages.trouble(said, "");
+                    self.suite = Request::Ready(*suite);
                 }
-                Asked::Failed(why) => desk.messages.trouble(words.not_begun, why),
+                Request::Failed(why) => context.messages.trouble(words.not_begun, why),
                 order => self.orders.push(Ordered { order, ..ordered }),
             }
         }
     }
 
     /// Asks what a run that did not pass comes to.
-    fn conclude(&mut self, desk: &Desk<'_>) {
+    fn conclude(&mut self, context: &PageContext<'_>) {
         self.conclusion.poll();
-        let run = desk.units.chosen().run.as_ref();
+        let run = context.units.chosen().run.as_ref();
         let Some(outcome) = run.and_then(|run| run.ended.as_ref()?.as_ref()) else {
             return;
         };
@@ -255,17 +255,17 @@ impl ProceduresPage {
         self.concluded = Some(outcome.id);
         let id = outcome.id;
         self.conclusion = match outcome.exit {
-            crate::failure::Exit::Failed => Asked::Pending(desk.library.ask(move |shelf| {
-                let answer = diagnose_run(&shelf.read()?, &shelf.scripts, id)?;
+            crate::failure::Exit::Failed => Request::Pending(context.queries.run(move |paths| {
+                let answer = diagnose_run(&paths.read()?, &paths.scripts, id)?;
                 Ok(answer.diagnosis.conclusion)
             })),
-            _ => Asked::Not,
+            _ => Request::Idle,
         };
     }
 
-    fn run(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let words = desk.words;
-        let unit = desk.units.chosen();
+    fn run(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let unit = context.units.chosen();
         let Some(run) = &unit.run else {
             ui.label(words.procedures.choose_and_run);
             return;
@@ -275,27 +275,27 @@ impl ProceduresPage {
         let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
         let texts = texts.map(|suite| &suite.texts);
         let answer = present::present(ui, words, run, texts);
-        let note = (&mut self.note, desk.settings.operator.as_str());
-        results::after_run(ui, (words, desk.library), run, note, desk.go);
+        let note = (&mut self.note, context.settings.operator.as_str());
+        results::after_run(ui, (words, context.queries), run, note, context.go_to);
         // It comes later: below what is written and clicked meanwhile, and in a place kept for it.
         let conclusion = match &self.conclusion {
-            Asked::There(conclusion) => Some(conclusion.as_str()),
-            Asked::Pending(_) => Some(words.common.loading),
-            Asked::Not | Asked::Failed(_) => None,
+            Request::Ready(conclusion) => Some(conclusion.as_str()),
+            Request::Pending(_) => Some(words.common.loading),
+            Request::Idle | Request::Failed(_) => None,
         };
         if let Some(conclusion) = conclusion.filter(|_| self.concluded == run.id()) {
             ui.label(RichText::new(conclusion).strong().size(17.0));
         }
         results::results(ui, words, run, &mut self.shown, texts);
         if let Some(yes) = answer {
-            desk.units.chosen_mut().answer(yes);
+            context.units.chosen_mut().answer(yes);
         }
     }
 }
 
-fn script_errors(ui: &mut Ui, suite: &Suite, desk: &Desk<'_>) {
+fn script_errors(ui: &mut Ui, suite: &Suite, context: &PageContext<'_>) {
     let bad = Palette::of(ui).bad;
-    let said = desk.words.procedures.script_errors;
+    let said = context.words.procedures.script_errors;
     ui.label(RichText::new(format!("⚠ {said}")).color(bad).strong());
     ScrollArea::vertical()
         .id_salt("script errors")

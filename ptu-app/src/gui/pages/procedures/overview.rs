@@ -3,23 +3,23 @@
 use eframe::egui::{Grid, ProgressBar, Ui};
 
 use crate::gui::parts::verdict_chip;
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::station::Phase;
 use crate::words::fill;
 
 /// A line for each unit when there are several.
-pub fn overview(ui: &mut Ui, desk: &mut Desk<'_>) {
-    if desk.units.count() < 2 {
+pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {
+    if context.units.count() < 2 {
         return;
     }
-    let words = desk.words;
+    let words = context.words;
     let mut choose = None;
     Grid::new("units")
         .num_columns(4)
         .striped(true)
         .show(ui, |ui| {
-            for (place, unit) in desk.units.iter().enumerate() {
-                let chosen = place == desk.units.chosen_place();
+            for (place, unit) in context.units.iter().enumerate() {
+                let chosen = place == context.units.chosen_place();
                 let name = format!("{}: {}", place + 1, unit.name());
                 if ui.selectable_label(chosen, name).clicked() {
                     choose = Some(place);
@@ -51,6 +51,6 @@ pub fn overview(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         });
     if let Some(place) = choose {
-        desk.units.choose(place);
+        context.units.choose(place);
     }
 }

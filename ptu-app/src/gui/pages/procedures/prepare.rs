@@ -4,7 +4,7 @@ use super::selection::{Selection, possible};
 use crate::diagnosis;
 use crate::failure::Failure;
 use crate::gui::UnitChoice;
-use crate::gui::library::Shelf;
+use crate::gui::data_paths::DataPaths;
 use crate::run::{RunPlan, Suite};
 use crate::station::RunOrder;
 
@@ -25,9 +25,9 @@ pub struct How {
 ///
 /// # Errors
 /// A file cannot be read, or something chosen is not there.
-pub fn load(shelf: &Shelf, choice: &UnitChoice) -> Result<Suite, Failure> {
-    let setup = choice.named()?.setup(&shelf.scripts)?;
-    Suite::load(&shelf.scripts, &[], &setup)
+pub fn load(paths: &DataPaths, choice: &UnitChoice) -> Result<Suite, Failure> {
+    let setup = choice.named()?.setup(&paths.scripts)?;
+    Suite::load(&paths.scripts, &[], &setup)
 }
 
 /// What loading for an order came to.
@@ -43,15 +43,15 @@ pub enum Prepared {
 /// # Errors
 /// Nothing is chosen, or a dictionary for an adaptive run is missing.
 pub fn order(
-    shelf: &Shelf,
+    paths: &DataPaths,
     choice: &UnitChoice,
     serial: &str,
     selection: &Selection,
     how: How,
     shown_sha256: &str,
 ) -> Result<Prepared, Failure> {
-    let setup = choice.named()?.setup(&shelf.scripts)?;
-    let suite = Suite::load(&shelf.scripts, &[], &setup)?;
+    let setup = choice.named()?.setup(&paths.scripts)?;
+    let suite = Suite::load(&paths.scripts, &[], &setup)?;
     if suite.sha256 != shown_sha256 || !suite.errors.is_empty() {
         return Ok(Prepared::Changed(Box::new(suite)));
     }
@@ -60,7 +60,7 @@ pub fn order(
     if tasks.is_empty() {
         return Err(Failure::usage("no step is chosen"));
     }
-    let store = shelf.open()?;
+    let store = paths.open()?;
     let adaptive = match how.adaptive {
         true => {
             let bench = diagnosis::Bench {
@@ -68,7 +68,7 @@ pub fn order(
                 line: &choice.line,
                 train: &choice.train,
             };
-            Some(diagnosis::adaptive(&store, &shelf.scripts, serial, &bench)?)
+            Some(diagnosis::adaptive(&store, &paths.scripts, serial, &bench)?)
         }
         false => None,
     };

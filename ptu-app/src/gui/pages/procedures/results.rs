@@ -6,9 +6,9 @@ use std::ops::Range;
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, ScrollArea, Ui, UiBuilder};
 
-use crate::gui::library::Library;
+use crate::gui::query_worker::QueryWorker;
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
-use crate::gui::{Go, Palette};
+use crate::gui::{Destination, Palette};
 use crate::run::CHECK_FAILED;
 use crate::station::Progress;
 use crate::words::{Words, fill};
@@ -27,10 +27,10 @@ pub struct Shown {
 /// Ways on from a run that is over, and what `who` has to say about it.
 pub fn after_run(
     ui: &mut Ui,
-    (words, library): (&Words, &Library),
+    (words, queries): (&Words, &QueryWorker),
     run: &Progress,
     (note, who): (&mut RunNoteForm, &str),
-    go: &mut Vec<Go>,
+    go_to: &mut Vec<Destination>,
 ) {
     let Some(id) = run.id() else { return };
     // A name of its own: what comes and goes above takes neither the focus nor a click away.
@@ -39,12 +39,12 @@ pub fn after_run(
         let found = !run.faults.is_empty() || run.not_passed > 0;
         let button = Button::new(RichText::new(words.procedures.to_diagnosis).strong());
         if ui.add_enabled(found, button).clicked() {
-            go.push(Go::Diagnosis(id));
+            go_to.push(Destination::Diagnosis(id));
         }
         if ui.button(words.procedures.to_report).clicked() {
-            go.push(Go::Report(id));
+            go_to.push(Destination::Report(id));
         }
-        note.show(ui, words, library, who, id);
+        note.show(ui, words, queries, who, id);
     };
     ui.scope_builder(named, |ui| ui.horizontal(row));
 }

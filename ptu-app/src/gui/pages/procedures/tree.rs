@@ -7,33 +7,33 @@ use eframe::egui::{Checkbox, Response, RichText, ScrollArea, TextEdit, Ui, colla
 
 use super::ProceduresPage;
 use super::selection::{Selection, Share, possible};
-use crate::gui::library::Asked;
-use crate::gui::{Desk, Palette};
+use crate::gui::request::Request;
+use crate::gui::{PageContext, Palette};
 use crate::words::{Language, Words, fill};
 
 impl ProceduresPage {
-    pub(super) fn tree(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let words = desk.words;
+    pub(super) fn tree(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
         ui.horizontal(|ui| {
             let label = ui.label(words.procedures.find);
             ui.add(TextEdit::singleline(&mut self.find).desired_width(130.0))
                 .labelled_by(label.id);
             if ui.button(words.procedures.reload).clicked() {
-                self.load(desk);
+                self.load(context);
             }
         });
         let suite = match &self.suite {
-            Asked::There(suite) => suite,
-            Asked::Failed(why) => {
+            Request::Ready(suite) => suite,
+            Request::Failed(why) => {
                 ui.label(RichText::new(why).color(Palette::of(ui).bad));
                 return;
             }
-            Asked::Not | Asked::Pending(_) => {
+            Request::Idle | Request::Pending(_) => {
                 ui.label(words.common.loading);
                 return;
             }
         };
-        let connection = desk.units.chosen().choice.connection();
+        let connection = context.units.chosen().choice.connection();
         let before = self.chosen(connection);
         let mut chosen = before.clone();
         ui.horizontal(|ui| {

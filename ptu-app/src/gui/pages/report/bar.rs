@@ -4,9 +4,10 @@ use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 use fault_db::Id;
 
 use super::{ReportPage, Shown, file};
-use crate::gui::library::{Asked, Shelf};
+use crate::gui::data_paths::DataPaths;
+use crate::gui::request::Request;
 use crate::gui::parts::{name_edit, named_combo};
-use crate::gui::{Desk, Go};
+use crate::gui::{PageContext, Destination};
 use crate::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.
@@ -15,29 +16,29 @@ const BUTTONS: f32 = 190.0;
 const NAME: f32 = 120.0;
 
 impl ReportPage {
-    pub(super) fn bar(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let words = desk.words;
-        let language = self.language(desk);
+    pub(super) fn bar(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let language = self.language(context);
         let Some(shown) = &self.shown else { return };
         let run = shown.run;
         ui.horizontal(|ui| {
-            ways_on(ui, words, shown, desk.go);
+            ways_on(ui, words, shown, context.go_to);
             if let Some(other) = languages(ui, words, language) {
                 self.language = Some(other);
             }
         });
-        ui.horizontal(|ui| self.files(ui, desk, run, language));
+        ui.horizontal(|ui| self.files(ui, context, run, language));
         ui.horizontal(|ui| {
             let label = ui.label(words.common.operator);
-            ui.add(name_edit(&mut desk.settings.operator, NAME))
+            ui.add(name_edit(&mut context.settings.operator, NAME))
                 .labelled_by(label.id);
-            let who = &desk.settings.operator;
-            self.note.show(ui, words, desk.library, who, run);
+            let who = &context.settings.operator;
+            self.note.show(ui, words, context.queries, who, run);
         });
     }
 
-    fn files(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, run: Id, language: Language) {
-        let words = &desk.words.report;
+    fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, run: Id, language: Language) {
+        let words = &context.words.report;
         let label = ui.label(words.file);
         let wide = (ui.available_width() - BUTTONS).max(BUTTONS);
         ui.add(TextEdit::singleline(&mut self.file).desired_width(wide))
@@ -47,37 +48,37 @@ impl ReportPage {
             (words.write_pdf, ".pdf"),
             (words.write_csv, ".csv"),
         ] {
-            let button = ui.add_enabled(self.writing.is_not(), Button::new(name));
+            let button = ui.add_enabled(self.writing.is_idle(), Button::new(name));
             if button.on_hover_text(words.write_hint).clicked() {
-                self.write(desk, run, language, ending);
+                self.write(context, run, language, ending);
             }
         }
     }
 
-    fn write(&mut self, desk: &mut Desk<'_>, run: Id, language: Language, ending: &str) {
-        let words = &desk.words.report;
+    fn write(&mut self, context: &mut PageContext<'_>, run: Id, language: Language, ending: &str) {
+        let words = &context.words.report;
         let Some(path) = file::with_ending(&self.file, ending) else {
-            desk.messages.trouble(words.not_written, words.name_file);
+            context.messages.trouble(words.not_written, words.name_file);
             return;
         };
-        let write = move |shelf: &Shelf| file::write(shelf, run, &path, language);
-        self.writing = Asked::Pending(desk.library.ask(write));
+        let write = move |paths: &DataPaths| file::write(paths, run, &path, language);
+        self.writing = Request::Pending(context.queries.run(write));
     }
 }
 
 /// To the diagnosis and to the traces.
-fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go: &mut Vec<Go>) {
+fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destination>) {
     let words = &words.report;
     let diagnosis = ui.add_enabled(shown.faulty, Button::new(words.to_diagnosis));
     if diagnosis.clicked() {
-        go.push(Go::Diagnosis(shown.run));
+        go_to.push(Destination::Diagnosis(shown.run));
     }
     let name = |id: &Id| fill(words.to_trace, &[("id", &id.short())]);
     match &shown.traces[..] {
         [] => {}
         [(only, faults)] => {
             if ui.button(name(only)).on_hover_text(faults).clicked() {
-                go.push(Go::Trace(*only));
+                go_to.push(Destination::Trace(*only));
             }
         }
         all => {
@@ -85,7 +86,7 @@ fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go: &mut Vec<Go>) {
             ui.menu_button(title, |ui| {
                 for (id, faults) in all {
                     if ui.button(format!("{}: {faults}", name(id))).clicked() {
-                        go.push(Go::Trace(*id));
+                        go_to.push(Destination::Trace(*id));
                     }
                 }
             });

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fault_db::Id;
 
 use crate::failure::Failure;
-use crate::gui::library::Shelf;
+use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::usual_folder;
 use crate::new_file::NewFile;
 use crate::owner;
@@ -39,16 +39,16 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
 /// # Errors
 /// The file cannot be written, or the database not be read.
 pub fn write(
-    shelf: &Shelf,
+    paths: &DataPaths,
     run: Id,
     wanted: &Path,
     language: Language,
 ) -> Result<PathBuf, Failure> {
     let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
     let file = NewFile::begin(wanted)?;
-    let store = shelf.read()?;
+    let store = paths.read()?;
     let detail = store.run(run, &owner::is_alive)?;
-    report::write_beside(&target, file, &store, &shelf.scripts, &detail, language)
+    report::write_beside(&target, file, &store, &paths.scripts, &detail, language)
 }
 
 #[cfg(test)]

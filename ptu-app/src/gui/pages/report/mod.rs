@@ -12,9 +12,9 @@ use std::path::PathBuf;
 use eframe::egui::{CentralPanel, Panel, RichText, Ui};
 use fault_db::Id;
 
-use crate::gui::library::Asked;
+use crate::gui::request::Request;
 use crate::gui::parts::{RunList, RunNoteForm};
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::report::run::{Block, Sheet, blocks};
 use crate::words::{Language, fill};
 use paper::Paper;
@@ -26,7 +26,7 @@ pub struct ReportPage {
     /// None = the foremost.
     chosen: Option<Id>,
     /// The sheet asked for, and the one shown until that is there.
-    asked: Asked<Shown>,
+    asked: Request<Shown>,
     shown: Option<Shown>,
     asked_for: Option<(Id, Language)>,
     /// Runs that had ended when it was asked for.
@@ -37,7 +37,7 @@ pub struct ReportPage {
     language: Option<Language>,
     paper: Paper,
     file: String,
-    writing: Asked<PathBuf>,
+    writing: Request<PathBuf>,
     note: RunNoteForm,
 }
 
@@ -53,47 +53,47 @@ struct Shown {
 
 impl ReportPage {
     /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        self.poll(desk);
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.poll(context);
         let list = Panel::left("reported runs").default_size(270.0);
         let shown = self.run();
-        let clicked = list.show(ui, |ui| self.runs.show(ui, desk, shown)).inner;
+        let clicked = list.show(ui, |ui| self.runs.show(ui, context, shown)).inner;
         self.chosen = clicked.or(self.chosen);
-        self.keep_up(ui, desk);
-        CentralPanel::default().show(ui, |ui| self.sheet(ui, desk));
+        self.keep_up(ui, context);
+        CentralPanel::default().show(ui, |ui| self.sheet(ui, context));
     }
 
     /// Shows this one.
-    pub fn open(&mut self, run: Id, desk: &mut Desk<'_>) {
+    pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.chosen = Some(run);
-        self.ask(run, desk);
+        self.ask(run, context);
     }
 
     /// Asks when another run is to be shown, and anew when something may have been added to this one:
     /// a run has ended, or the page was away.
-    fn keep_up(&mut self, ui: &Ui, desk: &Desk<'_>) {
-        let (pass, ended) = (ui.ctx().cumulative_pass_nr(), desk.units.runs_ended());
-        let away = pass > self.pass + 1 && !matches!(self.asked, Asked::Pending(_));
+    fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>) {
+        let (pass, ended) = (ui.ctx().cumulative_pass_nr(), context.units.runs_ended());
+        let away = pass > self.pass + 1 && !matches!(self.asked, Request::Pending(_));
         let anew = away || ended != self.ended;
         self.pass = pass;
         let Some(run) = self.chosen.or_else(|| self.runs.foremost()) else {
             return;
         };
-        if anew || self.asked_for != Some((run, self.language(desk))) {
-            self.ask(run, desk);
+        if anew || self.asked_for != Some((run, self.language(context))) {
+            self.ask(run, context);
         }
     }
 
-    fn ask(&mut self, run: Id, desk: &Desk<'_>) {
+    fn ask(&mut self, run: Id, context: &PageContext<'_>) {
         if self.run() != Some(run) {
             self.shown = None;
             self.file = file::named_after(run, &self.file);
         }
-        let language = self.language(desk);
+        let language = self.language(context);
         self.asked_for = Some((run, language));
-        self.ended = desk.units.runs_ended();
-        self.asked = Asked::Pending(desk.library.ask(move |shelf| {
-            let sheet = Sheet::gather(&shelf.read()?, Some(&shelf.scripts), run)?;
+        self.ended = context.units.runs_ended();
+        self.asked = Request::Pending(context.queries.run(move |paths| {
+            let sheet = Sheet::gather(&paths.read()?, Some(&paths.scripts), run)?;
             Ok(Shown::of(&sheet, language))
         }));
     }
@@ -104,14 +104,14 @@ impl ReportPage {
     }
 
     /// The sheet's language.
-    fn language(&self, desk: &Desk<'_>) -> Language {
-        self.language.unwrap_or(desk.words.language)
+    fn language(&self, context: &PageContext<'_>) -> Language {
+        self.language.unwrap_or(context.words.language)
     }
 
-    fn poll(&mut self, desk: &mut Desk<'_>) {
+    fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.asked.poll() {
             match std::mem::take(&mut self.asked) {
-                Asked::There(shown) => {
+                Request::Ready(shown) => {
                     self.shown = Some(shown);
                     self.paper = Paper::default();
                 }
@@ -120,25 +120,25 @@ impl ReportPage {
         }
         if self.writing.poll() {
             match std::mem::take(&mut self.writing) {
-                Asked::There(path) => {
+                Request::Ready(path) => {
                     let file = path.display();
-                    let said = fill(desk.words.report.written, &[("file", &file)]);
-                    desk.messages.tell(said);
+                    let said = fill(context.words.report.written, &[("file", &file)]);
+                    context.messages.note(said);
                 }
-                Asked::Failed(why) => desk.messages.trouble(desk.words.report.not_written, why),
-                Asked::Not | Asked::Pending(_) => {}
+                Request::Failed(why) => context.messages.trouble(context.words.report.not_written, why),
+                Request::Idle | Request::Pending(_) => {}
             }
         }
-        if let Some(noted) = self.note.poll(desk.words, desk.messages)
+        if let Some(noted) = self.note.poll(context.words, context.messages)
             && self.run() == Some(noted)
         {
-            self.ask(noted, desk);
+            self.ask(noted, context);
         }
     }
 
-    fn sheet(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let words = desk.words;
-        if let Asked::Failed(why) = &self.asked {
+    fn sheet(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        if let Request::Failed(why) = &self.asked {
             let said = RichText::new(words.report.not_read).color(Palette::of(ui).bad);
             ui.label(said.strong());
             ui.label(why);
@@ -146,12 +146,12 @@ impl ReportPage {
         }
         if self.shown.is_none() {
             ui.label(match self.asked {
-                Asked::Pending(_) => words.common.loading,
+                Request::Pending(_) => words.common.loading,
                 _ => words.report.choose_run,
             });
             return;
         }
-        self.bar(ui, desk);
+        self.bar(ui, context);
         ui.separator();
         if let Some(shown) = &self.shown {
             self.paper.show(ui, shown.run, &shown.blocks);

@@ -2,7 +2,7 @@
 
 use eframe::egui::{RichText, Role, Ui, WidgetInfo};
 
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::trace_view::{Axis, Cursor, Kind, Scene};
 use crate::words::fill;
 
@@ -15,9 +15,9 @@ pub fn view(
     scene: &mut Scene,
     choosing: &mut bool,
     told: &mut bool,
-    desk: &mut Desk<'_>,
+    context: &mut PageContext<'_>,
 ) {
-    let words = &desk.words.traces;
+    let words = &context.words.traces;
     ui.horizontal_wrapped(|ui| {
         for (kind, name) in [
             (Kind::Time, words.over_time),
@@ -25,7 +25,7 @@ pub fn view(
         ] {
             let chosen = scene.axis().kind() == kind;
             if ui.selectable_label(chosen, name).clicked() && !scene.set_axis(kind) {
-                desk.messages.tell(words.no_distance);
+                context.messages.note(words.no_distance);
             }
         }
         ui.separator();

@@ -6,9 +6,10 @@ use eframe::egui::{ComboBox, DragValue, RichText, Ui};
 
 use super::bar;
 use super::list::TraceList;
-use crate::gui::library::{Asked, Pending};
+use crate::gui::query_worker::Pending;
+use crate::gui::request::Request;
 use crate::gui::parts::named_combo;
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::trace_view::{Against, Overlay, Parting, Scene};
 use crate::words::fill;
 
@@ -21,18 +22,18 @@ const DEVIATING: usize = 12;
 #[derive(Default)]
 pub struct BehindAsked {
     against: Option<Against>,
-    overlay: Asked<Overlay>,
+    overlay: Request<Overlay>,
     parting: Option<Pending<Parting>>,
 }
 
 impl BehindAsked {
     /// Takes what has come, and asks where the traces part when that is not known.
-    pub fn poll(&mut self, scene: &mut Scene, desk: &mut Desk<'_>) {
+    pub fn poll(&mut self, scene: &mut Scene, context: &mut PageContext<'_>) {
         if self.overlay.poll() {
             match std::mem::take(&mut self.overlay) {
-                Asked::There(overlay) => scene.lay_behind(Arc::new(overlay)),
-                Asked::Failed(why) => {
-                    desk.messages.trouble(desk.words.traces.cannot_overlay, why);
+                Request::Ready(overlay) => scene.lay_behind(Arc::new(overlay)),
+                Request::Failed(why) => {
+                    context.messages.trouble(context.words.traces.cannot_overlay, why);
                     self.against = None;
                 }
                 other => self.overlay = other,
@@ -42,7 +43,7 @@ impl BehindAsked {
             self.parting = None;
             if let (Ok(parting), Some(against)) = (answer, self.against) {
                 if let Some(why) = &parting.trouble {
-                    desk.messages.trouble(desk.words.traces.cannot_compare, why);
+                    context.messages.trouble(context.words.traces.cannot_compare, why);
                 }
                 scene.told(against, parting);
             }
@@ -55,7 +56,7 @@ impl BehindAsked {
             let (overlay, opened) = (behind.overlay.clone(), scene.opened().clone());
             let shift_rows = behind.shift_rows;
             let question = move |_: &_| Ok(overlay.parting(&opened.view, shift_rows));
-            self.parting = Some(desk.library.ask(question));
+            self.parting = Some(context.queries.run(question));
         }
     }
 
@@ -65,11 +66,11 @@ impl BehindAsked {
     }
 
     /// What to compare with, and what the comparison says.
-    pub fn bar(&mut self, ui: &mut Ui, scene: &mut Scene, list: &TraceList, desk: &mut Desk<'_>) {
-        let words = &desk.words.traces;
+    pub fn bar(&mut self, ui: &mut Ui, scene: &mut Scene, list: &TraceList, context: &mut PageContext<'_>) {
+        let words = &context.words.traces;
         ui.label(words.overlay);
         let mut against = self.against;
-        let chosen = self.name(list, desk);
+        let chosen = self.name(list, context);
         let combo = ComboBox::from_id_salt("compare with")
             .width(190.0)
             .selected_text(&chosen)
@@ -86,39 +87,39 @@ impl BehindAsked {
             });
         named_combo(&combo.response, words.overlay_choice, &chosen);
         if against != self.against {
-            self.ask(against, scene, desk);
+            self.ask(against, scene, context);
         }
-        if matches!(self.overlay, Asked::Pending(_)) {
+        if matches!(self.overlay, Request::Pending(_)) {
             ui.spinner();
             ui.label(match self.against {
                 Some(Against::Twin) => words.making_twin,
-                _ => desk.words.common.loading,
+                _ => context.words.common.loading,
             });
         }
         if scene.behind().is_some() {
-            offset(ui, scene, desk);
-            said(ui, scene, desk);
+            offset(ui, scene, context);
+            said(ui, scene, context);
         }
     }
 
-    fn ask(&mut self, against: Option<Against>, scene: &mut Scene, desk: &Desk<'_>) {
+    fn ask(&mut self, against: Option<Against>, scene: &mut Scene, context: &PageContext<'_>) {
         self.against = against;
         self.parting = None;
         scene.lay_nothing_behind();
         let id = scene.opened().id;
         self.overlay = match against {
-            None => Asked::Not,
-            Some(against) => Asked::Pending(
-                desk.library
-                    .ask(move |shelf| Overlay::get(&shelf.read()?, &shelf.scripts, id, against)),
+            None => Request::Idle,
+            Some(against) => Request::Pending(
+                context.queries
+                    .run(move |paths| Overlay::get(&paths.read()?, &paths.scripts, id, against)),
             ),
         };
     }
 
-    fn name(&self, list: &TraceList, desk: &Desk<'_>) -> String {
+    fn name(&self, list: &TraceList, context: &PageContext<'_>) -> String {
         match self.against {
-            None => desk.words.traces.no_overlay.to_owned(),
-            Some(Against::Twin) => desk.words.traces.good_twin.to_owned(),
+            None => context.words.traces.no_overlay.to_owned(),
+            Some(Against::Twin) => context.words.traces.good_twin.to_owned(),
             Some(Against::Trace(id)) => {
                 let run = list.all().find(|(_, trace)| trace.id == id);
                 let unit = run.map_or("", |(run, _)| &run.unit);
@@ -128,8 +129,8 @@ impl BehindAsked {
     }
 }
 
-fn offset(ui: &mut Ui, scene: &mut Scene, desk: &Desk<'_>) {
-    let words = &desk.words.traces;
+fn offset(ui: &mut Ui, scene: &mut Scene, context: &PageContext<'_>) {
+    let words = &context.words.traces;
     let period_s = scene.view().data().period_us as f64 / 1e6;
     let Some(shift_rows) = scene.behind().map(|behind| behind.shift_rows) else {
         return;
@@ -147,11 +148,11 @@ fn offset(ui: &mut Ui, scene: &mut Scene, desk: &Desk<'_>) {
     }
 }
 
-fn said(ui: &mut Ui, scene: &mut Scene, desk: &mut Desk<'_>) {
-    let words = &desk.words.traces;
+fn said(ui: &mut Ui, scene: &mut Scene, context: &mut PageContext<'_>) {
+    let words = &context.words.traces;
     let parting = scene.behind().and_then(|behind| behind.parting.as_ref());
     let Some(parting) = parting else {
-        ui.label(desk.words.common.loading);
+        ui.label(context.words.common.loading);
         return;
     };
     let palette = Palette::of(ui);
@@ -174,6 +175,6 @@ fn said(ui: &mut Ui, scene: &mut Scene, desk: &mut Desk<'_>) {
     ui.label(RichText::new(text).color(palette.bad));
     if ui.button(words.show_deviating).clicked() {
         scene.show_deviating(DEVIATING);
-        desk.settings.lanes = scene.signals();
+        context.settings.lanes = scene.signals();
     }
 }

@@ -6,7 +6,7 @@ use super::bar;
 use super::row::Sheet;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::trace_view::shelf::Event;
+use crate::trace_view::listing::Event;
 use crate::trace_view::{Cursor, Scene};
 use crate::words::Words;
 

@@ -9,8 +9,8 @@ use eframe::egui::{Button, ColorImage, Rect, TextEdit, Ui};
 use fault_db::Id;
 
 use super::signals::name_input;
-use crate::gui::Desk;
-use crate::gui::library::Pending;
+use crate::gui::PageContext;
+use crate::gui::query_worker::Pending;
 use crate::gui::parts::usual_folder;
 use crate::new_file::{NewFile, cannot_write};
 use crate::trace_view::csv::csv;
@@ -34,9 +34,9 @@ impl Export {
     }
 
     /// Name and buttons; `rect` is what the picture is of.
-    pub fn bar(&mut self, ui: &mut Ui, scene: &Scene, rect: Rect, desk: &Desk<'_>) {
-        let words = &desk.words.traces;
-        ui.label(desk.words.common.file);
+    pub fn bar(&mut self, ui: &mut Ui, scene: &Scene, rect: Rect, context: &PageContext<'_>) {
+        let words = &context.words.traces;
+        ui.label(context.words.common.file);
         let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(260.0));
         name_input(&edit, words.file_name);
         let edit = edit.on_hover_text(words.file_name);
@@ -45,7 +45,7 @@ impl Export {
             // What has the keyboard is not part of the picture.
             edit.surrender_focus();
             let (sender, receiver) = mpsc::channel();
-            let wake = desk.library.wake().clone();
+            let wake = context.queries.wake().clone();
             ui.ctx().request_screenshot(move |image| {
                 // Another trace may have been opened since.
                 let _ = sender.send(image);
@@ -54,12 +54,12 @@ impl Export {
             self.picture = Some((receiver, rect, ui.pixels_per_point()));
         }
         if ui.add_enabled(named, Button::new(words.save_csv)).clicked() {
-            self.write_csv(scene, desk);
+            self.write_csv(scene, context);
         }
     }
 
     /// Takes what has come.
-    pub fn poll(&mut self, desk: &mut Desk<'_>) {
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let taken = self
             .picture
             .as_ref()
@@ -74,26 +74,26 @@ impl Export {
                 encode(&part, &mut file).map_err(|error| cannot_write(&place, &error))?;
                 file.finish_beside()
             };
-            self.writing.push(desk.library.ask(question));
+            self.writing.push(context.queries.run(question));
         }
-        let words = desk.words;
+        let words = context.words;
         self.writing.retain(|pending| match pending.take() {
             None => true,
             Some(Ok(path)) => {
                 let file = path.display().to_string();
-                desk.messages
-                    .tell(fill(words.common.saved, &[("file", &file)]));
+                context.messages
+                    .note(fill(words.common.saved, &[("file", &file)]));
                 false
             }
             Some(Err(failure)) => {
-                desk.messages
+                context.messages
                     .trouble(words.traces.cannot_save, failure.message);
                 false
             }
         });
     }
 
-    fn write_csv(&mut self, scene: &Scene, desk: &Desk<'_>) {
+    fn write_csv(&mut self, scene: &Scene, context: &PageContext<'_>) {
         let opened = scene.opened().clone();
         let channels: Vec<usize> = scene.lanes().iter().filter_map(|lane| lane.place).collect();
         let rows = scene.rows_in_view();
@@ -107,7 +107,7 @@ impl Export {
             written.map_err(|error| cannot_write(&place, &error))?;
             file.finish_beside()
         };
-        self.writing.push(desk.library.ask(question));
+        self.writing.push(context.queries.run(question));
     }
 }
 

@@ -3,15 +3,15 @@
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::Id;
 
-use crate::gui::library::Asked;
-use crate::gui::{Desk, Palette};
-use crate::trace_view::shelf::{self, ListedRun, ListedTrace, RUNS};
+use crate::gui::request::Request;
+use crate::gui::{PageContext, Palette};
+use crate::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
 use crate::words::{Words, fill};
 
 /// The list's own state.
 #[derive(Default)]
 pub struct TraceList {
-    runs: Asked<Vec<ListedRun>>,
+    runs: Request<Vec<ListedRun>>,
     filter: String,
     /// What fits the filter, by run and trace; told anew when either changes.
     shown: Vec<(usize, Option<usize>)>,
@@ -24,15 +24,15 @@ impl TraceList {
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        desk: &mut Desk<'_>,
+        context: &mut PageContext<'_>,
         chosen: Option<Id>,
     ) -> Option<(Id, Id)> {
-        let words = desk.words;
-        self.keep_up(desk);
+        let words = context.words;
+        self.keep_up(context);
         ui.horizontal(|ui| {
             ui.label(RichText::new(words.traces.recorded).strong());
             if ui.button(words.common.refresh).clicked() {
-                self.runs = Asked::Not;
+                self.runs = Request::Idle;
             }
         });
         let edit = TextEdit::singleline(&mut self.filter)
@@ -44,13 +44,13 @@ impl TraceList {
             self.apply();
         }
         let runs = match &self.runs {
-            Asked::There(runs) => runs,
-            Asked::Failed(why) => {
+            Request::Ready(runs) => runs,
+            Request::Failed(why) => {
                 let text = format!("{}: {why}", words.traces.cannot_list);
                 ui.label(RichText::new(text).color(Palette::of(ui).bad));
                 return None;
             }
-            Asked::Not | Asked::Pending(_) => {
+            Request::Idle | Request::Pending(_) => {
                 ui.label(words.common.loading);
                 return None;
             }
@@ -110,15 +110,15 @@ impl TraceList {
     }
 
     /// Asks when it was not asked yet, and when a run has ended since.
-    fn keep_up(&mut self, desk: &Desk<'_>) {
-        let ended = desk.units.runs_ended();
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        let ended = context.units.runs_ended();
         if ended != self.ended {
             self.ended = ended;
-            self.runs = Asked::Not;
+            self.runs = Request::Idle;
         }
-        if self.runs.is_not() {
-            let question = desk.library.ask(|shelf| shelf::list(&shelf.read()?));
-            self.runs = Asked::Pending(question);
+        if self.runs.is_idle() {
+            let question = context.queries.run(|paths| listing::list(&paths.read()?));
+            self.runs = Request::Pending(question);
         }
         if self.runs.poll() {
             self.apply();

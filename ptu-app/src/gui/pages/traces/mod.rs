@@ -16,10 +16,10 @@ use std::sync::Arc;
 use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
-use crate::gui::library::Pending;
-use crate::gui::{Desk, Go, Palette};
+use crate::gui::query_worker::Pending;
+use crate::gui::{PageContext, Destination, Palette};
 use crate::trace_view::Scene;
-use crate::trace_view::shelf::{self, Opened};
+use crate::trace_view::listing::{self, Opened};
 use crate::words::fill;
 use behind::BehindAsked;
 use export::Export;
@@ -47,65 +47,65 @@ pub struct TracesPage {
 
 impl TracesPage {
     /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        self.poll(desk);
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.poll(context);
         let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
         let clicked = Panel::left("recorded traces")
             .default_size(250.0)
             .size_range(180.0..=420.0)
-            .show(ui, |ui| self.list.show(ui, desk, chosen))
+            .show(ui, |ui| self.list.show(ui, context, chosen))
             .inner;
         // The latest trace is what most people come for.
         let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
         if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
-            self.read(id, Some(run), desk);
+            self.read(id, Some(run), context);
         }
         CentralPanel::default()
             .frame(Frame::central_panel(ui.style()).inner_margin(4))
-            .show(ui, |ui| self.central(ui, desk));
+            .show(ui, |ui| self.central(ui, context));
     }
 
     /// Shows this one.
-    pub fn open(&mut self, id: Id, desk: &mut Desk<'_>) {
-        self.read(id, None, desk);
+    pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
+        self.read(id, None, context);
     }
 
-    fn read(&mut self, id: Id, run: Option<Id>, desk: &Desk<'_>) {
+    fn read(&mut self, id: Id, run: Option<Id>, context: &PageContext<'_>) {
         self.trouble = None;
-        let question = desk.library.ask(move |shelf| {
+        let question = context.queries.run(move |paths| {
             Ok((
-                shelf::open(&shelf.read()?, id, run)?,
+                listing::open(&paths.read()?, id, run)?,
                 export::usual_name(id),
             ))
         });
         self.opening = Some(question);
     }
 
-    fn poll(&mut self, desk: &mut Desk<'_>) {
+    fn poll(&mut self, context: &mut PageContext<'_>) {
         if let Some(answer) = self.opening.as_ref().and_then(Pending::take) {
             self.opening = None;
             match answer {
                 Ok((opened, name)) => {
                     self.export.name_after(name);
                     self.behind = BehindAsked::default();
-                    self.scene = Some(Scene::new(Arc::new(opened), &desk.settings.lanes));
+                    self.scene = Some(Scene::new(Arc::new(opened), &context.settings.lanes));
                 }
                 Err(failure) => {
                     self.scene = None;
-                    desk.messages
-                        .trouble(desk.words.traces.cannot_open, &failure.message);
+                    context.messages
+                        .trouble(context.words.traces.cannot_open, &failure.message);
                     self.trouble = Some(failure.message);
                 }
             }
         }
         if let Some(scene) = &mut self.scene {
-            self.behind.poll(scene, desk);
+            self.behind.poll(scene, context);
         }
-        self.export.poll(desk);
+        self.export.poll(context);
     }
 
-    fn central(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let words = desk.words;
+    fn central(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
         let Some(scene) = &mut self.scene else {
             match &self.trouble {
                 _ if self.opening.is_some() => ui.label(words.common.loading),
@@ -119,19 +119,19 @@ impl TracesPage {
         };
         // Words stand on one line with what they name.
         ui.spacing_mut().interact_size.y = ROW;
-        heading(ui, scene, &self.list, desk);
-        bar::view(ui, scene, &mut self.choosing, &mut self.told, desk);
+        heading(ui, scene, &self.list, context);
+        bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
-            self.behind.bar(ui, scene, &self.list, desk);
+            self.behind.bar(ui, scene, &self.list, context);
             // What the comparison says needs the row for itself.
             if !self.behind.is_asked() {
                 ui.separator();
-                self.export.bar(ui, scene, rect, desk);
+                self.export.bar(ui, scene, rect, context);
             }
         });
         if self.behind.is_asked() {
-            ui.horizontal_wrapped(|ui| self.export.bar(ui, scene, rect, desk));
+            ui.horizontal_wrapped(|ui| self.export.bar(ui, scene, rect, context));
         }
         events::links(ui, scene, words);
         if self.choosing {
@@ -139,7 +139,7 @@ impl TracesPage {
                 .default_size(260.0)
                 .size_range(200.0..=400.0)
                 .show(ui, |ui| {
-                    signals::choose(ui, scene, &mut self.find_signal, desk);
+                    signals::choose(ui, scene, &mut self.find_signal, context);
                 });
         }
         if self.told {
@@ -156,8 +156,8 @@ impl TracesPage {
 }
 
 /// Whose trace it is, what is amiss with it, and ways on from here.
-fn heading(ui: &mut Ui, scene: &Scene, list: &TraceList, desk: &mut Desk<'_>) {
-    let words = desk.words;
+fn heading(ui: &mut Ui, scene: &Scene, list: &TraceList, context: &mut PageContext<'_>) {
+    let words = context.words;
     let opened = scene.opened();
     ui.horizontal_wrapped(|ui| {
         let (unit, when) = list.whose(opened.run);
@@ -187,10 +187,10 @@ fn heading(ui: &mut Ui, scene: &Scene, list: &TraceList, desk: &mut Desk<'_>) {
         }
         if let Some(run) = opened.run {
             if ui.link(words.traces.to_report).clicked() {
-                desk.go.push(Go::Report(run));
+                context.go_to.push(Destination::Report(run));
             }
             if ui.link(words.traces.to_diagnosis).clicked() {
-                desk.go.push(Go::Diagnosis(run));
+                context.go_to.push(Destination::Diagnosis(run));
             }
         }
     });

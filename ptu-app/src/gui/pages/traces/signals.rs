@@ -2,7 +2,7 @@
 
 use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
-use crate::gui::{Desk, Palette};
+use crate::gui::{PageContext, Palette};
 use crate::trace_view::{Scene, Summary};
 use crate::words::fill;
 
@@ -18,12 +18,12 @@ enum Pressed {
 }
 
 /// The chooser.
-pub fn choose(ui: &mut Ui, scene: &mut Scene, find: &mut String, desk: &mut Desk<'_>) {
-    let words = &desk.words.traces;
+pub fn choose(ui: &mut Ui, scene: &mut Scene, find: &mut String, context: &mut PageContext<'_>) {
+    let words = &context.words.traces;
     ui.horizontal(|ui| {
         ui.label(RichText::new(words.signals).strong());
         if ui.button(words.usual_signals).clicked() {
-            desk.settings.lanes.clear();
+            context.settings.lanes.clear();
             scene.set_signals(&[]);
         }
     });
@@ -36,7 +36,7 @@ pub fn choose(ui: &mut Ui, scene: &mut Scene, find: &mut String, desk: &mut Desk
         let mut signals = before.clone();
         if find.trim().is_empty() {
             ui.label(RichText::new(words.shown_signals).color(Palette::of(ui).quiet));
-            if let Some(pressed) = shown(ui, scene, desk) {
+            if let Some(pressed) = shown(ui, scene, context) {
                 act(pressed, &mut signals, scene);
             }
             ui.separator();
@@ -62,7 +62,7 @@ pub fn choose(ui: &mut Ui, scene: &mut Scene, find: &mut String, desk: &mut Desk
         }
         if signals != before {
             scene.set_signals(&signals);
-            desk.settings.lanes = signals;
+            context.settings.lanes = signals;
         }
     });
 }
@@ -72,8 +72,8 @@ pub fn name_input(response: &Response, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, response.enabled(), name));
 }
 
-fn shown(ui: &mut Ui, scene: &Scene, desk: &Desk<'_>) -> Option<Pressed> {
-    let words = &desk.words.traces;
+fn shown(ui: &mut Ui, scene: &Scene, context: &PageContext<'_>) -> Option<Pressed> {
+    let words = &context.words.traces;
     let mut pressed = None;
     for (i, lane) in scene.lanes().iter().enumerate() {
         ui.horizontal(|ui| {

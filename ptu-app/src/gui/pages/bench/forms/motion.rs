@@ -59,7 +59,7 @@ impl Default for MotionForm {
 
 impl MotionForm {
     /// To the speed filled in.
-    pub fn go(&self) -> Stimulus {
+    pub fn go_to(&self) -> Stimulus {
         self.to(Speed::from_kmh(self.to_kmh))
     }
 
@@ -137,7 +137,7 @@ mod tests {
         };
         let twenty = Speed::from_kmh(72.0);
         assert_eq!(
-            form.go(),
+            form.go_to(),
             Stimulus::Speed {
                 to: twenty,
                 accel_mps2: 1.0

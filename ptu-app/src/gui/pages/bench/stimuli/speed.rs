@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut Hand<'_>) {
         named_number(ui, words.acceleration, accel, 0.01..=MAX_KMHPS, "km/h/s");
     });
     row(ui, "", |ui, _| {
-        hand.button(ui, words.go_to, form.go());
+        hand.button(ui, words.go_to, form.go_to());
         hand.button(ui, words.stand, form.stand());
     });
     row(ui, words.distance, |ui, label| {

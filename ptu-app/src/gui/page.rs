@@ -1,0 +1,82 @@
+//! Which pages the window has: their names, keys and the words of the command line.
+
+use eframe::egui::Key;
+use serde::{Deserialize, Serialize};
+
+use crate::words::Words;
+
+/// A page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Page {
+    /// The unit live, and stimuli by hand.
+    #[default]
+    Bench,
+    /// Choosing and running procedures.
+    Procedures,
+    /// Recorded traces.
+    Traces,
+    /// The fault history.
+    Faults,
+    /// The part to replace.
+    Diagnosis,
+    /// The test sheet of a run.
+    Report,
+}
+
+impl Page {
+    /// All, in the order they are shown.
+    pub const ALL: [Self; 6] = [
+        Self::Bench,
+        Self::Procedures,
+        Self::Traces,
+        Self::Faults,
+        Self::Diagnosis,
+        Self::Report,
+    ];
+
+    /// Its name on the command line.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Bench => "bench",
+            Self::Procedures => "procedures",
+            Self::Traces => "traces",
+            Self::Faults => "faults",
+            Self::Diagnosis => "diagnosis",
+            Self::Report => "report",
+        }
+    }
+
+    /// Its name.
+    pub fn name(self, words: &Words) -> &'static str {
+        match self {
+            Self::Bench => words.bench.title,
+            Self::Procedures => words.procedures.title,
+            Self::Traces => words.traces.title,
+            Self::Faults => words.faults.title,
+            Self::Diagnosis => words.diagnosis.title,
+            Self::Report => words.report.title,
+        }
+    }
+
+    /// The key that shows it.
+    pub fn key(self) -> Key {
+        match self {
+            Self::Bench => Key::F1,
+            Self::Procedures => Key::F2,
+            Self::Traces => Key::F3,
+            Self::Faults => Key::F4,
+            Self::Diagnosis => Key::F5,
+            Self::Report => Key::F6,
+        }
+    }
+}
+
+impl std::str::FromStr for Page {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|page| page.word() == text);
+        known.ok_or_else(|| format!("a page is one of {}", Self::ALL.map(Self::word).join(", ")))
+    }
+}
