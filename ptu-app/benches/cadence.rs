@@ -21,7 +21,7 @@ use protocol::{CYCLE, Speed};
 use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Settings};
-use ptu_app::station::Phase;
+use ptu_app::bench_worker::Phase;
 
 /// How long each measurement takes.
 const LASTS: Duration = Duration::from_secs(20);
@@ -81,7 +81,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
     };
     app.units()
         .chosen()
-        .station
+        .bench
         .apply(speed)
         .expect("permitted");
     std::thread::sleep(Duration::from_secs(1));

@@ -38,7 +38,7 @@ pub mod replay;
 pub mod report;
 pub mod run;
 mod sparkline;
-pub mod station;
+pub mod bench_worker;
 pub mod stop;
 mod table;
 mod tell;

@@ -87,13 +87,13 @@ fn a_section_laid_by_hand_is_forgotten_with_stop_all_on_another_page() {
         !window.shows_part("no section laid along the way")
     });
     window.key(Page::Procedures.key());
-    let generation = |window: &Window| {
+    let bench_epoch = |window: &Window| {
         let unit = window.app().units().chosen();
-        unit.station.live().generation
+        unit.bench.live().bench_epoch
     };
-    let before = generation(&window);
+    let before = bench_epoch(&window);
     window.key(Key::F12);
-    window.until("a safe bench", |window| generation(window) > before);
+    window.until("a safe bench", |window| bench_epoch(window) > before);
     window.key(Page::Bench.key());
     window.wait_for_part("no section laid along the way");
 }

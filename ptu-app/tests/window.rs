@@ -9,7 +9,7 @@ use common::window::Window;
 use common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
 use ptu_app::gui::{Page, Settings};
-use ptu_app::station::Phase;
+use ptu_app::bench_worker::Phase;
 use ptu_app::words::Language;
 
 fn settings(page: Page) -> Settings {
@@ -227,7 +227,7 @@ fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
         window.wait_for("Does the lamp light?");
         window.key(Page::Faults.key());
         window.wait_for("a script asks");
-        let now = |window: &Window| window.app().units().chosen().station.live().now;
+        let now = |window: &Window| window.app().units().chosen().bench.live().now;
         let (began, before) = (std::time::Instant::now(), now(&window));
         for _ in 0..100 {
             window.step();

@@ -23,7 +23,7 @@ use protocol::Speed;
 use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Page, Settings};
-use ptu_app::station::Phase;
+use ptu_app::bench_worker::Phase;
 use ptu_app::trace_view::TraceView;
 use tempfile::TempDir;
 
@@ -109,8 +109,8 @@ impl Window {
             to: Speed::from_kmh(60.0),
             accel_mps2: 0.5,
         };
-        let station = &window.app.units().chosen().station;
-        station.apply(speed).expect("permitted");
+        let bench = &window.app.units().chosen().bench;
+        bench.apply(speed).expect("permitted");
         let began = Instant::now();
         window.frames_until(|window| {
             window.frame(&[]);

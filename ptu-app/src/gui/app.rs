@@ -17,7 +17,7 @@ use super::settings::Settings;
 use super::units::Units;
 use super::{fonts, theme};
 use crate::failure::Failure;
-use crate::station::Wake;
+use crate::bench_worker::Wake;
 use crate::stop::Stop;
 
 /// How often a window that is being closed looks whether all units are let go.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::app::{App, Options};
 use crate::failure::Failure;
-use crate::station::Wake;
+use crate::bench_worker::Wake;
 
 /// Smallest window in which every page can be used, and the first one's size.
 const SMALLEST: [f32; 2] = [900.0, 600.0];

@@ -4,7 +4,7 @@ use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use super::data_paths::DataPaths;
 use crate::failure::Failure;
-use crate::station::Wake;
+use crate::bench_worker::Wake;
 
 type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 

@@ -20,7 +20,7 @@ use super::reach::Reached;
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
 use super::settle::{READY_WITHIN, between_procedures, settled};
-use super::{Attendant, ProcedureStream, RunPlan, Task, stream, unit_text};
+use super::{RunControl, ProcedureStream, RunPlan, Task, stream, unit_text};
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
@@ -55,7 +55,7 @@ pub struct BenchSetup {
     /// Times the bench is slower than the clock, where it goes by the clock.
     pub slower: u32,
     /// Who looks on.
-    pub attendant: Option<Arc<dyn Attendant>>,
+    pub run_control: Option<Arc<dyn RunControl>>,
 }
 
 /// A unit that has been reached.
@@ -150,7 +150,7 @@ impl BenchSetup {
             Pace::Virtual
         };
         Session::new(Bench::new(rig, wired(link)), pace, stop.clone(), true)
-            .attended_by(self.attendant.clone())
+            .controlled_by(self.run_control.clone())
     }
 }
 
@@ -169,7 +169,7 @@ impl Connected {
         }
     }
 
-    /// Listens to `stop` from now on.
+    /// Replaces the stop that ends runs on this unit.
     pub fn set_stop(&mut self, stop: &Stop) {
         if let Self::Port(session, ..) = self {
             session.set_stop(stop);
@@ -492,7 +492,7 @@ mod tests {
             serial: None,
             realtime: false,
             slower: 1,
-            attendant: None,
+            run_control: None,
         };
         (directory, setup)
     }

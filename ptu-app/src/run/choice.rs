@@ -79,7 +79,7 @@ impl Choice {
             serial: self.serial.clone(),
             realtime: self.realtime,
             slower: self.slower,
-            attendant: None,
+            run_control: None,
         })
     }
 }

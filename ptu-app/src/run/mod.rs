@@ -8,7 +8,7 @@
 //! record does not depend on how many work side by side.
 
 pub(crate) mod adaptive;
-mod attendant;
+mod run_control;
 pub(crate) mod benches;
 mod choice;
 mod collector;
@@ -38,7 +38,7 @@ use btu_rig::procedure::{self, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
-pub use attendant::Attendant;
+pub use run_control::RunControl;
 pub use benches::{BenchSetup, Connected, run_here};
 pub use choice::Choice;
 pub use collector::{Listener, Outcome, steps_of, stored};

@@ -33,7 +33,7 @@ struct Window {
 }
 
 /// A window that is complete.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Cut {
     /// Faults it shows, by their number in the procedure.
     pub faults: Vec<usize>,

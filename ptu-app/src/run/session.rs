@@ -13,7 +13,7 @@ use fault_db::TraceData;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant, SCAN};
 
-use super::Attendant;
+use super::RunControl;
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::{Cut, Recorder};
 use super::rounds::Rounds;
@@ -24,8 +24,8 @@ use crate::stop::Stop;
 /// A bench less behind than this is in time.
 const IN_TIME: Duration = Duration::from_us(2 * SCAN.as_us());
 
-/// What happens on a bench. Times are the bench's own.
-#[derive(Debug)]
+/// What happens while a procedure runs on a bench. Times are bench times.
+#[derive(Clone, Debug)]
 pub enum SessionEvent {
     /// From the runner.
     Run(RunEvent),
@@ -62,12 +62,12 @@ pub struct Session<L: UnitLink> {
     recorder: Recorder,
     sample: Sample,
     link_error: Option<String>,
-    /// How far the bench may be behind the clock; none for a unit whose clock is the bench's.
+    /// How far the bench may lag behind the wall clock; `None` for a unit in virtual time.
     max_lag: Option<Duration>,
-    /// Longest lag above `max_lag` since it was last read.
+    /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
     fresh_unit: bool,
-    attendant: Option<Arc<dyn Attendant>>,
+    run_control: Option<Arc<dyn RunControl>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
     with_person: bool,
 }
@@ -107,25 +107,25 @@ impl<L: UnitLink> Session<L> {
             max_lag: None,
             stalled: None,
             fresh_unit,
-            attendant: None,
+            run_control: None,
             with_person: false,
         }
     }
 
     /// From now on somebody looks on.
-    pub fn attended_by(mut self, attendant: Option<Arc<dyn Attendant>>) -> Self {
-        self.attendant = attendant;
+    pub fn controlled_by(mut self, run_control: Option<Arc<dyn RunControl>>) -> Self {
+        self.run_control = run_control;
         self
     }
 
-    /// The unit's time goes on by itself: a bench further behind it than this cannot tell what the unit does,
-    /// and makes it brake by its silence.
-    pub fn keeping_up(mut self, max_lag: Duration) -> Self {
+    /// Sets the lag beyond which a unit in real time misses its inputs and brakes, so that nothing it does then
+    /// is judged.
+    pub fn with_max_lag(mut self, max_lag: Duration) -> Self {
         self.max_lag = Some(max_lag);
         self
     }
 
-    /// Listens to `stop` from now on.
+    /// Replaces the stop that ends runs on this session.
     pub fn set_stop(&mut self, stop: &Stop) {
         self.stop = stop.clone();
     }
@@ -166,8 +166,8 @@ impl<L: UnitLink> Session<L> {
         false
     }
 
-    /// Whether this computer has stalled the bench for longer than `max_lag` since the last call.
-    pub fn was_held_up(&mut self) -> bool {
+    /// Whether the bench lagged more than the maximum since the last call.
+    pub fn was_stalled(&mut self) -> bool {
         self.stalled.take().is_some()
     }
 
@@ -241,8 +241,8 @@ impl<L: UnitLink> Session<L> {
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
-        if let Some(attendant) = &self.attendant {
-            attendant.see(now, self.bench.rig());
+        if let Some(run_control) = &self.run_control {
+            run_control.after_cycle(now, self.bench.rig());
         }
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);
@@ -320,7 +320,7 @@ impl<L: UnitLink> Session<L> {
             }
             presses = pressed;
             if let Some(behind) = self.stalled.take() {
-                runner.bench_stalled(stalled(behind));
+                runner.bench_stalled(stall_message(behind));
             }
             runner.behind(self.behind());
             let now = self.bench.now();
@@ -330,8 +330,8 @@ impl<L: UnitLink> Session<L> {
                 link_lost = true;
                 sink(SessionEvent::LinkLost(error.clone()));
             }
-            if let Some(attendant) = &self.attendant {
-                attendant.direct(&mut runner);
+            if let Some(run_control) = &self.run_control {
+                run_control.before_scan(&mut runner);
             }
             self.wait_with(runner.awaits_operator());
             let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);
@@ -513,7 +513,7 @@ impl<L: UnitLink> Session<L> {
     }
 }
 
-fn stalled(behind: Duration) -> String {
+fn stall_message(behind: Duration) -> String {
     format!(
         "the tester was held up for {:.2} s by its own computer, which says nothing about the unit; end other \
          programs and run this again",

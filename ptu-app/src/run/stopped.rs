@@ -12,7 +12,7 @@ use fault_db::Store;
 use protocol::Instant;
 
 use super::{
-    Attendant, Began, BenchSetup, Connected, Listener, Outcome, RunPlan, SessionEvent, Suite, Task,
+    RunControl, Began, BenchSetup, Connected, Listener, Outcome, RunPlan, SessionEvent, Suite, Task,
     run, run_on,
 };
 use crate::clock;
@@ -45,8 +45,8 @@ struct Count {
     before: Vec<usize>,
 }
 
-impl Attendant for Presser {
-    fn see(&self, now: Instant, _: &Rig) {
+impl RunControl for Presser {
+    fn after_cycle(&self, now: Instant, _: &Rig) {
         let mut count = self.count.lock().expect("no thread panics with it");
         if now < count.now {
             let scans = count.scans;
@@ -55,7 +55,7 @@ impl Attendant for Presser {
         count.now = now;
     }
 
-    fn direct(&self, _: &mut Runner) {
+    fn before_scan(&self, _: &mut Runner) {
         let mut count = self.count.lock().expect("no thread panics with it");
         count.scans += 1;
         // The scan has asked for a stop already: this one is heeded by what comes after it.
@@ -131,7 +131,7 @@ fn recorded(
     plan: &RunPlan,
     mut setup: BenchSetup,
 ) -> (Outcome, fault_db::RunDetail) {
-    setup.attendant = Some(presser.clone());
+    setup.run_control = Some(presser.clone());
     let mut connected = setup.connect(&presser.stop).expect("the embedded unit");
     let (_folder, store) = store();
     let (began, stop) = (Began::now(), &presser.stop);
@@ -228,7 +228,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
             let mut connected = setup.connect(&Stop::default()).expect("the embedded unit");
             let begun = Arc::new(Presser::default());
             let setup = BenchSetup {
-                attendant: Some(begun.clone()),
+                run_control: Some(begun.clone()),
                 ..setup.clone()
             };
             if let Connected::Sim(bench) = &mut connected {
@@ -292,7 +292,7 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
     let store = Store::open(&file, options).expect("the database");
     let slowly = Arc::new(Slowly::default());
     let mut setup = setup();
-    setup.attendant = Some(slowly.clone());
+    setup.run_control = Some(slowly.clone());
     let stop = Stop::default();
     let mut busy = Busy {
         until: stop.clone(),
@@ -311,10 +311,10 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
 #[derive(Default)]
 struct Slowly(AtomicU64);
 
-impl Attendant for Slowly {
-    fn see(&self, _: Instant, _: &Rig) {}
+impl RunControl for Slowly {
+    fn after_cycle(&self, _: Instant, _: &Rig) {}
 
-    fn direct(&self, _: &mut Runner) {
+    fn before_scan(&self, _: &mut Runner) {
         self.0.fetch_add(1, Ordering::Relaxed);
         std::thread::sleep(Duration::from_millis(2));
     }

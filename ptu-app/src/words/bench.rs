@@ -3,7 +3,7 @@
 use protocol::signal::Signal;
 
 use super::wordings;
-use crate::station::Refused;
+use crate::bench_worker::Refused;
 
 wordings! {
     /// Live view and stimuli.

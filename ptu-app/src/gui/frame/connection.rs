@@ -8,7 +8,7 @@ use super::keys::STOP_ALL;
 use super::setup::Setup;
 use crate::gui::parts::chip;
 use crate::gui::{PageContext, Page, Palette};
-use crate::station::Phase;
+use crate::bench_worker::Phase;
 use crate::words::{Words, fill};
 
 /// The bar.
@@ -90,7 +90,7 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
     let palette = Palette::of(ui);
     let unit = context.units.chosen();
     let (phase, identity, share) = {
-        let live = unit.station.live();
+        let live = unit.bench.live();
         (live.phase, live.identity, live.link.share())
     };
     if phase == Phase::Offline {
@@ -160,10 +160,10 @@ fn arming(ui: &mut Ui, context: &mut PageContext<'_>) {
         return;
     }
     if unit.is_armed() {
-        let may = unit.station.permits(&Stimulus::PtuDisarm).is_ok();
+        let may = unit.bench.permits(&Stimulus::PtuDisarm).is_ok();
         if ui.add_enabled(may, Button::new(frame.disarm)).clicked() {
             // Refused only while a run has the bench, when the button is not enabled.
-            let _ = unit.station.apply(Stimulus::PtuDisarm);
+            let _ = unit.bench.apply(Stimulus::PtuDisarm);
         }
         armed_sign(ui, frame.armed);
     } else {
@@ -171,7 +171,7 @@ fn arming(ui: &mut Ui, context: &mut PageContext<'_>) {
             .add_enabled(phase == Phase::Idle, Button::new(frame.arm))
             .clicked()
         {
-            unit.station.arm();
+            unit.bench.arm();
         }
         ui.label(RichText::new(frame.disarmed).color(Palette::of(ui).quiet));
     }

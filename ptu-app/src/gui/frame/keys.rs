@@ -3,7 +3,7 @@
 use eframe::egui::{Context, Key, Modifiers};
 
 use crate::gui::{PageContext, Page};
-use crate::station::Phase;
+use crate::bench_worker::Phase;
 
 /// Stops everything, whatever has the keyboard.
 pub const STOP_ALL: Key = Key::F12;

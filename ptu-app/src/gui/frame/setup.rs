@@ -10,7 +10,7 @@ use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::units::UnitChoice;
 use crate::gui::{PageContext, Palette};
 use crate::link::ports;
-use crate::station::Phase;
+use crate::bench_worker::Phase;
 use crate::words::Words;
 
 /// Names to choose from.

@@ -8,7 +8,7 @@ pub use unit::Unit;
 
 use super::messages::Messages;
 use crate::failure::Failure;
-use crate::station::{Phase, Wake};
+use crate::bench_worker::{Phase, Wake};
 use crate::words::Words;
 use unit::Said;
 
@@ -115,8 +115,8 @@ impl Units {
     /// Whether the signals of the chosen one are looked at.
     pub(super) fn watch(&self, looked_at: bool) {
         for (place, unit) in self.iter().enumerate() {
-            unit.station
-                .board()
+            unit.bench
+                .live_state()
                 .watch(looked_at && place == self.chosen);
         }
     }
@@ -130,7 +130,7 @@ impl Units {
     pub fn stop_all(&mut self) {
         self.stops += 1;
         for unit in self.iter() {
-            unit.station.stop_all();
+            unit.bench.stop_all();
         }
     }
 
@@ -162,7 +162,7 @@ impl Units {
         let mut closed = true;
         for unit in self.iter_mut() {
             // Each is told, however many are still at it.
-            closed &= unit.station.close();
+            closed &= unit.bench.close();
         }
         closed
     }

@@ -11,8 +11,8 @@ use crate::failure::Failure;
 use crate::gui::messages::Messages;
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
-use crate::run::BenchSetup;
-use crate::station::{News, Phase, Progress, RunNews, RunOrder, Station, Wake};
+use crate::run::{BenchSetup, SessionEvent};
+use crate::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
 use crate::words::{Words, fill};
 
 /// Entries of a unit's log that are shown.
@@ -25,7 +25,7 @@ pub struct Unit {
     /// What is chosen for it.
     pub choice: UnitChoice,
     /// Its bench.
-    pub station: Station,
+    pub bench: BenchWorker,
     /// What its bench is made of, once it was asked to connect.
     pub setup: Request<BenchSetup>,
     /// What it and TCMS logged outside runs, oldest first.
@@ -45,7 +45,7 @@ impl Unit {
         Ok(Self {
             id,
             choice,
-            station: Station::new(wake)?,
+            bench: BenchWorker::new(wake)?,
             setup: Request::Idle,
             log: VecDeque::new(),
             run: None,
@@ -59,7 +59,7 @@ impl Unit {
     pub fn phase(&self) -> Phase {
         match self.setup {
             Request::Pending(_) => Phase::Connecting,
-            _ => self.station.live().phase,
+            _ => self.bench.live().phase,
         }
     }
 
@@ -76,7 +76,7 @@ impl Unit {
 
     /// Who it is.
     pub fn identity(&self) -> Option<Identity> {
-        self.station.live().identity
+        self.bench.live().identity
     }
 
     /// What it is called: its serial number, or where it is.
@@ -99,7 +99,7 @@ impl Unit {
         if matches!(self.setup, Request::Pending(_)) {
             self.setup = Request::Idle;
         }
-        self.station.disconnect();
+        self.bench.disconnect();
     }
 
     /// Begins a run, if nothing else has the bench; whether it did.
@@ -108,7 +108,7 @@ impl Unit {
             return false;
         }
         self.run = Some(Progress::new(&order.plan, self.name()));
-        self.station.run(order);
+        self.bench.run(order);
         true
     }
 
@@ -117,13 +117,13 @@ impl Unit {
         if let Some(present) = self.run.as_mut().and_then(|run| run.present.as_mut())
             && present.prompt.take().is_some()
         {
-            self.station.board().answer(yes);
+            self.bench.live_state().answer(yes);
         }
     }
 
     /// Test signals act on it.
     pub fn is_armed(&self) -> bool {
-        self.station.live().sample.get(Signal::Armed) == Some(1.0)
+        self.bench.live().sample.get(Signal::Armed) == Some(1.0)
     }
 
     /// Takes what happened since the last time, and tells the person what matters.
@@ -131,22 +131,22 @@ impl Unit {
         if self.setup.poll() {
             match &self.setup {
                 Request::Ready(setup) => self
-                    .station
+                    .bench
                     .connect(setup.clone(), self.choice.connection()),
                 Request::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
                 _ => {}
             }
         }
-        let news: Vec<_> = self.station.news().collect();
-        for news in news {
-            self.hear(news, words, said);
+        let events: Vec<_> = self.bench.events().collect();
+        for event in events {
+            self.hear(event, words, said);
         }
     }
 
-    fn hear(&mut self, news: News, words: &Words, said: &mut Said<'_>) {
+    fn hear(&mut self, event: BenchEvent, words: &Words, said: &mut Said<'_>) {
         let frame = &words.frame;
-        match news {
-            News::Connected { serial } => {
+        match event {
+            BenchEvent::Connected { serial } => {
                 self.log.clear();
                 self.lost = false;
                 self.not_safe = false;
@@ -156,39 +156,39 @@ impl Unit {
                 }
                 said.note(fill(frame.is_connected, &[("unit", &serial)]));
             }
-            News::NotConnected(why) => said.trouble(frame.cannot_connect, why),
-            News::Disconnected { safe: true } => said.note(frame.is_disconnected),
-            News::Disconnected { safe: false } | News::NotSafe => {
+            BenchEvent::NotConnected(why) => said.trouble(frame.cannot_connect, why),
+            BenchEvent::Disconnected { safe: true } => said.note(frame.is_disconnected),
+            BenchEvent::Disconnected { safe: false } | BenchEvent::NotSafe => {
                 self.not_safe = true;
                 said.trouble(frame.not_safe, "");
             }
-            News::LinkLost(why) => self.lose(why, words, said),
-            News::Broken => {
+            BenchEvent::LinkLost(why) => self.lose(why, words, said),
+            BenchEvent::Broken => {
                 self.not_safe = true;
                 said.trouble(frame.broken, "");
                 if let Some(run) = self.run.as_mut().filter(|run| run.is_running()) {
                     run.end(None);
                 }
             }
-            News::UnitRestarted => said.trouble(frame.unit_restarted, ""),
-            News::NotDone { asked, why } => {
+            BenchEvent::UnitRestarted => said.trouble(frame.unit_restarted, ""),
+            BenchEvent::NotDone { asked, why } => {
                 said.trouble(fill(frame.not_done, &[("what", &asked)]), why);
             }
-            News::Logged(entry) => {
+            BenchEvent::Logged(entry) => {
                 if self.log.len() == LOG {
                     self.log.pop_front();
                 }
                 self.log.push_back(entry);
             }
-            News::Run { procedure, what } => {
-                if let RunNews::LinkLost(why) = &what {
+            BenchEvent::Run { procedure, event } => {
+                if let SessionEvent::LinkLost(why) = &event {
                     self.lose(why.clone(), words, said);
                 }
                 if let Some(run) = &mut self.run {
-                    run.hear(&procedure, &what);
+                    run.hear(&procedure, &event);
                 }
             }
-            News::RunEnded(outcome) => {
+            BenchEvent::RunEnded(outcome) => {
                 self.runs_ended += 1;
                 let verdict = words.common.verdict(outcome.verdict);
                 said.note(fill(frame.run_ended, &[("verdict", &verdict)]));
@@ -196,7 +196,7 @@ impl Unit {
                     run.end(Some(outcome));
                 }
             }
-            News::RunFailed(why) => {
+            BenchEvent::RunFailed(why) => {
                 self.runs_ended += 1;
                 said.trouble(frame.run_failed, why);
                 if let Some(run) = &mut self.run {
@@ -248,7 +248,7 @@ mod tests {
     use super::*;
     use crate::data::ScriptsDirectory;
     use crate::run::{RunPlan, Suite, Task};
-    use crate::station::Board;
+    use crate::bench_worker::LiveState;
     use crate::words::Language;
 
     /// Longest time anything here takes to come about.
@@ -261,12 +261,12 @@ mod tests {
 
     /// Whoever looks on holds up the bench's thread, once it shows an idle unit, until it is let go.
     #[derive(Default)]
-    struct HeldUp(OnceLock<Arc<Board>>, OnceLock<()>);
+    struct HeldUp(OnceLock<Arc<LiveState>>, OnceLock<()>);
 
     impl HeldUp {
         fn look(&self) {
             let on_bench = std::thread::current().name() == Some("bench");
-            let idle = |board: &Arc<Board>| board.read().phase == Phase::Idle;
+            let idle = |live_state: &Arc<LiveState>| live_state.read().phase == Phase::Idle;
             if on_bench && self.0.get().is_some_and(idle) {
                 self.1.wait();
             }
@@ -316,11 +316,11 @@ mod tests {
         };
         let mut unit = Unit::new(0, UnitChoice::default(), wake).expect("a thread");
         let let_go = LetGo(held_up.clone());
-        assert!(held_up.0.set(unit.station.board().clone()).is_ok());
+        assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
         let choice = unit.choice.named().expect("the embedded unit");
         let setup = choice.setup(&scripts()).expect("its configuration");
         let connection = unit.choice.connection();
-        unit.station.connect(setup.clone(), connection);
+        unit.bench.connect(setup.clone(), connection);
         let began = Instant::now();
         let until = |unit: &mut Unit, holds: &dyn Fn(&Unit) -> bool| {
             let mut messages = Messages::default();

@@ -19,7 +19,7 @@ use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
 use crate::gui::PageContext;
 use crate::run::BenchSetup;
-use crate::station::Phase;
+use crate::bench_worker::Phase;
 use forms::Forms;
 use live::{View, view};
 use plot::Plot;
@@ -45,7 +45,7 @@ struct Sheet {
     /// Checksums of the unit's configuration and line.
     of: (u32, u32),
     /// Of the bench when something was given.
-    generation: u64,
+    bench_epoch: u64,
     forms: Forms,
     given: Given,
 }
@@ -68,15 +68,15 @@ impl BenchPage {
             ui.label(context.words.bench.connect_first);
             return;
         };
-        let seen = Seen::of(&unit.station);
-        let sheet = sheet(&mut self.sheets, unit.id, setup, seen.generation);
+        let seen = Seen::of(&unit.bench);
+        let sheet = sheet(&mut self.sheets, unit.id, setup, seen.bench_epoch);
         // A run lays its own track; what was given before it is gone already.
         if seen.phase != Phase::Idle {
             sheet.given = Given::default();
         }
         stimuli_panel(ui).show(ui, |ui| {
             let mut hand = Hand {
-                station: &unit.station,
+                bench: &unit.bench,
                 seen: &seen,
                 words: context.words,
                 messages: context.messages,
@@ -93,7 +93,7 @@ impl BenchPage {
             events: &unit.log,
         };
         let signals = chosen(&context.settings.plotted);
-        self.plot.take(&unit.station, &signals);
+        self.plot.take(&unit.bench, &signals);
         live_view(ui, &shown, |ui, height| {
             let plotted = &mut context.settings.plotted;
             self.plot.show(ui, height, &signals, plotted, &shown);
@@ -106,12 +106,12 @@ fn sheet<'a>(
     sheets: &'a mut BTreeMap<u64, Sheet>,
     unit: u64,
     setup: &BenchSetup,
-    generation: u64,
+    bench_epoch: u64,
 ) -> &'a mut Sheet {
     let of = (setup.config.crc, setup.line.crc);
     let new = || Sheet {
         of,
-        generation,
+        bench_epoch,
         forms: Forms::new(setup),
         given: Given::default(),
     };
@@ -119,8 +119,8 @@ fn sheet<'a>(
     if sheet.of != of {
         *sheet = new();
     }
-    if sheet.generation != generation {
-        sheet.generation = generation;
+    if sheet.bench_epoch != bench_epoch {
+        sheet.bench_epoch = bench_epoch;
         sheet.given = Given::default();
     }
     sheet

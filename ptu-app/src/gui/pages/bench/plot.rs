@@ -12,7 +12,7 @@ use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::station::Station;
+use crate::bench_worker::BenchWorker;
 use crate::trace_view::{Column, Span, Window, columns, spans, ticks};
 use crate::words::{Bench, fill};
 
@@ -50,9 +50,9 @@ impl Default for Plot {
 
 impl Plot {
     /// Takes what is to be shown of the chosen signals.
-    pub fn take(&mut self, station: &Station, signals: &[Signal]) {
+    pub fn take(&mut self, worker: &BenchWorker, signals: &[Signal]) {
         let span_s = f64::from(self.span_s);
-        self.rows.take(&station.live(), signals, span_s);
+        self.rows.take(&worker.live(), signals, span_s);
     }
 
     /// The plot, its heading not counted in this height.

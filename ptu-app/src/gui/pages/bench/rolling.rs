@@ -2,7 +2,7 @@
 
 use protocol::signal::{Kind, Signal};
 
-use crate::station::Live;
+use crate::bench_worker::LiveData;
 use crate::trace_view::Window;
 
 /// Times that can be chosen, s.
@@ -64,7 +64,7 @@ pub struct Rows {
 
 impl Rows {
     /// Takes the rows of the last `span_s`; times are s before now, so at most 0.
-    pub fn take(&mut self, live: &Live, signals: &[Signal], span_s: f64) {
+    pub fn take(&mut self, live: &LiveData, signals: &[Signal], span_s: f64) {
         self.times_s.clear();
         self.values.resize_with(signals.len(), Vec::new);
         self.values.iter_mut().for_each(Vec::clear);
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn no_rows_are_no_trouble() {
         let mut rows = Rows::default();
-        rows.take(&Live::default(), &[Signal::Speed], 10.0);
+        rows.take(&LiveData::default(), &[Signal::Speed], 10.0);
         assert_eq!(rows.samples(0).count(), 0);
         assert_eq!(rows.samples(7).count(), 0);
     }

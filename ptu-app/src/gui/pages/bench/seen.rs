@@ -2,7 +2,7 @@
 
 use protocol::signal::{Sample, Signal};
 
-use crate::station::{Phase, Station};
+use crate::bench_worker::{Phase, BenchWorker};
 
 /// The bench as it was at the beginning of the frame.
 #[derive(Debug, Default)]
@@ -10,18 +10,18 @@ pub struct Seen {
     /// What its thread is at.
     pub phase: Phase,
     /// Counts benches made anew and made safe.
-    pub generation: u64,
+    pub bench_epoch: u64,
     /// Every signal.
     pub sample: Sample,
 }
 
 impl Seen {
     /// A copy of the latest cycle.
-    pub fn of(station: &Station) -> Self {
-        let live = station.live();
+    pub fn of(worker: &BenchWorker) -> Self {
+        let live = worker.live();
         Self {
             phase: live.phase,
-            generation: live.generation,
+            bench_epoch: live.bench_epoch,
             sample: live.sample.clone(),
         }
     }

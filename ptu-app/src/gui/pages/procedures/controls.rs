@@ -7,7 +7,7 @@ use crate::gui::request::Request;
 use crate::gui::parts::name_edit;
 use crate::gui::units::Unit;
 use crate::gui::{PageContext, Palette};
-use crate::station::Phase;
+use crate::bench_worker::Phase;
 use crate::words::Procedures;
 
 /// Most repetitions of a run.
@@ -75,26 +75,26 @@ pub(super) fn why_not(unit: &Unit, words: &Procedures) -> &'static str {
 
 fn running(ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.procedures;
-    let station = &context.units.chosen().station;
-    let board = station.board();
-    let paused = board.paused();
+    let worker = &context.units.chosen().bench;
+    let live_state = worker.live_state();
+    let paused = live_state.paused();
     let pause = if paused { words.resume } else { words.pause };
     if ui.button(pause).clicked() {
-        board.pause(!paused);
+        live_state.pause(!paused);
     }
     if ui
         .add_enabled(paused, Button::new(words.single_step))
         .clicked()
     {
-        board.single_step();
+        live_state.single_step();
     }
-    let stop = if station.stop_presses() == 0 {
+    let stop = if worker.stop_presses() == 0 {
         words.stop
     } else {
         words.stop_again
     };
     let stop = Button::new(RichText::new(stop).strong());
     if ui.add(stop).clicked() {
-        station.stop_run();
+        worker.stop_run();
     }
 }

@@ -4,7 +4,7 @@ use eframe::egui::{Grid, ProgressBar, Ui};
 
 use crate::gui::parts::verdict_chip;
 use crate::gui::{PageContext, Palette};
-use crate::station::Phase;
+use crate::bench_worker::Phase;
 use crate::words::fill;
 
 /// A line for each unit when there are several.

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::gui::UnitChoice;
 use crate::gui::data_paths::DataPaths;
 use crate::run::{RunPlan, Suite};
-use crate::station::RunOrder;
+use crate::bench_worker::RunOrder;
 
 /// How what is chosen is run.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use super::results::{measurements, source};
 use super::tree::{minutes, title};
 use crate::gui::Palette;
 use crate::gui::parts::verdict_chip;
-use crate::station::{Present, Progress};
+use crate::bench_worker::{Present, Progress};
 use crate::words::{Words, fill};
 
 /// Lines shown before and after the script's present one.

@@ -10,7 +10,7 @@ use crate::gui::query_worker::QueryWorker;
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
 use crate::gui::{Destination, Palette};
 use crate::run::CHECK_FAILED;
-use crate::station::Progress;
+use crate::bench_worker::Progress;
 use crate::words::{Words, fill};
 
 /// Lines shown before and after a step's.

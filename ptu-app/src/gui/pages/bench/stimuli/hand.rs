@@ -12,7 +12,7 @@ use eframe::egui::{
 
 use crate::gui::pages::bench::seen::Seen;
 use crate::gui::{Messages, Palette};
-use crate::station::Station;
+use crate::bench_worker::BenchWorker;
 use crate::words::{Words, fill};
 
 /// Width of a row's name.
@@ -30,7 +30,7 @@ pub struct Given {
 /// The hand that gives stimuli.
 pub struct Hand<'a> {
     /// To the unit.
-    pub station: &'a Station,
+    pub bench: &'a BenchWorker,
     /// The bench at the beginning of the frame.
     pub seen: &'a Seen,
     /// Wordings.
@@ -44,7 +44,7 @@ pub struct Hand<'a> {
 impl Hand<'_> {
     /// As what the bench is connected.
     pub fn connection(&self) -> Connection {
-        self.station.connection()
+        self.bench.connection()
     }
 
     /// Wordings.
@@ -96,7 +96,7 @@ impl Hand<'_> {
 
     /// Gives it, unless something has changed since the frame began.
     pub fn give(&mut self, stimulus: Stimulus) {
-        match self.station.apply(stimulus) {
+        match self.bench.apply(stimulus) {
             Ok(()) => match stimulus {
                 Stimulus::MarkersAlong { section } => self.given.laid = section,
                 Stimulus::Station(data) | Stimulus::PtuTwc(data) => {
@@ -114,7 +114,7 @@ impl Hand<'_> {
 
     /// Whether a stimulus can be given now, or in words why not.
     pub fn may(&self, stimulus: &Stimulus) -> Result<(), &'static str> {
-        let permitted = self.station.permits(stimulus);
+        let permitted = self.bench.permits(stimulus);
         permitted.map_err(|why| self.words.bench.refusal(why))
     }
 

@@ -4,7 +4,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
 use protocol::signal::Signal;
 
-use super::{Live, Phase};
+use super::{LiveData, Phase};
 
 /// Why something cannot be done now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub enum Refused {
 ///
 /// # Errors
 /// Why not.
-pub fn permit(stimulus: &Stimulus, connection: Connection, live: &Live) -> Result<(), Refused> {
+pub fn permit(stimulus: &Stimulus, connection: Connection, live: &LiveData) -> Result<(), Refused> {
     match live.phase {
         Phase::Idle => {}
         Phase::Running => return Err(Refused::Running),
@@ -250,9 +250,9 @@ mod tests {
             for connection in [Connection::Btu, Connection::Ptu] {
                 for phase in phases {
                     for (armed, key) in bools.iter().flat_map(|a| bools.map(|k| (*a, k))) {
-                        let mut live = Live {
+                        let mut live = LiveData {
                             phase,
-                            ..Live::default()
+                            ..LiveData::default()
                         };
                         live.sample.set_bit(Signal::Armed, armed);
                         live.sample.set_bit(Signal::MaintenanceKey, key);
@@ -270,9 +270,9 @@ mod tests {
     /// A unit that says nothing is not armed.
     #[test]
     fn what_is_not_known_is_not_so() {
-        let live = Live {
+        let live = LiveData {
             phase: Phase::Idle,
-            ..Live::default()
+            ..LiveData::default()
         };
         let refused = |stimulus| permit(&stimulus, Connection::Btu, &live);
         assert_eq!(refused(Stimulus::PtuRelease), Err(Refused::NotArmed));

@@ -1,19 +1,19 @@
-//! A unit and the bench thread that serves it: what stands behind a window.
+//! One unit under test and the thread that drives its bench, for the window.
 //!
 //! ```text
-//! window → Order → thread (bench: idle and live, or a run) → Board (latest cycle, rows of the plot)
-//!                                                          ↘ News (what happened, in order)
+//! window → Order → bench thread (live monitoring or a run) → LiveState (latest cycle, rows of the plot)
+//!                                                          ↘ BenchEvent (what happened, in order)
 //! ```
-//! The thread never waits for who looks on: a cycle that finds the board being read is shown with
-//! the next one, and news wait in a queue that is as long as it takes: losing the end of a run would
-//! be worse than some memory while a window is not painted.
+//! The bench thread never waits for the window. A cycle that ends while the window reads the live state is shown
+//! with the next one. The queue of events has no limit, because a lost end of a run would be worse than the
+//! memory it takes while the window is not drawn.
 
-mod board;
+mod bench_thread;
+mod event;
 mod link_quality;
-mod news;
+mod live_state;
 mod permit;
 mod progress;
-mod serve;
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -22,16 +22,16 @@ use std::thread::JoinHandle;
 use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
 
-pub use board::{Board, HISTORY, Live, Phase, Row};
+pub use live_state::{LiveState, HISTORY, LiveData, Phase, Row};
 pub use link_quality::LinkQuality;
-pub use news::{News, RunNews};
+pub use event::BenchEvent;
 pub use permit::{Refused, permit};
 pub use progress::{Present, ProcedureProgress, Progress, Waiting};
 
 use crate::failure::Failure;
 use crate::run::{BenchSetup, RunPlan};
 use crate::stop::Stop;
-use serve::Server;
+use bench_thread::BenchThread;
 
 /// Told when there is something new to look at; must not block.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -50,42 +50,42 @@ pub struct RunOrder {
 enum Order {
     Connect(Box<BenchSetup>, Connection, Stop),
     Disconnect,
-    /// A stimulus for the bench as it was then, by its generation.
+    /// A manual stimulus, and the bench epoch in which it was given.
     Apply(Stimulus, u64),
     Arm(u64),
     MakeSafe,
     Run(Box<RunOrder>, Stop),
 }
 
-/// A unit at the window. Dropping it stops what runs, makes outputs safe and disarms.
-pub struct Station {
+/// The window's side of a bench thread. Dropping it stops the run, makes outputs safe and disarms.
+pub struct BenchWorker {
     orders: Option<Sender<Order>>,
-    board: Arc<Board>,
-    news: Receiver<News>,
+    live_state: Arc<LiveState>,
+    events: Receiver<BenchEvent>,
     /// Of what was ordered last.
     stop: Stop,
     thread: Option<JoinHandle<()>>,
     connection: Connection,
 }
 
-impl Station {
-    /// A station that is not connected.
+impl BenchWorker {
+    /// Starts the bench thread, without a unit.
     ///
     /// # Errors
     /// The system gives no thread.
     pub fn new(wake: Wake) -> Result<Self, Failure> {
         let (orders, receiver) = mpsc::channel();
-        let (sender, news) = mpsc::channel();
-        let board = Arc::new(Board::new(wake));
-        let server = Server::new(board.clone(), sender);
+        let (sender, events) = mpsc::channel();
+        let live_state = Arc::new(LiveState::new(wake));
+        let bench_thread = BenchThread::new(live_state.clone(), sender);
         let thread = std::thread::Builder::new()
             .name("bench".into())
-            .spawn(move || server.serve_whatever_happens(&receiver))
+            .spawn(move || bench_thread.run_until_closed(&receiver))
             .map_err(|error| Failure::bench(format!("cannot start a bench thread: {error}")))?;
         Ok(Self {
             orders: Some(orders),
-            board,
-            news,
+            live_state,
+            events,
             stop: Stop::default(),
             thread: Some(thread),
             connection: Connection::Btu,
@@ -95,7 +95,7 @@ impl Station {
     /// Reaches a unit, as a bench that drives all its inputs or as a laptop on its maintenance port.
     pub fn connect(&mut self, setup: BenchSetup, connection: Connection) {
         self.connection = connection;
-        self.board.enter(Phase::Connecting);
+        self.live_state.enter(Phase::Connecting);
         self.stop = Stop::default();
         let setup = Box::new(setup);
         self.send(Order::Connect(setup, connection, self.stop.clone()));
@@ -113,15 +113,15 @@ impl Station {
     /// It is not possible now, or not with this connection; see [`permit`].
     pub fn apply(&self, stimulus: Stimulus) -> Result<(), Refused> {
         self.permits(&stimulus)?;
-        let generation = self.board.read().generation;
-        self.send(Order::Apply(stimulus, generation));
+        let bench_epoch = self.live_state.read().bench_epoch;
+        self.send(Order::Apply(stimulus, bench_epoch));
         Ok(())
     }
 
     /// Turns the maintenance key on, which is a person's to do on a train, and arms the unit.
     pub fn arm(&self) {
-        let generation = self.board.read().generation;
-        self.send(Order::Arm(generation));
+        let bench_epoch = self.live_state.read().bench_epoch;
+        self.send(Order::Arm(bench_epoch));
     }
 
     /// Whether something can be done to the unit by hand now.
@@ -129,7 +129,7 @@ impl Station {
     /// # Errors
     /// Why not.
     pub fn permits(&self, stimulus: &Stimulus) -> Result<(), Refused> {
-        permit(stimulus, self.connection, &self.board.read())
+        permit(stimulus, self.connection, &self.live_state.read())
     }
 
     /// Stops a run and takes every stimulus away; the unit stays connected, disarmed.
@@ -142,7 +142,7 @@ impl Station {
 
     /// Runs procedures.
     pub fn run(&mut self, order: RunOrder) {
-        self.board.clear_direction();
+        self.live_state.clear_requests();
         self.stop = Stop::default();
         self.send(Order::Run(Box::new(order), self.stop.clone()));
     }
@@ -158,13 +158,13 @@ impl Station {
     }
 
     /// What the run's operator does: pause, single step, answers.
-    pub fn board(&self) -> &Arc<Board> {
-        &self.board
+    pub fn live_state(&self) -> &Arc<LiveState> {
+        &self.live_state
     }
 
     /// The latest cycle and the rows before it; held for as short a time as possible.
-    pub fn live(&self) -> std::sync::MutexGuard<'_, Live> {
-        self.board.read()
+    pub fn live(&self) -> std::sync::MutexGuard<'_, LiveData> {
+        self.live_state.read()
     }
 
     /// As what it is connected.
@@ -173,8 +173,8 @@ impl Station {
     }
 
     /// What happened since the last call.
-    pub fn news(&self) -> impl Iterator<Item = News> + '_ {
-        self.news.try_iter()
+    pub fn events(&self) -> impl Iterator<Item = BenchEvent> + '_ {
+        self.events.try_iter()
     }
 
     /// Stops and disconnects; true once the bench's thread has ended.
@@ -185,7 +185,7 @@ impl Station {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// The thread is gone only when the station is, so that nothing is lost.
+    /// The thread receives until this is dropped.
     fn send(&self, order: Order) {
         if let Some(orders) = &self.orders {
             let _ = orders.send(order);
@@ -193,7 +193,7 @@ impl Station {
     }
 }
 
-impl Drop for Station {
+impl Drop for BenchWorker {
     fn drop(&mut self) {
         self.close();
         if let Some(thread) = self.thread.take() {

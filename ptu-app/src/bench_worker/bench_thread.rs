@@ -1,4 +1,5 @@
-//! The bench's thread: reaches a unit, keeps it alive and live, runs procedures on it, lets it go.
+//! The bench thread: connects to a unit, scans the bench while nothing runs, runs procedures, and releases the
+//! unit with its outputs safe.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,8 +13,7 @@ use btu_rig::stimulus::Stimulus;
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, SCAN};
 
-use super::board::{Board, Phase};
-use super::news::{News, RunNews};
+use super::event::BenchEvent;
 use super::{Order, RunOrder, permit};
 use crate::link::Pace;
 use crate::run::{
@@ -21,136 +21,136 @@ use crate::run::{
 };
 use crate::stop::Stop;
 
-/// Seed of the embedded unit's live session, as one procedure among others.
+/// Name from which the seed of the embedded unit's live session is made, as from a procedure's.
 const LIVE: &str = "live";
 
 /// Why a run cannot be begun.
 const NO_UNIT: &str = "no unit is connected";
 
-/// The thread's side of a station.
-pub(super) struct Server {
-    board: Arc<Board>,
-    news: Sender<News>,
+/// The thread's side of a [`BenchWorker`](super::BenchWorker).
+pub(super) struct BenchThread {
+    live_state: Arc<LiveState>,
+    events: Sender<BenchEvent>,
 }
 
 /// From turning the maintenance key until the unit has seen it.
 const KEY_SEEN: Duration = Duration::from_ms(300);
 
-/// Why the unit is no longer just watched.
-enum Leave {
+/// Why live monitoring of the unit ended.
+enum WatchEnd {
     Run(Box<RunOrder>, Stop),
     Disconnect,
     LinkLost(String),
-    /// The station is gone.
+    /// The worker was dropped.
     Closed,
 }
 
-impl Server {
-    pub(super) fn new(board: Arc<Board>, news: Sender<News>) -> Self {
-        Self { board, news }
+impl BenchThread {
+    pub(super) fn new(live_state: Arc<LiveState>, events: Sender<BenchEvent>) -> Self {
+        Self { live_state, events }
     }
 
-    /// Serves until the station is gone. Should the program fail, nobody is shown a unit that is not
-    /// served any more.
-    pub(super) fn serve_whatever_happens(self, orders: &Receiver<Order>) {
-        while catch_unwind(AssertUnwindSafe(|| self.serve(orders))).is_err() {
-            self.board.enter(Phase::Offline);
-            self.tell(News::Broken);
+    /// Executes orders until the worker is dropped. After a panic the unit is shown as disconnected, because
+    /// nothing scans it any more.
+    pub(super) fn run_until_closed(self, orders: &Receiver<Order>) {
+        while catch_unwind(AssertUnwindSafe(|| self.execute_orders(orders))).is_err() {
+            self.live_state.enter(Phase::Offline);
+            self.tell(BenchEvent::Broken);
         }
     }
 
-    fn serve(&self, orders: &Receiver<Order>) {
+    fn execute_orders(&self, orders: &Receiver<Order>) {
         while let Ok(order) = orders.recv() {
             match order {
                 Order::Connect(setup, connection, stop) => {
-                    let flow = self.attend(*setup, connection, &stop, orders);
-                    self.board.enter(Phase::Offline);
+                    let flow = self.hold_unit(*setup, connection, &stop, orders);
+                    self.live_state.enter(Phase::Offline);
                     if flow.is_break() {
                         return;
                     }
                 }
-                Order::Run(..) => self.tell(News::RunFailed(NO_UNIT.into())),
-                // Nothing to do it with, and nothing on.
+                Order::Run(..) => self.tell(BenchEvent::RunFailed(NO_UNIT.into())),
+                // No unit is connected, so nothing is to be done or undone.
                 Order::Apply(..) | Order::Arm(_) | Order::MakeSafe | Order::Disconnect => {}
             }
         }
     }
 
-    /// From reaching a unit until it is let go.
-    fn attend(
+    /// From connecting to a unit until it is released.
+    fn hold_unit(
         &self,
         mut setup: BenchSetup,
         connection: Connection,
         stop: &Stop,
         orders: &Receiver<Order>,
     ) -> ControlFlow<()> {
-        setup.attendant = Some(self.board.clone());
+        setup.run_control = Some(self.live_state.clone());
         let mut connected = match setup.connect(stop) {
             Ok(connected) => connected,
             Err(failure) => {
-                self.tell(News::NotConnected(failure.message));
+                self.tell(BenchEvent::NotConnected(failure.message));
                 return ControlFlow::Continue(());
             }
         };
-        self.tell(News::Connected {
+        self.tell(BenchEvent::Connected {
             serial: connected.serial(),
         });
         loop {
-            self.board.begin_anew();
-            let (leave, safe) = self.watch(&mut connected, connection, orders);
-            match leave {
-                Leave::Run(order, stop) => {
+            self.live_state.invalidate_orders();
+            let (end, safe) = self.watch(&mut connected, connection, orders);
+            match end {
+                WatchEnd::Run(order, stop) => {
                     if !safe {
-                        self.tell(News::NotSafe);
+                        self.tell(BenchEvent::NotSafe);
                     }
                     self.run(&mut connected, &mut setup, *order, &stop);
                 }
-                Leave::Disconnect => {
-                    self.tell(News::Disconnected { safe });
+                WatchEnd::Disconnect => {
+                    self.tell(BenchEvent::Disconnected { safe });
                     return ControlFlow::Continue(());
                 }
-                Leave::LinkLost(why) => {
-                    self.tell(News::LinkLost(why));
+                WatchEnd::LinkLost(why) => {
+                    self.tell(BenchEvent::LinkLost(why));
                     return ControlFlow::Continue(());
                 }
-                Leave::Closed => {
-                    self.tell(News::Disconnected { safe });
+                WatchEnd::Closed => {
+                    self.tell(BenchEvent::Disconnected { safe });
                     return ControlFlow::Break(());
                 }
             }
         }
     }
 
-    /// The unit live, until something else is asked; then outputs are made safe and the unit disarmed,
-    /// which may be confirmed or not.
+    /// Monitors the unit until an order ends that; then makes outputs safe and disarms. The flag says whether
+    /// safe outputs were confirmed.
     fn watch(
         &self,
         connected: &mut Connected,
         connection: Connection,
         orders: &Receiver<Order>,
-    ) -> (Leave, bool) {
+    ) -> (WatchEnd, bool) {
         match connected {
             Connected::Sim(setup) => {
                 let mut session = setup.sim_session(LIVE, &Stop::default());
                 // Powering up is not worth waiting for.
                 session.set_pace(Pace::Virtual);
-                let mut logged = |entry: &UnitEvent, _, _: &Sample| self.tell(News::Logged(*entry));
+                let mut logged = |entry: &UnitEvent, _, _: &Sample| self.tell(BenchEvent::Logged(*entry));
                 session.idle(READY_WITHIN + READY_WITHIN, &mut logged, settled());
                 session.set_pace(Pace::real());
-                let leave = self.watch_session(&mut session, connection, orders);
+                let end = self.watch_session(&mut session, connection, orders);
                 session.set_pace(Pace::Virtual);
-                (leave, self.let_go(&mut session))
+                (end, self.release(&mut session))
             }
             Connected::Port(session, ..) => {
                 session.set_stop(&Stop::default());
-                let leave = self.watch_session(session, connection, orders);
-                (leave, self.let_go(session))
+                let end = self.watch_session(session, connection, orders);
+                (end, self.release(session))
             }
         }
     }
 
-    fn let_go<L: UnitLink>(&self, session: &mut Session<L>) -> bool {
-        self.board.enter(Phase::MakingSafe);
+    fn release<L: UnitLink>(&self, session: &mut Session<L>) -> bool {
+        self.live_state.enter(Phase::MakingSafe);
         session.make_safe()
     }
 
@@ -159,20 +159,20 @@ impl Server {
         session: &mut Session<L>,
         connection: Connection,
         orders: &Receiver<Order>,
-    ) -> Leave {
-        self.board
+    ) -> WatchEnd {
+        self.live_state
             .enter_idle(session.bench().rig().identity().copied());
         let mut restarts = session.bench().rig().unit_restarts();
         let mut asked = None;
         let mut arm_at = None;
         loop {
             match orders.try_recv() {
-                Ok(Order::Apply(stimulus, generation)) => {
-                    if self.is_permitted(&stimulus, connection, generation) {
+                Ok(Order::Apply(stimulus, bench_epoch)) => {
+                    if self.is_permitted(&stimulus, connection, bench_epoch) {
                         asked = self.apply(session, &stimulus);
                     }
                 }
-                Ok(Order::Arm(generation)) if generation == self.board.read().generation => {
+                Ok(Order::Arm(bench_epoch)) if bench_epoch == self.live_state.read().bench_epoch => {
                     let mut wait = Duration::ZERO;
                     let rig = session.bench().rig();
                     if rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
@@ -184,69 +184,69 @@ impl Server {
                 Ok(Order::Arm(_)) => {}
                 Ok(Order::MakeSafe) => {
                     (asked, arm_at) = (None, None);
-                    self.board.begin_anew();
+                    self.live_state.invalidate_orders();
                     let now = session.now();
                     session.bench().rig_mut().make_safe(now);
                 }
-                Ok(Order::Run(order, stop)) => return Leave::Run(order, stop),
-                Ok(Order::Disconnect) => return Leave::Disconnect,
+                Ok(Order::Run(order, stop)) => return WatchEnd::Run(order, stop),
+                Ok(Order::Disconnect) => return WatchEnd::Disconnect,
                 Ok(Order::Connect(..)) => {}
                 Err(TryRecvError::Empty) => {}
-                Err(TryRecvError::Disconnected) => return Leave::Closed,
+                Err(TryRecvError::Disconnected) => return WatchEnd::Closed,
             }
             session.idle(
                 SCAN,
-                |entry, _, _| self.tell(News::Logged(*entry)),
+                |entry, _, _| self.tell(BenchEvent::Logged(*entry)),
                 |_| false,
             );
             if arm_at.is_some_and(|at| session.now() >= at) {
                 arm_at = None;
                 asked = self.apply(session, &Stimulus::PtuArm);
             }
-            // What the unit refuses stays refused until the next stimulus, and is told once.
+            // The rig reports a refusal until the next stimulus; tell it once.
             if let Err(why) = session.bench().rig().settled()
                 && let Some(asked) = asked.take()
             {
-                self.tell(News::NotDone { asked, why: why.0 });
+                self.tell(BenchEvent::NotDone { asked, why: why.0 });
             }
             if let Some(why) = session.link_error() {
-                return Leave::LinkLost(why);
+                return WatchEnd::LinkLost(why);
             }
             let now_restarts = session.bench().rig().unit_restarts();
             if now_restarts != restarts {
                 restarts = now_restarts;
-                self.tell(News::UnitRestarted);
+                self.tell(BenchEvent::UnitRestarted);
             }
         }
     }
 
-    /// What was asked of a bench that was made safe since is not done to it any more; nor is what is
-    /// no longer possible.
-    fn is_permitted(&self, stimulus: &Stimulus, connection: Connection, generation: u64) -> bool {
-        let live = self.board.read();
-        live.generation == generation && permit(stimulus, connection, &live).is_ok()
+    /// An order given before the bench was last made safe is not executed, nor is one that is no longer
+    /// permitted.
+    fn is_permitted(&self, stimulus: &Stimulus, connection: Connection, bench_epoch: u64) -> bool {
+        let live = self.live_state.read();
+        live.bench_epoch == bench_epoch && permit(stimulus, connection, &live).is_ok()
     }
 
-    /// What was asked, if the bench began it.
+    /// Applies a stimulus; its text if the bench accepted it.
     fn apply<L: UnitLink>(&self, session: &mut Session<L>, stimulus: &Stimulus) -> Option<String> {
         let now = session.now();
         let asked = stimulus.to_string();
         match session.bench().rig_mut().apply(now, stimulus) {
             Ok(()) => Some(asked),
             Err(why) => {
-                self.tell(News::NotDone { asked, why: why.0 });
+                self.tell(BenchEvent::NotDone { asked, why: why.0 });
                 None
             }
         }
     }
 
     fn run(&self, connected: &mut Connected, setup: &mut BenchSetup, order: RunOrder, stop: &Stop) {
-        self.board.enter(Phase::Running);
+        self.live_state.enter(Phase::Running);
         setup.realtime = order.realtime;
         if let Connected::Sim(made) = connected {
             made.realtime = order.realtime;
         }
-        let mut ear = Ear(self);
+        let mut ear = EventForwarder(self);
         let began = Began::now();
         let (plan, store) = (&order.plan, order.store);
         let result = run_on(connected, &began, plan, setup, store, stop, &mut ear);
@@ -255,34 +255,30 @@ impl Server {
             Ok(outcome)
         });
         self.tell(match closed {
-            Ok(outcome) => News::RunEnded(outcome),
-            Err(failure) => News::RunFailed(failure.message),
+            Ok(outcome) => BenchEvent::RunEnded(outcome),
+            Err(failure) => BenchEvent::RunFailed(failure.message),
         });
     }
 
-    /// Nobody hears it once the station is gone.
-    fn tell(&self, news: News) {
-        let _ = self.news.send(news);
-        self.board.wake();
+    /// Once the worker is dropped, nobody receives it.
+    fn tell(&self, event: BenchEvent) {
+        let _ = self.events.send(event);
+        self.live_state.wake();
     }
 }
 
-/// Passes on what a run says.
-struct Ear<'a>(&'a Server);
+/// Forwards the events of a run to the window.
+struct EventForwarder<'a>(&'a BenchThread);
 
-impl Listener for Ear<'_> {
+impl Listener for EventForwarder<'_> {
     fn hear(&mut self, procedure: &Procedure, event: &SessionEvent) {
-        let what = match event {
-            SessionEvent::Run(event) => RunNews::Event(event.clone()),
-            SessionEvent::Fault(fault) => RunNews::Fault(fault.clone()),
-            SessionEvent::LinkLost(why) => RunNews::LinkLost(why.clone()),
-            SessionEvent::Ended { .. } => RunNews::Ended,
-            SessionEvent::Trace(_) | SessionEvent::Recording(_) => return,
-        };
-        self.0.tell(News::Run {
-            procedure: procedure.id.clone(),
-            what,
-        });
+        // Traces and recorded stimuli are large, and the window reads them from the database.
+        if !matches!(event, SessionEvent::Trace(_) | SessionEvent::Recording(_)) {
+            self.0.tell(BenchEvent::Run {
+                procedure: procedure.id.clone(),
+                event: event.clone(),
+            });
+        }
     }
 }
 
@@ -296,18 +292,17 @@ mod tests {
 
     use crate::data::ScriptsDirectory;
     use crate::gui::UnitChoice;
-    use crate::station::{Board, Phase, Station};
+    use crate::bench_worker::{LiveState, Phase, BenchWorker};
 
-    /// Goal: whoever sees that a unit can be worked with sees which one it is. Method: looked at each
-    /// time the station says that there is something new.
+    /// Goal: an idle unit is never shown without its identity. Method: the state is read at each wake-up.
     #[test]
-    fn a_unit_that_can_be_worked_with_is_known() {
-        let board: Arc<OnceLock<Arc<Board>>> = Arc::default();
+    fn an_idle_unit_is_never_shown_without_its_identity() {
+        let live_state: Arc<OnceLock<Arc<LiveState>>> = Arc::default();
         let [known, unknown]: [Arc<AtomicUsize>; 2] = Default::default();
         let wake = {
-            let (board, known, unknown) = (board.clone(), known.clone(), unknown.clone());
+            let (live_state, known, unknown) = (live_state.clone(), known.clone(), unknown.clone());
             move || {
-                let Some(live) = board.get().map(|board| board.read()) else {
+                let Some(live) = live_state.get().map(|live_state| live_state.read()) else {
                     return;
                 };
                 if live.phase == Phase::Idle {
@@ -316,13 +311,13 @@ mod tests {
                 }
             }
         };
-        let mut station = Station::new(Arc::new(wake)).expect("a thread");
-        assert!(board.set(station.board().clone()).is_ok());
+        let mut worker = BenchWorker::new(Arc::new(wake)).expect("a thread");
+        assert!(live_state.set(worker.live_state().clone()).is_ok());
         let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts");
         let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
         let choice = UnitChoice::default().named().expect("the embedded unit");
         let setup = choice.setup(&scripts).expect("its configuration");
-        station.connect(setup, Connection::Btu);
+        worker.connect(setup, Connection::Btu);
         let began = Instant::now();
         while known.load(Ordering::Relaxed) == 0 {
             assert!(began.elapsed() < Duration::from_secs(60), "no unit");

@@ -1,4 +1,4 @@
-//! How far a run is, put together from what it says.
+//! How far a run has come, computed from its events.
 
 use std::sync::Arc;
 use std::time;
@@ -7,8 +7,7 @@ use btu_rig::procedure::plan::Step;
 use btu_rig::procedure::{Measurement, Procedure, RunEvent, StepResult, Verdict};
 use protocol::Duration;
 
-use super::RunNews;
-use crate::run::{FaultSeen, Outcome, RunPlan, steps_of};
+use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, steps_of};
 
 /// Results and faults kept to be looked at: of a longer run those that did not pass, and all in the
 /// database.
@@ -145,15 +144,17 @@ impl Progress {
         }
     }
 
-    /// Takes what the procedure called `id` says.
-    pub fn hear(&mut self, id: &str, news: &RunNews) {
+    /// Takes an event of the procedure called `id`.
+    pub fn hear(&mut self, id: &str, event: &SessionEvent) {
         let Some(place) = self.place(id) else { return };
-        match news {
-            RunNews::Event(event) => self.event(place, event),
-            RunNews::Fault(fault) if self.faults.len() < KEPT => self.faults.push(fault.clone()),
-            RunNews::Fault(_) => {}
-            RunNews::LinkLost(_) => {}
-            RunNews::Ended => self.present = None,
+        match event {
+            SessionEvent::Run(event) => self.event(place, event),
+            SessionEvent::Fault(fault) if self.faults.len() < KEPT => self.faults.push(fault.clone()),
+            SessionEvent::Ended { .. } => self.present = None,
+            SessionEvent::Fault(_)
+            | SessionEvent::LinkLost(_)
+            | SessionEvent::Trace(_)
+            | SessionEvent::Recording(_) => {}
         }
     }
 

@@ -1,4 +1,5 @@
-//! What a bench shows: its latest cycle, the rows before it, and what its operator wishes of a run.
+//! The state that the bench thread shares with the window: the latest cycle, the rows before it, and the operator's
+//! requests to a run (pause, single step, answers).
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,12 +13,12 @@ use protocol::signal::{Sample, Signal};
 use protocol::{CYCLE, Duration, Instant};
 
 use super::{LinkQuality, Wake};
-use crate::run::Attendant;
+use crate::run::RunControl;
 
 /// Rows are kept for this long.
 pub const HISTORY: Duration = Duration::from_ms(120_000);
 const ROWS: usize = (HISTORY.as_us() / CYCLE.as_us()) as usize;
-/// Whoever looks on is woken at most this often …
+/// The window is woken at most this often …
 const OFTEN: time::Duration = time::Duration::from_millis(33);
 /// … and at least this often while nothing changes but the time and counts.
 const SELDOM: time::Duration = time::Duration::from_secs(1);
@@ -28,89 +29,88 @@ const COUNTS: [Signal; 2] = [Signal::TwcReceived, Signal::TwcAnswers];
 /// What the connection bar shows, whatever page is in front.
 const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 
-/// What the bench's thread is at.
+/// What the bench thread does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
-    /// No unit.
+    /// No unit is connected.
     #[default]
     Offline,
-    /// A unit is being reached.
+    /// A unit is being connected.
     Connecting,
-    /// A unit is connected and nothing is run.
+    /// A unit is connected and monitored.
     Idle,
-    /// A run has the bench.
+    /// Procedures run.
     Running,
-    /// Outputs are being made safe, then the unit is let go.
+    /// Outputs are being made safe.
     MakingSafe,
 }
 
 /// Every signal at the end of one cycle.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// When, on the bench.
+    /// Bench time.
     pub at: Instant,
     values: [f64; Signal::COUNT],
 }
 
 impl Row {
-    /// A signal's value; NaN when it was not known.
+    /// NaN when the value was not known.
     pub fn value(&self, signal: Signal) -> f64 {
         self.values[signal.index()]
     }
 }
 
-/// A bench as it is now.
+/// The bench after its latest cycle.
 #[derive(Debug, Default)]
-pub struct Live {
-    /// What the thread is at.
+pub struct LiveData {
     pub phase: Phase,
-    /// Time on the bench.
+    /// Bench time.
     pub now: Instant,
-    /// Every signal.
+    /// Value of every signal.
     pub sample: Sample,
-    /// Who the unit is.
+    /// The unit's answer to the identity request.
     pub identity: Option<Identity>,
-    /// How well frames come through.
+    /// Share of frames received over the last seconds.
     pub link: LinkQuality,
-    /// Times the unit was started again.
+    /// Restarts of the unit since it was connected.
     pub restarts: u32,
-    /// Counts benches made anew and made safe: what was given by hand before is gone.
-    pub generation: u64,
-    /// The latest rows, oldest first, one per 50 ms; they begin anew with each bench.
+    /// Counts how often the bench was rebuilt or made safe; manual orders of an earlier epoch are not executed.
+    pub bench_epoch: u64,
+    /// The latest rows, oldest first, one per 50 ms; cleared when the bench is rebuilt.
     pub rows: VecDeque<Row>,
 }
 
-/// What the operator wishes of a run.
+/// The operator's requests to the present run.
 #[derive(Debug, Default)]
-struct Direction {
+struct OperatorRequests {
     paused: bool,
     single_steps: u32,
     answer: Option<bool>,
 }
 
-/// Shared between the bench's thread and who looks on.
-pub struct Board {
-    live: Mutex<Live>,
-    direction: Mutex<Direction>,
+/// Shared between the bench thread, which writes it, and the window.
+pub struct LiveState {
+    live: Mutex<LiveData>,
+    requests: Mutex<OperatorRequests>,
     pending: Mutex<Pending>,
-    /// Its signals are looked at.
+    /// Whether the window shows the signals.
     watched: AtomicBool,
     wake: Wake,
 }
 
-/// The bench's own side: rows that could not be shown yet.
+/// Used by the bench thread only: rows that could not be published yet, and when the window was last woken.
 struct Pending {
     rows: Vec<Row>,
     woken: time::Instant,
     shown: [u64; Signal::COUNT],
 }
 
-impl Board {
-    /// An empty board; `wake` is called when it changes.
+impl LiveState {
+    /// Without a unit; `wake` is called after each change.
     pub fn new(wake: Wake) -> Self {
         Self {
             live: Mutex::default(),
-            direction: Mutex::default(),
+            requests: Mutex::default(),
             pending: Mutex::new(Pending {
                 rows: Vec::new(),
                 woken: time::Instant::now(),
@@ -121,60 +121,60 @@ impl Board {
         }
     }
 
-    /// Whether its signals are looked at: if not, only what the connection bar shows wakes anybody.
+    /// Whether the window shows the signals: if not, only a change in the connection bar wakes it.
     pub fn watch(&self, watched: bool) {
         self.watched.store(watched, Ordering::Relaxed);
     }
 
-    /// The bench as it is now; hold it shortly.
-    pub fn read(&self) -> MutexGuard<'_, Live> {
+    /// Locks the latest cycle; the bench thread publishes nothing meanwhile.
+    pub fn read(&self) -> MutexGuard<'_, LiveData> {
         held(&self.live)
     }
 
-    /// No further step begins, or steps begin again.
+    /// Pauses or resumes the run before its next step.
     pub fn pause(&self, paused: bool) {
-        let mut direction = held(&self.direction);
-        direction.paused = paused;
-        direction.single_steps = 0;
+        let mut requests = held(&self.requests);
+        requests.paused = paused;
+        requests.single_steps = 0;
     }
 
     /// Whether the run is to pause.
     pub fn paused(&self) -> bool {
-        held(&self.direction).paused
+        held(&self.requests).paused
     }
 
-    /// One more step of a paused run.
+    /// Runs one step of a paused run.
     pub fn single_step(&self) {
-        held(&self.direction).single_steps += 1;
+        held(&self.requests).single_steps += 1;
     }
 
     /// The answer to the present prompt.
     pub fn answer(&self, yes: bool) {
-        held(&self.direction).answer = Some(yes);
+        held(&self.requests).answer = Some(yes);
     }
 
-    /// Nothing is wished of the next run.
-    pub(super) fn clear_direction(&self) {
-        *held(&self.direction) = Direction::default();
+    /// Drops requests to an earlier run.
+    pub(super) fn clear_requests(&self) {
+        *held(&self.requests) = OperatorRequests::default();
     }
 
-    /// The bench's thread is at something else.
+    /// Changes the phase.
     pub(super) fn enter(&self, phase: Phase) {
         {
             let mut live = held(&self.live);
             live.phase = phase;
             if phase == Phase::Offline {
-                let generation = live.generation + 1;
-                *live = Live {
-                    generation,
-                    ..Live::default()
+                let bench_epoch = live.bench_epoch + 1;
+                *live = LiveData {
+                    bench_epoch,
+                    ..LiveData::default()
                 };
             }
         }
         (self.wake)();
     }
 
-    /// A unit is there to be worked with, and it is known which one: whoever sees the one sees the other.
+    /// Enters [`Phase::Idle`] together with the identity, so that an idle unit is never shown without it.
     pub(super) fn enter_idle(&self, identity: Option<Identity>) {
         {
             let mut live = held(&self.live);
@@ -184,9 +184,9 @@ impl Board {
         (self.wake)();
     }
 
-    /// What was given by hand is gone: the bench is another one, or was made safe.
-    pub(super) fn begin_anew(&self) {
-        held(&self.live).generation += 1;
+    /// Invalidates manual orders that were given before: the bench was rebuilt or made safe.
+    pub(super) fn invalidate_orders(&self) {
+        held(&self.live).bench_epoch += 1;
     }
 
     pub(super) fn wake(&self) {
@@ -194,7 +194,7 @@ impl Board {
     }
 }
 
-impl Board {
+impl LiveState {
     fn is_worth_a_look(&self, before: &[u64; Signal::COUNT], now: &[u64; Signal::COUNT]) -> bool {
         let differs = |signal: &Signal| before[signal.index()] != now[signal.index()];
         if self.watched.load(Ordering::Relaxed) {
@@ -206,8 +206,8 @@ impl Board {
     }
 }
 
-impl Attendant for Board {
-    fn see(&self, now: Instant, rig: &Rig) {
+impl RunControl for LiveState {
+    fn after_cycle(&self, now: Instant, rig: &Rig) {
         let mut pending = held(&self.pending);
         pending.rows.push(Row {
             at: now,
@@ -243,17 +243,17 @@ impl Attendant for Board {
         }
     }
 
-    fn direct(&self, runner: &mut Runner) {
-        let Ok(mut direction) = self.direction.try_lock() else {
+    fn before_scan(&self, runner: &mut Runner) {
+        let Ok(mut requests) = self.requests.try_lock() else {
             return;
         };
-        if direction.paused {
+        if requests.paused {
             runner.pause();
-            (0..std::mem::take(&mut direction.single_steps)).for_each(|_| runner.single_step());
+            (0..std::mem::take(&mut requests.single_steps)).for_each(|_| runner.single_step());
         } else {
             runner.resume();
         }
-        if let Some(answer) = direction.answer.take() {
+        if let Some(answer) = requests.answer.take() {
             runner.answer(answer);
         }
     }
