@@ -18,10 +18,10 @@ use std::time::{Duration, Instant};
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Context, RawInput, Rect, pos2, vec2};
 use protocol::{CYCLE, Speed};
+use ptu_app::bench_worker::Phase;
 use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Settings};
-use ptu_app::bench_worker::Phase;
 
 /// How long each measurement takes.
 const LASTS: Duration = Duration::from_secs(20);
@@ -79,11 +79,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
         to: Speed::from_kmh(20.0),
         accel_mps2: 0.5,
     };
-    app.units()
-        .chosen()
-        .bench
-        .apply(speed)
-        .expect("permitted");
+    app.units().chosen().bench.apply(speed).expect("permitted");
     std::thread::sleep(Duration::from_secs(1));
     shown.lock().expect("times").clear();
     let began = Instant::now();

@@ -16,6 +16,7 @@
 //!
 //! Only here are clocks read, threads started and files opened.
 
+pub mod bench_worker;
 pub mod campaign;
 pub mod cli;
 pub mod clock;
@@ -38,7 +39,6 @@ pub mod replay;
 pub mod report;
 pub mod run;
 mod sparkline;
-pub mod bench_worker;
 pub mod stop;
 mod table;
 mod tell;

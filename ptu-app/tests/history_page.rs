@@ -6,8 +6,8 @@ mod common;
 use common::window::Window;
 use common::{Place, scripts};
 use eframe::egui::Key;
-use ptu_app::gui::{Page, Settings};
 use ptu_app::bench_worker::Phase;
+use ptu_app::gui::{Page, Settings};
 use ptu_app::words::Language;
 use serde_json::Value;
 

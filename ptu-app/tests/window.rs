@@ -8,8 +8,8 @@ use common::steady::steadily;
 use common::window::Window;
 use common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
-use ptu_app::gui::{Page, Settings};
 use ptu_app::bench_worker::Phase;
+use ptu_app::gui::{Page, Settings};
 use ptu_app::words::Language;
 
 fn settings(page: Page) -> Settings {

@@ -20,10 +20,10 @@ use btu_rig::stimulus::Stimulus;
 use divan::Bencher;
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput, Rect, pos2, vec2};
 use protocol::Speed;
+use ptu_app::bench_worker::Phase;
 use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Page, Settings};
-use ptu_app::bench_worker::Phase;
 use ptu_app::trace_view::TraceView;
 use tempfile::TempDir;
 

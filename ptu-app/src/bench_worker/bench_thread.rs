@@ -14,6 +14,7 @@ use protocol::signal::{Sample, Signal};
 use protocol::{Duration, SCAN};
 
 use super::event::BenchEvent;
+use super::live_state::{LiveState, Phase};
 use super::{Order, RunOrder, permit};
 use crate::link::Pace;
 use crate::run::{
@@ -134,7 +135,8 @@ impl BenchThread {
                 let mut session = setup.sim_session(LIVE, &Stop::default());
                 // Powering up is not worth waiting for.
                 session.set_pace(Pace::Virtual);
-                let mut logged = |entry: &UnitEvent, _, _: &Sample| self.tell(BenchEvent::Logged(*entry));
+                let mut logged =
+                    |entry: &UnitEvent, _, _: &Sample| self.tell(BenchEvent::Logged(*entry));
                 session.idle(READY_WITHIN + READY_WITHIN, &mut logged, settled());
                 session.set_pace(Pace::real());
                 let end = self.watch_session(&mut session, connection, orders);
@@ -172,7 +174,9 @@ impl BenchThread {
                         asked = self.apply(session, &stimulus);
                     }
                 }
-                Ok(Order::Arm(bench_epoch)) if bench_epoch == self.live_state.read().bench_epoch => {
+                Ok(Order::Arm(bench_epoch))
+                    if bench_epoch == self.live_state.read().bench_epoch =>
+                {
                     let mut wait = Duration::ZERO;
                     let rig = session.bench().rig();
                     if rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
@@ -290,9 +294,9 @@ mod tests {
 
     use btu_rig::procedure::plan::Connection;
 
+    use crate::bench_worker::{BenchWorker, LiveState, Phase};
     use crate::data::ScriptsDirectory;
     use crate::gui::UnitChoice;
-    use crate::bench_worker::{LiveState, Phase, BenchWorker};
 
     /// Goal: an idle unit is never shown without its identity. Method: the state is read at each wake-up.
     #[test]

@@ -63,6 +63,7 @@ impl Row {
 /// The bench after its latest cycle.
 #[derive(Debug, Default)]
 pub struct LiveData {
+    /// What the bench thread does.
     pub phase: Phase,
     /// Bench time.
     pub now: Instant,

@@ -22,9 +22,9 @@ use std::thread::JoinHandle;
 use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
 
-pub use live_state::{LiveState, HISTORY, LiveData, Phase, Row};
-pub use link_quality::LinkQuality;
 pub use event::BenchEvent;
+pub use link_quality::LinkQuality;
+pub use live_state::{HISTORY, LiveData, LiveState, Phase, Row};
 pub use permit::{Refused, permit};
 pub use progress::{Present, ProcedureProgress, Progress, Waiting};
 

@@ -149,7 +149,9 @@ impl Progress {
         let Some(place) = self.place(id) else { return };
         match event {
             SessionEvent::Run(event) => self.event(place, event),
-            SessionEvent::Fault(fault) if self.faults.len() < KEPT => self.faults.push(fault.clone()),
+            SessionEvent::Fault(fault) if self.faults.len() < KEPT => {
+                self.faults.push(fault.clone())
+            }
             SessionEvent::Ended { .. } => self.present = None,
             SessionEvent::Fault(_)
             | SessionEvent::LinkLost(_)

@@ -5,19 +5,19 @@ use std::time::Duration;
 
 use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
 
+use super::data_paths::DataPaths;
+use super::frame::Frame;
 use super::messages::Messages;
+use super::page::Page;
 use super::page_context::Destination;
 use super::page_context::PageContext;
-use super::frame::Frame;
-use super::data_paths::DataPaths;
-use super::query_worker::QueryWorker;
-use super::page::Page;
 use super::pages::Pages;
+use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::Units;
 use super::{fonts, theme};
-use crate::failure::Failure;
 use crate::bench_worker::Wake;
+use crate::failure::Failure;
 use crate::stop::Stop;
 
 /// How often a window that is being closed looks whether all units are let go.

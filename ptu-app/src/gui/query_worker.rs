@@ -3,8 +3,8 @@
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use super::data_paths::DataPaths;
-use crate::failure::Failure;
 use crate::bench_worker::Wake;
+use crate::failure::Failure;
 
 type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 

@@ -144,7 +144,10 @@ mod tests {
         cached.request(pending_response);
         let (_other, pending_response) = pending();
         cached.request_other(pending_response);
-        assert!(same.send(Ok(2)).is_err(), "the response is no longer expected");
+        assert!(
+            same.send(Ok(2)).is_err(),
+            "the response is no longer expected"
+        );
         cached.poll();
         assert!(cached.get().value().is_none());
     }

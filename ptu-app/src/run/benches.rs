@@ -20,7 +20,7 @@ use super::reach::Reached;
 use super::recorder::BEFORE;
 use super::session::{Session, SessionEvent};
 use super::settle::{READY_WITHIN, between_procedures, settled};
-use super::{RunControl, ProcedureStream, RunPlan, Task, stream, unit_text};
+use super::{ProcedureStream, RunControl, RunPlan, Task, stream, unit_text};
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};

@@ -8,7 +8,6 @@
 //! record does not depend on how many work side by side.
 
 pub(crate) mod adaptive;
-mod run_control;
 pub(crate) mod benches;
 mod choice;
 mod collector;
@@ -21,6 +20,7 @@ mod made;
 mod reach;
 mod recorder;
 mod rounds;
+mod run_control;
 pub mod select;
 mod session;
 mod settle;
@@ -38,7 +38,6 @@ use btu_rig::procedure::{self, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
-pub use run_control::RunControl;
 pub use benches::{BenchSetup, Connected, run_here};
 pub use choice::Choice;
 pub use collector::{Listener, Outcome, steps_of, stored};
@@ -46,6 +45,7 @@ pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use made::{BenchMade, Made, Stimuli};
 pub(crate) use recorder::BEFORE;
+pub use run_control::RunControl;
 pub use session::{RecordedStimuli, SessionEvent};
 pub(crate) use session::{Session, Window};
 pub(crate) use settle::{READY_WITHIN, settled};

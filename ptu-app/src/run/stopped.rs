@@ -12,8 +12,8 @@ use fault_db::Store;
 use protocol::Instant;
 
 use super::{
-    RunControl, Began, BenchSetup, Connected, Listener, Outcome, RunPlan, SessionEvent, Suite, Task,
-    run, run_on,
+    Began, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan, SessionEvent, Suite,
+    Task, run, run_on,
 };
 use crate::clock;
 use crate::data::ScriptsDirectory;

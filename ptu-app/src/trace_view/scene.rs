@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::overlay::{Against, Overlay, Parting};
 use super::listing::Opened;
+use super::overlay::{Against, Overlay, Parting};
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
 use super::{Axis, Camera, Kind, choose, ticks};

@@ -4,7 +4,7 @@ use eframe::egui::{CollapsingHeader, Grid, Id, Key, RichText, ScrollArea, Ui, Wi
 
 use super::keys::{CONNECT, STOP_ALL};
 use crate::fonts::PRETENDARD_LICENCE;
-use crate::gui::{PageContext, Page, Palette};
+use crate::gui::{Page, PageContext, Palette};
 
 /// The window about the program.
 #[derive(Default)]

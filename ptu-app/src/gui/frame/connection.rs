@@ -6,9 +6,9 @@ use protocol::message::Identity;
 
 use super::keys::STOP_ALL;
 use super::setup::Setup;
-use crate::gui::parts::chip;
-use crate::gui::{PageContext, Page, Palette};
 use crate::bench_worker::Phase;
+use crate::gui::parts::chip;
+use crate::gui::{Page, PageContext, Palette};
 use crate::words::{Words, fill};
 
 /// The bar.
@@ -54,7 +54,8 @@ fn units(ui: &mut Ui, context: &mut PageContext<'_>) {
     {
         let choice = context.units.chosen().choice.clone();
         if let Err(failure) = context.units.add(choice) {
-            context.messages
+            context
+                .messages
                 .trouble(context.words.frame.cannot_connect, failure.message);
         }
     }

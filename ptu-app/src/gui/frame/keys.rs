@@ -2,8 +2,8 @@
 
 use eframe::egui::{Context, Key, Modifiers};
 
-use crate::gui::{PageContext, Page};
 use crate::bench_worker::Phase;
+use crate::gui::{Page, PageContext};
 
 /// Stops everything, whatever has the keyboard.
 pub const STOP_ALL: Key = Key::F12;

@@ -5,7 +5,7 @@ use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 use super::about::About;
 use crate::gui::parts::named_combo;
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
-use crate::gui::{PageContext, Page};
+use crate::gui::{Page, PageContext};
 use crate::words::Language;
 
 const STEP: f32 = 0.1;

@@ -5,12 +5,12 @@ use eframe::egui::{
     TextEdit, Ui, Window,
 };
 
-use crate::gui::request::Request;
+use crate::bench_worker::Phase;
 use crate::gui::parts::{name_edit, named_combo};
+use crate::gui::request::Request;
 use crate::gui::units::UnitChoice;
 use crate::gui::{PageContext, Palette};
 use crate::link::ports;
-use crate::bench_worker::Phase;
 use crate::words::Words;
 
 /// Names to choose from.
@@ -41,7 +41,8 @@ impl Setup {
         if self.names.poll()
             && let Request::Failed(why) = &self.names
         {
-            context.messages
+            context
+                .messages
                 .trouble(context.words.frame.cannot_list, why.clone());
         }
         let free = context.units.chosen().phase() == Phase::Offline;

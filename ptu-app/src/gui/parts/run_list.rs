@@ -25,7 +25,12 @@ pub struct RunList {
 
 impl RunList {
     /// Shows it; the run that was clicked.
-    pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>, chosen: Option<Id>) -> Option<Id> {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &PageContext<'_>,
+        chosen: Option<Id>,
+    ) -> Option<Id> {
         self.keep_up(context);
         let words = context.words;
         ui.horizontal(|ui| {

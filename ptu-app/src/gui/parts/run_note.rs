@@ -5,9 +5,9 @@ use fault_db::Id;
 
 use crate::clock::now_us;
 use crate::gui::messages::Messages;
+use crate::gui::parts::note_edit;
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
-use crate::gui::parts::note_edit;
 use crate::words::Words;
 
 /// Room for the button, points.

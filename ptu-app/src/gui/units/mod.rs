@@ -7,8 +7,8 @@ pub use choice::UnitChoice;
 pub use unit::Unit;
 
 use super::messages::Messages;
-use crate::failure::Failure;
 use crate::bench_worker::{Phase, Wake};
+use crate::failure::Failure;
 use crate::words::Words;
 use unit::Said;
 

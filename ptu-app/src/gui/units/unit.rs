@@ -7,12 +7,12 @@ use protocol::message::Identity;
 use protocol::signal::Signal;
 
 use super::UnitChoice;
+use crate::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
 use crate::failure::Failure;
 use crate::gui::messages::Messages;
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
 use crate::run::{BenchSetup, SessionEvent};
-use crate::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
 use crate::words::{Words, fill};
 
 /// Entries of a unit's log that are shown.
@@ -130,9 +130,9 @@ impl Unit {
     pub(super) fn poll(&mut self, words: &Words, said: &mut Said<'_>) {
         if self.setup.poll() {
             match &self.setup {
-                Request::Ready(setup) => self
-                    .bench
-                    .connect(setup.clone(), self.choice.connection()),
+                Request::Ready(setup) => {
+                    self.bench.connect(setup.clone(), self.choice.connection())
+                }
                 Request::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
                 _ => {}
             }
@@ -246,9 +246,9 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use super::*;
+    use crate::bench_worker::LiveState;
     use crate::data::ScriptsDirectory;
     use crate::run::{RunPlan, Suite, Task};
-    use crate::bench_worker::LiveState;
     use crate::words::Language;
 
     /// Longest time anything here takes to come about.

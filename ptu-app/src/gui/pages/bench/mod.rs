@@ -17,9 +17,9 @@ use std::collections::BTreeMap;
 
 use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
+use crate::bench_worker::Phase;
 use crate::gui::PageContext;
 use crate::run::BenchSetup;
-use crate::bench_worker::Phase;
 use forms::Forms;
 use live::{View, view};
 use plot::Plot;

@@ -10,9 +10,9 @@ use protocol::signal::Signal;
 use super::live::{View, framed, heading, put};
 use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
+use crate::bench_worker::BenchWorker;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::bench_worker::BenchWorker;
 use crate::trace_view::{Column, Span, Window, columns, spans, ticks};
 use crate::words::{Bench, fill};
 

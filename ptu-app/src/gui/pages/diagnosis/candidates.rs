@@ -6,7 +6,7 @@ use fault_db::diagnosis::Candidate;
 use super::Named;
 use crate::diagnosis::Answer;
 use crate::gui::parts::share_bar;
-use crate::gui::{PageContext, Destination, Palette};
+use crate::gui::{Destination, PageContext, Palette};
 use crate::words::fill;
 
 /// Parts of less than this share of the likeliest are not named in the headline.
@@ -45,7 +45,13 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
     });
 }
 
-fn show(ui: &mut Ui, context: &mut PageContext<'_>, named: &Named, candidate: &Candidate, open: bool) {
+fn show(
+    ui: &mut Ui,
+    context: &mut PageContext<'_>,
+    named: &Named,
+    candidate: &Candidate,
+    open: bool,
+) {
     let words = &context.words.diagnosis;
     ui.horizontal(|ui| {
         share_bar(ui, candidate.probability, Palette::of(ui).accent);

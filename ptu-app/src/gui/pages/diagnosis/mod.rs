@@ -9,9 +9,9 @@ use protocol::injection::Lru;
 
 use crate::clock;
 use crate::diagnosis::{Answer, diagnose_run};
-use crate::gui::request::Request;
 use crate::gui::parts::RunList;
-use crate::gui::{PageContext, Destination, Palette};
+use crate::gui::request::Request;
+use crate::gui::{Destination, PageContext, Palette};
 use crate::words::{Language, Words, fill};
 
 /// The page.
@@ -45,7 +45,9 @@ impl DiagnosisPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.answer.poll();
         let list = Panel::left("diagnosed runs").default_size(270.0);
-        let clicked = list.show(ui, |ui| self.runs.show(ui, context, self.run)).inner;
+        let clicked = list
+            .show(ui, |ui| self.runs.show(ui, context, self.run))
+            .inner;
         let unasked = if self.run.is_none() {
             self.runs.foremost()
         } else {

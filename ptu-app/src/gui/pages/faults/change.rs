@@ -4,8 +4,8 @@ use eframe::egui::{Button, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
 use crate::clock::now_us;
-use crate::gui::request::Request;
 use crate::gui::parts::{name_edit, note_edit};
+use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use crate::words::Words;
 
@@ -52,7 +52,9 @@ impl Change {
         }
         match std::mem::take(&mut self.under_way) {
             Request::Failed(why) => {
-                context.messages.trouble(context.words.faults.not_changed, why);
+                context
+                    .messages
+                    .trouble(context.words.faults.not_changed, why);
                 None
             }
             Request::Ready(changed) => {
@@ -66,7 +68,13 @@ impl Change {
     }
 
     /// Shows it: only what the fault's state allows, and nothing while that state is being read anew.
-    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, fault: &FaultSummary, is_stale: bool) {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PageContext<'_>,
+        fault: &FaultSummary,
+        is_stale: bool,
+    ) {
         let words = context.words;
         if self.form.of != Some(fault.id) {
             // What was begun about another fault is not meant for this one.
@@ -118,7 +126,13 @@ impl Change {
         }
     }
 
-    fn bring(&mut self, context: &PageContext<'_>, fault: &FaultSummary, state: FaultState, who: &str) {
+    fn bring(
+        &mut self,
+        context: &PageContext<'_>,
+        fault: &FaultSummary,
+        state: FaultState,
+        who: &str,
+    ) {
         let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         let repair = RepairRecord {
             part: fault.lru.clone(),

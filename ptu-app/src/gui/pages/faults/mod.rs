@@ -152,5 +152,7 @@ impl FaultsPage {
 }
 
 fn detail_of(id: Id, context: &PageContext<'_>) -> Pending<FaultDetail> {
-    context.queries.run(move |paths| Ok(paths.read()?.fault(id)?))
+    context
+        .queries
+        .run(move |paths| Ok(paths.read()?.fault(id)?))
 }

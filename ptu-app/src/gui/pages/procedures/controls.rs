@@ -3,11 +3,11 @@
 use eframe::egui::{Button, DragValue, RichText, Ui};
 
 use super::ProceduresPage;
-use crate::gui::request::Request;
+use crate::bench_worker::Phase;
 use crate::gui::parts::name_edit;
+use crate::gui::request::Request;
 use crate::gui::units::Unit;
 use crate::gui::{PageContext, Palette};
-use crate::bench_worker::Phase;
 use crate::words::Procedures;
 
 /// Most repetitions of a run.

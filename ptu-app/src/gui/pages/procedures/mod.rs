@@ -12,8 +12,8 @@ use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use crate::diagnosis::diagnose_run;
-use crate::gui::request::Request;
 use crate::gui::parts::RunNoteForm;
+use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette, UnitChoice};
 use crate::run::Suite;
 use crate::words::fill;
@@ -93,11 +93,19 @@ impl ProceduresPage {
     }
 
     /// Runs this step on the chosen unit if it is the one called `unit`.
-    pub fn run_step(&mut self, procedure: String, step: String, unit: &str, context: &mut PageContext<'_>) {
+    pub fn run_step(
+        &mut self,
+        procedure: String,
+        step: String,
+        unit: &str,
+        context: &mut PageContext<'_>,
+    ) {
         let words = &context.words.procedures;
         let chosen = context.units.chosen();
         if !chosen.may_run() {
-            context.messages.trouble(controls::why_not(chosen, words), "");
+            context
+                .messages
+                .trouble(controls::why_not(chosen, words), "");
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
             context.messages.trouble(said, "");
@@ -123,7 +131,11 @@ impl ProceduresPage {
     fn load(&mut self, context: &PageContext<'_>) {
         let choice = context.units.chosen().choice.clone();
         self.loaded_for = Some(choice.clone());
-        self.suite = Request::Pending(context.queries.run(move |paths| prepare::load(paths, &choice)));
+        self.suite = Request::Pending(
+            context
+                .queries
+                .run(move |paths| prepare::load(paths, &choice)),
+        );
     }
 
     /// Takes what has come, whatever page is in front.
@@ -158,7 +170,8 @@ impl ProceduresPage {
         let only = found.map(|found| Selection::only(found, &step));
         let Some(only) = only.filter(|only| only.extent(&suite.procedures).0 > 0) else {
             let what = format!("{procedure} {step}");
-            context.messages
+            context
+                .messages
                 .trouble(context.words.procedures.no_such_step, what);
             return;
         };
@@ -189,7 +202,10 @@ impl ProceduresPage {
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
         };
-        let connection = context.units.of_id(unit).map(|unit| unit.choice.connection());
+        let connection = context
+            .units
+            .of_id(unit)
+            .map(|unit| unit.choice.connection());
         if let Some(connection) = connection {
             let selection = self.chosen(connection);
             self.order_of(unit, selection, how, context);

@@ -2,9 +2,9 @@
 
 use eframe::egui::{Grid, ProgressBar, Ui};
 
+use crate::bench_worker::Phase;
 use crate::gui::parts::verdict_chip;
 use crate::gui::{PageContext, Palette};
-use crate::bench_worker::Phase;
 use crate::words::fill;
 
 /// A line for each unit when there are several.

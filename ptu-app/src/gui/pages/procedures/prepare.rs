@@ -1,12 +1,12 @@
 //! Loads the suite for a unit, and makes an order of what is chosen; on the library's thread.
 
 use super::selection::{Selection, possible};
+use crate::bench_worker::RunOrder;
 use crate::diagnosis;
 use crate::failure::Failure;
 use crate::gui::UnitChoice;
 use crate::gui::data_paths::DataPaths;
 use crate::run::{RunPlan, Suite};
-use crate::bench_worker::RunOrder;
 
 /// How what is chosen is run.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
 
 use super::results::{measurements, source};
 use super::tree::{minutes, title};
+use crate::bench_worker::{Present, Progress};
 use crate::gui::Palette;
 use crate::gui::parts::verdict_chip;
-use crate::bench_worker::{Present, Progress};
 use crate::words::{Words, fill};
 
 /// Lines shown before and after the script's present one.

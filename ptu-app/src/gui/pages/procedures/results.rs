@@ -6,11 +6,11 @@ use std::ops::Range;
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, ScrollArea, Ui, UiBuilder};
 
-use crate::gui::query_worker::QueryWorker;
+use crate::bench_worker::Progress;
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
+use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
 use crate::run::CHECK_FAILED;
-use crate::bench_worker::Progress;
 use crate::words::{Words, fill};
 
 /// Lines shown before and after a step's.

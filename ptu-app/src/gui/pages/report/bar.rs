@@ -5,9 +5,9 @@ use fault_db::Id;
 
 use super::{ReportPage, Shown, file};
 use crate::gui::data_paths::DataPaths;
-use crate::gui::request::Request;
 use crate::gui::parts::{name_edit, named_combo};
-use crate::gui::{PageContext, Destination};
+use crate::gui::request::Request;
+use crate::gui::{Destination, PageContext};
 use crate::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.

@@ -12,8 +12,8 @@ use std::path::PathBuf;
 use eframe::egui::{CentralPanel, Panel, RichText, Ui};
 use fault_db::Id;
 
-use crate::gui::request::Request;
 use crate::gui::parts::{RunList, RunNoteForm};
+use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use crate::report::run::{Block, Sheet, blocks};
 use crate::words::{Language, fill};
@@ -125,7 +125,9 @@ impl ReportPage {
                     let said = fill(context.words.report.written, &[("file", &file)]);
                     context.messages.note(said);
                 }
-                Request::Failed(why) => context.messages.trouble(context.words.report.not_written, why),
+                Request::Failed(why) => context
+                    .messages
+                    .trouble(context.words.report.not_written, why),
                 Request::Idle | Request::Pending(_) => {}
             }
         }

@@ -6,9 +6,9 @@ use eframe::egui::{ComboBox, DragValue, RichText, Ui};
 
 use super::bar;
 use super::list::TraceList;
+use crate::gui::parts::named_combo;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::Request;
-use crate::gui::parts::named_combo;
 use crate::gui::{PageContext, Palette};
 use crate::trace_view::{Against, Overlay, Parting, Scene};
 use crate::words::fill;
@@ -33,7 +33,9 @@ impl BehindAsked {
             match std::mem::take(&mut self.overlay) {
                 Request::Ready(overlay) => scene.lay_behind(Arc::new(overlay)),
                 Request::Failed(why) => {
-                    context.messages.trouble(context.words.traces.cannot_overlay, why);
+                    context
+                        .messages
+                        .trouble(context.words.traces.cannot_overlay, why);
                     self.against = None;
                 }
                 other => self.overlay = other,
@@ -43,7 +45,9 @@ impl BehindAsked {
             self.parting = None;
             if let (Ok(parting), Some(against)) = (answer, self.against) {
                 if let Some(why) = &parting.trouble {
-                    context.messages.trouble(context.words.traces.cannot_compare, why);
+                    context
+                        .messages
+                        .trouble(context.words.traces.cannot_compare, why);
                 }
                 scene.told(against, parting);
             }
@@ -66,7 +70,13 @@ impl BehindAsked {
     }
 
     /// What to compare with, and what the comparison says.
-    pub fn bar(&mut self, ui: &mut Ui, scene: &mut Scene, list: &TraceList, context: &mut PageContext<'_>) {
+    pub fn bar(
+        &mut self,
+        ui: &mut Ui,
+        scene: &mut Scene,
+        list: &TraceList,
+        context: &mut PageContext<'_>,
+    ) {
         let words = &context.words.traces;
         ui.label(words.overlay);
         let mut against = self.against;
@@ -110,7 +120,8 @@ impl BehindAsked {
         self.overlay = match against {
             None => Request::Idle,
             Some(against) => Request::Pending(
-                context.queries
+                context
+                    .queries
                     .run(move |paths| Overlay::get(&paths.read()?, &paths.scripts, id, against)),
             ),
         };

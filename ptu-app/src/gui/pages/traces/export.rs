@@ -10,8 +10,8 @@ use fault_db::Id;
 
 use super::signals::name_input;
 use crate::gui::PageContext;
-use crate::gui::query_worker::Pending;
 use crate::gui::parts::usual_folder;
+use crate::gui::query_worker::Pending;
 use crate::new_file::{NewFile, cannot_write};
 use crate::trace_view::csv::csv;
 use crate::trace_view::{Kind, Scene};
@@ -81,12 +81,14 @@ impl Export {
             None => true,
             Some(Ok(path)) => {
                 let file = path.display().to_string();
-                context.messages
+                context
+                    .messages
                     .note(fill(words.common.saved, &[("file", &file)]));
                 false
             }
             Some(Err(failure)) => {
-                context.messages
+                context
+                    .messages
                     .trouble(words.traces.cannot_save, failure.message);
                 false
             }

@@ -17,7 +17,7 @@ use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
 use crate::gui::query_worker::Pending;
-use crate::gui::{PageContext, Destination, Palette};
+use crate::gui::{Destination, PageContext, Palette};
 use crate::trace_view::Scene;
 use crate::trace_view::listing::{self, Opened};
 use crate::words::fill;
@@ -92,7 +92,8 @@ impl TracesPage {
                 }
                 Err(failure) => {
                     self.scene = None;
-                    context.messages
+                    context
+                        .messages
                         .trouble(context.words.traces.cannot_open, &failure.message);
                     self.trouble = Some(failure.message);
                 }

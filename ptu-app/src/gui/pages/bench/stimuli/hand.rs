@@ -10,9 +10,9 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
+use crate::bench_worker::BenchWorker;
 use crate::gui::pages::bench::seen::Seen;
 use crate::gui::{Messages, Palette};
-use crate::bench_worker::BenchWorker;
 use crate::words::{Words, fill};
 
 /// Width of a row's name.
