@@ -6,7 +6,8 @@ use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
 use common::{Place, scripts, window::Window};
-use ptu_app::gui::{Page, Settings, UnitChoice};
+use ptu_app::gui::{Page, Settings};
+use ptu_app::run::BenchChoice;
 use ptu_app::words::Language;
 
 /// A bench with a simulated unit connected to it.
@@ -102,9 +103,9 @@ fn a_section_laid_by_hand_is_forgotten_with_stop_all_on_another_page() {
 /// cannot be given.
 #[test]
 fn a_laptop_has_no_harness() {
-    let unit = UnitChoice {
+    let unit = BenchChoice {
         as_ptu: true,
-        ..UnitChoice::default()
+        ..BenchChoice::default()
     };
     let mut window = connected(Settings { unit, ..on_bench() });
     window.wait_for("Test code: 55");

@@ -16,7 +16,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use common::{Place, list};
-use ptu_app::gui::{Page, Settings, UnitChoice};
+use ptu_app::gui::{Page, Settings};
+use ptu_app::run::BenchChoice;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 
@@ -339,9 +340,9 @@ fn a_window_closed_in_mid_run_leaves_a_closed_record() {
         let place = Place::new();
         let settings = Settings {
             page: Page::Procedures,
-            unit: UnitChoice {
+            unit: BenchChoice {
                 realtime: true,
-                ..UnitChoice::default()
+                ..BenchChoice::default()
             },
             ..Settings::default()
         };

@@ -296,7 +296,7 @@ mod tests {
 
     use crate::bench_worker::{BenchWorker, LiveState, Phase};
     use crate::data::ScriptsDirectory;
-    use crate::gui::UnitChoice;
+    use crate::run::BenchChoice;
 
     /// Goal: an idle unit is never shown without its identity. Method: the state is read at each wake-up.
     #[test]
@@ -319,7 +319,7 @@ mod tests {
         assert!(live_state.set(worker.live_state().clone()).is_ok());
         let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts");
         let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let choice = UnitChoice::default().named().expect("the embedded unit");
+        let choice = BenchChoice::default();
         let setup = choice.setup(&scripts).expect("its configuration");
         worker.connect(setup, Connection::Btu);
         let began = Instant::now();

@@ -74,7 +74,11 @@ impl GuiArguments {
             settings.unit.endpoint = unit.to_string();
             settings.unit.faults = self.inject;
             // Before there is a window to say it in.
-            settings.unit.named()?.setup(&paths.scripts)?;
+            settings
+                .unit
+                .clone()
+                .with_offered_faults()
+                .setup(&paths.scripts)?;
         }
         open(Options {
             paths,

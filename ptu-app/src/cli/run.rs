@@ -18,7 +18,9 @@ use crate::drive::Setting;
 use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
 use crate::report::diagnosis::diagnosis_text;
-use crate::run::{self, BenchSetup, Choice, Outcome, RunPlan, Suite, Task, select};
+use crate::run::{
+    self, BenchChoice, BenchSetup, Outcome, RunPlan, Suite, Task, check_serial, select,
+};
 use crate::stop::Stop;
 use crate::tell;
 
@@ -189,18 +191,23 @@ impl RunArguments {
                 "--slower is for what goes by the clock: a unit on a port, or --realtime",
             ));
         }
-        Choice {
-            unit: self.unit.clone(),
+        if let Some(serial) = &self.serial_no {
+            check_serial(serial)?;
+        }
+        BenchChoice {
+            endpoint: self.unit.to_string(),
             line: self.line.clone(),
             unit_config: self.unit_config.clone(),
             train: self.train.clone(),
             settings: self.set.clone(),
-            serial: self.serial_no.clone(),
+            serial: self.serial_no.clone().unwrap_or_default(),
             faults: self.inject.clone(),
             seed: self.seed,
-            scatter: self.scatter.clone(),
+            scatter: self.scatter.is_some(),
+            scatter_file: self.scatter.clone().flatten(),
             realtime: self.realtime,
             slower: self.slower,
+            ..BenchChoice::default()
         }
         .setup(directory)
     }

@@ -28,4 +28,4 @@ pub use page_context::{Destination, PageContext};
 pub use query_worker::{Pending, QueryWorker};
 pub use settings::Settings;
 pub use theme::Palette;
-pub use units::{Unit, UnitChoice, Units};
+pub use units::{Unit, Units};

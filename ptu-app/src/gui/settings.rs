@@ -6,9 +6,9 @@ use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
 use super::Page;
-use super::units::UnitChoice;
 use crate::data::LONGEST_FILE;
 use crate::failure::Failure;
+use crate::run::BenchChoice;
 use crate::words::Language;
 
 /// Everything is at least and at most so large.
@@ -33,7 +33,7 @@ pub struct Settings {
     /// Who tests.
     pub operator: String,
     /// The unit connected last.
-    pub unit: UnitChoice,
+    pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
     pub plotted: Vec<String>,
     /// Lanes of the trace page, by channel.
@@ -49,7 +49,7 @@ impl Default for Settings {
             window_size: None,
             page: Page::default(),
             operator: String::new(),
-            unit: UnitChoice::default(),
+            unit: BenchChoice::default(),
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)
                 .to_vec(),

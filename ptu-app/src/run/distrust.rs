@@ -11,9 +11,8 @@ use std::sync::Arc;
 use super::benches::run_task;
 use super::recorder::BEFORE;
 use super::settle::{READY_WITHIN, settled};
-use super::{BenchSetup, SessionEvent, Task};
+use super::{BenchChoice, BenchSetup, SessionEvent, Task};
 use crate::data::ScriptsDirectory;
-use crate::gui::UnitChoice;
 use crate::stop::Stop;
 
 /// When what is wrong begins: the first procedure is under way.
@@ -128,7 +127,7 @@ impl Bed {
     fn new() -> Self {
         let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts");
         let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let choice = UnitChoice::default().named().expect("the embedded unit");
+        let choice = BenchChoice::default();
         let setup = choice.setup(&directory).expect("its configuration");
         let texts = directory.procedures().expect("procedures");
         let (config, line) = (&setup.config.content, &setup.line.content);

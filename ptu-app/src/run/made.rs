@@ -202,6 +202,6 @@ fn beginning(sha256: &str) -> &str {
 }
 
 /// SHA-256 over all that a train is, in hex; trains from files and built-in ones alike.
-fn train_sha256(train: &TrainData) -> String {
+pub(super) fn train_sha256(train: &TrainData) -> String {
     sha256(&format!("{train:?}"))
 }

@@ -39,7 +39,7 @@ use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
 pub use benches::{BenchSetup, Connected, run_here};
-pub use choice::Choice;
+pub use choice::{BenchChoice, check_serial};
 pub use collector::{Listener, Outcome, steps_of, stored};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};

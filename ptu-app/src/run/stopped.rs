@@ -12,14 +12,13 @@ use fault_db::Store;
 use protocol::Instant;
 
 use super::{
-    Began, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan, SessionEvent, Suite,
-    Task, run, run_on,
+    Began, BenchChoice, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan,
+    SessionEvent, Suite, Task, run, run_on,
 };
 use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::diagnosis;
 use crate::failure::Exit;
-use crate::gui::UnitChoice;
 use crate::link::Endpoint;
 use crate::stop::Stop;
 
@@ -77,7 +76,7 @@ fn directory() -> ScriptsDirectory {
 }
 
 fn setup() -> BenchSetup {
-    let choice = UnitChoice::default().named().expect("the embedded unit");
+    let choice = BenchChoice::default();
     choice.setup(&directory()).expect("its configuration")
 }
 
@@ -402,7 +401,7 @@ fn a_repetition_that_fails_ends_what_is_to_end_with_the_first_failure() {
 fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
     let suite = Suite::load(&directory(), procedures, setup).expect("the suite");
     let mut plan = plan(suite.procedures.into_iter().filter(|p| !p.on_request));
-    let choice = UnitChoice::default();
+    let choice = BenchChoice::default();
     let bench = diagnosis::Bench {
         unit_config_sha256: &setup.config.sha256,
         line: &choice.line,

@@ -1,4 +1,4 @@
-//! The procedures of a scripts directory, loaded for a bench and checked.
+//! The procedures of a scripts directory, evaluated for one unit configuration, line and train, and checked.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,11 +7,12 @@ use btu_rig::procedure::Procedure;
 use btu_rig::procedure::loader::Loaded;
 use protocol::injection::FaultCatalogue;
 
+use super::made::train_sha256;
 use super::{BenchSetup, loading, select};
 use crate::data::{ScriptsDirectory, sha256};
 use crate::failure::{Failure, did_you_mean};
 
-/// What loading came to.
+/// Evaluated procedures, and the files they were evaluated from.
 #[derive(Clone, Debug)]
 pub struct Suite {
     /// Procedures, in order.
@@ -22,6 +23,8 @@ pub struct Suite {
     pub need_cars: Vec<String>,
     /// What scripts printed.
     pub printed: Vec<String>,
+    /// SHA-256 of the unit configuration, line and train that the scripts were evaluated with.
+    pub bench_sha256: [String; 3],
     /// Text of each script by its path.
     pub texts: BTreeMap<String, String>,
     /// SHA-256 over all of them.
@@ -56,6 +59,7 @@ impl Suite {
         }
         Ok(Self {
             sha256: sha256(&texts.values().map(String::as_str).collect::<String>()),
+            bench_sha256: bench_sha256(setup),
             procedures,
             errors,
             need_cars,
@@ -63,6 +67,24 @@ impl Suite {
             texts,
         })
     }
+
+    /// Whether the scripts directory still holds the scripts of this suite, which holds all of them.
+    ///
+    /// # Errors
+    /// A script cannot be read.
+    pub fn has_current_scripts(&self, directory: &ScriptsDirectory) -> Result<bool, Failure> {
+        Ok(directory.procedures()? == self.texts)
+    }
+
+    /// Whether the scripts were evaluated with this unit configuration, line and train.
+    pub fn is_for(&self, setup: &BenchSetup) -> bool {
+        self.bench_sha256 == bench_sha256(setup)
+    }
+}
+
+fn bench_sha256(setup: &BenchSetup) -> [String; 3] {
+    let (config, line) = (&setup.config.sha256, &setup.line.sha256);
+    [config.clone(), line.clone(), train_sha256(&setup.train)]
 }
 
 /// Parts that scripts suspect must be parts that can be replaced.

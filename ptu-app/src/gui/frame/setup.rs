@@ -8,9 +8,9 @@ use eframe::egui::{
 use crate::bench_worker::Phase;
 use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::request::Request;
-use crate::gui::units::UnitChoice;
 use crate::gui::{PageContext, Palette};
 use crate::link::ports;
+use crate::run::BenchChoice;
 use crate::words::Words;
 
 /// Names to choose from.
@@ -111,7 +111,7 @@ impl Setup {
         }));
     }
 
-    fn endpoints(&self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
+    fn endpoints(&self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         ui.set_min_width(260.0);
         let endpoint = &mut choice.endpoint;
         if ui
@@ -137,7 +137,7 @@ impl Setup {
             .labelled_by(label.id);
     }
 
-    fn surroundings(&mut self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
+    fn surroundings(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         let frame = &words.frame;
         ui.set_min_width(430.0);
         let none = Vec::new();
@@ -184,7 +184,7 @@ impl Setup {
         }
     }
 
-    fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut UnitChoice) {
+    fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         let chosen = match choice.faults.as_slice() {
             [] => words.frame.none.to_owned(),
             faults => faults.join(", "),

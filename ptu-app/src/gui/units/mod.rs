@@ -1,14 +1,13 @@
 //! Units that are tested from this window, side by side.
 
-mod choice;
 mod unit;
 
-pub use choice::UnitChoice;
 pub use unit::Unit;
 
 use super::messages::Messages;
 use crate::bench_worker::{Phase, Wake};
 use crate::failure::Failure;
+use crate::run::BenchChoice;
 use crate::words::Words;
 use unit::Said;
 
@@ -28,7 +27,7 @@ impl Units {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn new(choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
+    pub fn new(choice: BenchChoice, wake: Wake) -> Result<Self, Failure> {
         Ok(Self {
             first: Unit::new(0, choice, wake.clone())?,
             more: Vec::new(),
@@ -43,7 +42,7 @@ impl Units {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn add(&mut self, choice: UnitChoice) -> Result<(), Failure> {
+    pub fn add(&mut self, choice: BenchChoice) -> Result<(), Failure> {
         let unit = Unit::new(self.next_id, choice, self.wake.clone())?;
         self.next_id += 1;
         self.more.push(unit);

@@ -6,13 +6,12 @@ use btu_rig::procedure::UnitEvent;
 use protocol::message::Identity;
 use protocol::signal::Signal;
 
-use super::UnitChoice;
 use crate::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
 use crate::failure::Failure;
 use crate::gui::messages::Messages;
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
-use crate::run::{BenchSetup, SessionEvent};
+use crate::run::{BenchChoice, BenchSetup, SessionEvent};
 use crate::words::{Words, fill};
 
 /// Entries of a unit's log that are shown.
@@ -23,7 +22,7 @@ pub struct Unit {
     /// Its own number in this window, never used again for another.
     pub id: u64,
     /// What is chosen for it.
-    pub choice: UnitChoice,
+    pub choice: BenchChoice,
     /// Its bench.
     pub bench: BenchWorker,
     /// What its bench is made of, once it was asked to connect.
@@ -41,7 +40,7 @@ pub struct Unit {
 }
 
 impl Unit {
-    pub(super) fn new(id: u64, choice: UnitChoice, wake: Wake) -> Result<Self, Failure> {
+    pub(super) fn new(id: u64, choice: BenchChoice, wake: Wake) -> Result<Self, Failure> {
         Ok(Self {
             id,
             choice,
@@ -89,9 +88,8 @@ impl Unit {
 
     /// Reaches it.
     pub fn connect(&mut self, queries: &QueryWorker) {
-        let choice = self.choice.clone();
-        self.setup =
-            Request::Pending(queries.run(move |paths| choice.named()?.setup(&paths.scripts)));
+        let choice = self.choice.clone().with_offered_faults();
+        self.setup = Request::Pending(queries.run(move |paths| choice.setup(&paths.scripts)));
     }
 
     /// Lets it go, or gives up reaching it.
@@ -314,11 +312,10 @@ mod tests {
             let held_up = held_up.clone();
             Arc::new(move || held_up.look())
         };
-        let mut unit = Unit::new(0, UnitChoice::default(), wake).expect("a thread");
+        let mut unit = Unit::new(0, BenchChoice::default(), wake).expect("a thread");
         let let_go = LetGo(held_up.clone());
         assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
-        let choice = unit.choice.named().expect("the embedded unit");
-        let setup = choice.setup(&scripts()).expect("its configuration");
+        let setup = unit.choice.setup(&scripts()).expect("its configuration");
         let connection = unit.choice.connection();
         unit.bench.connect(setup.clone(), connection);
         let began = Instant::now();

@@ -8,24 +8,26 @@ mod results;
 mod selection;
 mod tree;
 
+use std::sync::Arc;
+
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use crate::diagnosis::diagnose_run;
 use crate::gui::parts::RunNoteForm;
 use crate::gui::request::Request;
-use crate::gui::{PageContext, Palette, UnitChoice};
-use crate::run::Suite;
+use crate::gui::{PageContext, Palette};
+use crate::run::{BenchChoice, Suite};
 use crate::words::fill;
-use prepare::{How, Prepared};
+use prepare::{How, Prepared, ShownSuite};
 use results::Shown;
 use selection::Selection;
 
 /// The page.
 pub struct ProceduresPage {
-    suite: Request<Suite>,
+    suite: Request<Arc<Suite>>,
     /// What the suite was loaded for.
-    loaded_for: Option<UnitChoice>,
+    loaded_for: Option<BenchChoice>,
     /// Nothing = everything but what is on request.
     selection: Option<Selection>,
     find: String,
@@ -118,11 +120,8 @@ impl ProceduresPage {
     /// Scripts are loaded for the unit's configuration, line and train: anew when these change.
     fn keep_loaded(&mut self, context: &PageContext<'_>) {
         let choice = &context.units.chosen().choice;
-        let same = self.loaded_for.as_ref().is_some_and(|loaded| {
-            loaded.unit_config == choice.unit_config
-                && loaded.line == choice.line
-                && loaded.train == choice.train
-        });
+        let loaded_for = self.loaded_for.as_ref();
+        let same = loaded_for.is_some_and(|loaded| loaded.same_files(choice));
         if !same {
             self.load(context);
         }
@@ -134,7 +133,7 @@ impl ProceduresPage {
         self.suite = Request::Pending(
             context
                 .queries
-                .run(move |paths| prepare::load(paths, &choice)),
+                .run(move |paths| prepare::load(paths, &choice).map(Arc::new)),
         );
     }
 
@@ -213,8 +212,12 @@ impl ProceduresPage {
     }
 
     fn order_of(&mut self, id: u64, selection: Selection, how: How, context: &mut PageContext<'_>) {
-        let Some(shown) = self.suite.value().map(|suite| suite.sha256.clone()) else {
+        let (Some(suite), Some(loaded_for)) = (self.suite.value(), &self.loaded_for) else {
             return;
+        };
+        let shown = ShownSuite {
+            suite: suite.clone(),
+            loaded_for: loaded_for.clone(),
         };
         let Some(unit) = context.units.of_id(id) else {
             return;
@@ -243,14 +246,9 @@ impl ProceduresPage {
                         context.messages.trouble(words.not_begun, "");
                     }
                 }
-                Request::Ready(Prepared::Changed(suite)) => {
-                    let said = if suite.errors.is_empty() {
-                        words.scripts_changed
-                    } else {
-                        words.script_errors
-                    };
-                    context.messages.trouble(said, "");
-                    self.suite = Request::Ready(*suite);
+                Request::Ready(Prepared::Changed) => {
+                    context.messages.trouble(words.scripts_changed, "");
+                    self.load(context);
                 }
                 Request::Failed(why) => context.messages.trouble(words.not_begun, why),
                 order => self.orders.push(Ordered { order, ..ordered }),

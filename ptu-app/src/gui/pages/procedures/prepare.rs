@@ -1,12 +1,13 @@
-//! Loads the suite for a unit, and makes an order of what is chosen; on the library's thread.
+//! Evaluates the scripts for a unit and makes an order of the chosen steps; runs on the query worker's thread.
+
+use std::sync::Arc;
 
 use super::selection::{Selection, possible};
 use crate::bench_worker::RunOrder;
 use crate::diagnosis;
 use crate::failure::Failure;
-use crate::gui::UnitChoice;
-use crate::gui::data_paths::DataPaths;
-use crate::run::{RunPlan, Suite};
+use crate::gui::DataPaths;
+use crate::run::{BenchChoice, RunPlan, Suite};
 
 /// How what is chosen is run.
 #[derive(Clone, Debug)]
@@ -21,39 +22,59 @@ pub struct How {
     pub adaptive: bool,
 }
 
-/// The suite as it is on the disk now, for this unit.
+/// Evaluates the scripts as they are on the disk now, for this unit.
 ///
 /// # Errors
-/// A file cannot be read, or something chosen is not there.
-pub fn load(paths: &DataPaths, choice: &UnitChoice) -> Result<Suite, Failure> {
-    let setup = choice.named()?.setup(&paths.scripts)?;
+/// A file cannot be read, or a chosen file is missing.
+pub fn load(paths: &DataPaths, choice: &BenchChoice) -> Result<Suite, Failure> {
+    let setup = choice.clone().with_offered_faults().setup(&paths.scripts)?;
     Suite::load(&paths.scripts, &[], &setup)
 }
 
-/// What loading for an order came to.
-pub enum Prepared {
-    /// It can be run.
-    Order(Box<RunOrder>),
-    /// Scripts are no longer those that were shown: look at these first.
-    Changed(Box<Suite>),
+/// What the page shows: a suite, and the choice of the unit it was evaluated for.
+#[derive(Clone)]
+pub struct ShownSuite {
+    /// The procedures on the page.
+    pub suite: Arc<Suite>,
+    /// The choice of unit configuration, line and train.
+    pub loaded_for: BenchChoice,
 }
 
-/// An order of what is chosen. The list shown is the list run: scripts that changed since are not run.
+/// The result of preparing an order.
+pub enum Prepared {
+    /// The order can be run.
+    Order(Box<RunOrder>),
+    /// A file has changed since the suite was shown: the suite is to be loaded and shown again first.
+    Changed,
+}
+
+/// Makes an order of the chosen steps of the shown suite. The procedures that were shown are run: the scripts, the
+/// unit configuration, the line and the train are read again, but only to notice that they have changed.
+///
+/// A unit with another configuration, line or train than the shown suite gets its own evaluation of the same
+/// scripts.
 ///
 /// # Errors
-/// Nothing is chosen, or a dictionary for an adaptive run is missing.
+/// No step is chosen, a file cannot be read, or the dictionary for an adaptive run is missing.
 pub fn order(
     paths: &DataPaths,
-    choice: &UnitChoice,
+    choice: &BenchChoice,
     serial: &str,
     selection: &Selection,
     how: How,
-    shown_sha256: &str,
+    shown: &ShownSuite,
 ) -> Result<Prepared, Failure> {
-    let setup = choice.named()?.setup(&paths.scripts)?;
-    let suite = Suite::load(&paths.scripts, &[], &setup)?;
-    if suite.sha256 != shown_sha256 || !suite.errors.is_empty() {
-        return Ok(Prepared::Changed(Box::new(suite)));
+    let setup = choice.clone().with_offered_faults().setup(&paths.scripts)?;
+    if !shown.suite.has_current_scripts(&paths.scripts)? {
+        return Ok(Prepared::Changed);
+    }
+    let suite = match shown.suite.is_for(&setup) {
+        true => shown.suite.clone(),
+        false if choice.same_files(&shown.loaded_for) => return Ok(Prepared::Changed),
+        false => Arc::new(Suite::load(&paths.scripts, &[], &setup)?),
+    };
+    if let Some(error) = suite.errors.first() {
+        return Err(Failure::usage(error.clone()));
     }
     let mut tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
     tasks.retain(|task| possible(&task.procedure, choice.connection()));
@@ -79,10 +100,108 @@ pub fn order(
             stop_on_fail: how.stop_on_fail,
             operator: how.operator,
             train: choice.train_no.trim().to_owned(),
-            scripts_sha256: suite.sha256,
+            scripts_sha256: suite.sha256.clone(),
             adaptive,
         },
         store,
         realtime: choice.realtime,
     })))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+    use crate::data::ScriptsDirectory;
+
+    /// A scripts directory of one procedure, with the shipped units, lines and trains.
+    fn scripts_in(folder: &Path) -> ScriptsDirectory {
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+        for part in ["units", "lines", "trains"] {
+            fs::create_dir(folder.join(part)).expect("a folder");
+            for file in fs::read_dir(shipped.join(part)).expect("shipped") {
+                let file = file.expect("a file");
+                if file.path().is_file() {
+                    fs::copy(file.path(), folder.join(part).join(file.file_name()))
+                        .expect("copied");
+                }
+            }
+        }
+        write_procedure(folder, 200);
+        ScriptsDirectory::find(Some(folder)).expect("scripts")
+    }
+
+    fn write_procedure(folder: &Path, wait_ms: u32) {
+        let text = format!(
+            "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms({wait_ms}))])\n"
+        );
+        fs::write(folder.join("waiting.star"), text).expect("written");
+    }
+
+    fn append(file: &Path, text: &str) {
+        let before = fs::read_to_string(file).expect("there");
+        fs::write(file, before + text).expect("written");
+    }
+
+    fn prepared(paths: &DataPaths, choice: &BenchChoice, shown: &ShownSuite) -> Prepared {
+        let selection = Selection::usual(&shown.suite.procedures, choice.connection());
+        let how = How {
+            operator: String::new(),
+            repeat: 1,
+            stop_on_fail: false,
+            adaptive: false,
+        };
+        order(paths, choice, "SIM-0001", &selection, how, shown).expect("prepared")
+    }
+
+    /// Goal: what was shown is what is run. Method: an order from unchanged files, then from each kind of file
+    /// changed on the disk, then for a unit on another line.
+    #[test]
+    fn the_shown_procedures_are_run_unless_one_of_their_files_has_changed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scripts = scripts_in(folder.path());
+        let paths = DataPaths {
+            database: folder.path().join("history.db"),
+            scripts,
+        };
+        let choice = BenchChoice::default();
+        let load_shown = || ShownSuite {
+            suite: Arc::new(load(&paths, &choice).expect("the suite")),
+            loaded_for: choice.clone(),
+        };
+        let shown = load_shown();
+        assert_eq!(shown.suite.errors, [""; 0]);
+
+        let Prepared::Order(order) = prepared(&paths, &choice, &shown) else {
+            panic!("nothing has changed");
+        };
+        assert!(Arc::ptr_eq(
+            &order.plan.tasks[0].procedure,
+            &shown.suite.procedures[0]
+        ));
+
+        let other_line = BenchChoice {
+            line: "line6".into(),
+            ..choice.clone()
+        };
+        let Prepared::Order(order) = prepared(&paths, &other_line, &shown) else {
+            panic!("the scripts are the same");
+        };
+        let own = &order.plan.tasks[0].procedure;
+        assert!(!Arc::ptr_eq(own, &shown.suite.procedures[0]));
+
+        write_procedure(folder.path(), 300);
+        assert!(matches!(
+            prepared(&paths, &choice, &shown),
+            Prepared::Changed
+        ));
+        for file in ["units/sg100.toml", "lines/line8.toml"] {
+            let shown = load_shown();
+            append(&folder.path().join(file), "\n# changed\n");
+            let changed = prepared(&paths, &choice, &shown);
+            assert!(matches!(changed, Prepared::Changed), "{file}");
+        }
+    }
 }

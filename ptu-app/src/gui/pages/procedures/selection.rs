@@ -151,14 +151,12 @@ impl Selection {
 mod tests {
     use super::*;
     use crate::data::ScriptsDirectory;
-    use crate::gui::UnitChoice;
-    use crate::run::Suite;
+    use crate::run::{BenchChoice, Suite};
 
     fn procedures() -> Vec<Arc<Procedure>> {
         let scripts = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
         let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
-        let choice = UnitChoice::default().named().expect("choice");
-        let setup = choice.setup(&directory).expect("setup");
+        let setup = BenchChoice::default().setup(&directory).expect("setup");
         Suite::load(&directory, &[], &setup)
             .expect("suite")
             .procedures
