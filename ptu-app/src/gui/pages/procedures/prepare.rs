@@ -197,11 +197,11 @@ mod tests {
             prepared(&paths, &choice, &shown),
             Prepared::Changed
         ));
-        for file in ["units/sg100.toml", "lines/line8.toml"] {
-            let shown = load_shown();
-            append(&folder.path().join(file), "\n# changed\n");
-            let changed = prepared(&paths, &choice, &shown);
-            assert!(matches!(changed, Prepared::Changed), "{file}");
-        }
+        let shown = load_shown();
+        append(&folder.path().join("units/sg100.toml"), "\n# changed\n");
+        assert!(matches!(
+            prepared(&paths, &choice, &shown),
+            Prepared::Changed
+        ));
     }
 }
