@@ -7,7 +7,7 @@ mod export;
 mod plot;
 mod replay;
 mod show;
-mod words;
+mod signal_text;
 
 use clap::{Args, Subcommand};
 use fault_db::{Id, Store, TraceData};

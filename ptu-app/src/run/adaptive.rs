@@ -9,7 +9,8 @@ use std::thread::Scope;
 use btu_rig::procedure::RunOptions;
 use fault_db::diagnosis::{Dictionary, Model, Settings, Strategy};
 
-use super::benches::{Connected, Worker};
+use super::bench_setup::Connected;
+use super::workers::Worker;
 use super::{ProcedureStream, RunPlan, Task, stream};
 use crate::diagnosis::Gatherer;
 use crate::stop::Stop;

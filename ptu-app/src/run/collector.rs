@@ -5,9 +5,9 @@ use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
 use fault_db::{FaultRecord, Id, MeasurementRecord, RecordingRecord, StepRecord};
 use protocol::Duration;
 
+use super::event::{RecordedStimuli, SessionEvent};
 use super::made::BenchMade;
 use super::recorder::Cut;
-use super::session::{RecordedStimuli, SessionEvent};
 use super::store_thread::{RunStore, Speaker};
 use super::{FaultSeen, Task};
 use crate::clock;

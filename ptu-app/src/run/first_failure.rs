@@ -5,7 +5,7 @@ use std::sync::mpsc::SyncSender;
 
 use btu_rig::procedure::{RunEvent, Verdict};
 
-use super::session::SessionEvent;
+use super::event::SessionEvent;
 
 /// The first procedure, in the order of the run, that did not pass.
 ///

@@ -8,11 +8,12 @@
 //! record does not depend on how many work side by side.
 
 pub(crate) mod adaptive;
-pub(crate) mod benches;
+pub(crate) mod bench_setup;
 mod choice;
 mod collector;
 #[cfg(test)]
-mod distrust;
+mod early_end_tests;
+mod event;
 mod fault_watch;
 mod first_failure;
 pub mod loading;
@@ -24,11 +25,12 @@ mod run_control;
 pub mod select;
 mod session;
 mod settle;
-#[cfg(test)]
-mod stopped;
 mod store_thread;
 mod suite;
 pub(crate) mod unit_text;
+#[cfg(test)]
+mod untrusted_unit_tests;
+mod workers;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -38,18 +40,20 @@ use btu_rig::procedure::{self, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
-pub use benches::{BenchSetup, Connected, run_here};
+pub use bench_setup::{BenchSetup, Connected};
 pub use choice::{BenchChoice, check_serial};
 pub use collector::{Listener, Outcome, steps_of, stored};
+pub use event::{RecordedStimuli, SessionEvent};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use made::{BenchMade, Made, Stimuli};
 pub(crate) use recorder::BEFORE;
 pub use run_control::RunControl;
-pub use session::{RecordedStimuli, SessionEvent};
 pub(crate) use session::{Session, Window};
+
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;
+pub use workers::run_here;
 
 use crate::clock;
 use crate::failure::{Exit, Failure};
@@ -146,7 +150,7 @@ pub fn run_on(
                 collect(procedures, &mut collector, &first_failure);
             }
             None => {
-                let procedures = benches::start(scope, plan, connected, &first_failure, stop);
+                let procedures = workers::start(scope, plan, connected, &first_failure, stop);
                 collect(procedures, &mut collector, &first_failure);
             }
         });

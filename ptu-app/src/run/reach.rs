@@ -11,7 +11,7 @@ use protocol::message::Identity;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
-use super::benches::BenchSetup;
+use super::bench_setup::BenchSetup;
 use super::fault_watch::{self, FaultSeen};
 use super::session::Session;
 use super::settle::{READY_WITHIN, started};

@@ -1,13 +1,12 @@
-//! Runs one procedure on one bench, scan by scan, and says what happens as a stream.
+//! A bench with its pace, its recorder and its stop: scans it, keeps up with a unit in real time, makes it safe.
 
-use std::cell::Cell;
+mod procedure;
+
 use std::sync::Arc;
 
 use btu_rig::procedure::runner::SAFE_WITHIN;
-use btu_rig::procedure::{
-    EventSource, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, UnitEvent, Verdict,
-};
-use btu_rig::recorded::{RecordingDriver, StimulusPlayer, StimulusRecord};
+use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::recorded::StimulusPlayer;
 use btu_rig::rig::{Bench, UnitLink};
 use fault_db::TraceData;
 use protocol::signal::Sample;
@@ -16,43 +15,11 @@ use protocol::{CYCLE, Duration, Instant, SCAN};
 use super::RunControl;
 use super::fault_watch::{self, FaultSeen};
 use super::recorder::{Cut, Recorder};
-use super::rounds::Rounds;
-use super::settle::between_procedures;
 use crate::link::Pace;
 use crate::stop::Stop;
 
 /// A bench less behind than this is in time.
 const IN_TIME: Duration = Duration::from_us(2 * SCAN.as_us());
-
-/// What happens while a procedure runs on a bench. Times are bench times.
-#[derive(Clone, Debug)]
-pub enum SessionEvent {
-    /// From the runner.
-    Run(RunEvent),
-    /// A fault was found; its number counts from 0 in this procedure.
-    Fault(FaultSeen),
-    /// The window around faults is complete.
-    Trace(Box<Cut>),
-    /// What was done to the bench in a procedure whose traces came before.
-    Recording(Box<RecordedStimuli>),
-    /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
-    /// be read.
-    LinkLost(String),
-    /// Nothing more comes.
-    Ended {
-        /// Bench time this procedure took, bring-up included.
-        bench_time: Duration,
-    },
-}
-
-/// What was done to the bench in one procedure, on the bench's clock.
-#[derive(Clone, Debug)]
-pub struct RecordedStimuli {
-    /// When the procedure began.
-    pub began: Instant,
-    /// What was done.
-    pub record: StimulusRecord,
-}
 
 /// A bench, its recorder and its pace.
 pub struct Session<L: UnitLink> {
@@ -81,16 +48,6 @@ pub struct Window {
     pub trigger: Instant,
     /// Last row.
     pub until: Instant,
-}
-
-/// What one procedure has come to so far.
-struct Progress<'a> {
-    procedure: &'a Procedure,
-    step: Option<usize>,
-    turn: usize,
-    step_began: Instant,
-    explained: bool,
-    faults: usize,
 }
 
 impl<L: UnitLink> Session<L> {
@@ -268,130 +225,6 @@ impl<L: UnitLink> Session<L> {
         (ready, faults)
     }
 
-    /// Runs a procedure as often as it is to be repeated, each time with its set-up and clean-up, or as long as
-    /// `go_on` says so after a step; `found` are faults of the bring-up.
-    pub fn run(
-        &mut self,
-        procedure: &Arc<Procedure>,
-        options: RunOptions,
-        found: Vec<FaultSeen>,
-        sink: &mut dyn FnMut(SessionEvent),
-        go_on: &dyn Fn() -> bool,
-    ) {
-        let traced = Cell::new(false);
-        let mut sink = |event: SessionEvent| {
-            traced.set(traced.get() || matches!(event, SessionEvent::Trace(_)));
-            sink(event);
-        };
-        let sink = &mut sink;
-        let mut recorded = RecordedStimuli {
-            began: self.bench.now(),
-            record: StimulusRecord::default(),
-        };
-        let mut rounds = Rounds::new(options.repeat);
-        let mut runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
-        let mut progress = Progress {
-            procedure,
-            step: None,
-            turn: 0,
-            step_began: self.bench.now(),
-            explained: false,
-            faults: 0,
-        };
-        for fault in found {
-            runner.found_before(&fault.name);
-            self.report(fault, &mut progress, sink);
-        }
-        let mut presses = 0;
-        let mut link_lost = false;
-        loop {
-            let mut cut = |cut| sink(SessionEvent::Trace(Box::new(cut)));
-            self.scan(&mut cut);
-            if self.stalled.is_some() {
-                // What the unit logs meanwhile is not its own doing.
-                self.make_up(&mut cut, &mut |_, _, _| {});
-            }
-            let pressed = self.stop.presses();
-            for press in presses..pressed {
-                match self.stop.reason().filter(|_| press == 0) {
-                    Some(reason) => runner.bench_stalled(reason.to_owned()),
-                    None => runner.stop(),
-                }
-            }
-            presses = pressed;
-            if let Some(behind) = self.stalled.take() {
-                runner.bench_stalled(stall_message(behind));
-            }
-            runner.behind(self.behind());
-            let now = self.bench.now();
-            let events = self.take_events();
-            let link_error = self.link_error();
-            if let Some(error) = link_error.as_ref().filter(|_| !link_lost) {
-                link_lost = true;
-                sink(SessionEvent::LinkLost(error.clone()));
-            }
-            if let Some(run_control) = &self.run_control {
-                run_control.before_scan(&mut runner);
-            }
-            self.wait_with(runner.awaits_operator());
-            let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);
-            let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
-            for event in runner.take_events() {
-                self.note(&event, &mut progress, sink);
-                if let Some(event) = rounds.take(event) {
-                    sink(SessionEvent::Run(event));
-                }
-            }
-            if !go_on() {
-                runner.leave();
-            }
-            if poll == Poll::Running {
-                continue;
-            }
-            self.wait_with(false);
-            self.finish_window(sink);
-            let failed = |rounds: &Rounds, progress: &Progress<'_>| {
-                options.stop_on_fail && (!rounds.passed() || progress.faults > 0)
-            };
-            if !rounds.left() || link_lost || !go_on() || failed(&rounds, &progress) {
-                break;
-            }
-            let settled = self.settle_again(&mut rounds, &mut progress, sink);
-            if !settled || failed(&rounds, &progress) {
-                break;
-            }
-            runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
-        }
-        sink(SessionEvent::Run(
-            rounds.finished(link_lost, self.bench.now()),
-        ));
-        if traced.get() {
-            sink(SessionEvent::Recording(Box::new(recorded)));
-        }
-    }
-
-    /// Before the next repetition of a procedure the unit settles as between two procedures. False if stop was
-    /// pressed: then it is not begun.
-    fn settle_again(
-        &mut self,
-        rounds: &mut Rounds,
-        progress: &mut Progress<'_>,
-        sink: &mut dyn FnMut(SessionEvent),
-    ) -> bool {
-        progress.step = None;
-        progress.step_began = self.bench.now();
-        for fault in between_procedures(self) {
-            let found = format!("found before the next repetition: {}", fault.name);
-            rounds.note(Verdict::Failed, found);
-            self.report(fault, progress, sink);
-        }
-        let stopped = self.stop.presses() > 0;
-        if stopped {
-            rounds.note(Verdict::Aborted, "stopped by the operator".into());
-        }
-        !stopped
-    }
-
     /// Repeats recorded stimuli up to `until` and keeps every scan from `from` on as a trace.
     /// `None` when nothing could be recorded. What the bench refused goes to `refused`.
     pub fn play(
@@ -444,79 +277,4 @@ impl<L: UnitLink> Session<L> {
             _ => {}
         }
     }
-
-    /// Lets an open window run out on a quiet bench. What is logged meanwhile waits for whoever idles next.
-    fn finish_window(&mut self, sink: &mut dyn FnMut(SessionEvent)) {
-        while self.recorder.is_open() && self.stop.presses() == 0 && self.link_error().is_none() {
-            self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));
-        }
-        if let Some(cut) = self.recorder.close(true) {
-            sink(SessionEvent::Trace(Box::new(cut)));
-        }
-    }
-
-    fn note(
-        &mut self,
-        event: &RunEvent,
-        progress: &mut Progress<'_>,
-        sink: &mut dyn FnMut(SessionEvent),
-    ) {
-        let now = self.bench.now();
-        let fault = match event {
-            RunEvent::StepStarted { index, at, .. } => {
-                progress.step = Some(*index);
-                progress.step_began = *at;
-                progress.explained = false;
-                return;
-            }
-            RunEvent::UnsolicitedEvent(entry) => {
-                Some(fault_watch::of_event(entry, now, &self.sample))
-            }
-            RunEvent::UnsolicitedBrake { at } => {
-                (!progress.explained).then(|| fault_watch::of_brake(*at, &self.sample))
-            }
-            RunEvent::StepFinished(result) => {
-                let fault = self.fault_of_step(result, progress);
-                if let Some(fault) = fault {
-                    self.report(fault, progress, sink);
-                }
-                progress.turn += 1;
-                return;
-            }
-            _ => None,
-        };
-        if let Some(fault) = fault {
-            progress.explained = true;
-            self.report(fault, progress, sink);
-        }
-    }
-
-    fn fault_of_step(&self, result: &StepResult, progress: &Progress<'_>) -> Option<FaultSeen> {
-        fault_watch::of_step(progress.procedure, result, progress.explained, &self.sample)
-    }
-
-    fn report(
-        &mut self,
-        mut fault: FaultSeen,
-        progress: &mut Progress<'_>,
-        sink: &mut dyn FnMut(SessionEvent),
-    ) {
-        fault.step = progress.step.map(|_| progress.turn);
-        let done = self
-            .recorder
-            .trigger(fault.at, progress.step_began, progress.faults);
-        progress.faults += 1;
-        sink(SessionEvent::Fault(fault));
-        if let Some(cut) = done {
-            sink(SessionEvent::Trace(Box::new(cut)));
-        }
-    }
-}
-
-fn stall_message(behind: Duration) -> String {
-    format!(
-        "the tester was held up for {:.2} s by its own computer, which says nothing about the unit; end other \
-         programs and run this again",
-        behind.as_secs()
-    )
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::words::said;
+use super::signal_text::said;
 use crate::replay::{Comparison, Deviation, Difference, Explanation, Link};
 use crate::table::Table;
 
@@ -102,8 +102,8 @@ pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> S
         table.row([
             deviation.signal.clone(),
             format!("{:.2} s", first.at_s),
-            super::words::said(channel, first.value),
-            super::words::said(channel, first.expected),
+            super::signal_text::said(channel, first.value),
+            super::signal_text::said(channel, first.expected),
             said(largest),
             format!("{:.2} s", largest.at_s),
             deviation.rows.to_string(),

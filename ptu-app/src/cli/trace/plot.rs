@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fault_db::{Id, TraceData};
 use unicode_width::UnicodeWidthStr as _;
 
-use super::words::named;
+use super::signal_text::named;
 use crate::clock::local;
 use crate::table::{cell, padded};
 

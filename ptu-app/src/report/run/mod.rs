@@ -5,6 +5,7 @@
 
 mod block;
 mod content;
+mod diagnosis;
 mod gather;
 mod html;
 mod pdf;

@@ -8,9 +8,9 @@ use protocol::message::{Channel, Message, SelfTest};
 use protocol::{Duration, Instant};
 use std::sync::Arc;
 
-use super::benches::run_task;
 use super::recorder::BEFORE;
 use super::settle::{READY_WITHIN, settled};
+use super::workers::run_task;
 use super::{BenchChoice, BenchSetup, SessionEvent, Task};
 use crate::data::ScriptsDirectory;
 use crate::stop::Stop;

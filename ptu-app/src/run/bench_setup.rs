@@ -1,0 +1,182 @@
+//! A bench by its content: the data files, faults and settings from which rig and embedded unit are built, and the
+//! connection to a unit.
+
+use std::sync::Arc;
+
+use ato_under_test::Setup;
+use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
+use btu_rig::rig::{Bench, Rig, UnitLink};
+use btu_rig::train::TrainData;
+use protocol::Instant;
+use protocol::config::UnitConfig;
+use protocol::injection::FaultMode;
+use protocol::line::Line;
+use protocol::message::Identity;
+
+use super::fault_watch::FaultSeen;
+use super::reach::Reached;
+use super::recorder::BEFORE;
+use super::session::Session;
+use super::{RunControl, unit_text};
+use crate::data::DataFile;
+use crate::failure::Failure;
+use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
+use crate::stop::Stop;
+
+/// Sets the scans whose frames are late apart from what else the same seed gives.
+const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
+
+/// What benches are made of.
+#[derive(Clone)]
+pub struct BenchSetup {
+    /// Where the unit is.
+    pub endpoint: Endpoint,
+    /// Unit configuration.
+    pub config: DataFile<UnitConfig>,
+    /// Track database.
+    pub line: DataFile<Line>,
+    /// Train around the unit.
+    pub train: TrainData,
+    /// Faults injected into the embedded unit, and into the train around any.
+    pub faults: Vec<FaultMode>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// How good units, trains and benches differ: drawn by the seed; none = all are nominal.
+    pub scatter: Option<Arc<BenchScatter>>,
+    /// Serial number asked for.
+    pub serial: Option<String>,
+    /// Wall-clock pace also for the embedded unit.
+    pub realtime: bool,
+    /// Times the bench is slower than the clock, where it goes by the clock.
+    pub slower: u32,
+    /// Who looks on.
+    pub run_control: Option<Arc<dyn RunControl>>,
+}
+
+/// A unit that has been reached.
+pub enum Connected {
+    /// The embedded unit, made anew for each procedure.
+    Sim(Box<BenchSetup>),
+    /// The unit on a port, and what TCMS found before the first procedure.
+    Port(Box<Session<WireLink>>, Identity, Vec<FaultSeen>),
+}
+
+impl BenchSetup {
+    /// Serial number before the unit has said its own.
+    pub fn expected_serial(&self) -> String {
+        match (&self.serial, &self.endpoint) {
+            (Some(serial), Endpoint::Sim) => unit_text::of_serial(serial.as_bytes()),
+            (Some(serial), _) => serial.clone(),
+            (None, Endpoint::Sim) => SIM_SERIAL.into(),
+            (None, _) => "unknown".into(),
+        }
+    }
+
+    /// Names of the injected faults.
+    pub fn injected(&self) -> Option<String> {
+        let names: Vec<_> = self.faults.iter().map(|fault| fault.id.as_str()).collect();
+        (!names.is_empty()).then(|| names.join(","))
+    }
+
+    /// Reaches the unit. A unit on a port is identified and brought to a known state.
+    ///
+    /// # Errors
+    /// It cannot be reached, is another one, or has another configuration.
+    pub fn connect(&self, stop: &Stop) -> Result<Connected, Failure> {
+        if self.endpoint == Endpoint::Sim {
+            return Ok(Connected::Sim(Box::new(self.clone())));
+        }
+        let Reached {
+            session,
+            identity,
+            found,
+        } = self.reach(stop)?;
+        Ok(Connected::Port(Box::new(session), identity, found))
+    }
+
+    pub(super) fn rig(&self, seed: u64, power_at: Instant) -> Rig {
+        let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
+        rig.set_train(self.train.clone());
+        if let Some(drawn) = self.drawn() {
+            rig.set_conditions(drawn.conditions);
+            rig.set_sensors(&drawn.sensors);
+            rig.set_usual_load(drawn.load_kg);
+        }
+        rig.inject(&self.faults, power_at);
+        rig
+    }
+
+    /// What was drawn for this run.
+    fn drawn(&self) -> Option<BenchDraw> {
+        let scatter = self.scatter.as_ref()?;
+        Some(scatter.draw(self.seed, self.train.full_load_kg()))
+    }
+
+    /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
+    pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimLink>> {
+        self.sim_session_by(procedure, stop, |link| link)
+    }
+
+    /// The same, reached by what `wired` makes of its link.
+    pub(super) fn sim_session_by<L: UnitLink>(
+        &self,
+        procedure: &str,
+        stop: &Stop,
+        wired: impl FnOnce(Delayed<SimLink>) -> L,
+    ) -> Session<L> {
+        let seed = seed_for(self.seed, procedure);
+        let setup = Setup {
+            serial: self.serial.clone().unwrap_or(SIM_SERIAL.into()),
+            config: self.config.content.clone(),
+            config_crc: self.config.crc,
+            line: self.line.content.clone(),
+            tdb_crc: self.line.crc,
+            seed,
+            faults: of_unit(&self.faults),
+        };
+        let timing = self.drawn().map(|drawn| drawn.timing).unwrap_or_default();
+        let power_at = Instant::ZERO + BEFORE + timing.power_up;
+        let unit = SimLink::new(setup, power_at);
+        let link = Delayed::new(unit, &timing, seed ^ WIRE_SEQUENCE);
+        let rig = self.rig(seed, power_at);
+        let pace = if self.realtime {
+            Pace::slower(self.slower)
+        } else {
+            Pace::Virtual
+        };
+        Session::new(Bench::new(rig, wired(link)), pace, stop.clone(), true)
+            .controlled_by(self.run_control.clone())
+    }
+}
+
+/// Those the unit itself has; it knows nothing of the train's.
+fn of_unit(faults: &[FaultMode]) -> Vec<FaultMode> {
+    let own = faults.iter().filter(|fault| !fault.place.on_train());
+    own.cloned().collect()
+}
+
+impl Connected {
+    /// Serial number of the unit.
+    pub fn serial(&self) -> String {
+        match self {
+            Self::Sim(setup) => setup.expected_serial(),
+            Self::Port(_, identity, _) => unit_text::serial(identity),
+        }
+    }
+
+    /// Replaces the stop that ends runs on this unit.
+    pub fn set_stop(&mut self, stop: &Stop) {
+        if let Self::Port(session, ..) = self {
+            session.set_stop(stop);
+        }
+    }
+}
+
+/// A seed for one procedure of a run: the same whatever else is run (FNV-1a over its name).
+fn seed_for(seed: u64, procedure: &str) -> u64 {
+    procedure
+        .bytes()
+        .fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
+        })
+}

@@ -1,0 +1,38 @@
+//! What happens while a procedure runs on a bench: the one type of event that is stored and shown.
+
+use btu_rig::procedure::RunEvent;
+use btu_rig::recorded::StimulusRecord;
+use protocol::{Duration, Instant};
+
+use super::fault_watch::FaultSeen;
+use super::recorder::Cut;
+
+/// What happens while a procedure runs on a bench. Times are bench times.
+#[derive(Clone, Debug)]
+pub enum SessionEvent {
+    /// From the runner.
+    Run(RunEvent),
+    /// A fault was found; its number counts from 0 in this procedure.
+    Fault(FaultSeen),
+    /// The window around faults is complete.
+    Trace(Box<Cut>),
+    /// What was done to the bench in a procedure whose traces came before.
+    Recording(Box<RecordedStimuli>),
+    /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
+    /// be read.
+    LinkLost(String),
+    /// Nothing more comes.
+    Ended {
+        /// Bench time this procedure took, bring-up included.
+        bench_time: Duration,
+    },
+}
+
+/// What was done to the bench in one procedure, on the bench's clock.
+#[derive(Clone, Debug)]
+pub struct RecordedStimuli {
+    /// When the procedure began.
+    pub began: Instant,
+    /// What was done.
+    pub record: StimulusRecord,
+}

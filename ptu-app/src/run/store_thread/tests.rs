@@ -1,0 +1,182 @@
+//! A run while another process holds the database.
+
+use std::collections::BTreeMap;
+
+use fault_db::{Channel, ChannelKind, OpenOptions, UnitRecord, Verdict};
+use rusqlite::Connection;
+
+use super::*;
+
+fn record() -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial: "ATC-7".into(),
+            kind: "ATC".into(),
+            config_name: "sg100".into(),
+            sw_versions: BTreeMap::new(),
+        },
+        line: "line8".into(),
+        train: String::new(),
+        seed: 1,
+        operator: String::new(),
+        source: "sim".into(),
+        started_at_us: 0,
+        app_version: String::new(),
+        scripts_sha256: String::new(),
+        unit_config_sha256: String::new(),
+        injected: None,
+        owner: String::new(),
+        scripts: Vec::new(),
+    }
+}
+
+fn step(index: u32) -> StepRecord {
+    StepRecord {
+        index,
+        procedure: "atp/overspeed".into(),
+        name: format!("step {index}"),
+        verdict: Verdict::Passed,
+        started_bench_us: 0,
+        bench_time_us: 1,
+        message: String::new(),
+        script_line: None,
+        measurements: Vec::new(),
+    }
+}
+
+fn fault() -> FaultRecord {
+    FaultRecord {
+        code: 231,
+        code_name: "eb_relay_open".into(),
+        lru: "eb_relay".into(),
+        severity: "major".into(),
+        at_us: 1,
+        bench_us: 1,
+        step_index: Some(1),
+        message: "late".into(),
+        freeze: Vec::new(),
+    }
+}
+
+fn trace() -> TraceData {
+    TraceData {
+        t0_bench_us: 0,
+        t0_us: 0,
+        period_us: 50_000,
+        trigger_row: Some(1),
+        partial: false,
+        gaps: false,
+        channels: vec![Channel {
+            name: "speed".into(),
+            unit: "km/h".into(),
+            kind: ChannelKind::Number { lsb: 0.1 },
+        }],
+        columns: vec![vec![0.0, 0.1]],
+    }
+}
+
+fn end(verdict: Verdict) -> RunEnd {
+    RunEnd {
+        verdict,
+        finished_at_us: 1,
+        bench_time_us: 1,
+        wall_time_us: 1,
+    }
+}
+
+/// A run that begins, with so much patience, and another program that holds its file from then on.
+fn held(folder: &std::path::Path, patience: Patience) -> (RunStore, Stop, Connection) {
+    let file = folder.join("history.db");
+    let options = OpenOptions::new(clock::ids()).busy_timeout_ms(1);
+    let store = Store::open(&file, options).expect("a database");
+    let stop = Stop::default();
+    let run = RunStore::begin_with(patience, store, record(), None, &stop).expect("begun");
+    let other = Connection::open(&file).expect("the database");
+    let wait = other.busy_timeout(Duration::from_secs(60));
+    wait.expect("it waits for the writer");
+    other.execute_batch("BEGIN EXCLUSIVE").expect("a lock");
+    (run, stop, other)
+}
+
+/// Goal: another program that holds the file for longer than it may when it is opened costs a run nothing.
+#[test]
+fn a_run_under_way_waits_for_another_writer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (run, stop, other) = held(folder.path(), PATIENCE);
+    let id = run.id;
+    let ends = std::thread::spawn(move || run.finish(end(Verdict::Passed)));
+    std::thread::sleep(Duration::from_millis(300));
+    other.execute_batch("ROLLBACK").expect("released");
+    let store = ends.join().expect("no panic").expect("recorded");
+    let found = store.run(id, &|_| false).expect("there").run.verdict;
+    assert_eq!((found, stop.presses()), (Some(Verdict::Passed), 0));
+}
+
+/// Goal: a file that is held for long ends the run, says why, and takes all of it when it is free.
+#[test]
+fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let patience = Patience {
+        stops_ms: 20,
+        gives_up: Duration::from_secs(600),
+    };
+    let (run, stop, other) = held(folder.path(), patience);
+    let id = run.id;
+    run.step(step(0));
+    run.fault(fault());
+    while stop.presses() == 0 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let reason = stop.reason().expect("a reason");
+    assert!(
+        reason.starts_with("database busy: ") && reason.contains("history.db is locked"),
+        "{reason}"
+    );
+    run.trace(vec![0], trace());
+    run.step(step(1));
+    other.execute_batch("ROLLBACK").expect("released");
+    let store = run.finish(end(Verdict::Error)).expect("recorded");
+    let found = store.run(id, &|_| false).expect("there");
+    assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
+    assert_eq!(found.run.verdict, Some(Verdict::Error));
+    assert!(found.faults[0].trace_id.is_some());
+    assert_eq!(store.check().expect("checked").problems, []);
+}
+
+/// Goal: what a file that stays busy did not take is kept beside it, and an import brings the run together.
+#[test]
+fn what_a_busy_database_does_not_take_comes_with_an_import() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let patience = Patience {
+        stops_ms: 10,
+        gives_up: Duration::from_millis(40),
+    };
+    let (run, stop, other) = held(folder.path(), patience);
+    let id = run.id;
+    run.step(step(0));
+    run.fault(fault());
+    run.trace(vec![0], trace());
+    run.step(step(1));
+    let failure = run.finish(end(Verdict::Error)).expect_err("busy");
+    assert_eq!(stop.presses(), 1);
+    let rest = folder
+        .path()
+        .join(format!("history.db.run-{}.db", id.short()));
+    for said in [
+        "database busy",
+        "ptu db import",
+        &rest.display().to_string(),
+    ] {
+        assert!(failure.message.contains(said), "{}", failure.message);
+    }
+    other.execute_batch("ROLLBACK").expect("released");
+    drop(other);
+    let file = folder.path().join("history.db");
+    let store = Store::open(&file, clock::open_options()).expect("free");
+    store.import(&rest).expect("the rest");
+    let found = store.run(id, &|_| false).expect("there");
+    assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
+    assert_eq!(found.run.verdict, Some(Verdict::Error));
+    assert!(found.faults[0].trace_id.is_some());
+    assert_eq!(store.check().expect("checked").problems, []);
+}

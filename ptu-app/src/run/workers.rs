@@ -1,0 +1,150 @@
+//! Runs the tasks of a plan: side by side on embedded units built for each, or one after the other on the unit on a
+//! port.
+
+use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::sync::{Arc, Mutex};
+use std::thread::Scope;
+
+use btu_rig::rig::UnitLink;
+use protocol::Instant;
+
+use super::bench_setup::{BenchSetup, Connected};
+use super::event::SessionEvent;
+use super::fault_watch::FaultSeen;
+use super::first_failure::FirstFailure;
+use super::recorder::BEFORE;
+use super::session::Session;
+use super::settle::{READY_WITHIN, between_procedures, settled};
+use super::{ProcedureStream, RunPlan, Task, stream};
+use crate::stop::Stop;
+
+/// Procedures that may be begun before those in front of them have ended; each keeps room for its events.
+const STREAMS_AHEAD: usize = 32;
+
+/// Starts the workers; each procedure and its stream, in the order of the tasks, when it is begun or due.
+pub(super) fn start<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    plan: &'scope RunPlan,
+    connected: &'scope mut Connected,
+    first_failure: &'scope FirstFailure,
+    stop: &'scope Stop,
+) -> Receiver<ProcedureStream> {
+    let (procedures, receiver) = mpsc::sync_channel(STREAMS_AHEAD);
+    let work = Arc::new(Mutex::new(Work {
+        tasks: plan.tasks.iter().enumerate(),
+        procedures,
+    }));
+    let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
+    match connected {
+        connected @ Connected::Port(..) => {
+            scope.spawn(move || {
+                let mut worker = Worker::new(connected, stop);
+                // What is due and not begun ends without a word.
+                while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
+                    first_failure.watch(place, sender, |sink, go_on| worker.run(task, sink, go_on));
+                }
+            });
+        }
+        Connected::Sim(setup) => {
+            for _ in 0..plan.jobs.clamp(1, plan.tasks.len().max(1)) {
+                let work = work.clone();
+                let setup: &'scope BenchSetup = setup;
+                scope.spawn(move || {
+                    while let Some((place, task, sender)) =
+                        take(&work).filter(|due| may_begin(due.0))
+                    {
+                        first_failure.watch(place, sender, |sink, go_on| {
+                            run_on_fresh(setup, task, stop, sink, go_on);
+                        });
+                    }
+                });
+            }
+        }
+    }
+    receiver
+}
+
+/// Tasks not begun yet, and where their streams go.
+struct Work<'a> {
+    tasks: std::iter::Enumerate<std::slice::Iter<'a, Task>>,
+    procedures: SyncSender<ProcedureStream>,
+}
+
+/// The next task, its place and its stream, which is handed on in the order of the tasks: a worker that is
+/// too far ahead of those before it waits here.
+fn take<'a>(work: &Mutex<Work<'a>>) -> Option<(usize, &'a Task, SyncSender<SessionEvent>)> {
+    let mut work = work.lock().ok()?;
+    let (place, task) = work.tasks.next()?;
+    let (sender, events) = stream();
+    work.procedures
+        .send((task.procedure.clone(), events))
+        .ok()?;
+    Some((place, task, sender))
+}
+
+/// Procedures one after the other: each on an embedded unit made for it, or all on the one on a port.
+pub struct Worker<'a> {
+    connected: &'a mut Connected,
+    stop: &'a Stop,
+}
+
+impl<'a> Worker<'a> {
+    /// On a unit that has been reached.
+    pub fn new(connected: &'a mut Connected, stop: &'a Stop) -> Self {
+        Self { connected, stop }
+    }
+
+    /// Runs a task as long as `go_on` says so after a step, telling `sink` what happens.
+    pub fn run(
+        &mut self,
+        task: &Task,
+        sink: &mut dyn FnMut(SessionEvent),
+        go_on: &dyn Fn() -> bool,
+    ) {
+        match &mut *self.connected {
+            Connected::Sim(setup) => run_on_fresh(setup, task, self.stop, sink, go_on),
+            Connected::Port(session, _, found) => {
+                let began = session.now();
+                found.extend(between_procedures(session));
+                let found = std::mem::take(found);
+                run_task(session, task, found, began, sink, go_on);
+            }
+        }
+    }
+}
+
+/// Every step is run.
+const TO_THE_END: fn() -> bool = || true;
+
+/// Runs a task on an embedded unit made for it, telling `sink` what happens.
+pub fn run_here(setup: &BenchSetup, task: &Task, stop: &Stop, sink: &mut dyn FnMut(SessionEvent)) {
+    run_on_fresh(setup, task, stop, sink, &TO_THE_END);
+}
+
+fn run_on_fresh(
+    setup: &BenchSetup,
+    task: &Task,
+    stop: &Stop,
+    sink: &mut dyn FnMut(SessionEvent),
+    go_on: &dyn Fn() -> bool,
+) {
+    let mut session = setup.sim_session(&task.procedure.id, stop);
+    let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    run_task(&mut session, task, faults, Instant::ZERO, sink, go_on);
+}
+
+pub(super) fn run_task<L: UnitLink>(
+    session: &mut Session<L>,
+    task: &Task,
+    found: Vec<FaultSeen>,
+    began: Instant,
+    sink: &mut dyn FnMut(SessionEvent),
+    go_on: &dyn Fn() -> bool,
+) {
+    session.run(&task.procedure, task.options.clone(), found, sink, go_on);
+    let bench_time = session.now().since(began);
+    sink(SessionEvent::Ended { bench_time });
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,176 @@
+//! Names of the states and the bits of signals.
+
+use protocol::signal::Signal;
+
+use super::Bench;
+
+impl Bench {
+    /// States of a signal by their numbers; empty for a signal that is none of states.
+    pub fn states(&self, signal: Signal) -> Vec<&'static str> {
+        match signal {
+            Signal::Eb
+            | Signal::Fsb
+            | Signal::HoldingBrake
+            | Signal::EbLoop
+            | Signal::TcmsFsb
+            | Signal::TcmsMsb
+            | Signal::TcmsHolding => vec![self.released, self.applied],
+            Signal::Doors => vec![self.doors_open, self.doors_closed],
+            Signal::Marker | Signal::MarkerCoil => vec![self.none, "PSM1", "PSM2", "PSM3", "PSM4"],
+            Signal::Wayside => vec![self.silent, self.good, self.wayside_corrupt],
+            Signal::Tacho1 | Signal::Tacho2 => {
+                vec![
+                    self.good,
+                    self.tacho_dead,
+                    self.tacho_noisy,
+                    self.tacho_scaled,
+                ]
+            }
+            Signal::WaysideDoorSide => {
+                vec![self.none, self.side_left, self.side_right, self.side_both]
+            }
+            Signal::WaysideMode => vec![self.running_normal, self.running_recovery],
+            Signal::AtoState => {
+                vec![
+                    self.ato_inspection,
+                    self.ato_stop,
+                    self.ato_start,
+                    self.ato_run,
+                ]
+            }
+            Signal::Mode => vec![
+                self.mode_off,
+                self.mode_yard,
+                self.mode_manual,
+                self.mode_automatic,
+                self.mode_automatic_run,
+                self.mode_emergency,
+            ],
+            Signal::ModeSwitch => vec![
+                self.mode_off,
+                self.mode_yard,
+                self.mode_manual,
+                self.mode_automatic,
+                self.mode_driverless,
+                self.mode_emergency,
+            ],
+            Signal::TcmsMode => vec![
+                self.none,
+                self.mode_emergency,
+                self.mode_yard,
+                self.mode_manual,
+                self.mode_automatic,
+                self.mode_driverless,
+            ],
+            Signal::EbCause => vec![
+                self.none,
+                self.eb_not_released,
+                self.overspeed,
+                self.eb_ineffective,
+                self.eb_tachometer,
+                self.eb_rollback,
+                self.eb_door,
+                self.eb_inputs,
+                self.eb_self_test,
+                self.eb_internal,
+            ],
+            Signal::FsbCause => vec![
+                self.none,
+                self.overspeed,
+                self.no_code,
+                self.fsb_twc,
+                self.fsb_tcms,
+                self.fsb_ato,
+                self.fsb_not_permitted,
+            ],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Names of a signal's bits, bit 0 first; empty for a signal whose bits have no names here.
+    pub fn bits(&self, signal: Signal) -> Vec<&'static str> {
+        match signal {
+            Signal::PowerCutCauses => vec![
+                self.cause_doors,
+                self.hcr,
+                self.cause_reverser,
+                self.cause_emergency,
+                self.cause_full_service,
+                self.cause_atc,
+                self.cause_atc_silent,
+                self.cause_holding,
+                self.security_brake,
+                self.parking_brake,
+                self.cause_not_released,
+                self.main_reservoir_low,
+                self.cause_mode,
+                self.turn_back,
+            ],
+            Signal::EbSources => vec![
+                self.controller,
+                self.button_1,
+                self.button_2,
+                self.cause_atc,
+                self.main_reservoir_low,
+                self.hcr,
+            ],
+            Signal::Lamps => vec![
+                self.cause_emergency,
+                self.eb_cut_out,
+                self.security_brake,
+                self.parking_brake,
+                self.forced_release,
+                self.cause_not_released,
+                self.cause_failure,
+            ],
+            Signal::Refusals => vec![
+                self.refused_moving,
+                self.cause_doors,
+                self.refused_no_twc,
+                self.refused_station,
+                self.refused_no_code,
+                self.hcr,
+                self.refused_mode_switch,
+                self.refused_controller,
+                self.refused_eb,
+                self.refused_tcms,
+                self.refused_ato,
+                self.refused_tra,
+                self.refused_self_test,
+                self.refused_departure,
+            ],
+            _ => Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use btu_rig::tcms::{EbSources, Lamps, PowerCuts};
+    use protocol::signal::Kind;
+
+    use super::*;
+
+    /// Goal: no state and no bit is without its word. Method: counts against the catalogue of signals and
+    /// of TCMS's causes, in both languages.
+    #[test]
+    fn every_state_and_every_bit_has_a_word() {
+        for words in [&Bench::ENGLISH, &Bench::KOREAN] {
+            for &signal in Signal::ALL {
+                if let Kind::Enum(labels) = signal.definition().kind {
+                    assert_eq!(words.states(signal).len(), labels.len(), "{signal:?}");
+                } else {
+                    assert!(words.states(signal).is_empty(), "{signal:?}");
+                }
+            }
+            for (signal, count) in [
+                (Signal::PowerCutCauses, PowerCuts::ALL.len()),
+                (Signal::EbSources, EbSources::ALL.len()),
+                (Signal::Lamps, Lamps::ALL.len()),
+                (Signal::Refusals, 14),
+            ] {
+                assert_eq!(words.bits(signal).len(), count, "{signal:?}");
+            }
+        }
+    }
+}
