@@ -46,7 +46,7 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
         serial: None,
         realtime: false,
         slower: 1,
-        run_control: None,
+        attendant: None,
     };
     (directory, setup)
 }

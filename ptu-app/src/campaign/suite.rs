@@ -64,7 +64,7 @@ impl Suite {
                 serial: None,
                 realtime: false,
                 slower: 1,
-                run_control: None,
+                attendant: None,
             },
             tasks: procedures
                 .map(|procedure| Task {

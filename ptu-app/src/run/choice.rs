@@ -146,7 +146,7 @@ impl BenchChoice {
             serial,
             realtime: self.realtime,
             slower: self.slower,
-            run_control: None,
+            attendant: None,
         })
     }
 }

@@ -34,7 +34,7 @@ pub struct Session<L: UnitLink> {
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
     fresh_unit: bool,
-    run_control: Option<Arc<dyn RunControl>>,
+    attendant: Option<Arc<dyn RunControl>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
     with_person: bool,
 }
@@ -64,20 +64,20 @@ impl<L: UnitLink> Session<L> {
             max_lag: None,
             stalled: None,
             fresh_unit,
-            run_control: None,
+            attendant: None,
             with_person: false,
         }
     }
 
     /// From now on somebody looks on.
-    pub fn controlled_by(mut self, run_control: Option<Arc<dyn RunControl>>) -> Self {
-        self.run_control = run_control;
+    pub fn attended_by(mut self, attendant: Option<Arc<dyn RunControl>>) -> Self {
+        self.attendant = attendant;
         self
     }
 
     /// Sets the lag beyond which a unit in real time misses its inputs and brakes, so that nothing it does then
     /// is judged.
-    pub fn with_max_lag(mut self, max_lag: Duration) -> Self {
+    pub fn keeping_up(mut self, max_lag: Duration) -> Self {
         self.max_lag = Some(max_lag);
         self
     }
@@ -124,7 +124,7 @@ impl<L: UnitLink> Session<L> {
     }
 
     /// Whether the bench lagged more than the maximum since the last call.
-    pub fn was_stalled(&mut self) -> bool {
+    pub fn was_held_up(&mut self) -> bool {
         self.stalled.take().is_some()
     }
 
@@ -198,8 +198,8 @@ impl<L: UnitLink> Session<L> {
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
-        if let Some(run_control) = &self.run_control {
-            run_control.after_cycle(now, self.bench.rig());
+        if let Some(attendant) = &self.attendant {
+            attendant.after_cycle(now, self.bench.rig());
         }
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);

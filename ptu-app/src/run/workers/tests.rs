@@ -182,7 +182,7 @@ fn line6_bench() -> (ScriptsDirectory, BenchSetup) {
         serial: None,
         realtime: false,
         slower: 1,
-        run_control: None,
+        attendant: None,
     };
     (directory, setup)
 }
