@@ -20,6 +20,7 @@ mod log_reader;
 mod log_session;
 mod markers;
 mod motion;
+mod own_signals;
 pub(crate) mod random;
 mod ranges;
 mod rolling;
@@ -44,11 +45,11 @@ use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
 use protocol::message::{Identity, IoInput, Message};
-use protocol::signal::{Sample, Signal};
+use protocol::signal::Sample;
 
 use crate::conditions::Conditions;
 use crate::procedure::{Evidence, UnitEvent};
-use crate::stimulus::{TachoCondition, WaysideCondition};
+use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
@@ -390,65 +391,5 @@ impl Rig {
             mode_switch: self.desk.mode_switch,
             controller: self.desk.lever.wire(),
         }
-    }
-
-    /// Records what the rig makes, as it is sent.
-    fn record(&mut self) {
-        self.latest.note_lines(self.desk.lines(self.now));
-        let data = self.wayside.data();
-        let sample = &mut self.latest.sample;
-        for (signal, value) in [
-            (Signal::CarrierHz, f64::from(self.antenna.carrier_hz())),
-            (
-                Signal::CodeRateHz,
-                f64::from(self.antenna.rate_chz()) / 100.0,
-            ),
-            (Signal::LevelMv, f64::from(self.antenna.level_mv())),
-            (Signal::TrainSpeed, self.wheel.speed().kmh()),
-            (Signal::TrainPosition, self.wheel.motion().position_m),
-            (Signal::TrainAccel, self.speeds.accel_mps2()),
-            (Signal::TrainJerk, self.speeds.jerk_mps3()),
-            (Signal::Tacho1, condition_index(self.tachos[0].condition())),
-            (Signal::Tacho2, condition_index(self.tachos[1].condition())),
-            (Signal::MarkerCoil, f64::from(self.markers.last())),
-            (Signal::Wayside, wayside_index(self.wayside.condition())),
-            (Signal::WaysideStation, f64::from(data.station)),
-            (Signal::WaysideLoop, f64::from(data.loop_id)),
-            (Signal::WaysideDoorSide, f64::from(data.door_side.code())),
-            (Signal::WaysideMode, f64::from(data.running_mode.code())),
-            (Signal::Departure, f64::from(u8::from(data.departure))),
-            (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
-            (Signal::Controller, f64::from(self.desk.lever.wire())),
-            (Signal::TwcAnswers, f64::from(self.wayside.answers())),
-        ] {
-            sample.set(signal, value);
-        }
-        match &self.track {
-            Some(track) => {
-                let to_stop_m = track.to_stop_m(self.wheel.motion().position_m);
-                sample.set(Signal::ToStop, to_stop_m);
-            }
-            None => sample.forget(Signal::ToStop),
-        }
-        self.record_tcms();
-    }
-}
-
-/// Place of a tachometer condition among the catalogue's labels.
-fn condition_index(condition: TachoCondition) -> f64 {
-    match condition {
-        TachoCondition::Good => 0.0,
-        TachoCondition::Dead => 1.0,
-        TachoCondition::Noisy { .. } => 2.0,
-        TachoCondition::Scaled { .. } => 3.0,
-    }
-}
-
-/// Place of a wayside condition among the catalogue's labels.
-fn wayside_index(condition: WaysideCondition) -> f64 {
-    match condition {
-        WaysideCondition::Silent => 0.0,
-        WaysideCondition::Good => 1.0,
-        WaysideCondition::Corrupt => 2.0,
     }
 }

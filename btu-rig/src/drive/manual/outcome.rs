@@ -3,7 +3,8 @@
 use protocol::message::{EbCause, FsbCause};
 use thiserror::Error;
 
-use super::{Action, Figures, LONGEST, REACHED_WITHIN, Row, Sequence, Step, When};
+use super::player::{LONGEST, REACHED_WITHIN};
+use super::{Action, Figures, Row, Sequence, Step, When};
 use crate::drive::Landmark;
 
 /// How a run ended.

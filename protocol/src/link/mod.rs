@@ -3,28 +3,27 @@
 //! The defences are those EN 50159 names for a closed transmission system. A frame that fails one
 //! is counted by reason and changes nothing else.
 
+mod counters;
+mod receiver;
+
 use alloc::vec::Vec;
 
+use crate::Instant;
 use crate::frame::{self, Decoder, Header, Reject, Rejected};
 use crate::message::{Address, Channel, DecodeError, Message};
-use crate::{Duration, Instant};
 
-/// How far ahead of the last accepted sequence number the next may be.
-pub const MAX_AHEAD: u16 = 1000;
-/// How much longer than the quickest frame a frame may take.
-pub const MAX_DELAY: Duration = Duration::from_ms(500);
-/// Silence after which a channel begins anew, as it must when its sender was started again.
-pub const RESYNC: Duration = Duration::from_ms(1000);
-/// The quickest way is thought one millisecond longer each time this has passed: 200 ppm, so that
-/// two clocks that drift apart by 100 ppm never make a frame look late.
-pub const RELAX: Duration = Duration::from_ms(5000);
+pub use counters::Counters;
+pub use receiver::{MAX_AHEAD, MAX_DELAY, RELAX, RESYNC};
+
+use counters::CHANNELS;
+use receiver::Receiver;
 
 /// Which end of the wire this is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The unit under test: hears its partner on each channel.
+    /// The unit under test: receives from its partner on each channel.
     Unit,
-    /// Tester, I/O rack, TCMS and wayside together: hear the unit.
+    /// Tester, I/O rack, TCMS and wayside together: receive from the unit.
     Bench,
 }
 
@@ -35,76 +34,6 @@ pub struct Received {
     pub header: Header,
     /// Its message.
     pub message: Message,
-}
-
-/// What one end has taken and refused since it was made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    accepted: [u64; CHANNELS],
-    gaps: [u64; CHANNELS],
-    out_of_place: [u64; CHANNELS],
-    /// By reason, then by channel; the last place is for frames of no known channel.
-    rejected: [[u64; CHANNELS + 1]; Reject::ALL.len()],
-    garbage: u64,
-}
-
-const CHANNELS: usize = Channel::ALL.len();
-
-impl Counters {
-    /// Frames accepted on a channel.
-    pub const fn accepted(&self, channel: Channel) -> u64 {
-        self.accepted[channel as usize]
-    }
-
-    /// Sequence numbers on a channel that were passed over: frames lost or refused.
-    pub const fn gaps(&self, channel: Channel) -> u64 {
-        self.gaps[channel as usize]
-    }
-
-    /// Frames accepted.
-    pub fn accepted_total(&self) -> u64 {
-        self.accepted.iter().sum()
-    }
-
-    /// Frames refused on a channel for their sequence number or time stamp between two that followed
-    /// one another: repeated, delayed or exchanged on the way. Those of a sender that began anew are not
-    /// among them.
-    pub const fn out_of_place(&self, channel: Channel) -> u64 {
-        self.out_of_place[channel as usize]
-    }
-
-    /// Frames refused for a reason.
-    pub fn rejected(&self, reason: Reject) -> u64 {
-        self.rejected[reason as usize].iter().sum()
-    }
-
-    /// Frames refused on a channel, for any reason; those with a wrong FCS count for the channel
-    /// they claim to be of.
-    pub fn rejected_on(&self, channel: Channel) -> u64 {
-        self.rejected
-            .iter()
-            .map(|by_channel| by_channel[channel as usize])
-            .sum()
-    }
-
-    /// Frames refused on a channel (`None` = no known one) for a reason.
-    pub fn rejected_for(&self, reason: Reject, channel: Option<Channel>) -> u64 {
-        self.rejected[reason as usize][channel.map_or(CHANNELS, |c| c as usize)]
-    }
-
-    /// Frames refused.
-    pub fn rejected_total(&self) -> u64 {
-        self.rejected.iter().flatten().sum()
-    }
-
-    /// Bytes outside frames.
-    pub const fn garbage(&self) -> u64 {
-        self.garbage
-    }
-
-    fn reject(&mut self, Rejected { reason, channel }: Rejected) {
-        self.rejected[reason as usize][channel.map_or(CHANNELS, |c| c as usize)] += 1;
-    }
 }
 
 /// One end of the wire.
@@ -120,7 +49,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// An end that has heard nothing yet.
+    /// An end that has received nothing yet.
     pub const fn new(end: End) -> Self {
         Self {
             end,
@@ -158,8 +87,8 @@ impl Link {
         seq
     }
 
-    /// Takes bytes as they arrived. They are judged by [`Self::poll`], so call that in the same
-    /// step: bytes that lie here grow late.
+    /// Takes bytes as they arrived. [`Self::poll`] checks them against its own time, so call it in the same
+    /// step.
     pub fn push(&mut self, bytes: &[u8]) {
         self.decoder.push(bytes);
         self.counters.garbage = self.decoder.garbage();
@@ -172,7 +101,7 @@ impl Link {
         self.receivers = [None; CHANNELS];
     }
 
-    /// The next accepted frame. Refused ones on the way to it are counted and nothing else.
+    /// The next accepted frame. Frames refused before it are counted.
     pub fn poll(&mut self, now: Instant) -> Option<Received> {
         let accepted = loop {
             let Some(next) = self.decoder.next_frame() else {
@@ -188,8 +117,8 @@ impl Link {
                     return Err(rejected(Reject::Address));
                 }
                 let receiver = &mut self.receivers[header.channel as usize];
-                let passage = match Receiver::judge(receiver, now, &header) {
-                    Ok(passage) => passage,
+                let acceptance = match Receiver::judge(receiver, now, &header) {
+                    Ok(acceptance) => acceptance,
                     Err(reason) => {
                         if let Some(receiver) = receiver {
                             receiver.out_of_place = receiver.out_of_place.saturating_add(1);
@@ -201,14 +130,14 @@ impl Link {
                     self.last_error = Some(error);
                     rejected(Reject::Layout)
                 })?;
-                // Whoever hears a message that only it may send hears an echo, or a fool.
+                // A message that only this end may send: an echo of its own frame, or a wrong sender.
                 if message.spec().sent_by_unit() == (self.end == End::Unit) {
                     return Err(rejected(Reject::Layout));
                 }
-                *receiver = Some(passage.receiver);
-                self.counters.gaps[header.channel as usize] += u64::from(passage.gap);
+                *receiver = Some(acceptance.receiver);
+                self.counters.gaps[header.channel as usize] += u64::from(acceptance.gap);
                 self.counters.out_of_place[header.channel as usize] +=
-                    u64::from(passage.out_of_place);
+                    u64::from(acceptance.out_of_place);
                 Ok(Received { header, message })
             });
             match checked {
@@ -247,102 +176,10 @@ const fn addresses(end: End, channel: Channel) -> (Address, Address) {
     }
 }
 
-/// What is known of the sender on one channel.
-#[derive(Clone, Copy, Debug)]
-struct Receiver {
-    heard_at: Instant,
-    seq: u16,
-    stamp_ms: u32,
-    /// Smallest difference between this clock and the sender's, ms, wrapping: the quickest way.
-    quickest_ms: u32,
-    /// Up to when `quickest_ms` is relaxed.
-    relaxed_at: Instant,
-    /// When the first frame since the last accepted one came too late.
-    late_since: Option<Instant>,
-    /// Frames refused for sequence or stamp since the last accepted one.
-    out_of_place: u32,
-}
-
-/// The state after a frame, should it be accepted, the sequence numbers it passed over, and the frames refused
-/// before it although their sender went on.
-struct Passage {
-    receiver: Receiver,
-    gap: u16,
-    out_of_place: u32,
-}
-
-impl Receiver {
-    /// Judges sequence number and time stamp of a frame.
-    fn judge(slot: &mut Option<Self>, now: Instant, header: &Header) -> Result<Passage, Reject> {
-        let fresh = Passage {
-            receiver: Self::first(now, header),
-            gap: 0,
-            out_of_place: 0,
-        };
-        let Some(last) = slot else { return Ok(fresh) };
-        let silent = now.since(last.heard_at) >= RESYNC;
-        let ahead = header.seq.wrapping_sub(last.seq);
-        if !(1..=MAX_AHEAD).contains(&ahead) {
-            return if silent {
-                Ok(fresh)
-            } else {
-                Err(Reject::Sequence)
-            };
-        }
-        if (header.stamp_ms.wrapping_sub(last.stamp_ms) as i32) < 0 {
-            return if silent {
-                Ok(fresh)
-            } else {
-                Err(Reject::Stamp)
-            };
-        }
-        let way_ms = now.stamp_ms().wrapping_sub(header.stamp_ms);
-        let steps = now.since(last.relaxed_at).as_us() / RELAX.as_us();
-        let quickest_ms = last.quickest_ms.wrapping_add(steps as u32);
-        let delay_ms = way_ms.wrapping_sub(quickest_ms) as i32;
-        if delay_ms > MAX_DELAY.as_ms() as i32 {
-            // A line that was blocked delivers its old frames in one burst and then new ones; a
-            // sender whose clock stood still stays late. Only the second begins anew.
-            let since = *last.late_since.get_or_insert(now);
-            let begins_anew = silent && now.since(since) >= RESYNC;
-            return if begins_anew {
-                Ok(fresh)
-            } else {
-                Err(Reject::Stamp)
-            };
-        }
-        let receiver = Self {
-            heard_at: now,
-            seq: header.seq,
-            stamp_ms: header.stamp_ms,
-            quickest_ms: if delay_ms < 0 { way_ms } else { quickest_ms },
-            relaxed_at: last.relaxed_at + Duration::from_us(steps * RELAX.as_us()),
-            late_since: None,
-            out_of_place: 0,
-        };
-        Ok(Passage {
-            receiver,
-            gap: ahead - 1,
-            out_of_place: last.out_of_place,
-        })
-    }
-
-    fn first(now: Instant, header: &Header) -> Self {
-        Self {
-            heard_at: now,
-            seq: header.seq,
-            stamp_ms: header.stamp_ms,
-            quickest_ms: now.stamp_ms().wrapping_sub(header.stamp_ms),
-            relaxed_at: now,
-            late_since: None,
-            out_of_place: 0,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Duration;
     use crate::message::{Identify, KeepAlive, Status};
 
     /// A tester whose numbers and clock begin anew is heard at once on a connection of its own, and half a

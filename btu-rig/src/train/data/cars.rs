@@ -1,0 +1,232 @@
+//! Data of a train of cars: traction, brakes, resistance, wheels and each car.
+
+use serde::{Deserialize, Serialize};
+
+use super::{TrainData, built_in};
+use crate::tcms::TcmsData;
+use crate::train::actuator::Times;
+use crate::train::car_set::CarSet;
+
+/// A train of cars.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct CarsData {
+    /// Name of the train.
+    pub name: String,
+    /// Always `cars`.
+    pub model: String,
+    /// Car whose axle carries the tachometers, counted from 1.
+    pub tachometer_car: usize,
+    /// Powering.
+    pub traction: Traction,
+    /// Electric brake.
+    pub electric_brake: ElectricBrake,
+    /// Service brake, and the air brake that makes up for what is not electric.
+    pub service_brake: AirBrake,
+    /// Emergency brake.
+    pub emergency_brake: EmergencyBrake,
+    /// What resists motion.
+    pub resistance: Resistance,
+    /// Slip, slide and the protection against it.
+    pub wheels: Wheels,
+    /// Its TCMS.
+    pub tcms: TcmsData,
+    /// The cars from the head.
+    pub cars: Vec<CarData>,
+}
+
+/// Powering.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Traction {
+    /// Force of the whole train at full power and full load, N [S3 eq. 1].
+    pub full_load_n: f64,
+    /// Speed up to which it is there, km/h; constant power beyond (S3).
+    pub base_speed_kmh: f64,
+    /// Greatest change of powering and service braking effort, m/s³ (S1).
+    pub jerk_mps3: f64,
+    /// Command to the inverters' first answer, s.
+    pub dead_time_s: f64,
+    /// Time constant of their effort, s.
+    pub lag_s: f64,
+}
+
+/// Electric brake of the motor cars.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElectricBrake {
+    /// Its greatest force over the car's weight [S3 eq. 6].
+    pub adhesion_limit: f64,
+    /// Speed up to which it is there, km/h; constant power beyond.
+    pub full_to_kmh: f64,
+    /// Speed below which it fades, km/h (S3).
+    pub fade_from_kmh: f64,
+    /// Speed at which nothing is left, km/h.
+    pub fade_to_kmh: f64,
+}
+
+/// Service brake.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct AirBrake {
+    /// Full service brake, km/h/s [S3: B7].
+    pub kmh_per_s: f64,
+    /// Holding brake, share of full service (S4).
+    pub holding_share: f64,
+    /// Demand to the first force of air, s.
+    pub dead_time_s: f64,
+    /// Time constant while it builds up, s.
+    pub build_up_s: f64,
+    /// Time constant while it is released, s.
+    pub release_s: f64,
+    /// Security brake, share of full service; hard-wired, air on all cars.
+    pub security_share: f64,
+    /// Parking brake, share of full service; springs on all cars.
+    pub parking_share: f64,
+}
+
+/// Emergency brake, by air alone (S3).
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct EmergencyBrake {
+    /// Its deceleration, km/h/s.
+    pub kmh_per_s: f64,
+    /// Opening of the loop to the first force, s.
+    pub dead_time_s: f64,
+    /// Time constant while it builds up, s.
+    pub build_up_s: f64,
+    /// Time constant while it is released, s.
+    pub release_s: f64,
+}
+
+/// What resists motion.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Resistance {
+    /// Resistance when starting from rest, kgf/t.
+    pub starting_kgf_t: f64,
+    /// Speed up to which it counts, km/h.
+    pub starting_kmh: f64,
+    /// Rolling resistance, kgf/t.
+    pub rolling_kgf_t: f64,
+    /// Its rise with speed, kgf/t per km/h.
+    pub rolling_kgf_t_per_kmh: f64,
+    /// Air resistance of the whole train, kgf per (km/h)².
+    pub air_kgf_per_kmh2: f64,
+    /// Resistance of a tunnel, kgf/t.
+    pub tunnel_kgf_t: f64,
+    /// Curve resistance times radius, kgf·m/t.
+    pub curve_kgf_m_t: f64,
+}
+
+/// Slip, slide and the protection against it.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wheels {
+    /// Friction of a sliding wheel over adhesion.
+    pub sliding_share: f64,
+    /// Difference to the train's speed at which effort is taken off, m/s.
+    pub protection_mps: f64,
+    /// Time in which all effort is taken off, s.
+    pub release_s: f64,
+    /// Time in which all of it is given back, s.
+    pub restore_s: f64,
+}
+
+/// One car.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct CarData {
+    /// Name, for instance `M1`.
+    pub name: String,
+    /// Motored or not.
+    pub role: Role,
+    /// MT pair it belongs to, counted from 1. Cars of a pair share a demand: electric first, then air
+    /// on trailers, then on motor cars (S3).
+    pub pair: usize,
+    /// Length, m.
+    pub length_m: f64,
+    /// Empty mass, kg.
+    pub empty_kg: f64,
+    /// Of that its bogies, kg.
+    pub bogies_kg: f64,
+    /// Rotating parts as mass, kg.
+    pub rotating_kg: f64,
+    /// Greatest passenger load, kg.
+    pub full_load_kg: f64,
+    /// Greatest force of its air brake in service, N.
+    pub air_n: f64,
+}
+
+impl CarData {
+    /// Weight with a share of its passengers, kg.
+    pub fn weight_kg(&self, share: f64) -> f64 {
+        self.empty_kg + share * self.full_load_kg
+    }
+
+    /// Braking mass full, kg (S3).
+    pub fn full_inertia_kg(&self) -> f64 {
+        self.empty_kg + self.rotating_kg + self.full_load_kg
+    }
+}
+
+/// Whether a car is driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// With motors and electric brake.
+    Motor,
+    /// Without.
+    Trailer,
+}
+
+impl CarsData {
+    /// The train of [`TrainData::line6`].
+    ///
+    /// # Panics
+    /// Never: a test reads the same text.
+    pub fn line6() -> Self {
+        match built_in(include_str!("../../../../scripts/trains/line6.toml")) {
+            TrainData::Cars(data) => data,
+            TrainData::Ideal(_) => panic!("built-in train: line6 is no point mass"),
+        }
+    }
+
+    /// Cars with an inverter.
+    pub fn motor_cars(&self) -> CarSet {
+        self.cars_where(|car| car.role == Role::Motor)
+    }
+
+    /// Motor cars and trailers of an MT pair, counted from 1.
+    pub fn pair_cars(&self, pair: usize) -> (CarSet, CarSet) {
+        let all = self.cars_where(|car| car.pair == pair);
+        let trailers = all.without(self.motor_cars());
+        (all.without(trailers), trailers)
+    }
+
+    fn cars_where(&self, holds: impl Fn(&CarData) -> bool) -> CarSet {
+        let mut cars = CarSet::NONE;
+        for (i, car) in self.cars.iter().enumerate() {
+            cars.set(i, holds(car));
+        }
+        cars
+    }
+
+    /// How inverters follow a demand.
+    pub(crate) fn motor_times(&self) -> Times {
+        Times {
+            dead_s: self.traction.dead_time_s,
+            rise_s: self.traction.lag_s,
+            fall_s: self.traction.lag_s,
+        }
+    }
+
+    /// How air brakes follow a demand.
+    pub(crate) fn air_times(&self) -> Times {
+        Times {
+            dead_s: self.service_brake.dead_time_s,
+            rise_s: self.service_brake.build_up_s,
+            fall_s: self.service_brake.release_s,
+        }
+    }
+}
