@@ -157,7 +157,7 @@ fn json(column: &str, text: &str) -> Result<(), String> {
 
 /// Checks the body of an event of this kind.
 pub(crate) fn check_body(kind: &str, body: &str) -> Result<(), String> {
-    if kind != crate::fault_log::REPAIR {
+    if kind != crate::record::REPAIR {
         return Ok(());
     }
     let read = serde_json::from_str::<crate::record::RepairRecord>(body);

@@ -6,10 +6,10 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use crate::atomic_file::AtomicFile;
 use crate::error::StoreError;
+use crate::open_options::Synchronous;
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
 use crate::schema_guard;
 use crate::sql_functions;
-use crate::store::Synchronous;
 
 /// Programs that create one file at the same time may disturb each other this often.
 const WAL_TRIES: u32 = 200;

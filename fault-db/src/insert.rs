@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use rusqlite::{Connection, params};
 
 use crate::backend::{Backend, SqlError, SqlResult, values};
-use crate::fault_log::{NewEvent, insert_event};
+use crate::fault_event::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::limits;

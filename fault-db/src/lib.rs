@@ -28,6 +28,7 @@ mod dictionaries;
 mod domain;
 mod error;
 mod event_graph;
+mod fault_event;
 mod fault_log;
 mod fault_state;
 mod file;
@@ -37,6 +38,7 @@ mod insert;
 pub mod limits;
 mod lookup;
 mod maintenance;
+mod open_options;
 pub mod process;
 mod query;
 mod record;
@@ -62,16 +64,16 @@ mod views;
 pub use atomic_file::AtomicFile;
 pub use conflicts::{RivalEvent, StateConflict};
 pub use domain::{Refusals, Refused};
-pub use error::StoreError;
+pub use error::{QueryLimit, StoreError};
 pub use fault_state::{FaultAction, FaultState, TransitionError};
 pub use id::{Id, IdSource};
 pub use maintenance::{CheckReport, CopyOf, MergeCounts, Problem, PruneCounts, PruneRule};
+pub use open_options::{OpenOptions, Synchronous};
 pub use query::{
     DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
-    Occurrence, PartHistory, PartRepair, QueryBounds, QueryLimit, QueryResult, RunDetail, RunFault,
-    RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
-    StepDetail, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit,
-    code_number,
+    Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RunDetail, RunFault, RunFilter,
+    RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery, StepDetail,
+    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
 };
 pub use record::{
     FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,
@@ -84,7 +86,7 @@ pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use seal::{RunSealed, SealHead};
 pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
-pub use store::{OpenOptions, Store, Synchronous};
+pub use store::Store;
 pub use sync::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
 pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};

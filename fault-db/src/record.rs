@@ -170,6 +170,9 @@ pub(crate) fn part_name(part: &str) -> String {
     part.trim().to_lowercase()
 }
 
+/// The kind of an event whose body is a [`RepairRecord`].
+pub(crate) const REPAIR: &str = "repair";
+
 /// A repair made for a fault.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RepairRecord {

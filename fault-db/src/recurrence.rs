@@ -10,7 +10,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::backend::{Backend, Server, SqlResult, values};
 use crate::event_graph::heads;
-use crate::fault_log::{EventContext, NewEvent, insert_event_with_context};
+use crate::fault_event::{EventContext, NewEvent, insert_event_with_context};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 

@@ -14,60 +14,13 @@ use crate::file::{
     make_private, set_up, set_up_to_record,
 };
 use crate::id::{Id, IdSource};
+use crate::open_options::OpenOptions;
 use crate::schema::SCHEMA_VERSION;
 use crate::trace::{Channel, TraceCodec, TraceError};
 use crate::{schema, schema_guard, seal};
 
 /// More than the number of distinct repeated statements in this crate.
 const STATEMENT_CACHE: usize = 64;
-
-/// Durability of a commit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Synchronous {
-    /// On the disk: survives a power cut. For everything that is recorded.
-    Full,
-    /// In the system's cache: survives the program's death, not a power cut. For benchmarks.
-    Normal,
-}
-
-/// How to open a file for writing.
-#[derive(Debug)]
-pub struct OpenOptions {
-    ids: IdSource,
-    busy_timeout_ms: u32,
-    synchronous: Synchronous,
-    max_pages: Option<u32>,
-}
-
-impl OpenOptions {
-    /// The defaults: durable commits, five seconds' wait for other writers.
-    pub fn new(ids: IdSource) -> Self {
-        Self {
-            ids,
-            busy_timeout_ms: 5_000,
-            synchronous: Synchronous::Full,
-            max_pages: None,
-        }
-    }
-
-    /// How long to wait for another writer before the file counts as locked.
-    pub fn busy_timeout_ms(mut self, busy_timeout_ms: u32) -> Self {
-        self.busy_timeout_ms = busy_timeout_ms;
-        self
-    }
-
-    /// How far a commit goes.
-    pub fn synchronous(mut self, synchronous: Synchronous) -> Self {
-        self.synchronous = synchronous;
-        self
-    }
-
-    /// Refuses to let the file grow beyond this many 4096-byte pages, to simulate a full disk.
-    pub fn max_pages(mut self, max_pages: u32) -> Self {
-        self.max_pages = Some(max_pages);
-        self
-    }
-}
 
 /// One open history. Not shared between threads; open it once per thread instead.
 ///

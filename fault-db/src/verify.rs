@@ -6,7 +6,7 @@
 
 use crate::backend::{SqlError, values};
 use crate::error::StoreError;
-use crate::fault_log::{NewEvent, insert_event};
+use crate::fault_event::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::record::{RunEnd, Verdict};

@@ -102,8 +102,24 @@ impl From<StoreError> for Failure {
         };
         Self {
             exit,
-            message: error.to_string(),
+            message: store_message(&error),
         }
+    }
+}
+
+/// The message of a database error. Where its next move is another database, the flag that names one is added.
+pub fn store_message(error: &StoreError) -> String {
+    match error {
+        StoreError::Locked { .. }
+        | StoreError::Full { .. }
+        | StoreError::ReadOnly { .. }
+        | StoreError::NotADatabase { .. }
+        | StoreError::ForeignDatabase { .. }
+        | StoreError::NewerSchema { .. }
+        | StoreError::Missing { .. }
+        | StoreError::CannotOpen { .. }
+        | StoreError::NotAFile { .. } => format!("{error} with --db"),
+        other => other.to_string(),
     }
 }
 

@@ -1,6 +1,9 @@
 //! One filter on faults, for lists, counts and repairs.
 
 use super::filter::Conditions;
+use super::note_filter::{
+    faults_with_note, faults_with_run_note, has_note, has_run_note, repaired_with,
+};
 use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
@@ -43,7 +46,7 @@ pub struct FaultFilter {
 
 /// Rows a filter is applied to. All have the columns unit, code, lru and line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Of {
+pub(crate) enum FilteredTable {
     Faults,
     Occurrences,
     Repairs,
@@ -57,20 +60,20 @@ pub(crate) struct Resolved<'a> {
     codes: Option<Vec<i64>>,
     lrus: Option<Vec<String>>,
     search: Option<Search>,
-    common: Common,
+    frequent: Frequent,
 }
 
 /// Whether what is looked for is said so often that going through faults finds enough of them sooner than
 /// going through all that say it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Common {
+struct Frequent {
     of_faults: bool,
     of_runs: bool,
 }
 
 /// Said so often is common, if it was not long ago: so many of the latest things said, in so many.
-const COMMON: u32 = 3000;
-const AMONG: i64 = 300_000;
+const FREQUENT: u32 = 3000;
+const WITHIN_LATEST: i64 = 300_000;
 /// More faults than this are not looked for one by one.
 const FEW: u32 = 200;
 
@@ -87,40 +90,41 @@ impl FaultFilter {
             codes: code.transpose()?,
             lrus: lru.transpose()?,
             search: search.transpose()?,
-            common: Common::default(),
+            frequent: Frequent::default(),
         })
     }
 }
 
 impl Resolved<'_> {
     /// For a list of a few: finds out how common what is looked for is. A server knows that by itself.
-    pub fn weigh(&mut self, store: &Store) -> Result<(), StoreError> {
+    pub fn estimate_frequency(&mut self, store: &Store) -> Result<(), StoreError> {
         let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
         let (Backend::File(_), Some(search), true) = (store.backend(), &self.search, is_few) else {
             return Ok(());
         };
         let asked = search.for_file();
-        let is_common = |words: &str, table: &str| {
+        let is_frequent = |words: &str, table: &str| {
             let sql = format!(
                 "SELECT count(*), min(rowid), (SELECT max(seq) FROM {table}) FROM
-                    (SELECT rowid FROM {words} WHERE {words} MATCH ?1 ORDER BY rowid DESC LIMIT {COMMON})"
+                    (SELECT rowid FROM {words} WHERE {words} MATCH ?1 ORDER BY rowid DESC LIMIT {FREQUENT})"
             );
             let found = store.first("searching notes", &sql, &values![asked.as_str()], |row| {
                 let (first, last): (Option<i64>, Option<i64>) = (row.get(1)?, row.get(2)?);
                 let among = last.zip(first).map(|(last, first)| last - first);
-                Ok(row.get::<u32>(0)? == COMMON && among.is_some_and(|among| among <= AMONG))
+                Ok(row.get::<u32>(0)? == FREQUENT
+                    && among.is_some_and(|among| among <= WITHIN_LATEST))
             })?;
             Ok(found == Some(true))
         };
-        self.common = Common {
-            of_faults: is_common("event_words", "fault_event")?,
-            of_runs: is_common("note_words", "run_note")?,
+        self.frequent = Frequent {
+            of_faults: is_frequent("event_words", "fault_event")?,
+            of_runs: is_frequent("note_words", "run_note")?,
         };
         Ok(())
     }
 
     /// Unit, code, part or line are all it asks for, besides a span of time; and how many of them.
-    pub fn plain(&self) -> Option<usize> {
+    pub fn identity_filters_only(&self) -> Option<usize> {
         let FaultFilter {
             serial,
             train,
@@ -164,7 +168,7 @@ impl Resolved<'_> {
     }
 
     /// Its conditions on rows called `x`, but for the span of time.
-    fn conditions(&self, backend: &Backend, of: Of, seen: Option<Seen>) -> Conditions {
+    fn conditions(&self, backend: &Backend, of: FilteredTable, span: Option<Span>) -> Conditions {
         let filter = self.filter;
         let mut all = Conditions::default();
         all.add("x.unit = ?", self.unit);
@@ -176,11 +180,11 @@ impl Resolved<'_> {
         }
         all.add("x.line = ?", filter.line.clone());
         let fault = match of {
-            Of::Faults => "x.seq",
-            Of::Occurrences | Of::Repairs => "x.fault",
+            FilteredTable::Faults => "x.seq",
+            FilteredTable::Occurrences | FilteredTable::Repairs => "x.fault",
         };
         let of_fault = |condition: &str| match of {
-            Of::Faults => condition.replace("f.", "x."),
+            FilteredTable::Faults => condition.replace("f.", "x."),
             _ => format!("x.fault IN (SELECT f.seq FROM fault f WHERE {condition})"),
         };
         all.add(
@@ -192,18 +196,24 @@ impl Resolved<'_> {
             let states = states.collect::<Vec<_>>().join(", ");
             all.require(of_fault(&format!("f.state IN ({states})")));
         }
-        self.of_occurrence(of, fault, seen, &mut all);
+        self.of_occurrence(of, fault, span, &mut all);
         if let Some(search) = &self.search {
             let typed = filter.note.clone().unwrap_or_default();
-            let of_fault = if self.common.of_faults {
-                fault_says(fault, typed.clone(), &mut all)
+            let of_fault = if self.frequent.of_faults {
+                has_note(fault, typed.clone(), &mut all)
             } else {
-                format!("{fault} IN ({})", said_of_fault(backend, search, &mut all))
+                format!(
+                    "{fault} IN ({})",
+                    faults_with_note(backend, search, &mut all)
+                )
             };
-            let of_run = if self.common.of_runs {
-                run_says(fault, typed, &mut all)
+            let of_run = if self.frequent.of_runs {
+                has_run_note(fault, typed, &mut all)
             } else {
-                format!("{fault} IN ({})", said_of_run(backend, search, &mut all))
+                format!(
+                    "{fault} IN ({})",
+                    faults_with_run_note(backend, search, &mut all)
+                )
             };
             all.require(format!("({of_fault} OR {of_run})"));
         }
@@ -215,9 +225,19 @@ impl Resolved<'_> {
     }
 
     /// What it asks of an occurrence: all of it of the same one.
-    fn of_occurrence(&self, of: Of, fault: &str, seen: Option<Seen>, all: &mut Conditions) {
+    fn of_occurrence(
+        &self,
+        of: FilteredTable,
+        fault: &str,
+        span: Option<Span>,
+        all: &mut Conditions,
+    ) {
         let filter = self.filter;
-        let name = if of == Of::Occurrences { "x" } else { "o" };
+        let name = if of == FilteredTable::Occurrences {
+            "x"
+        } else {
+            "o"
+        };
         let mut asked = Vec::new();
         if let Some(train) = &filter.train {
             let place = all.place(train.clone());
@@ -239,14 +259,14 @@ impl Resolved<'_> {
                     AND s.step_index = {name}.step_index AND s.procedure = {place})"
             ));
         }
-        if of == Of::Occurrences {
+        if of == FilteredTable::Occurrences {
             asked
                 .into_iter()
                 .for_each(|condition| all.require(condition));
             return;
         }
         // Whether a fault was seen since then its own row tells; before then, or then and so, does not.
-        let (since_us, until_us) = seen.unwrap_or_default();
+        let (since_us, until_us) = span.unwrap_or_default();
         if until_us.is_some() || !asked.is_empty() {
             for (compared, at_us) in [(">=", since_us), ("<", until_us)] {
                 if let Some(at_us) = at_us {
@@ -269,7 +289,7 @@ impl Resolved<'_> {
     }
 
     /// The conditions and the span of time, on the column of `x` that says when.
-    pub fn conditions_at(&self, backend: &Backend, of: Of, at: &str) -> Conditions {
+    pub fn conditions_at(&self, backend: &Backend, of: FilteredTable, at: &str) -> Conditions {
         self.conditions_from(backend, of, at, self.filter.since_us)
     }
 
@@ -277,7 +297,7 @@ impl Resolved<'_> {
     pub fn conditions_from(
         &self,
         backend: &Backend,
-        of: Of,
+        of: FilteredTable,
         at: &str,
         since_us: Option<i64>,
     ) -> Conditions {
@@ -292,7 +312,7 @@ impl Resolved<'_> {
         let FaultFilter {
             since_us, until_us, ..
         } = *self.filter;
-        let mut all = self.conditions(backend, Of::Faults, Some((since_us, until_us)));
+        let mut all = self.conditions(backend, FilteredTable::Faults, Some((since_us, until_us)));
         all.add("x.last_at_us >= ?", since_us);
         all.add("x.first_at_us < ?", until_us);
         all
@@ -300,79 +320,7 @@ impl Resolved<'_> {
 }
 
 /// From and until, µs.
-type Seen = (Option<i64>, Option<i64>);
-
-/// Faults with these words in what was said about them.
-fn said_of_fault(backend: &Backend, search: &Search, all: &mut Conditions) -> String {
-    match backend {
-        Backend::File(_) => {
-            let place = all.place(search.for_file());
-            format!(
-                "SELECT e.fault FROM event_words w JOIN fault_event e ON e.seq = w.rowid
-                 WHERE event_words MATCH {place}"
-            )
-        }
-        Backend::Server(_) => {
-            let place = all.place(search.for_server());
-            format!("SELECT e.fault FROM fault_event e WHERE e.words @@ CAST({place} AS tsquery)")
-        }
-    }
-}
-
-/// Whether what was said about a fault has these words.
-fn fault_says(fault: &str, typed: String, all: &mut Conditions) -> String {
-    let place = all.place(typed);
-    format!(
-        "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = {fault}
-            AND e.kind NOT IN ('opened', 'recurred') AND says(e.body, {place}))"
-    )
-}
-
-/// Whether what was said about a run that saw a fault has these words.
-fn run_says(fault: &str, typed: String, all: &mut Conditions) -> String {
-    let place = all.place(typed);
-    format!(
-        "EXISTS (SELECT 1 FROM fault_occurrence o JOIN run_note n ON n.run = o.run
-            WHERE o.fault = {fault} AND says(n.text, {place}))"
-    )
-}
-
-/// Faults seen in runs with these words in what was said about them.
-fn said_of_run(backend: &Backend, search: &Search, all: &mut Conditions) -> String {
-    match backend {
-        Backend::File(_) => {
-            let place = all.place(search.for_file());
-            format!(
-                "SELECT o.fault FROM note_words w JOIN run_note n ON n.seq = w.rowid
-                 JOIN fault_occurrence o ON o.run = n.run WHERE note_words MATCH {place}"
-            )
-        }
-        Backend::Server(_) => {
-            let place = all.place(search.for_server());
-            format!(
-                "SELECT o.fault FROM run_note n JOIN fault_occurrence o ON o.run = n.run
-                 WHERE n.words @@ CAST({place} AS tsquery)"
-            )
-        }
-    }
-}
-
-/// Faults repaired with a part of this serial number: found by its words, then compared in full.
-fn repaired_with(backend: &Backend, serial: &str, all: &mut Conditions) -> String {
-    let Some(search) = Search::exactly(serial) else {
-        return "SELECT seq FROM fault WHERE 1 = 0".to_owned();
-    };
-    let said = said_of_fault(backend, &search, all);
-    let places = ["serial_old", "serial_new"].map(|key| {
-        let quoted = serde_json::Value::from(serial).to_string();
-        all.place(format!("\"{key}\":{quoted}"))
-    });
-    let [old, new] = places;
-    format!(
-        "{said} AND e.kind = 'repair'
-            AND (replace(e.body, {old}, '') <> e.body OR replace(e.body, {new}, '') <> e.body)"
-    )
-}
+type Span = (Option<i64>, Option<i64>);
 
 fn search(note: &str) -> Result<Search, StoreError> {
     Search::new(note).ok_or_else(|| StoreError::NoWords {

@@ -6,9 +6,9 @@ use super::fault_filter::FaultFilter;
 use super::filter::limit;
 use crate::backend::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
-use crate::fault_log::REPAIR;
 use crate::fault_state::FaultState;
 use crate::id::Id;
+use crate::record::REPAIR;
 use crate::record::{FreezeSample, RepairRecord};
 use crate::store::Store;
 
@@ -107,7 +107,7 @@ impl Store {
     /// Lists faults, last seen first.
     pub fn faults(&self, filter: &FaultFilter) -> Result<Vec<FaultSummary>, StoreError> {
         let mut resolved = filter.resolve(self)?;
-        resolved.weigh(self)?;
+        resolved.estimate_frequency(self)?;
         let conditions = resolved.conditions_seen(self.backend());
         let order = "ORDER BY x.last_at_us DESC, x.seq DESC";
         let limit = limit(filter.limit);

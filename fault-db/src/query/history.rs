@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::faults::json;
 use crate::backend::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
-use crate::fault_log::REPAIR;
 use crate::id::Id;
+use crate::record::REPAIR;
 use crate::record::{RepairRecord, part_name};
 use crate::store::Store;
 

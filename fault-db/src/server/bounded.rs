@@ -11,6 +11,8 @@ use postgres::tls::{ChannelBinding, MakeTlsConnect, TlsConnect, TlsStream};
 use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, ReadBuf};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
+use crate::error::NO_TLS;
+
 /// Longest message before authentication is complete, bytes.
 const MOST_BEFORE: u32 = 64 << 10;
 /// Longest message after it, bytes: a row may hold all samples of a trace.
@@ -20,9 +22,6 @@ const MOST: u32 = 64 << 20;
 const TLS_REQUEST: [u8; 8] = [0, 0, 0, 8, 0x04, 0xd2, 0x16, 0x2f];
 /// The server's answer that it speaks TLS.
 const TLS_YES: u8 = b'S';
-
-/// The error if the server has no TLS and the address demands it.
-pub(super) const NO_TLS: &str = "server does not support TLS";
 
 type Failed = Box<dyn Error + Sync + Send>;
 

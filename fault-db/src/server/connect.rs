@@ -10,7 +10,7 @@ use postgres::{Client, Config, NoTls};
 use super::address::{Address, Guard};
 use super::bounded::Bounded;
 use super::password::{self, Password};
-use super::{schema, server_error, tls};
+use super::{schema, tls};
 use crate::backend::{Backend, Server};
 use crate::error::StoreError;
 use crate::id::IdSource;
@@ -71,7 +71,7 @@ pub(super) fn open(address: &Address) -> Result<(Backend, PathBuf), StoreError> 
     }
     let mut client = reach(config, address, &path, password)?;
     let agreed = client.batch_execute(MANNERS);
-    agreed.map_err(|error| server_error::classify(&path, DOING, error))?;
+    agreed.map_err(|error| StoreError::from_sql(&path, DOING, error.into()))?;
     check_text(&mut client, &path)?;
     Ok((Backend::Server(Server::new(client)), path))
 }
@@ -81,7 +81,7 @@ fn check_text(client: &mut Client, path: &Path) -> Result<(), StoreError> {
     let row = client.query_one("SHOW server_encoding", &[]);
     let encoding: String = row
         .and_then(|row| row.try_get(0))
-        .map_err(|error| server_error::classify(path, DOING, error))?;
+        .map_err(|error| StoreError::from_sql(path, DOING, error.into()))?;
     if encoding == "UTF8" {
         return Ok(());
     }
@@ -161,16 +161,18 @@ fn reach(
     let connected = waiting
         .recv_timeout(patience)
         .map_err(|_| away("no answer in time".to_owned()))?;
-    connected.map_err(|error| match server_error::classify(path, DOING, error) {
-        StoreError::ServerRefuses { path, reason } => StoreError::ServerRefuses {
-            path,
-            reason: match &password.passed_over {
-                Some(why) => format!("{reason}; {why}"),
-                None => reason,
+    connected.map_err(
+        |error| match StoreError::from_sql(path, DOING, error.into()) {
+            StoreError::ServerRefuses { path, reason } => StoreError::ServerRefuses {
+                path,
+                reason: match &password.passed_over {
+                    Some(why) => format!("{reason}; {why}"),
+                    None => reason,
+                },
             },
+            // Any other error means that there is no connection.
+            StoreError::Server { source, .. } => away(source.to_string()),
+            other => other,
         },
-        // Any other error means that there is no connection.
-        StoreError::Server { source, .. } => away(source.to_string()),
-        other => other,
-    })
+    )
 }

@@ -2,10 +2,9 @@
 //! In a file triggers fill them; for a server they are computed here.
 
 use crate::backend::{Backend, SqlResult, values};
-use crate::fault_log::{EventContext, NewEvent, REPAIR};
 use crate::full_text;
 use crate::id::Id;
-use crate::record::{RepairRecord, part_name};
+use crate::record::{REPAIR, RepairRecord, part_name};
 use crate::sql_functions;
 
 /// PostgreSQL limits a `tsvector` to one megabyte, and positions to 16 383.
@@ -31,35 +30,6 @@ pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
     let repair = (kind == REPAIR).then(|| serde_json::from_str::<RepairRecord>(body));
     let part = repair?.ok()?.part;
     Some(part_name(&part))
-}
-
-/// Inserts an event made on the server itself, unless its id exists.
-pub(crate) fn insert_event(
-    backend: &Backend,
-    fault: i64,
-    event: &NewEvent<'_>,
-    context: &EventContext,
-) -> SqlResult<()> {
-    backend.execute(
-        "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen, part, words)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, CAST(?12 AS tsvector))
-         ON CONFLICT (id) DO NOTHING",
-        &values![
-            event.id,
-            fault,
-            event.kind,
-            event.at_us,
-            event.who,
-            event.body,
-            event.state,
-            context.lamport,
-            &context.parents[..],
-            context.occurrences_known,
-            part(event.kind, event.body),
-            event_words(event.kind, event.body)
-        ],
-    )?;
-    Ok(())
 }
 
 /// Inserts a note on a run made on the server itself.

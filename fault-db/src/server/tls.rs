@@ -1,4 +1,4 @@
-//! TLS to a server: trusted certificates, and the explanation when a certificate is not trusted.
+//! TLS to a server: trusted issuers, and the verification of certificates.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -7,9 +7,7 @@ use rustls::client::danger::{HandshakeSignatureValid, ServerCertVerified, Server
 use rustls::crypto::{CryptoProvider, ring, verify_tls12_signature, verify_tls13_signature};
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, ServerName, UnixTime};
-use rustls::{
-    CertificateError, ClientConfig, DigitallySignedStruct, RootCertStore, SignatureScheme,
-};
+use rustls::{ClientConfig, DigitallySignedStruct, RootCertStore, SignatureScheme};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::address::{Address, Guard};
@@ -60,27 +58,6 @@ fn trusted(file: Option<&Path>) -> Result<RootCertStore, String> {
         return Err(bad(&"there is no certificate in it"));
     }
     Ok(roots)
-}
-
-/// Why a certificate was not trusted, and what to do about it.
-pub(super) fn distrust(error: &rustls::Error) -> String {
-    use rustls::Error::InvalidCertificate;
-    match error {
-        InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
-            "nobody known here issued its certificate; name the issuer's with sslrootcert=FILE"
-                .to_owned()
-        }
-        InvalidCertificate(
-            CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. },
-        ) => "its certificate is for another host; use the name that stands in it".to_owned(),
-        InvalidCertificate(CertificateError::Expired | CertificateError::ExpiredContext { .. }) => {
-            "its certificate has expired; renew it, or set this computer's clock".to_owned()
-        }
-        InvalidCertificate(
-            CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. },
-        ) => "its certificate is not valid yet; set this computer's clock".to_owned(),
-        other => other.to_string(),
-    }
 }
 
 /// Accepts any certificate, but only from the holder of its key.

@@ -12,7 +12,7 @@ use fault_db::{
 };
 
 use crate::clock;
-use crate::failure::Failure;
+use crate::failure::{Failure, store_message};
 use crate::stop::Stop;
 
 /// Entries that may wait for the disk; a bench that produces more waits for the writer.
@@ -186,7 +186,7 @@ fn write(
     let Err((error, at_hand)) = result else {
         return Ok(());
     };
-    stop.press_because(error.to_string());
+    stop.press_because(store_message(&error));
     let rest = match &error {
         StoreError::Locked { .. } => {
             kept.before = kept.occurrences.len();
@@ -198,8 +198,9 @@ fn write(
     entries.iter().for_each(drop);
     Err(match rest {
         Some(rest) => Failure::bench(format!(
-            "{error}; what was measured since is kept in {rest}: bring it in with `ptu db import {rest}` when the \
+            "{}; what was measured since is kept in {rest}: bring it in with `ptu db import {rest}` when the \
              database is free",
+            store_message(&error),
             rest = rest.display()
         )),
         None => error.into(),
@@ -270,7 +271,7 @@ fn patiently(
     loop {
         match work(again) {
             Err(error @ StoreError::Locked { .. }) if begun.elapsed() < patience.gives_up => {
-                stop.press_because(error.to_string());
+                stop.press_because(store_message(&error));
                 again = true;
             }
             done => return done,

@@ -3,6 +3,7 @@
 mod chain;
 mod counted;
 mod derived;
+mod seal_entry;
 mod server;
 
 use rusqlite::Connection;

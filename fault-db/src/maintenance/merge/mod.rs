@@ -6,6 +6,7 @@ mod rows;
 mod runs;
 mod same;
 mod seals;
+mod valid_rows;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -19,9 +20,10 @@ use crate::domain::Refusals;
 use crate::error::StoreError;
 use crate::file::CACHE_KIB;
 use crate::id::Id;
+use crate::open_options::OpenOptions;
 use crate::seal::divergence::{ChainComparison, compare_chains};
 use crate::seal::own_file_id;
-use crate::store::{OpenOptions, Store};
+use crate::store::Store;
 use crate::sync::{Different, chain_error};
 use rows::{MEASUREMENTS, RECORDINGS, SCRIPTS, STEPS};
 

@@ -16,7 +16,7 @@ pub(crate) use counted::Bins;
 use counted::{Counts, Key};
 use exposure::Exposure;
 
-use super::fault_filter::{FaultFilter, Of, Resolved};
+use super::fault_filter::{FaultFilter, FilteredTable, Resolved};
 use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::store::Store;
@@ -134,7 +134,8 @@ impl Store {
         by: StatKey,
         counted: &mut counted::Counted,
     ) -> crate::backend::SqlResult<()> {
-        let mut conditions = resolved.conditions_at(self.backend(), Of::Faults, "last_at_us");
+        let mut conditions =
+            resolved.conditions_at(self.backend(), FilteredTable::Faults, "last_at_us");
         conditions.require("x.state <> 'closed'");
         let sql = format!(
             "SELECT {}, count(*) FROM fault x {} GROUP BY 1",

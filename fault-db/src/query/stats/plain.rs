@@ -1,6 +1,6 @@
 //! Counts row by row, for any filter and either backend.
 
-use super::super::fault_filter::{Of, Resolved};
+use super::super::fault_filter::{FilteredTable, Resolved};
 use super::StatKey;
 use super::counted::{Bins, Counted, Key, Units};
 use crate::backend::{Backend, SqlResult};
@@ -17,7 +17,7 @@ pub(super) fn count(
         Backend::Server(_) => seen_on_server(backend, resolved, by, bins)?,
     };
     let column = by.column();
-    let opened = resolved.conditions_at(backend, Of::Faults, "first_at_us");
+    let opened = resolved.conditions_at(backend, FilteredTable::Faults, "first_at_us");
     let sql = format!(
         "SELECT {column}, count(*) FROM fault x {} GROUP BY 1",
         opened.sql()
@@ -29,7 +29,7 @@ pub(super) fn count(
             .opened = row.get(1)?;
         Ok(())
     })?;
-    let mut closed = resolved.conditions_at(backend, Of::Faults, "closed_at_us");
+    let mut closed = resolved.conditions_at(backend, FilteredTable::Faults, "closed_at_us");
     closed.require("x.closed_at_us IS NOT NULL");
     let sql = format!(
         "SELECT {column}, count(*), sum(CASE WHEN x.repairs = 0 THEN 1 ELSE 0 END)
@@ -52,7 +52,7 @@ fn seen_in_file(
     bins: &Bins,
 ) -> SqlResult<Counted> {
     let mut counted = Counted::new();
-    let seen = resolved.conditions_at(backend, Of::Occurrences, "at_us");
+    let seen = resolved.conditions_at(backend, FilteredTable::Occurrences, "at_us");
     let sql = format!(
         "SELECT {}, x.at_us, x.unit FROM fault_occurrence x {}",
         by.column(),
@@ -82,7 +82,7 @@ fn seen_on_server(
         true => "utc_day(x.at_us)",
         false => "utc_month(x.at_us)",
     };
-    let seen = resolved.conditions_at(backend, Of::Occurrences, "at_us");
+    let seen = resolved.conditions_at(backend, FilteredTable::Occurrences, "at_us");
     let sql = format!(
         "SELECT {column}, {bin}, count(*), max(x.at_us) FROM fault_occurrence x {} GROUP BY 1, 2",
         seen.sql()

@@ -1,6 +1,6 @@
 //! Repairs: how long they took, and whether the fault came back.
 
-use super::super::fault_filter::{Of, Resolved};
+use super::super::fault_filter::{FilteredTable, Resolved};
 use super::counted::{Counted, Key};
 use super::{HOUR_US, StatQuery};
 use crate::backend::{Backend, SqlResult};
@@ -34,7 +34,7 @@ pub(super) fn add(
     query: &StatQuery,
     counted: &mut Counted,
 ) -> SqlResult<()> {
-    let mut conditions = resolved.conditions_at(backend, Of::Repairs, "at_us");
+    let mut conditions = resolved.conditions_at(backend, FilteredTable::Repairs, "at_us");
     let within = conditions.place(within_us(query));
     let sql = format!(
         "SELECT {}, count(*), CAST(sum(x.at_us - x.opened_at_us) AS BIGINT),
@@ -70,7 +70,8 @@ pub(super) fn add_young(
     {
         return Ok(());
     }
-    let mut conditions = resolved.conditions_from(backend, Of::Repairs, "at_us", Some(young_us));
+    let mut conditions =
+        resolved.conditions_from(backend, FilteredTable::Repairs, "at_us", Some(young_us));
     let within = conditions.place(within_us(query));
     conditions.require(format!(
         "(x.back_at_us IS NULL OR x.back_at_us - x.at_us >= {within})"

@@ -31,7 +31,7 @@ impl Kept {
 
 /// The counts that answer it, if there are such.
 pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
-    let asked = resolved.plain()?;
+    let asked = resolved.identity_filters_only()?;
     let (dim, column) = match by {
         StatKey::All => (0, "''"),
         StatKey::Code => (1, "code"),

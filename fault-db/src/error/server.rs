@@ -1,13 +1,15 @@
-//! Translates errors of a server into the kinds of [`StoreError`].
+//! Classifies errors of a server: its own messages, the network, certificates.
 
 use std::error::Error as _;
 use std::path::Path;
 
 use postgres::error::SqlState;
+use rustls::CertificateError;
 
-use super::bounded::NO_TLS;
-use super::tls;
-use crate::error::StoreError;
+use super::StoreError;
+
+/// The error if the server has no TLS and the address demands it.
+pub(crate) const NO_TLS: &str = "server does not support TLS";
 
 /// Classifies an error of a server by what a caller can do about it.
 pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error) -> StoreError {
@@ -94,7 +96,7 @@ fn without_message(
         };
     };
     if let Some(error) = network.get_ref().and_then(|inner| inner.downcast_ref()) {
-        let reason = tls::distrust(error);
+        let reason = distrust(error);
         return StoreError::ServerNotTrusted { path, reason };
     }
     let reason = match network.kind() {
@@ -111,5 +113,26 @@ fn without_message(
         path,
         doing,
         reason,
+    }
+}
+
+/// Why a certificate was not trusted, and what to do about it.
+fn distrust(error: &rustls::Error) -> String {
+    use rustls::Error::InvalidCertificate;
+    match error {
+        InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
+            "nobody known here issued its certificate; name the issuer's with sslrootcert=FILE"
+                .to_owned()
+        }
+        InvalidCertificate(
+            CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. },
+        ) => "its certificate is for another host; use the name that stands in it".to_owned(),
+        InvalidCertificate(CertificateError::Expired | CertificateError::ExpiredContext { .. }) => {
+            "its certificate has expired; renew it, or set this computer's clock".to_owned()
+        }
+        InvalidCertificate(
+            CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. },
+        ) => "its certificate is not valid yet; set this computer's clock".to_owned(),
+        other => other.to_string(),
     }
 }

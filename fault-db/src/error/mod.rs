@@ -1,46 +1,50 @@
-//! Errors of the store, each with the file or server it concerns and the next move.
+//! Errors of the store, each with the file or server it concerns and the next move. A message that ends with
+//! another file to choose does not say how: that is the caller's to add.
+
+mod query_limit;
+mod server;
+mod sqlite;
 
 use std::path::{Path, PathBuf};
-
-use rusqlite::ErrorCode;
 
 use crate::backend::SqlError;
 use crate::fault_state::TransitionError;
 use crate::id::Id;
-use crate::query::QueryLimit;
-use crate::server::server_error;
 use crate::trace::TraceError;
+pub(crate) use query_limit::MOST_RESULT_BYTES;
+pub use query_limit::QueryLimit;
+pub(crate) use server::NO_TLS;
 
 /// An error of the store. Nothing committed before it is lost.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
     /// Another connection holds the file for longer than the busy timeout.
-    #[error("database busy: {} is locked by another program; close it or choose another file with --db", .path.display())]
+    #[error("database busy: {} is locked by another program; close it or choose another file", .path.display())]
     Locked {
         /// The database file.
         path: PathBuf,
     },
     /// No room for the write; what was committed before remains.
-    #[error("no room left to write {}; free some space or choose another disk with --db (all that was recorded before is kept)", .path.display())]
+    #[error("no room left to write {} (all that was recorded before is kept); free some space or choose another disk", .path.display())]
     Full {
         /// The database file.
         path: PathBuf,
     },
     /// The file or its directory is write-protected.
-    #[error("{} is read-only; make it and its directory writable or choose another file with --db", .path.display())]
+    #[error("{} is read-only; make it and its directory writable or choose another file", .path.display())]
     ReadOnly {
         /// The database file.
         path: PathBuf,
     },
     /// The file is something else than a SQLite database.
-    #[error("{} is not a database; choose another file with --db", .path.display())]
+    #[error("{} is not a database; choose another file", .path.display())]
     NotADatabase {
         /// The file.
         path: PathBuf,
     },
     /// A SQLite database of another program.
-    #[error("{} is a database of another program (application id {application_id:#010x}); choose another file with --db", .path.display())]
+    #[error("{} is a database of another program (application id {application_id:#010x}); choose another file", .path.display())]
     ForeignDatabase {
         /// The file.
         path: PathBuf,
@@ -48,7 +52,7 @@ pub enum StoreError {
         application_id: i32,
     },
     /// Written by a later version of this program.
-    #[error("{} was written by a newer version (schema {found}, this one knows {known}); update the program or choose another file with --db", .path.display())]
+    #[error("{} was written by a newer version (schema {found}, this one knows {known}); update the program or choose another file", .path.display())]
     NewerSchema {
         /// The database file.
         path: PathBuf,
@@ -106,13 +110,13 @@ pub enum StoreError {
         known: i32,
     },
     /// There is no such file; reading does not create one.
-    #[error("there is no database {}; a first run creates it, or choose another file with --db", .path.display())]
+    #[error("there is no database {}; a first run creates it, or choose another file", .path.display())]
     Missing {
         /// The file asked for.
         path: PathBuf,
     },
     /// The file cannot be opened at all.
-    #[error("cannot open {}: {reason}; check the path and its directory or choose another file with --db", .path.display())]
+    #[error("cannot open {}: {reason}; check the path and its directory or choose another file", .path.display())]
     CannotOpen {
         /// The file asked for.
         path: PathBuf,
@@ -256,7 +260,7 @@ pub enum StoreError {
         limit: QueryLimit,
     },
     /// The operation needs a file, and this is a server.
-    #[error("{} is a server, and this needs a database file; name one with --db, and bring it to the server with `db sync`", .path.display())]
+    #[error("{} is a server, and this needs a database file, which `db sync` brings to the server; name one", .path.display())]
     NotAFile {
         /// The server.
         path: PathBuf,
@@ -350,7 +354,7 @@ pub enum StoreError {
         known: i32,
     },
     /// Any other error of a server.
-    #[error("{doing} at {}: {}", .path.display(), server_error::message(.source))]
+    #[error("{doing} at {}: {}", .path.display(), server::message(.source))]
     Server {
         /// The server.
         path: PathBuf,
@@ -384,53 +388,13 @@ impl StoreError {
     pub(crate) fn from_sql(path: &Path, doing: &'static str, error: SqlError) -> Self {
         match error {
             SqlError::File(error) => Self::from_sqlite(path, doing, error),
-            SqlError::Server(error) => server_error::classify(path, doing, error),
+            SqlError::Server(error) => server::classify(path, doing, error),
             SqlError::Value { column, reason } => Self::Corrupt {
                 path: path.to_path_buf(),
                 detail: format!("{doing}: column {column}: {reason}"),
             },
         }
     }
-
-    /// Classifies an error of SQLite by what a caller can do about it.
-    pub(crate) fn from_sqlite(path: &Path, doing: &'static str, source: rusqlite::Error) -> Self {
-        let path = path.to_path_buf();
-        let reason = source.to_string();
-        match source.sqlite_error_code() {
-            Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => Self::Locked { path },
-            Some(ErrorCode::DiskFull) => Self::Full { path },
-            Some(ErrorCode::ReadOnly) => Self::ReadOnly { path },
-            Some(ErrorCode::NotADatabase) => Self::NotADatabase { path },
-            Some(ErrorCode::DatabaseCorrupt) => Self::Corrupt {
-                path,
-                detail: reason,
-            },
-            Some(ErrorCode::SystemIoFailure | ErrorCode::FileLockingProtocolFailed) => {
-                Self::Io { path, reason }
-            }
-            Some(ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
-                Self::CannotOpen { path, reason }
-            }
-            None if is_bad_value(&source) => Self::Corrupt {
-                path,
-                detail: reason,
-            },
-            _ => Self::Sqlite {
-                path,
-                doing,
-                source,
-            },
-        }
-    }
-}
-
-/// A stored value of the wrong type or range: only this program writes them, so the file is damaged.
-fn is_bad_value(error: &rusqlite::Error) -> bool {
-    use rusqlite::Error::{FromSqlConversionFailure, IntegralValueOutOfRange, InvalidColumnType};
-    matches!(
-        error,
-        FromSqlConversionFailure(..) | IntegralValueOutOfRange(..) | InvalidColumnType(..)
-    )
 }
 
 fn list(ids: &[Id]) -> String {

@@ -1,13 +1,12 @@
-//! A user's SQL query on a server, in a read-only transaction.
+//! A query on a server, in a read-only transaction.
 
 use std::path::Path;
 
 use postgres::error::SqlState;
 
-use super::server_error;
+use super::{QueryBounds, QueryResult, SqlValue, exceeds, refused};
 use crate::backend::{Field, Row, Server, SqlError};
-use crate::error::StoreError;
-use crate::query::{MOST_BYTES, QueryBounds, QueryLimit, QueryResult, SqlValue, exceeds};
+use crate::error::{MOST_RESULT_BYTES, QueryLimit, StoreError};
 
 const DOING: &str = "answering a query";
 
@@ -16,7 +15,7 @@ const DOING: &str = "answering a query";
 const ROWS_AT_ONCE: i32 = 200;
 
 /// Runs one query; of a long result the first rows.
-pub(crate) fn answer(
+pub(super) fn answer(
     server: &Server,
     path: &Path,
     sql: &str,
@@ -52,10 +51,10 @@ pub(crate) fn answer(
             for row in &some {
                 let values = values(row, columns.len());
                 bytes += values.iter().flatten().map(SqlValue::bytes).sum::<usize>();
-                if bytes > MOST_BYTES && rows.is_empty() {
+                if bytes > MOST_RESULT_BYTES && rows.is_empty() {
                     return Ok(Answered::TooMuch(QueryLimit::Row));
                 }
-                truncated = rows.len() == bounds.rows || bytes > MOST_BYTES;
+                truncated = rows.len() == bounds.rows || bytes > MOST_RESULT_BYTES;
                 if truncated {
                     break;
                 }
@@ -66,7 +65,7 @@ pub(crate) fn answer(
             }
         }
     });
-    let found = found.map_err(|error| sorted(path, error))?;
+    let found = found.map_err(|error| classify(path, error))?;
     let (columns, rows, truncated) = match found {
         Answered::Rows(columns, rows, truncated) => (columns, rows, truncated),
         Answered::Otherwise => return Err(refused("it would do more than read")),
@@ -102,21 +101,15 @@ fn values(row: &postgres::Row, columns: usize) -> Result<Vec<SqlValue>, SqlError
         .collect()
 }
 
-fn refused(reason: &str) -> StoreError {
-    StoreError::QueryRefused {
-        reason: reason.to_owned(),
-    }
-}
-
 /// Errors of the server keep their kind; all others are attributed to the query.
-fn sorted(path: &Path, error: postgres::Error) -> StoreError {
+fn classify(path: &Path, error: postgres::Error) -> StoreError {
     if error.code() == Some(&SqlState::READ_ONLY_SQL_TRANSACTION) {
         return refused("it would do more than read");
     }
     if error.code() == Some(&SqlState::QUERY_CANCELED) {
         return exceeds(QueryLimit::Stopped);
     }
-    match server_error::classify(path, DOING, error) {
+    match StoreError::from_sql(path, DOING, error.into()) {
         StoreError::Server { source, .. } => match source.as_db_error() {
             Some(said) if said.message().contains("multiple commands") => {
                 refused("there is a second statement")

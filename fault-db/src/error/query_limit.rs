@@ -1,0 +1,18 @@
+//! The limits of a query.
+
+/// Longest result of a query, bytes of text: it is printed from memory.
+pub(crate) const MOST_RESULT_BYTES: usize = 16 << 20;
+
+/// The limit that a query exceeded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum QueryLimit {
+    /// The caller or the server stopped it.
+    #[error("it took too long")]
+    Stopped,
+    /// Memory of the database engine.
+    #[error("it needs too much memory")]
+    Memory,
+    /// A single row is longer than a result may be.
+    #[error("a row is longer than {MOST_RESULT_BYTES} bytes")]
+    Row,
+}

@@ -1,0 +1,79 @@
+//! Reads the entries of the chains in order, and checks each one's position and hash.
+
+use crate::backend::{Backend, SqlResult, values};
+use crate::id::Id;
+use crate::seal::chained;
+
+/// Seals read at a time, which bounds the memory used.
+pub(super) const SEALS_PER_BATCH: usize = 1_000;
+
+/// A seal as stored, with the row number of what it covers, if that exists.
+pub(super) struct Seal {
+    pub origin: Id,
+    pub ordinal: i64,
+    pub what: String,
+    pub id: Id,
+    pub covers: i64,
+    pub payload: String,
+    pub digest: Vec<u8>,
+    pub hash: Vec<u8>,
+    pub row: Option<i64>,
+}
+
+/// The error in a seal's position or hash, if any; `before` is the seal before it in the same chain.
+pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<String> {
+    let expected = before.map_or(1, |before| before.ordinal + 1);
+    if seal.ordinal != expected {
+        let last = seal.ordinal - 1;
+        let missing = if last > expected {
+            format!("{expected} to {last}")
+        } else {
+            expected.to_string()
+        };
+        return Some(format!(
+            "{}: before it seals were taken out, number {missing}",
+            seal.name()
+        ));
+    }
+    let hash = chained(before.map(|before| &before.hash[..]), &seal.digest);
+    (hash != seal.hash[..]).then(|| {
+        format!(
+            "{} ({} {}) does not fit the one before: it was changed",
+            seal.name(),
+            seal.what,
+            seal.id
+        )
+    })
+}
+
+impl Seal {
+    pub fn name(&self) -> String {
+        format!("seal {} of file {}", self.ordinal, self.origin.short())
+    }
+}
+
+pub(super) fn seals_after(backend: &Backend, last: Option<&Seal>) -> SqlResult<Vec<Seal>> {
+    let (origin, ordinal) = last.map_or((&[][..], 0), |last| {
+        (&last.origin.as_bytes()[..], last.ordinal)
+    });
+    let sql = format!(
+        "SELECT s.origin, s.ordinal, s.what, s.id, s.covers, s.says, s.digest, s.hash,
+            CASE s.what WHEN 'run' THEN (SELECT r.seq FROM run r WHERE r.id = s.id)
+                WHEN 'event' THEN (SELECT e.seq FROM fault_event e WHERE e.id = s.id)
+                WHEN 'note' THEN (SELECT n.seq FROM run_note n WHERE n.id = s.id) END
+         FROM seal s WHERE (s.origin, s.ordinal) > (?1, ?2) ORDER BY s.origin, s.ordinal LIMIT {SEALS_PER_BATCH}"
+    );
+    backend.select(&sql, &values![origin, ordinal], |row| {
+        Ok(Seal {
+            origin: row.get(0)?,
+            ordinal: row.get(1)?,
+            what: row.get(2)?,
+            id: row.get(3)?,
+            covers: row.get(4)?,
+            payload: row.get(5)?,
+            digest: row.get(6)?,
+            hash: row.get(7)?,
+            row: row.get(8)?,
+        })
+    })
+}
