@@ -7,7 +7,7 @@ use crate::error::StoreError;
 use crate::sql_functions::DAY_US;
 use crate::store::Store;
 
-/// How often one fault of one unit was seen on one day.
+/// Occurrences of one fault of one unit on one day.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DailyCount {
     /// Beginning of the day, microseconds since 1970, UTC.
@@ -20,13 +20,13 @@ pub struct DailyCount {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// Times seen.
+    /// Number of occurrences.
     pub count: u64,
 }
 
 impl Store {
-    /// Counts what was seen since `since_us`, oldest day first. Days are of a clock that is
-    /// `utc_offset_us` ahead of UTC; the offset is one for all of them.
+    /// Counts occurrences since `since_us`, oldest day first. Days begin at midnight of a clock that is
+    /// `utc_offset_us` ahead of UTC; the offset is the same for all of them.
     pub fn daily_occurrences(
         &self,
         since_us: i64,

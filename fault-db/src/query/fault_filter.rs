@@ -11,40 +11,40 @@ use crate::full_text::Search;
 use crate::id::Id;
 use crate::store::Store;
 
-/// Which faults; `None` does not restrict.
+/// Selects faults; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FaultFilter {
     /// Serial number of the unit.
     pub unit: Option<String>,
-    /// Serial number of a part that was taken out or put in for it.
+    /// Serial number of a part that a repair took out or put in.
     pub serial: Option<String>,
-    /// The train its unit was in.
+    /// Train of the unit.
     pub train: Option<String>,
-    /// Number (decimal, or hex after `0x`) or name of the fault; or several of these, with commas between.
+    /// Number (decimal, or hex after `0x`) or name of the fault, or several of these, separated by commas.
     pub code: Option<String>,
     /// The part it points at.
     pub lru: Option<String>,
-    /// How bad it is.
+    /// Severity.
     pub severity: Option<String>,
-    /// Where it stands: in one of these; none does not restrict.
+    /// States, any of which matches; an empty list does not restrict.
     pub states: Vec<FaultState>,
-    /// Seen in this procedure.
+    /// Procedure in which it was seen.
     pub procedure: Option<String>,
     /// Line of the run that saw it.
     pub line: Option<String>,
-    /// Seen in this run.
+    /// Run in which it was seen.
     pub run: Option<Id>,
-    /// Seen at this time or later.
+    /// Seen at this time or later, µs since 1970.
     pub since_us: Option<i64>,
-    /// Seen before this time.
+    /// Seen before this time, µs since 1970.
     pub until_us: Option<i64>,
-    /// Words of a note on it, or on a run that saw it.
+    /// Words of a note on it, or of a note on a run that saw it.
     pub note: Option<String>,
-    /// At most so many, in a list.
+    /// Most faults in a list.
     pub limit: Option<u32>,
 }
 
-/// Rows a filter is applied to. All have the columns unit, code, lru and line.
+/// The table that a filter is applied to. Each has the columns unit, code, lru and line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FilteredTable {
     Faults,
@@ -52,7 +52,7 @@ pub(crate) enum FilteredTable {
     Repairs,
 }
 
-/// A filter whose names are the numbers they have here.
+/// A filter with its names replaced by row numbers and stored spellings.
 #[derive(Clone)]
 pub(crate) struct Resolved<'a> {
     filter: &'a FaultFilter,
@@ -63,22 +63,22 @@ pub(crate) struct Resolved<'a> {
     frequent: Frequent,
 }
 
-/// Whether what is looked for is said so often that going through faults finds enough of them sooner than
-/// going through all that say it.
+/// Whether the search words occur so often that it is faster to look through faults for them than to look up
+/// all their matches.
 #[derive(Clone, Copy, Debug, Default)]
 struct Frequent {
     of_faults: bool,
     of_runs: bool,
 }
 
-/// Said so often is common, if it was not long ago: so many of the latest things said, in so many.
+/// Words are frequent if they match this many of the latest texts, within so many.
 const FREQUENT: u32 = 3000;
 const WITHIN_LATEST: i64 = 300_000;
-/// More faults than this are not looked for one by one.
+/// Longest list for which single faults are searched.
 const FEW: u32 = 200;
 
 impl FaultFilter {
-    /// Looks its names up.
+    /// Looks the names up.
     pub(crate) fn resolve(&self, store: &Store) -> Result<Resolved<'_>, StoreError> {
         let unit = self.unit.as_deref().map(|serial| store.unit_seq(serial));
         let code = self.code.as_deref().map(|code| codes(store, code));
@@ -96,7 +96,8 @@ impl FaultFilter {
 }
 
 impl Resolved<'_> {
-    /// For a list of a few: finds out how common what is looked for is. A server knows that by itself.
+    /// For a short list: finds out whether the search words are frequent. A server's planner knows that by
+    /// itself.
     pub fn estimate_frequency(&mut self, store: &Store) -> Result<(), StoreError> {
         let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
         let (Backend::File(_), Some(search), true) = (store.backend(), &self.search, is_few) else {
@@ -123,7 +124,8 @@ impl Resolved<'_> {
         Ok(())
     }
 
-    /// Unit, code, part or line are all it asks for, besides a span of time; and how many of them.
+    /// The number of conditions if the filter has only unit, code, part, line and a span of time, else
+    /// `None`.
     pub fn identity_filters_only(&self) -> Option<usize> {
         let FaultFilter {
             serial,
@@ -147,27 +149,25 @@ impl Resolved<'_> {
         is_plain.then(|| asked.iter().filter(|asked| **asked).count())
     }
 
-    /// The unit, if one was asked for.
     pub fn unit(&self) -> Option<i64> {
         self.unit
     }
 
-    /// The codes, if a code was asked for.
+    /// The numbers of the codes asked for.
     pub fn codes(&self) -> Option<&[i64]> {
         self.codes.as_deref()
     }
 
-    /// The parts, if one was asked for: usually one, or more that differ in capitals.
+    /// The stored spellings of the part asked for: usually one, or more that differ in capitals.
     pub fn lrus(&self) -> Option<&[String]> {
         self.lrus.as_deref()
     }
 
-    /// The filter it was made of.
     pub fn filter(&self) -> &FaultFilter {
         self.filter
     }
 
-    /// Its conditions on rows called `x`, but for the span of time.
+    /// The conditions on rows called `x`, without the span of time.
     fn conditions(&self, backend: &Backend, of: FilteredTable, span: Option<Span>) -> Conditions {
         let filter = self.filter;
         let mut all = Conditions::default();
@@ -224,7 +224,7 @@ impl Resolved<'_> {
         all
     }
 
-    /// What it asks of an occurrence: all of it of the same one.
+    /// The conditions on an occurrence; one occurrence has to meet all of them.
     fn of_occurrence(
         &self,
         of: FilteredTable,
@@ -265,7 +265,8 @@ impl Resolved<'_> {
                 .for_each(|condition| all.require(condition));
             return;
         }
-        // Whether a fault was seen since then its own row tells; before then, or then and so, does not.
+        // The fault's own row tells whether it was seen since a time; an end, or another condition, needs its
+        // occurrences.
         let (since_us, until_us) = span.unwrap_or_default();
         if until_us.is_some() || !asked.is_empty() {
             for (compared, at_us) in [(">=", since_us), ("<", until_us)] {
@@ -279,7 +280,7 @@ impl Resolved<'_> {
             return;
         }
         let asked = asked.join(" AND ");
-        // Few runs are gone through from their occurrences; else each fault is looked at for itself.
+        // With few runs their occurrences are read; otherwise each fault's occurrences.
         all.require(match by_run {
             true => format!("{fault} IN (SELECT o.fault FROM fault_occurrence o WHERE {asked})"),
             false => format!(
@@ -288,12 +289,12 @@ impl Resolved<'_> {
         });
     }
 
-    /// The conditions and the span of time, on the column of `x` that says when.
+    /// The conditions with the span of time, on the time column `at` of `x`.
     pub fn conditions_at(&self, backend: &Backend, of: FilteredTable, at: &str) -> Conditions {
         self.conditions_from(backend, of, at, self.filter.since_us)
     }
 
-    /// The same, and not before this time: one bound, since an index is gone through from one only.
+    /// The same, and not before `since_us`: one lower bound, since an index is searched by one only.
     pub fn conditions_from(
         &self,
         backend: &Backend,
@@ -307,7 +308,7 @@ impl Resolved<'_> {
         all
     }
 
-    /// The conditions on faults, and that they were seen in the span of time.
+    /// The conditions on faults that were seen in the span of time.
     pub fn conditions_seen(&self, backend: &Backend) -> Conditions {
         let FaultFilter {
             since_us, until_us, ..
@@ -319,7 +320,7 @@ impl Resolved<'_> {
     }
 }
 
-/// From and until, µs.
+/// Start and end, µs.
 type Span = (Option<i64>, Option<i64>);
 
 fn search(note: &str) -> Result<Search, StoreError> {
@@ -328,7 +329,7 @@ fn search(note: &str) -> Result<Search, StoreError> {
     })
 }
 
-/// The numbers of codes: themselves, or those of the faults of that name.
+/// The numbers of codes: given as such, or by the name of the fault.
 fn codes(store: &Store, asked: &str) -> Result<Vec<i64>, StoreError> {
     let mut numbers = Vec::new();
     let mut known = None;
@@ -349,7 +350,7 @@ fn codes(store: &Store, asked: &str) -> Result<Vec<i64>, StoreError> {
     Ok(numbers)
 }
 
-/// A code written as its number: decimal, or hex after `0x`.
+/// A code written as a number: decimal, or hex after `0x`.
 pub fn code_number(code: &str) -> Option<i64> {
     match code.strip_prefix("0x") {
         Some(hex) => i64::from_str_radix(hex, 16).ok(),
@@ -357,7 +358,7 @@ pub fn code_number(code: &str) -> Option<i64> {
     }
 }
 
-/// A part's name as it was written, in capitals or not.
+/// The stored spellings of a part's name, in capitals or not.
 fn lrus(store: &Store, lru: &str) -> Result<Vec<String>, StoreError> {
     let mut known = store.known_lrus()?;
     known.retain(|known| known.eq_ignore_ascii_case(lru));

@@ -25,58 +25,58 @@ pub struct FaultSummary {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// How bad it is.
+    /// Severity.
     pub severity: String,
-    /// Where it stands.
+    /// Its state.
     pub state: FaultState,
     /// First seen.
     pub first_at_us: i64,
     /// Last seen.
     pub last_at_us: i64,
-    /// Times seen.
+    /// Number of occurrences.
     pub occurrences: u32,
     /// Its latest trace.
     pub trace_id: Option<Id>,
 }
 
-/// A fault with all that belongs to it but its traces' samples.
+/// A fault with its occurrences and events.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultDetail {
     /// The fault.
     pub fault: FaultSummary,
     /// Its occurrences, newest first, at most [`FaultDetail::MAX_OCCURRENCES`].
     pub occurrences: Vec<Occurrence>,
-    /// What was done about it, oldest first.
+    /// Its events, oldest first.
     pub events: Vec<FaultEvent>,
 }
 
 impl FaultDetail {
-    /// So many occurrences are read at most, whatever the fault's count.
+    /// Most occurrences that are read of a fault.
     pub const MAX_OCCURRENCES: u32 = 200;
 }
 
-/// A fault seen once.
+/// An occurrence of a fault.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Occurrence {
     /// The occurrence.
     pub id: Id,
     /// The run that saw it.
     pub run_id: Id,
-    /// The step under way.
+    /// The step under way, if any.
     pub step_index: Option<u32>,
-    /// When.
+    /// When, µs since 1970.
     pub at_us: i64,
     /// When, on the bench's clock.
     pub bench_us: i64,
-    /// What was seen.
+    /// Description.
     pub message: String,
     /// Its trace, if one was kept.
     pub trace_id: Option<Id>,
-    /// All signals at that moment.
+    /// Freeze frame: all signals at that moment.
     pub freeze: Vec<FreezeSample>,
 }
 
-/// Something that happened to a fault.
+/// An event of a fault.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultEvent {
     /// The event.
@@ -85,11 +85,11 @@ pub struct FaultEvent {
     pub kind: String,
     /// When.
     pub at_us: i64,
-    /// Who; empty for the tester itself.
+    /// Who; empty for the program itself.
     pub who: String,
-    /// What was said; empty for a repair.
+    /// The text; empty for a repair.
     pub note: String,
-    /// The fault's state after it; none if it stayed.
+    /// The fault's state after it; `None` if it did not change.
     pub state: Option<FaultState>,
     /// The repair, if it is one.
     pub repair: Option<RepairRecord>,

@@ -2,7 +2,7 @@
 
 use crate::backend::Value;
 
-/// Conditions of a filter, joined by AND, with their values.
+/// Conditions joined by AND, with their parameter values.
 #[derive(Clone, Default)]
 pub(crate) struct Conditions {
     sql: Vec<String>,
@@ -32,13 +32,13 @@ impl Conditions {
         });
     }
 
-    /// Binds a value, and says the place it has in the question.
+    /// Binds a value; the placeholder to use.
     pub fn place(&mut self, value: impl Into<Value<'static>>) -> String {
         self.values.push(value.into());
         format!("?{}", self.values.len())
     }
 
-    /// `WHERE …`, or nothing.
+    /// `WHERE …`, or an empty text.
     pub fn sql(&self) -> String {
         if self.sql.is_empty() {
             String::new()
@@ -53,7 +53,7 @@ impl Conditions {
     }
 }
 
-/// `LIMIT …`, or nothing.
+/// `LIMIT …`, or an empty text.
 pub(crate) fn limit(most: Option<u32>) -> String {
     most.map_or_else(String::new, |most| format!("LIMIT {most}"))
 }

@@ -11,18 +11,17 @@ use crate::record::REPAIR;
 use crate::record::{RepairRecord, part_name};
 use crate::store::Store;
 
-/// How the source of a run begins that is no test but a log read from the unit.
+/// The source of a run that is an imported log begins with this.
 pub const LOG_SOURCE: &str = "log of ";
 
-/// Two readings may date one entry of a unit's log so far apart, µs: its clock and ours drift, and an
-/// answer takes its time. A unit needs longer than this from one power-up to the same event after the
-/// next.
+/// Two readings of a log may date the same entry this far apart, µs: the unit's clock and ours drift, and an
+/// answer takes time. From one power-up to the same event after the next a unit needs longer.
 pub const SAME_ENTRY_US: i64 = 5_000_000;
 
-/// What a unit's history says of one part.
+/// The history of one part in a unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PartHistory {
-    /// Runs in which a fault named it, since it was last repaired.
+    /// Runs in which a fault pointed at it since its last repair.
     pub runs: u32,
     /// Its last repair.
     pub repair: Option<PartRepair>,
@@ -33,15 +32,15 @@ pub struct PartHistory {
 pub struct PartRepair {
     /// When.
     pub at_us: i64,
-    /// Another part was put in; else it was worked on.
+    /// Whether the part was replaced; otherwise it was worked on.
     pub replaced: bool,
-    /// Faults it was repaired for, here or before, by number and the part they named.
+    /// The faults it was repaired for, then or earlier, by number and part named.
     pub faults: BTreeSet<(i64, String)>,
-    /// One of these came back after it was repaired for it.
+    /// Whether one of these came back after its repair.
     pub came_back: bool,
 }
 
-/// A fault seen once.
+/// An occurrence of a fault.
 struct Seen {
     run: i64,
     of_log: bool,
@@ -60,9 +59,8 @@ struct Repaired {
 }
 
 impl Store {
-    /// What the history of the unit with this serial number says of its parts, by part, from `since_us`
-    /// until `before_us`. Neither the run `but` counts nor an entry of an imported log that another run
-    /// tells of, too.
+    /// The history of each part of a unit, from `since_us` until `before_us`. The run `but` is left out, and
+    /// so are entries of an imported log that another run reports, too.
     pub fn part_history(
         &self,
         unit: &str,
@@ -153,8 +151,8 @@ impl Store {
         )
     }
 
-    /// Whether an occurrence of this fault with these words is known of the unit, at about this time or,
-    /// with none, at any.
+    /// Whether an occurrence of this fault with this message is stored for the unit, at about this time or,
+    /// with `None`, at any time.
     pub fn knows_occurrence(
         &self,
         unit: &str,
@@ -175,8 +173,8 @@ impl Store {
         Ok(found.is_some())
     }
 
-    /// When the unit itself, on a port, was under test: from and until, µs UTC. A run that was
-    /// interrupted lasted until its last step.
+    /// The times at which the unit itself, on a port, was under test: start and end, µs UTC. An interrupted
+    /// run lasted until its last step.
     pub fn tested_spans(&self, unit: &str) -> Result<Vec<(i64, i64)>, StoreError> {
         self.select(
             "listing a unit's runs",
@@ -192,7 +190,7 @@ impl Store {
     }
 }
 
-/// Another run tells of it, too: any that was a test, or a log that was imported earlier.
+/// Whether another run reports it, too: any test, or a log that was imported earlier.
 fn told_before(seen: &Seen, all: &[Seen]) -> bool {
     all.iter().any(|other| {
         other.run != seen.run
@@ -203,7 +201,7 @@ fn told_before(seen: &Seen, all: &[Seen]) -> bool {
     })
 }
 
-/// People write a part as they like.
+/// Part names are compared as `part_name` writes them.
 fn by_part(repairs: Vec<Repaired>) -> BTreeMap<String, Vec<Repaired>> {
     let mut parts: BTreeMap<String, Vec<Repaired>> = BTreeMap::new();
     for repaired in repairs {
@@ -213,8 +211,8 @@ fn by_part(repairs: Vec<Repaired>) -> BTreeMap<String, Vec<Repaired>> {
     parts
 }
 
-/// The last of a part's repairs, which are in order; a fault is back when it was seen after the last
-/// one that was for it.
+/// The last of a part's repairs, which are in order of time; a fault came back if it was seen after the last
+/// repair for it.
 fn part_repair(repairs: &[Repaired], seen: &[Seen]) -> Option<PartRepair> {
     let last = repairs.last()?;
     let mut repaired_at: BTreeMap<(i64, String), i64> = BTreeMap::new();

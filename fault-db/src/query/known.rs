@@ -7,7 +7,7 @@ use crate::store::Store;
 impl Store {
     /// Every code a fault was ever recorded with, and its latest name.
     pub fn known_codes(&self) -> Result<Vec<(i64, String)>, StoreError> {
-        // From one code to the next by index: all faults need not be looked at.
+        // Goes from one code to the next by index, without reading all faults.
         let sql = "WITH RECURSIVE c(code) AS (
                 SELECT min(code) FROM fault
                 UNION ALL SELECT (SELECT min(f.code) FROM fault f WHERE f.code > c.code)
@@ -20,7 +20,7 @@ impl Store {
         })
     }
 
-    /// Every part a fault ever pointed at.
+    /// Every part a fault pointed at.
     pub fn known_lrus(&self) -> Result<Vec<String>, StoreError> {
         let sql = "WITH RECURSIVE c(lru) AS (
                 SELECT min(lru) FROM fault
@@ -30,7 +30,7 @@ impl Store {
         self.select("listing parts", sql, &[], |row| row.get(0))
     }
 
-    /// Every part a fault ever pointed at or a repair was made of, as written in one of them.
+    /// Every part a fault pointed at or a repair was made of, in one of its spellings.
     pub fn known_parts(&self) -> Result<Vec<String>, StoreError> {
         let mut known = self.known_lrus()?;
         let sql = "SELECT DISTINCT part FROM repairs ORDER BY part";
@@ -59,20 +59,20 @@ impl Store {
         self.select("listing trains", sql, &[], |row| row.get(0))
     }
 
-    /// Every line a fault was ever seen on. Looks at all occurrences.
+    /// Every line a fault was seen on. Reads all occurrences.
     pub fn known_lines(&self) -> Result<Vec<String>, StoreError> {
         let sql = "SELECT DISTINCT line FROM fault_occurrence WHERE line <> '' ORDER BY line";
         self.select("listing lines", sql, &[], |row| row.get(0))
     }
 
-    /// Every procedure a fault was ever seen in. Looks at all occurrences.
+    /// Every procedure a fault was seen in. Reads all occurrences.
     pub fn known_procedures(&self) -> Result<Vec<String>, StoreError> {
         let sql = "SELECT DISTINCT s.procedure FROM fault_occurrence o
             JOIN step s ON s.run = o.run AND s.step_index = o.step_index ORDER BY s.procedure";
         self.select("listing procedures", sql, &[], |row| row.get(0))
     }
 
-    /// The serial number of every part that was taken out or put in. Looks at all repairs.
+    /// The serial number of every part that a repair took out or put in. Reads all repairs.
     pub fn known_part_serials(&self) -> Result<Vec<String>, StoreError> {
         let sql = "SELECT serial FROM (SELECT serial_old AS serial FROM repairs
                 UNION SELECT serial_new FROM repairs) AS changed

@@ -16,7 +16,7 @@ use crate::store::Store;
 use crate::text_enum::text_enum;
 
 text_enum! {
-    /// Whether a run came to its end.
+    /// Whether a run is finished.
     RunState {
         /// Its writer is alive.
         Running = "running",
@@ -27,7 +27,7 @@ text_enum! {
     }
 }
 
-/// Which runs to list, newest first; `None` does not restrict.
+/// Selects runs; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunFilter {
     /// Serial number of the unit.
@@ -36,13 +36,13 @@ pub struct RunFilter {
     pub line: Option<String>,
     /// Verdict.
     pub verdict: Option<Verdict>,
-    /// Who tested.
+    /// Name of the tester.
     pub operator: Option<String>,
-    /// Began at this time or later.
+    /// Started at this time or later, µs since 1970.
     pub since_us: Option<i64>,
-    /// Began before this time.
+    /// Started before this time, µs since 1970.
     pub until_us: Option<i64>,
-    /// At most so many.
+    /// Most runs in a list.
     pub limit: Option<u32>,
 }
 
@@ -59,25 +59,25 @@ pub struct RunSummary {
     pub unit_config_name: String,
     /// Line data used.
     pub line: String,
-    /// The train the unit was in; empty if nobody said.
+    /// The train the unit was in; empty if not given.
     pub train: String,
     /// Seed of everything random.
     pub seed: u64,
-    /// Who tested.
+    /// Name of the tester.
     pub operator: String,
-    /// Where the unit was.
+    /// Place of the unit: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
     /// When it began.
     pub started_at_us: i64,
     /// When it ended.
     pub finished_at_us: Option<i64>,
-    /// How it came out; none before its end.
+    /// Its verdict; `None` before its end.
     pub verdict: Option<Verdict>,
-    /// Whether it ended.
+    /// Whether it is finished.
     pub state: RunState,
-    /// Time that passed on the bench.
+    /// Duration on the bench's clock.
     pub bench_time_us: Option<i64>,
-    /// Time that passed for the operator.
+    /// Duration on the wall clock.
     pub wall_time_us: Option<i64>,
     /// Version of the program that ran it.
     pub app_version: String,
@@ -91,11 +91,11 @@ pub struct RunSummary {
     pub steps: u32,
     /// Steps that failed or could not be tested.
     pub steps_not_passed: u32,
-    /// Different faults seen.
+    /// Number of distinct faults seen.
     pub faults: u32,
 }
 
-/// A run with all that belongs to it but its traces' samples.
+/// A run with its steps, faults and notes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunDetail {
     /// The run.
@@ -106,9 +106,9 @@ pub struct RunDetail {
     pub steps: Vec<StepDetail>,
     /// The faults seen in it, in order of their first occurrence.
     pub faults: Vec<RunFault>,
-    /// What was said about it, oldest first.
+    /// Notes on it, oldest first.
     pub notes: Vec<RunNote>,
-    /// What it is sealed as; none before its end.
+    /// Its seal; `None` before its end.
     pub seal: Option<RunSealed>,
 }
 
@@ -121,21 +121,21 @@ pub struct StepDetail {
     pub procedure: String,
     /// Its name.
     pub name: String,
-    /// How it came out.
+    /// The step's verdict.
     pub verdict: Verdict,
     /// Bench time at its start.
     pub started_bench_us: i64,
     /// Bench time it took.
     pub bench_time_us: i64,
-    /// Why, in words.
+    /// The reason of the verdict.
     pub message: String,
     /// Line of the script.
     pub script_line: Option<u32>,
-    /// What it measured.
+    /// Its measurements.
     pub measurements: Vec<MeasurementRecord>,
 }
 
-/// A fault as one run saw it: counts and times are those of the run alone.
+/// A fault as seen by one run: counts and times are those of the run alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunFault {
     /// The fault.
@@ -146,9 +146,9 @@ pub struct RunFault {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// How bad it is.
+    /// Severity.
     pub severity: String,
-    /// Where it stands now.
+    /// Its state now.
     pub state: FaultState,
     /// First seen in this run.
     pub first_at_us: i64,
@@ -156,7 +156,7 @@ pub struct RunFault {
     pub last_at_us: i64,
     /// First seen in this run, on the bench's clock.
     pub first_bench_us: i64,
-    /// Times seen in this run.
+    /// Occurrences in this run.
     pub occurrences: u32,
     /// First trace of it in this run.
     pub trace_id: Option<Id>,
@@ -173,8 +173,8 @@ const SELECT_RUN: &str = "
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
-    /// Lists runs, newest first. `is_alive` says whether the owner of an unfinished run still
-    /// lives; without it the run counts as interrupted.
+    /// Lists runs, newest first. `is_alive` says whether the owner of an unfinished run is alive; if not, the
+    /// run counts as interrupted.
     pub fn runs(
         &self,
         filter: &RunFilter,

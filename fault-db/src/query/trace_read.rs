@@ -15,12 +15,12 @@ use crate::trace::{Channel, Layout, Shape, TraceData, TraceError, check_size};
 
 const DOING: &str = "reading a trace";
 
-/// Blobs up to this are fetched at once: looking for a part in them would take longer.
+/// Blobs up to this size, bytes, are read whole, which is faster than reading parts of them.
 const FETCHED_WHOLE: usize = 32 << 10;
-/// First bytes of a blob that are fetched for its head; a head that is longer is fetched again.
+/// Bytes of a blob that are read for its directory; a longer one is read again.
 const HEAD_GUESS: usize = 4096;
 
-/// What a trace is and where it comes from, without its samples.
+/// The description of a trace, without its samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceHead {
     /// The trace.
@@ -39,7 +39,7 @@ pub struct TraceHead {
     pub rows: usize,
     /// The row at which it was triggered.
     pub trigger_row: Option<u32>,
-    /// It ends before its window did.
+    /// It ends before its window did: the link dropped or the program was closed.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
@@ -47,7 +47,7 @@ pub struct TraceHead {
     pub channels: Vec<Channel>,
 }
 
-/// A trace's row but for its samples.
+/// A row of the table, without its samples.
 struct Facts {
     seq: i64,
     t0_bench_us: i64,
@@ -67,17 +67,17 @@ impl Store {
         self.read_trace(id, None, None)
     }
 
-    /// A trace with the named channels only, in that order; the others are not unpacked.
+    /// A trace with the named channels only, in that order; the others are not decompressed.
     pub fn trace_channels(&self, id: Id, names: &[&str]) -> Result<TraceData, StoreError> {
         self.read_trace(id, Some(names), None)
     }
 
-    /// Some rows of the named channels, in that order; of all channels where none is named. Rows the
-    /// trace does not have are left out. Neither other channels nor, of a long trace, rows far from
-    /// these are fetched or unpacked.
+    /// Some rows of the named channels, in that order; of all channels if none is named. Rows that the trace
+    /// does not have are left out. Other channels, and distant rows of a long trace, are neither read nor
+    /// decompressed.
     ///
-    /// Times and the trigger's row are those of the first row returned; there is no trigger where its
-    /// row is not among them.
+    /// Times and the trigger's row refer to the first row returned; there is no trigger if its row is not
+    /// among them.
     pub fn trace_window(
         &self,
         id: Id,
@@ -87,7 +87,7 @@ impl Store {
         self.read_trace(id, (!names.is_empty()).then_some(names), Some(rows))
     }
 
-    /// What a trace is and where it comes from; no sample is read.
+    /// The description of a trace, without reading its samples.
     pub fn trace_head(&self, id: Id) -> Result<TraceHead, StoreError> {
         let row = self.row_of(id)?;
         let origin = self.first(
@@ -127,7 +127,7 @@ impl Store {
         names: Option<&[&str]>,
         rows: Option<Range<usize>>,
     ) -> Result<TraceData, StoreError> {
-        // A server's connection answers one question at a time, so the samples come last.
+        // A server's connection answers one query at a time, so the samples come last.
         let row = self.row_of(id)?;
         let all = self.channel_set(id, row.channel_set)?;
         let failed = |source| StoreError::Trace { trace: id, source };
@@ -163,7 +163,7 @@ impl Store {
         })
     }
 
-    /// Columns out of the blob where it lies in SQLite's own memory, fetched as a whole.
+    /// Columns of a blob that is read whole, directly from SQLite's memory.
     fn fetched(
         &self,
         id: Id,
@@ -178,21 +178,21 @@ impl Store {
             let (Ok(hash), Ok(data)) = (row.get::<&[u8]>(0), row.get::<&[u8]>(1)) else {
                 return Ok(Err(TraceError::Checksum));
             };
-            // Of a part its own checksums are enough, where it has some.
+            // The checksums of the parts suffice, where there are some.
             let whole = !(is_part && shape.has_checksums());
             let columns = self.codec().decode(data, shape, wanted, rows.clone());
-            // Damage that can be placed is named before damage that cannot.
+            // Damage with a known place is reported before damage without.
             Ok(match columns {
                 Ok(_) if whole && hash != sha256(data) => Err(TraceError::Checksum),
                 columns => columns,
             })
         })?;
-        // Another program may prune between two questions.
+        // Another program may prune between two queries.
         let read = read.ok_or_else(|| StoreError::not_found("trace", id))?;
         read.map_err(|source| StoreError::Trace { trace: id, source })
     }
 
-    /// Columns out of a blob of which only the head and what they need is fetched.
+    /// Columns of a blob of which only the directory and the parts needed are read.
     fn parts(
         &self,
         id: Id,
@@ -244,7 +244,7 @@ impl Store {
                 Ok(bytes)
             }
             Reader::Server(seq) => {
-                // Counted from 1, in the server's smaller whole numbers.
+                // PostgreSQL counts bytes from 1, as a 32-bit integer.
                 let found = self.first(
                     DOING,
                     "SELECT substr(data, CAST(?2 AS INTEGER), CAST(?3 AS INTEGER))
@@ -257,7 +257,7 @@ impl Store {
         }
     }
 
-    /// A channel list, parsed once per open history.
+    /// A channel list, parsed once per store.
     fn channel_set(&self, trace: Id, seq: i64) -> Result<Arc<[Channel]>, StoreError> {
         if let Some(known) = self.channel_sets.borrow().get(&seq) {
             return Ok(Arc::clone(known));
@@ -286,7 +286,7 @@ impl Store {
     }
 }
 
-/// What fetches parts of a blob.
+/// Reads a range of bytes of a blob.
 enum Reader<'s> {
     File(Blob<'s>),
     Server(i64),

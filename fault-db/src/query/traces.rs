@@ -27,7 +27,7 @@ pub struct TraceSummary {
     pub period_us: i64,
     /// Rows.
     pub rows: u32,
-    /// Size in the file.
+    /// Size in the file, bytes.
     pub size_bytes: u64,
     /// Fault occurrences it shows.
     pub occurrences: u32,
@@ -56,7 +56,7 @@ impl Store {
         )
     }
 
-    /// Packs and commits a trace of a run, and hangs it on the occurrences; its digest comes back, too.
+    /// Compresses and commits a trace of a run, and links it to occurrences; returns its digest, too.
     pub(crate) fn insert_trace(
         &self,
         run: i64,
@@ -94,7 +94,7 @@ impl Store {
         );
         let channel_set = self.write(DOING, |conn| {
             let failed = |error| self.failed(DOING, error);
-            // A list is never changed or removed, so one that was seen need not be looked up.
+            // A list is never changed or deleted, so a known one need not be looked up.
             let channel_set = match known {
                 Some(seq) => seq,
                 None => channel_set_seq(conn, &json).map_err(failed)?,
@@ -134,7 +134,7 @@ impl Store {
         Ok((id, digest))
     }
 
-    /// The row of a channel list that was read or written before.
+    /// The row number of a channel list that was read or written before.
     fn known_channel_set(&self, channels: &[Channel]) -> Option<i64> {
         let known = self.channel_sets.borrow();
         let found = known.iter().find(|(_, known)| known[..] == *channels);
@@ -158,7 +158,7 @@ impl Store {
     }
 }
 
-/// The row of a channel list; the same list is stored once however many traces have it.
+/// The row number of a channel list; equal lists are stored once.
 fn channel_set_seq(conn: &Connection, json: &str) -> rusqlite::Result<i64> {
     let hash = sha256(json.as_bytes());
     let known = conn

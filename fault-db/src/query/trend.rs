@@ -12,7 +12,7 @@ use crate::store::Store;
 
 const BY_DAY: &str = "reading a measurement by day";
 
-/// Which values of a measurement; `None` does not restrict.
+/// Selects values of a measurement; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TrendQuery {
     /// Its name.
@@ -23,15 +23,15 @@ pub struct TrendQuery {
     pub line: Option<String>,
     /// The train the unit was in.
     pub train: Option<String>,
-    /// The procedure that measured it: each may have limits of its own.
+    /// The procedure that measured it: each may have its own limits.
     pub procedure: Option<String>,
-    /// In a run that began at this time or later.
+    /// In a run that started at this time or later.
     pub since_us: Option<i64>,
-    /// In a run that began before this time.
+    /// In a run that started before this time.
     pub until_us: Option<i64>,
 }
 
-/// A measurement taken once.
+/// One value of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrendPoint {
     /// When: the run's start. Within a run, points come in the order of its steps.
@@ -40,7 +40,7 @@ pub struct TrendPoint {
     pub run_id: Id,
     /// Serial number of the unit.
     pub unit_serial: String,
-    /// The value; none if nothing could be measured.
+    /// The value; `None` if nothing could be measured.
     pub value: Option<f64>,
     /// Unit of value and limits.
     pub unit: String,
@@ -48,7 +48,7 @@ pub struct TrendPoint {
     pub low: Option<f64>,
     /// Highest allowed value.
     pub high: Option<f64>,
-    /// How it came out.
+    /// Its verdict.
     pub verdict: Verdict,
 }
 
@@ -57,17 +57,17 @@ pub struct TrendPoint {
 pub struct TrendDay {
     /// Beginning of the day, microseconds since 1970.
     pub day_us: i64,
-    /// How many.
+    /// Number of values.
     pub n: u32,
     /// Their mean.
     pub mean: f64,
     /// The sum of their squares.
     pub sum_of_squares: f64,
-    /// The least.
+    /// Smallest.
     pub least: f64,
-    /// The greatest.
+    /// Greatest.
     pub most: f64,
-    /// How many did not pass.
+    /// Number of values not passed.
     pub not_passed: u32,
 }
 
@@ -76,15 +76,15 @@ pub struct TrendDay {
 pub struct TrendUnit {
     /// Serial number.
     pub unit_serial: String,
-    /// How many.
+    /// Number of values.
     pub n: u32,
     /// Their mean.
     pub mean: f64,
-    /// How much they rise in a day, by least squares; none of fewer than two times.
+    /// Slope in a day by least squares; `None` for fewer than two times.
     pub slope_per_day: Option<f64>,
 }
 
-/// What is allowed, as it was last.
+/// The limits of the latest value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrendLimits {
     /// Unit of values and limits.
@@ -129,7 +129,7 @@ impl Store {
     /// As [`trend`](Self::trend).
     pub fn trend_by_day(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
         let is_fleet = query.unit.is_none() && query.line.is_none() && query.train.is_none();
-        // Whole days are kept; at both ends of the span less than one may be left.
+        // Counts are kept for whole days; at both ends of the span an incomplete day may remain.
         let low = query.since_us.map_or(i64::MIN, |us| utc_day(us - 1) + 1);
         let high = query.until_us.map_or(i64::MAX, utc_day);
         if matches!(self.backend(), Backend::Server(_)) || !is_fleet || low >= high {
@@ -164,7 +164,7 @@ impl Store {
         Ok(days)
     }
 
-    /// Day by day, value by value.
+    /// By day, from single values.
     fn days(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
         let mut conditions = self.measured(query)?;
         conditions.require("m.value IS NOT NULL");
@@ -177,7 +177,7 @@ impl Store {
         self.select(BY_DAY, &sql, conditions.values(), trend_day)
     }
 
-    /// The values unit by unit, in the whole months the span touches.
+    /// The values by unit, in the whole months that the span touches.
     ///
     /// # Errors
     /// As [`trend`](Self::trend).
@@ -210,7 +210,7 @@ impl Store {
             _ => {
                 conditions.require("u.seq = r.unit");
                 conditions.require("m.value IS NOT NULL");
-                // Days since the beginning of 2020, as the schema counts them.
+                // Days since the beginning of 2020, as in the schema.
                 let t = "(CAST(r.started_at_us - 1577836800000000 AS DOUBLE PRECISION) / 86400e6)";
                 format!(
                     "SELECT u.serial, count(*), sum(m.value), sum({t}), sum({t} * {t}),
@@ -255,12 +255,12 @@ impl Store {
         })
     }
 
-    /// The names of all measurements ever taken.
+    /// The names of all measurements.
     ///
     /// # Errors
     /// Of the file or server.
     pub fn measurement_names(&self) -> Result<Vec<String>, StoreError> {
-        // From one name to the next by index: all values need not be looked at.
+        // Goes from one name to the next by index, without reading all values.
         let sql = "WITH RECURSIVE c(name) AS (
                 SELECT min(name) FROM measurement
                 UNION ALL SELECT (SELECT min(m.name) FROM measurement m WHERE m.name > c.name)
@@ -269,7 +269,7 @@ impl Store {
         self.select("listing measurements", sql, &[], |row| row.get(0))
     }
 
-    /// The procedures that ever measured a value of it.
+    /// The procedures that measured it.
     ///
     /// # Errors
     /// Of the file or server.
@@ -289,7 +289,7 @@ impl Store {
         })
     }
 
-    /// When a part of this unit was repaired last, if ever.
+    /// The last repair of a part of this unit, µs since 1970.
     ///
     /// # Errors
     /// No such unit; or of the file or server.
@@ -304,11 +304,11 @@ impl Store {
         Ok(found.flatten())
     }
 
-    /// What a question asks of a measurement `m` in a run `r`.
+    /// The conditions of a query on a measurement `m` in a run `r`.
     fn measured(&self, query: &TrendQuery) -> Result<Conditions, StoreError> {
         let unit = query.unit.as_deref().map(|serial| self.unit_seq(serial));
         let mut conditions = Conditions::default();
-        // Runs first, by unit or time, then their values: a file follows the order of CROSS JOIN.
+        // Runs first, by unit or time, then their values: SQLite follows the order of CROSS JOIN.
         conditions.require("m.run = r.seq");
         conditions.add("m.name = ?", Some(query.measurement.clone()));
         conditions.add("r.unit = ?", unit.transpose()?);

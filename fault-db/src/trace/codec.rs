@@ -13,19 +13,19 @@ use super::layout::{self, Layout, Shape};
 use super::varint::{put, take};
 use super::{TraceData, TraceError};
 
-/// A trace has at most this many rows.
+/// Most rows of a trace.
 pub const MAX_ROWS: usize = 1_000_000;
 
-/// A trace, and what is decoded of it at once, has at most this many samples (64 MiB of doubles).
+/// Most samples of a trace, and of a single read (64 MiB of doubles).
 pub const MAX_SAMPLES: usize = 8 << 20;
 
-/// Level 1 is within a per cent of level 3 on columns this short, at half its time.
+/// Compression level 1 is within a per cent of level 3 on columns this short, at half its time.
 const ZSTD_LEVEL: i32 = 1;
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
-/// A frame costs about this much before it saves anything.
+/// Approximate overhead of a frame, bytes.
 const ZSTD_WORTH: usize = 24;
 
-/// Packs and unpacks traces; keeps its buffers and compressor from one to the next.
+/// Encodes and decodes traces; reuses its buffers and compressor.
 pub struct TraceCodec {
     compressor: Compressor<'static>,
     decompressor: Decompressor<'static>,
@@ -37,7 +37,6 @@ pub struct TraceCodec {
 }
 
 impl TraceCodec {
-    /// A codec with its compressor made.
     pub fn new() -> Result<Self, TraceError> {
         let mut compressor = Compressor::new(ZSTD_LEVEL).map_err(compression)?;
         // The directory has a checksum of every body, compressed or not.
@@ -53,7 +52,7 @@ impl TraceCodec {
         })
     }
 
-    /// Packs a trace; refuses one that could not be read back.
+    /// Encodes a trace; refuses one that could not be read back.
     pub fn encode(&mut self, trace: &TraceData) -> Result<Vec<u8>, TraceError> {
         trace.check()?;
         self.directory.clear();
@@ -81,7 +80,7 @@ impl TraceCodec {
         Ok(blob)
     }
 
-    /// Appends the plain body as a frame, unless that would not make it smaller.
+    /// Appends the plain body as a zstd frame, if that makes it smaller.
     fn put_compressed(&mut self) -> Result<bool, TraceError> {
         if self.plain.len() < ZSTD_WORTH {
             return Ok(false);
@@ -104,7 +103,7 @@ impl TraceCodec {
         Ok(true)
     }
 
-    /// Unpacks `rows` of the columns at `wanted`, places in the shape's channels, in that order.
+    /// Decodes `rows` of the columns at `wanted`, indexes of the shape's channels, in that order.
     pub fn decode(
         &mut self,
         blob: &[u8],
@@ -125,7 +124,7 @@ impl TraceCodec {
             .collect()
     }
 
-    /// Unpacks `rows` of the column at `place`; `bytes` are those of the layout's span.
+    /// Decodes `rows` of the column at `place`; `bytes` are those of the layout's span.
     pub(crate) fn part(
         &mut self,
         layout: &Layout,
@@ -182,7 +181,7 @@ impl TraceCodec {
         let found = self
             .decompressor
             .decompress_to_buffer(&self.frame[..], &mut self.plain);
-        // The buffer may have been larger from an earlier column: the length is checked too.
+        // The buffer may have been larger from an earlier column: the length is checked, too.
         if found.map_err(|_| "it does not decompress")? != plain {
             return Err("it decompresses to another length");
         }
@@ -190,7 +189,7 @@ impl TraceCodec {
     }
 }
 
-/// The largest plain body of a column: presence and raw doubles, or the widest varints.
+/// The largest plain body of a column: presence and raw doubles, or the longest varints.
 fn max_plain(rows: usize) -> usize {
     rows * 20 + 32
 }

@@ -15,7 +15,7 @@
 use super::scale::{changes, has_gaps, per_unit, scale};
 use super::varint::{put, take, unzigzag, zigzag};
 
-/// How the values of a column are written.
+/// The form of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     Constant,
@@ -26,7 +26,7 @@ pub(super) enum Form {
     RawF64,
 }
 
-/// The first byte a column has in the directory.
+/// The first byte of a column in the directory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Tag {
     pub form: Form,
@@ -42,7 +42,7 @@ const COMPRESSED: u8 = 0x08;
 const SPARSE: u8 = 0x10;
 const DIVIDED: u8 = 0x20;
 
-/// Beyond this, doubles do not hold every integer.
+/// Beyond this, doubles do not represent every integer.
 const MAX_INTEGER: i64 = 1 << 53;
 
 impl Tag {
@@ -74,14 +74,14 @@ impl Tag {
     }
 }
 
-/// Reused between columns, so that a trace is packed without an allocation per column.
+/// Buffers reused between columns, to avoid an allocation per column.
 #[derive(Default)]
 pub(super) struct Scratch {
     integers: Vec<i64>,
     filled: Vec<f64>,
 }
 
-/// Writes the plain body of a column to `out` and says how.
+/// Writes the plain body of a column to `out`; its tag.
 pub(super) fn pack(samples: &[f64], lsb: f64, scratch: &mut Scratch, out: &mut Vec<u8>) -> Tag {
     out.clear();
     let sparse = has_gaps(samples);
@@ -111,7 +111,7 @@ pub(super) fn pack(samples: &[f64], lsb: f64, scratch: &mut Scratch, out: &mut V
     }
 }
 
-/// Missing samples as the one before, or 0.
+/// Fills missing samples with the one before, or 0.
 fn filled(samples: &[f64], out: &mut Vec<f64>) {
     out.clear();
     let filled = samples.iter().scan(0.0, |last, sample| {
@@ -151,7 +151,7 @@ fn put_integers(integers: &[i64], out: &mut Vec<u8>) -> Form {
     }
 }
 
-/// A run costs at least two bytes; beyond one change in this many rows zstd does better on deltas.
+/// A run costs at least two bytes; with more than one change in this many rows zstd does better on deltas.
 const RUNS_WORTH: usize = 8;
 
 #[inline]
@@ -200,7 +200,7 @@ fn put_presence(samples: &[f64], out: &mut Vec<u8>) {
 
 fn put_planes<const N: usize>(samples: &[f64], bytes: impl Fn(f64) -> [u8; N], out: &mut Vec<u8>) {
     for plane in 0..N {
-        // A missing sample is in the presence; what stands here only has to compress well.
+        // The presence marks a missing sample; its value here only has to compress well.
         out.extend(
             samples
                 .iter()
@@ -209,7 +209,7 @@ fn put_planes<const N: usize>(samples: &[f64], bytes: impl Fn(f64) -> [u8; N], o
     }
 }
 
-/// Reads a plain body back; the error says what does not fit.
+/// Reads a plain body back; the error says what is inconsistent.
 pub(super) fn unpack(
     tag: Tag,
     mut body: &[u8],
@@ -373,7 +373,7 @@ mod tests {
             (vec![0.1, 1.0 / 3.0, 1e300], Form::RawF64),
             (vec![f64::INFINITY, 0.0], Form::RawF32),
             (vec![9.1e15, 1.0], Form::RawF64),
-            // Saturates as an integer, where its magnitude has no i64.
+            // Saturates as an integer, where its magnitude exceeds an i64.
             (vec![i64::MIN as f64, 0.0], Form::RawF32),
         ] {
             let (tag, body) = packed(&samples, 1.0);

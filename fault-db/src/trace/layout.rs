@@ -18,16 +18,16 @@ use super::column::Tag;
 use super::varint::{put, take};
 use super::{Channel, TraceError};
 
-/// The number of the encoding that is written, in the trace table.
+/// The number of the current encoding, in the trace table.
 pub const ENCODING: i64 = 2;
-/// Traces of earlier versions.
+/// The encoding of earlier versions.
 const WITHOUT_CHECKSUMS: i64 = 1;
 
-/// 3.4 minutes at 50 ms: a fault's trace is one block, an hour is eighteen.
+/// Rows of a block: 3.4 minutes at 50 ms. A fault's trace is one block, an hour is eighteen.
 const BLOCK_ROWS: usize = 4096;
 const CRC_BYTES: usize = 4;
 
-/// What a trace's row in the table says of its blob.
+/// What the row of a trace says about its blob.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
     /// Number of the encoding.
@@ -39,7 +39,7 @@ pub struct Shape<'a> {
 }
 
 impl Shape<'_> {
-    /// Whether pieces have checksums of their own. Without them the whole blob is needed to know.
+    /// Whether pieces have checksums of their own. Without them the whole blob has to be read to verify any.
     pub(crate) fn has_checksums(&self) -> bool {
         self.encoding == ENCODING
     }
@@ -72,7 +72,7 @@ pub(super) fn put_head(out: &mut Vec<u8>, rows: usize, columns: usize, directory
     out.extend_from_slice(&crc.to_le_bytes());
 }
 
-/// Writes a piece's place in the directory.
+/// Writes a piece's entry in the directory.
 pub(super) fn put_piece(directory: &mut Vec<u8>, tag: Tag, body: &[u8]) {
     directory.push(tag.byte());
     put(directory, body.len() as u64);
@@ -91,7 +91,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Refuses a body that is not the one written.
+    /// Refuses a body that does not match its checksum.
     pub fn check(&self, body: &[u8]) -> Result<(), &'static str> {
         match self.crc {
             Some(crc) if crc != crc32fast::hash(body) => {
@@ -109,7 +109,7 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Bytes at the front of a blob that `read` needs; `start` is its first bytes, 32 or all.
+    /// Length of the directory at the front of a blob; `start` is its first bytes, 32 or all.
     pub fn head_length(
         start: &[u8],
         length: usize,
@@ -145,7 +145,7 @@ impl Layout {
     /// of it.
     pub fn read(head: &[u8], length: usize, shape: &Shape<'_>) -> Result<Self, TraceError> {
         let mut rest = head;
-        // What `head_length` has looked at.
+        // `head_length` has checked this.
         let (_, _) = (take(&mut rest), take(&mut rest));
         let damaged = |rest: &[u8], what| TraceError::Blob {
             offset: head.len() - rest.len(),
@@ -168,7 +168,7 @@ impl Layout {
             return Err(damaged(rest, "the directory is cut off"));
         }
         let mut pieces = Vec::with_capacity(count);
-        // Lengths until all are known, for where the bodies begin without a directory's length.
+        // First all lengths: without a stored directory length, they tell where the bodies begin.
         let mut at = 0usize;
         for place in 0..count {
             let (&byte, after) = rest.split_first().ok_or_else(|| damaged(rest, "cut off"))?;
@@ -222,7 +222,7 @@ impl Layout {
         Ok(Self { pieces, blocks })
     }
 
-    /// The pieces of the channel at `place` that have any of `rows`, in order; they lie side by side.
+    /// The pieces of the channel at `place` that contain any of `rows`, in order; they are adjacent.
     pub(super) fn pieces(&self, place: usize, rows: &Range<usize>) -> &[Piece] {
         if rows.is_empty() {
             return &[];
@@ -233,7 +233,7 @@ impl Layout {
         column.get(first..end).unwrap_or_default()
     }
 
-    /// The bytes of those pieces.
+    /// The byte range of those pieces.
     pub fn span(&self, place: usize, rows: &Range<usize>) -> Range<usize> {
         match self.pieces(place, rows) {
             [] => 0..0,

@@ -25,26 +25,26 @@ pub struct Channel {
     pub name: String,
     /// Unit of its samples; empty for an enum or a bit.
     pub unit: String,
-    /// What its samples are.
+    /// The kind of its samples.
     pub kind: ChannelKind,
 }
 
-/// What the samples of a channel are.
+/// The kind of a channel's samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKind {
-    /// A quantity; its samples are expected to be whole multiples of `lsb`. One that is not is
-    /// stored as floating point: exact all the same, but larger.
+    /// A quantity; its samples should be whole multiples of `lsb`. Others are stored as floating point:
+    /// exact, but larger.
     Number {
-        /// The smallest step of the quantity.
+        /// Resolution of the quantity.
         lsb: f64,
     },
-    /// A choice; each sample is one of the numbers in `labels`.
+    /// An enum; each sample is one of the numbers in `labels`.
     Enum {
         /// Number to word.
         labels: BTreeMap<i64, String>,
     },
-    /// 0 or 1.
+    /// A bit: 0 or 1.
     Bit,
 }
 
@@ -146,15 +146,15 @@ impl TraceData {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TraceError {
-    /// Channels and columns must pair up.
+    /// The numbers of channels and columns differ.
     #[error("{channels} channels but {columns} columns")]
     ChannelCount {
-        /// Channels named.
+        /// Number of channels.
         channels: usize,
-        /// Columns there.
+        /// Number of columns.
         columns: usize,
     },
-    /// Every column has a sample for every row.
+    /// A column has another number of samples than the trace has rows.
     #[error("channel {channel:?} has {found} samples, the others {rows}")]
     RowCount {
         /// The channel.
@@ -164,27 +164,27 @@ pub enum TraceError {
         /// Samples of this channel.
         found: usize,
     },
-    /// Two channels of one name.
+    /// Two channels have the same name.
     #[error("channel {channel:?} comes twice")]
     DuplicateChannel {
         /// The name.
         channel: String,
     },
-    /// The smallest step must be a positive number.
+    /// The resolution is not a positive number.
     #[error("channel {channel:?} has the lsb {lsb}; it must be a positive number")]
     Lsb {
         /// The channel.
         channel: String,
-        /// Its step.
+        /// Its resolution.
         lsb: f64,
     },
-    /// The time from row to row must be positive.
+    /// The time from row to row is not positive.
     #[error("the period is {period_us} µs; it must be positive")]
     Period {
         /// The period given.
         period_us: i64,
     },
-    /// The trigger lies outside.
+    /// The trigger's row is not in the trace.
     #[error("trigger row {row} of a trace with {rows} rows")]
     TriggerRow {
         /// The row named.
@@ -202,38 +202,38 @@ pub enum TraceError {
         /// Columns.
         columns: usize,
     },
-    /// No channel of that name.
+    /// There is no channel of that name.
     #[error("no channel {channel:?} in the trace; it has {}", .known.join(", "))]
     UnknownChannel {
         /// The name asked for.
         channel: String,
-        /// What there is.
+        /// The names there are.
         known: Vec<String>,
     },
-    /// Packed by a later version.
+    /// Encoded by a later version.
     #[error("encoding {found} is not known; a newer version of the program wrote it")]
     Encoding {
         /// The encoding's number.
         found: i64,
     },
-    /// The stored checksum is another.
+    /// The checksum does not match.
     #[error("the stored data does not match its checksum: it was damaged")]
     Checksum,
-    /// The channel list is not what its hash says, or cannot be read.
+    /// The channel list does not match its hash, or cannot be parsed.
     #[error("the channel list cannot be read: {detail}")]
     ChannelSet {
-        /// Why.
+        /// The reason.
         detail: String,
     },
-    /// The blob ends too early, goes on too long or names sizes that do not fit.
+    /// The blob is too short or too long, or contains inconsistent sizes.
     #[error("damaged at byte {offset}: {what}")]
     Blob {
-        /// Where in the blob.
+        /// The part of the blob.
         offset: usize,
         /// What is wrong.
         what: &'static str,
     },
-    /// A column's packed bytes make no sense.
+    /// A column cannot be decoded.
     #[error("channel {channel:?} is damaged: {what}")]
     Column {
         /// The channel.
@@ -241,10 +241,10 @@ pub enum TraceError {
         /// What is wrong.
         what: &'static str,
     },
-    /// The compressor refused, which it has no reason to.
+    /// The compressor failed.
     #[error("compression failed: {detail}")]
     Compression {
-        /// What it said.
+        /// Its message.
         detail: String,
     },
 }

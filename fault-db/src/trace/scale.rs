@@ -3,13 +3,13 @@
 //! The loops over samples have no branches, so that the compiler vectorises them: they take most of the
 //! time of encoding a trace.
 
-/// Samples taken at a time.
+/// Samples processed at a time.
 const LANES: usize = 16;
 
-/// Adding it to a double of up to 2^51 rounds that to a whole number, which then stands in the low bits.
+/// Adding it to a double of up to 2^51 rounds that to an integer, which then stands in the low bits.
 const ROUNDING: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 
-/// Beyond this, adding [`ROUNDING`] no longer rounds to whole numbers.
+/// Beyond this, adding [`ROUNDING`] no longer rounds to integers.
 const MAX_SCALED: f64 = 2_251_799_813_685_248.0; // 2^51
 
 /// Whether a sample is missing.
@@ -19,8 +19,8 @@ pub(super) fn has_gaps(samples: &[f64]) -> bool {
     chunks.iter().any(|chunk| gap(chunk)) || gap(rest)
 }
 
-/// Samples as integers, and whether reading divides. `None` when reading would not return every sample
-/// exactly. None of the samples is missing.
+/// Samples as integers, and whether reading divides; `None` if reading would not return every sample exactly.
+/// No sample may be missing.
 pub(super) fn scale(samples: &[f64], lsb: f64, integers: &mut Vec<i64>) -> Option<bool> {
     let per_unit = per_unit(lsb);
     let divides = per_unit >= 2.0 && (1.0 / per_unit - lsb).abs() <= lsb * 1e-9;

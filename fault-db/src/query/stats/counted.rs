@@ -6,7 +6,7 @@ use crate::backend::Field;
 use crate::sql_functions::{DAY_US, utc_day, utc_month};
 use crate::units;
 
-/// A code or unit by its number, a part or line by its name; of all together an empty name.
+/// The key of a count: a code or unit by its number, a part or line by its name; empty for all faults.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Key {
     Number(i64),
@@ -26,7 +26,7 @@ impl Key {
 /// Counts of each key.
 pub(crate) type Counted = BTreeMap<Key, Counts>;
 
-/// What is counted of one key.
+/// The counts of one key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Counts {
     pub occurrences: u64,
@@ -41,12 +41,12 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// Nothing was there after all.
+    /// Whether nothing is counted.
     pub fn is_nothing(&self) -> bool {
         self.occurrences == 0 && self.opened == 0 && self.closed == 0 && self.repairs.all == 0
     }
 
-    /// Seen so often in a bin.
+    /// Adds occurrences in a bin.
     pub fn add_occurrences(&mut self, bins: &Bins, bin: usize, times: u64) {
         self.occurrences += times;
         self.course.resize(bins.len(), 0);
@@ -55,7 +55,7 @@ impl Counts {
         }
     }
 
-    /// Adds what was counted of a day or month.
+    /// Adds the counts of a day or month.
     pub fn add(&mut self, tally: &Tally<'_>) {
         self.add_occurrences(tally.bins, tally.bin, tally.occurrences);
         self.opened += tally.opened;
@@ -67,7 +67,7 @@ impl Counts {
         self.repairs.back += tally.back;
     }
 
-    /// Takes a day out of its month; which units have none left is not known.
+    /// Subtracts the counts of a day from those of its month. The set of units cannot be reduced by this.
     pub fn subtract(&mut self, tally: &Tally<'_>) {
         let less = |count: &mut u32, by: u32| *count = count.saturating_sub(by);
         self.occurrences = self.occurrences.saturating_sub(tally.occurrences);
@@ -82,13 +82,13 @@ impl Counts {
         less(&mut self.repairs.back, tally.back);
     }
 
-    /// Seen last at this time, or later.
+    /// Records an occurrence at this time, for the latest one.
     pub fn seen_at(&mut self, at_us: i64) {
         self.last_at_us = self.last_at_us.max(Some(at_us));
     }
 }
 
-/// What a file keeps of a key on a day or in a month.
+/// The stored counts of a key on a day or in a month.
 pub(crate) struct Tally<'a> {
     pub bins: &'a Bins,
     pub bin: usize,
@@ -102,7 +102,7 @@ pub(crate) struct Tally<'a> {
     pub back: u32,
 }
 
-/// How many units, or which.
+/// The set of units, or only their number.
 #[derive(Clone, Debug)]
 pub(crate) enum Units {
     Set(Vec<u8>),
@@ -123,7 +123,7 @@ impl Units {
         }
     }
 
-    /// Adds a set to a set.
+    /// Adds the units of a set.
     pub fn add(&mut self, more: &[u8]) {
         match self {
             Self::Set(set) => units::add(set, more),
@@ -131,7 +131,6 @@ impl Units {
         }
     }
 
-    /// Adds a unit to a set.
     pub fn add_one(&mut self, unit: i64) {
         match self {
             Self::Set(set) => units::insert(set, unit),
@@ -140,7 +139,7 @@ impl Units {
     }
 }
 
-/// A span in days or months, UTC, for a course over time: days if there are not many.
+/// A span divided into days or months (UTC); days if there are few.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Bins {
     pub by_day: bool,
@@ -148,11 +147,11 @@ pub(crate) struct Bins {
     last: i64,
 }
 
-/// So many days can be shown one by one.
+/// Longest span shown by day, days.
 const MOST_DAYS: i64 = 62;
 
 impl Bins {
-    /// Of the span until just before `until_us`.
+    /// The span from `since_us` until just before `until_us`.
     pub fn of(since_us: i64, until_us: i64) -> Self {
         let last_us = since_us.max(until_us.saturating_sub(1));
         let by_day = (last_us - since_us) / DAY_US < MOST_DAYS;
@@ -168,12 +167,12 @@ impl Bins {
         usize::try_from(self.last - self.first + 1).unwrap_or(0)
     }
 
-    /// The place of a day or month by its number.
+    /// The bin of a day or month, by its number.
     pub fn place(&self, number: i64) -> usize {
         usize::try_from((number - self.first).max(0)).unwrap_or(0)
     }
 
-    /// The place of a time.
+    /// The bin of a time.
     pub fn place_at(&self, at_us: i64) -> usize {
         self.place(if self.by_day {
             utc_day(at_us)

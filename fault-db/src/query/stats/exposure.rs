@@ -8,7 +8,7 @@ use crate::error::StoreError;
 use crate::sql_functions::DAY_US;
 use crate::store::Store;
 
-/// The days of each unit.
+/// Observed days of each unit.
 pub(crate) struct Exposure {
     units: Vec<Watched>,
     since_us: i64,
@@ -22,7 +22,7 @@ struct Watched {
 }
 
 impl Exposure {
-    /// Of the units a filter leaves. A unit is on the line, and in the train, of its latest run.
+    /// Of the units that match the filter. A unit's line and train are those of its latest run.
     pub fn read(store: &Store, resolved: &Resolved<'_>, now_us: i64) -> Result<Self, StoreError> {
         let filter = resolved.filter();
         let until_us = filter.until_us.map_or(now_us, |until| until.min(now_us));
@@ -68,7 +68,7 @@ impl Exposure {
         })
     }
 
-    /// The beginning of the span, or of history.
+    /// The start of the span, or of the history.
     pub fn since_us(&self) -> i64 {
         self.since_us
     }
@@ -78,7 +78,7 @@ impl Exposure {
         self.until_us
     }
 
-    /// Days of all units a key is about.
+    /// Observed days of all units that belong to a key.
     pub fn days(&self, by: StatKey, key: &Key) -> f64 {
         let is_meant = |watched: &&Watched| match (by, key) {
             (StatKey::Unit, Key::Number(unit)) => watched.unit == *unit,

@@ -24,7 +24,7 @@ use crate::store::Store;
 /// Microseconds of an hour.
 const HOUR_US: f64 = 3.6e9;
 
-/// What to count faults by.
+/// The key by which faults are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StatKey {
     /// The fault's number.
@@ -35,27 +35,27 @@ pub enum StatKey {
     Unit,
     /// The line its unit was on.
     Line,
-    /// Nothing: all together.
+    /// No key: all faults in one count.
     All,
 }
 
-/// Which faults to count, and how.
+/// Selects the faults to count.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatQuery {
-    /// By what.
+    /// The key.
     pub by: StatKey,
-    /// Which faults, and when.
+    /// Which faults, and the span of time.
     pub filter: FaultFilter,
-    /// The end of history, for what is still going on.
+    /// The present time, µs since 1970: the end of the observation.
     pub now_us: i64,
-    /// A fault that is seen again within so many days after its repair is back.
+    /// A repair did not hold if the fault is seen again within this many days.
     pub back_within_days: u32,
 }
 
 /// The faults of one code, part, unit or line in a span of time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FaultStat {
-    /// The number as text, the part, the serial number, the line.
+    /// Depending on the key: the number as text, the part, the serial number, the line.
     pub key: String,
     /// The fault's name; empty for all but a code.
     pub name: String,
@@ -63,28 +63,28 @@ pub struct FaultStat {
     pub faults: u32,
     /// Faults last seen that are not closed now.
     pub not_closed: u32,
-    /// Times seen.
+    /// Number of occurrences.
     pub occurrences: u64,
-    /// Units that had it.
+    /// Number of units affected.
     pub units: u32,
-    /// Last seen; none if it was not.
+    /// Last occurrence; `None` without any.
     pub last_at_us: Option<i64>,
     /// Faults closed.
     pub closed: u32,
-    /// Of these without a repair: no fault was found.
+    /// Of these, closed without a repair (no fault found).
     pub no_fault_found: u32,
-    /// Repairs.
+    /// Number of repairs.
     pub repairs: u32,
-    /// Repairs that are old enough to know whether they held, or did not hold before that.
+    /// Repairs old enough to be judged, and younger ones that have failed already.
     pub repairs_judged: u32,
-    /// Of these the repairs after which the unit had the same fault again in time.
+    /// Repairs that did not hold.
     pub repairs_back: u32,
-    /// Mean time between faults: days the units were known for, by faults first seen. None without a
+    /// Mean time between faults: observed days of the units over the number of faults. `None` without a
     /// fault.
     pub mtbf_days: Option<f64>,
-    /// Mean time to repair: hours from a fault's opening to its repair. None without a repair.
+    /// Mean time to repair: hours from a fault's opening to its repair. `None` without a repair.
     pub mttr_hours: Option<f64>,
-    /// Times seen by day or by month (UTC), in order.
+    /// Occurrences by day or by month (UTC), in order.
     pub course: Vec<u64>,
 }
 
@@ -149,13 +149,13 @@ impl Store {
         })
     }
 
-    /// The first and the last time of anything that is counted: a run begun, a fault seen, repaired or
-    /// closed. None of an empty history.
+    /// The first and the last time of any run, occurrence or event, µs since 1970. `None` for an empty
+    /// history.
     ///
     /// # Errors
     /// Of the file or server.
     pub fn history_span(&self) -> Result<Option<(i64, i64)>, StoreError> {
-        // Each time by its index: of two in one question neither would be.
+        // Each time by its own index: two in one query would use none.
         let found = self.first(
             "looking for the span of the history",
             "SELECT min(began_us), max(ended_us) FROM (
@@ -174,7 +174,7 @@ impl Store {
 }
 
 impl StatKey {
-    /// The column of faults, occurrences and repairs it is, of rows called `x`.
+    /// The column of this key in faults, occurrences and repairs called `x`.
     fn column(self) -> &'static str {
         match self {
             Self::Code => "x.code",
@@ -186,7 +186,7 @@ impl StatKey {
     }
 }
 
-/// What keys are called by people.
+/// Readable names of keys.
 enum Names {
     OfNumbers(std::collections::BTreeMap<i64, String>, StatKey),
     AsTheyAre,

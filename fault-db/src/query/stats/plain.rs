@@ -5,7 +5,7 @@ use super::StatKey;
 use super::counted::{Bins, Counted, Key, Units};
 use crate::backend::{Backend, SqlResult};
 
-/// Counts what the filter leaves.
+/// Counts the rows that match the filter.
 pub(super) fn count(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -44,7 +44,7 @@ pub(super) fn count(
     Ok(counted)
 }
 
-/// A file hands out its rows faster than it groups them.
+/// A file returns its rows faster than it groups them.
 fn seen_in_file(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -69,7 +69,7 @@ fn seen_in_file(
     Ok(counted)
 }
 
-/// A server groups its rows faster than it hands them out.
+/// A server groups its rows faster than it returns them.
 fn seen_on_server(
     backend: &Backend,
     resolved: &Resolved<'_>,

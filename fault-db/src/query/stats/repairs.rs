@@ -6,28 +6,28 @@ use super::{HOUR_US, StatQuery};
 use crate::backend::{Backend, SqlResult};
 use crate::sql_functions::DAY_US;
 
-/// Repairs after which a fault was back within so many days are counted as they happen.
+/// The days within which triggers count a fault as back.
 pub(super) const KEPT_DAYS: u32 = 30;
 
-/// Repairs of one key.
+/// Counts of repairs of one key.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Repairs {
     pub all: u32,
     pub back: u32,
-    /// Have held so far, but are too young to tell.
+    /// Have held so far, but are too recent to be judged.
     pub young: u32,
-    /// From the openings of their faults to them, together.
+    /// Sum of the times from a fault's opening to its repair, µs.
     pub us: i64,
 }
 
 impl Repairs {
-    /// From a fault's opening to its repair, hours.
+    /// Mean time from a fault's opening to its repair, hours.
     pub fn mean_hours(&self) -> Option<f64> {
         (self.all > 0).then(|| self.us as f64 / f64::from(self.all) / HOUR_US)
     }
 }
 
-/// Adds the repairs made in the span, row by row.
+/// Adds the repairs in the span, row by row.
 pub(super) fn add(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -55,7 +55,7 @@ pub(super) fn add(
     })
 }
 
-/// Adds how many of the latest repairs cannot be judged yet.
+/// Adds the repairs that are too recent to be judged.
 pub(super) fn add_young(
     backend: &Backend,
     resolved: &Resolved<'_>,

@@ -8,28 +8,28 @@ use super::repairs::KEPT_DAYS;
 use crate::backend::{Backend, Row, SqlResult, Value, values};
 use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
 
-/// Numbers of the kinds of counts, as the schema gives them.
+/// Granularities in the table `tally`.
 const MONTHS: i64 = 0;
 const DAYS: i64 = 1;
 
-/// Counts that answer a question.
+/// The part of `tally` that answers a query.
 pub(super) struct Kept {
     dim: i64,
     column: &'static str,
-    /// Only of this one.
+    /// Restricts it to one key.
     only: Option<Value<'static>>,
-    /// All keys together.
+    /// Whether all keys are added up.
     together: bool,
 }
 
 impl Kept {
-    /// Each unit is counted for itself.
+    /// Whether the key is the unit.
     fn tells_units_apart(&self) -> bool {
         self.column == "unit" && !self.together
     }
 }
 
-/// The counts that answer it, if there are such.
+/// The part of `tally` that answers this query, if there is one.
 pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
     let asked = resolved.identity_filters_only()?;
     let (dim, column) = match by {
@@ -48,7 +48,7 @@ pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
     if asked == 0 {
         return Some(kept(dim, column, None));
     }
-    // One thing is asked for: its own counts know, if no others are to be told apart.
+    // With one condition, the counts under that key answer, if no other key is to be told apart.
     let (own, own_column, only): (_, _, Value<'static>) = match resolved {
         _ if asked > 1 => return None,
         one if one.unit().is_some() => (3, "unit", one.unit()?.into()),
@@ -79,7 +79,7 @@ pub(super) fn count(
         counted: Counted::new(),
     };
     let (since, until) = (filter.since_us, filter.until_us);
-    // Without an end there is nothing left over at it.
+    // A span without an end has no incomplete day there.
     let days = (
         since.map_or(i64::MIN / 2, |us| {
             us.div_euclid(DAY_US) + i64::from(us.rem_euclid(DAY_US) > 0)
@@ -136,8 +136,8 @@ impl Counting<'_> {
         Ok(())
     }
 
-    /// Days of a month. Most of them are the month but for the others, which are fewer to read; of units that
-    /// is known of each for itself only.
+    /// Days of one month: either added one by one, or the month without the others, whichever reads fewer
+    /// rows. Sets of units cannot be reduced, so the second needs the unit as the key.
     fn part(&mut self, month: i64, from: i64, to: i64) -> SqlResult<()> {
         let (first, last) = (
             utc_day(month_start_us(month)),
@@ -155,7 +155,7 @@ impl Counting<'_> {
         self.read(grain, from, to, Counts::add)
     }
 
-    /// Days that a month counted has and the span has not.
+    /// Subtracts days of a month that are outside the span.
     fn left_out(&mut self, from: i64, to: i64) -> SqlResult<()> {
         self.read(DAYS, from, to, Counts::subtract)
     }
@@ -204,7 +204,7 @@ impl Counting<'_> {
         })
     }
 
-    /// Row by row.
+    /// Counts an incomplete day row by row.
     fn rows(&mut self, from_us: i64, to_us: i64) -> SqlResult<()> {
         if from_us >= to_us {
             return Ok(());
@@ -260,7 +260,7 @@ impl Counting<'_> {
         })
     }
 
-    /// When each key was seen last, by index.
+    /// The last occurrence of each key, by index.
     fn last(&mut self, since: Option<i64>, until: Option<i64>) -> SqlResult<()> {
         let span = [since.unwrap_or(i64::MIN), until.unwrap_or(i64::MAX)];
         for (key, counts) in &mut self.counted {
