@@ -131,7 +131,7 @@ fn set_up(backend: &Backend, server: &Server, ids: &mut IdSource, laptops: &str)
 
 /// The functions that maintain derived columns.
 fn functions() -> String {
-    include_str!("functions.sql").replace("{recompute_fault}", RECOMPUTE_FAULT)
+    include_str!("functions.sql").replace("{settle}", RECOMPUTE_FAULT)
 }
 
 /// Creates the laptops' account if need be; whether it did.

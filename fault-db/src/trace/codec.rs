@@ -37,6 +37,7 @@ pub struct TraceCodec {
 }
 
 impl TraceCodec {
+    /// Fails only if the compressor cannot be allocated.
     pub fn new() -> Result<Self, TraceError> {
         let mut compressor = Compressor::new(ZSTD_LEVEL).map_err(compression)?;
         // The directory has a checksum of every body, compressed or not.
