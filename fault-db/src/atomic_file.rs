@@ -269,7 +269,7 @@ mod tests {
 
     /// Goal: without hard links, too, an existing file is not replaced.
     #[test]
-    fn without_hard_links_nothing_is_replaced_either() {
+    fn without_hard_links_an_existing_file_is_not_replaced() {
         let dir = tempfile::tempdir().expect("a directory");
         let part = |to: &str| {
             let part = AtomicFile {

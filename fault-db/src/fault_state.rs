@@ -114,7 +114,7 @@ mod tests {
 
     /// Every state against every action; `-` is a refusal.
     #[test]
-    fn transitions_are_the_table() {
+    fn transitions_match_the_table() {
         let table = "
             from          occur         acknowledge   repair    verify    close   reopen
             open          open          acknowledged  repaired  -         closed  -
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_says_what_is_possible() {
+    fn an_unknown_word_is_refused_with_the_possible_ones() {
         let error = FaultState::Repaired
             .next(FaultAction::Close)
             .expect_err("not verified");

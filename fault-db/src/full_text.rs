@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_letters_in_a_row_and_korean_syllables() {
+    fn words_are_runs_of_letters_and_single_korean_syllables() {
         assert_eq!(
             words("EB_relay (SN-77) 부품교체함."),
             ["eb", "relay", "sn", "77", "부", "품", "교", "체", "함"]
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_says_what_stands_together_in_it() {
+    fn a_text_matches_words_that_are_adjacent_in_it() {
         let says = |text: &str, asked: &str| Search::new(asked).expect("words").is_in(text);
         assert!(says("부품교체함, SN-77", "교체 SN-7"));
         assert!(says("EB relays replaced", "relay eb"));
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_keeps_together_what_stood_together() {
+    fn a_search_keeps_adjacent_words_adjacent() {
         let search = Search::new("교체 SN-7").expect("words");
         assert_eq!(search.for_file(), "\"교 체\" AND \"sn 7\" *");
         assert_eq!(search.for_server(), "('교' <-> '체') & ('sn' <-> '7':*)");

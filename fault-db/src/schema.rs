@@ -63,7 +63,7 @@ mod tests {
     /// Method: the disk as it would be then, with part of the work in the log and no commit: a page cache
     /// too small for it drives it there.
     #[test]
-    fn a_file_whose_migration_broke_off_is_the_old_one() {
+    fn a_file_whose_migration_was_interrupted_is_unchanged() {
         let dir = tempfile::tempdir().expect("a directory");
         let path = dir.path().join("a.db");
         let conn = Connection::open(&path).expect("made");

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_each_version_has_nothing_strange() {
+    fn a_file_of_each_version_has_no_foreign_objects() {
         for version in 1..=SCHEMA_VERSION {
             let conn = Connection::open_in_memory().expect("a database in memory");
             sql_functions::register(&conn).expect("functions");

@@ -35,7 +35,7 @@ mod tests {
     }
 
     #[test]
-    fn the_page_tells_of_every_column() {
+    fn the_page_describes_every_column() {
         let conn = Connection::open_in_memory().expect("a database in memory");
         sql_functions::register(&conn).expect("functions");
         schema::bring_to(&conn, schema::SCHEMA_VERSION as usize).expect("the schema");

@@ -70,7 +70,7 @@ fn check_finds_a_flipped_bit_in_a_trace_and_a_lost_row() {
 }
 
 #[test]
-fn a_backup_is_whole_and_overwrites_nothing() {
+fn a_backup_is_complete_and_overwrites_no_file() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     let (_, _, trace) = one_run(&store, "ATC-7", 1);
@@ -88,7 +88,7 @@ fn a_backup_is_whole_and_overwrites_nothing() {
 
 /// Goal: of programs that copy to one place at once one does, and the others are told; none spoils its copy.
 #[test]
-fn of_two_backups_to_one_place_one_is_made() {
+fn of_two_backups_to_one_path_one_is_made() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let (_, _, trace) = one_run(&open(&path), "ATC-7", 1);
@@ -117,7 +117,7 @@ fn of_two_backups_to_one_place_one_is_made() {
 /// Goal: what nobody works at any more goes with the next copy to the same place; what another program is at,
 /// also one of another computer, whose processes are not to be seen here, and what only looks like it, stays.
 #[test]
-fn what_is_left_of_a_copy_that_broke_off_goes_with_the_next() {
+fn the_leftover_of_an_interrupted_copy_is_removed_by_the_next() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     let random = "0123456789abcdef";
@@ -157,7 +157,7 @@ fn parts(folder: &Path) -> Vec<String> {
 /// Goal: a backup made while another program records is whole, and can be gone on with like the file
 /// itself: its schema, its search words, its way of giving back room.
 #[test]
-fn a_backup_made_while_others_write_is_a_file_to_go_on_with() {
+fn a_backup_made_while_others_write_can_be_used_as_a_database() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);
@@ -515,7 +515,7 @@ fn filters_stats_and_trends_answer() {
 }
 
 #[test]
-fn a_free_question_goes_on_as_long_as_it_may() {
+fn a_free_query_runs_within_its_limits() {
     let dir = tempdir().expect("a directory");
     let (store, _) = opened(&dir.path().join("a.db"));
     let bounds = QueryBounds {

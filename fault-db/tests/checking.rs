@@ -44,7 +44,7 @@ fn problems(store: &Store) -> Vec<Problem> {
 /// Goal: each way to make a run say something else than it did is found, and the run or seal is named.
 /// Method: rows changed behind the program's back; `{1}` stands for the second run's id.
 #[test]
-fn whatever_is_changed_about_a_run_is_found() {
+fn every_change_to_a_run_is_detected() {
     let no_trace_of_run_2 = "DELETE FROM measurement WHERE run = 2; DELETE FROM step WHERE run = 2;
         DELETE FROM run_script WHERE run = 2; DELETE FROM fault_occurrence WHERE run = 2;
         DELETE FROM run WHERE seq = 2";
@@ -148,7 +148,7 @@ fn whatever_is_changed_about_a_run_is_found() {
 /// Goal: a count, a sum, a repair or a note's words that are not what the rows say are found without
 /// anything being written, and made anew from them.
 #[test]
-fn what_follows_from_other_rows_is_held_against_them_and_made_anew() {
+fn derived_rows_are_checked_and_can_be_rebuilt() {
     for (sql, kind, expected) in [
         (
             "UPDATE tally SET seen = seen + 1 WHERE dim = 1 AND grain = 1",
@@ -224,7 +224,7 @@ fn what_follows_from_other_rows_is_held_against_them_and_made_anew() {
 
 /// A file full of the same mistake is told of in as many lines as a person reads.
 #[test]
-fn a_hundred_findings_of_a_kind_are_enough() {
+fn at_most_a_hundred_findings_of_a_kind_are_listed() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);
@@ -245,7 +245,7 @@ fn a_hundred_findings_of_a_kind_are_enough() {
 /// Goal: writes that are committed together are all there or none is, and one that fails within is taken
 /// back alone.
 #[test]
-fn writes_together_are_all_or_nothing() {
+fn a_transaction_commits_all_writes_or_none() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     let count = |store: &Store| {
@@ -472,7 +472,7 @@ fn a_planted_trigger_is_refused_by_name() {
 
 /// Goal: a trigger planted while a run is under way gets nothing sealed but what was recorded.
 #[test]
-fn what_is_sealed_is_what_was_recorded_not_what_a_trigger_made_of_it() {
+fn the_seal_covers_the_recorded_values_not_those_changed_by_a_trigger() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);
@@ -546,7 +546,7 @@ fn no_command_makes_seals_that_were_taken_out() {
 
 /// Goal: traces that were pruned are told as pruned, with what they were, and one that merely went is not.
 #[test]
-fn a_pruned_trace_leaves_a_sealed_statement() {
+fn a_pruned_trace_leaves_a_seal_of_its_deletion() {
     let dir = tempdir().expect("a directory");
     let (path, store, runs) = a_little_of_everything(dir.path());
     let faults = store
@@ -588,7 +588,7 @@ fn a_pruned_trace_leaves_a_sealed_statement() {
 /// Goal: a chain that was rewritten throughout fits itself; what was counted meanwhile is the only thing here
 /// that shows it, and stays on record when it is counted anew.
 #[test]
-fn what_differed_before_it_was_counted_anew_stays_on_record() {
+fn differences_found_by_a_rebuild_are_sealed() {
     let dir = tempdir().expect("a directory");
     let (path, store, _) = a_little_of_everything(dir.path());
     by_hand(&path, "UPDATE measured_day SET most = 7");

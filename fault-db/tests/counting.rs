@@ -180,7 +180,7 @@ fn a_repair_dated_before_its_fault_took_no_time() {
 
 /// What a list asks of an occurrence, one occurrence has to fulfil.
 #[test]
-fn a_list_asks_everything_of_the_same_occurrence() {
+fn all_conditions_on_an_occurrence_apply_to_the_same_one() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     for (train, month) in [("T1", 0), ("T2", 2)] {
@@ -210,7 +210,7 @@ fn a_list_asks_everything_of_the_same_occurrence() {
 /// Goal: a word that half of the notes have is found where it stands, as a rare one is. Method: a list without
 /// a limit goes through all notes that have it, a short one through the faults.
 #[test]
-fn a_common_word_is_found_as_a_rare_one() {
+fn a_frequent_word_finds_the_same_faults_as_a_rare_one_would() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     history(&store, &mut Random::new(1));

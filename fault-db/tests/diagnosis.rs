@@ -142,7 +142,7 @@ fn a_measured_value_decides_between_two_modes_of_one_step() {
 }
 
 #[test]
-fn what_nothing_can_tell_apart_is_said_to_be_so() {
+fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
     let found = diagnosed(&dictionary(), &run(&["b.s1", "c.s1"], Some(240.0)));
     assert_eq!(found.finding, Finding::CannotTell);
     assert!(
@@ -164,7 +164,7 @@ fn two_faults_at_once_are_both_named() {
 }
 
 #[test]
-fn what_no_mode_explains_is_no_part_s_fault() {
+fn a_result_that_no_mode_explains_blames_no_part() {
     let found = diagnosed(&dictionary(), &run(&["c.s2", "c.s3", "b.s3"], Some(240.0)));
     assert_eq!(found.finding, Finding::UnknownFault, "{}", found.conclusion);
     assert!(found.lrus[0].probability < 0.5);
@@ -189,7 +189,7 @@ fn a_healthy_run_finds_nothing_and_a_short_one_is_not_enough() {
 
 /// A unit that fails a check once and passes it on being asked again: something is not as it was.
 #[test]
-fn a_contradiction_makes_nothing_certain() {
+fn contradicting_evidence_gives_no_certain_answer() {
     let mut seen = run(&["a.s2", "b.s1"], Some(240.0));
     let again = run(&[], Some(240.0)).steps;
     seen.steps.extend(again.iter().cloned());
@@ -300,7 +300,7 @@ fn repetitions_are_known_by_their_step() {
 
 /// The one made of just what is asked for comes first, then the one that knows the most.
 #[test]
-fn a_file_gives_the_dictionary_that_fits() {
+fn a_file_returns_the_best_matching_dictionary() {
     let folder = tempfile::tempdir().expect("folder");
     let store = common::open(&folder.path().join("a.db"));
     assert!(store.dictionary("x").expect("reads").is_none());

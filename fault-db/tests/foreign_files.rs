@@ -209,7 +209,7 @@ const POISONED: &[(&str, &str, [usize; 4])] = &[
 
 /// Goal: each kind of bad row is named and left out with what hangs on it, and nothing else is.
 #[test]
-fn a_row_that_no_history_holds_is_named_and_the_rest_comes() {
+fn an_invalid_row_is_reported_and_all_others_are_merged() {
     let dir = tempdir().expect("a directory");
     let source = dir.path().join("source.db");
     let theirs = opened(&source, 1);
@@ -261,7 +261,7 @@ fn a_row_that_no_history_holds_is_named_and_the_rest_comes() {
 
 /// Goal: nothing is sealed here that was not sealed there.
 #[test]
-fn runs_without_seals_do_not_come() {
+fn runs_without_seals_are_not_merged() {
     let dir = tempdir().expect("a directory");
     let source = dir.path().join("source.db");
     let theirs = opened(&source, 1);

@@ -123,7 +123,7 @@ fn an_imported_entry_that_a_run_saw_too_does_not_count_again() {
 }
 
 #[test]
-fn a_repair_begins_anew_and_a_fault_that_comes_back_shows_it_was_in_vain() {
+fn a_repair_restarts_the_count_and_a_fault_that_comes_back_shows_that_it_failed() {
     let history = History::new();
     let (_, faults) = history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
     history.repair(faults[0], "EB_relay ", 1);

@@ -221,7 +221,7 @@ fn optimum_of_200_random_matrices_is_the_exhaustive_one() {
 
 /// What one test tells apart is done by hand: the cheap test first would cost more in all.
 #[test]
-fn a_dear_test_that_halves_beats_cheap_ones_that_peel() {
+fn an_expensive_test_that_halves_the_states_beats_cheap_ones_that_remove_one_each() {
     let state = |id: &str| State {
         id: id.into(),
         probability: 0.25,

@@ -141,7 +141,7 @@ fn faults(store: &Store) -> Vec<Id> {
 /// Method: lives drawn from a seed; two laptops share a beginning, one has met the other half-way, and
 /// their clocks are days apart.
 #[test]
-fn in_whatever_order_files_are_merged_they_say_the_same() {
+fn files_merged_in_any_order_have_the_same_content() {
     for seed in 1..=12 {
         let dir = tempdir().expect("a directory");
         let mut random = Random::new(seed);
@@ -213,7 +213,7 @@ fn state(store: &Store, fault: Id) -> FaultState {
 /// Goal: what two people did to a fault without knowing of each other is shown, with the state that leaves
 /// the most to do standing, whatever their clocks say, until one of them has looked again.
 #[test]
-fn rivals_are_kept_and_shown_until_somebody_looks_again() {
+fn conflicting_events_are_kept_and_listed_until_resolved() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
     a.acknowledge(fault, "kim", "mine", T0_US + 10)
@@ -261,7 +261,7 @@ fn rivals_are_kept_and_shown_until_somebody_looks_again() {
 /// Goal: who did more does not win over who knew nothing of it. Method: on one laptop a fault is repaired; on
 /// another it is taken and closed, and both meet in either order.
 #[test]
-fn who_did_more_does_not_win() {
+fn the_number_of_events_does_not_decide_a_conflict() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
     act(&b, fault, 1, T0_US + 10).expect("repaired");
@@ -284,7 +284,7 @@ fn who_did_more_does_not_win() {
 
 /// What one is at needs no word with those who only saw it once more.
 #[test]
-fn seeing_a_fault_again_disputes_nothing_but_that_it_is_gone() {
+fn an_occurrence_conflicts_only_with_a_resolution() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
     act(&a, fault, 1, T0_US + 10).expect("repaired");
@@ -304,7 +304,7 @@ fn seeing_a_fault_again_disputes_nothing_but_that_it_is_gone() {
 /// closed the fault since, without knowing of either. Method: repaired on the first day, seen on the third, closed
 /// on the fifth; all orders.
 #[test]
-fn what_was_seen_between_two_who_were_done_is_found_in_any_order() {
+fn a_recurrence_between_two_resolutions_is_found_in_any_order() {
     const DAY_US: i64 = 24 * HOUR_US;
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
@@ -344,7 +344,7 @@ fn what_was_seen_between_two_who_were_done_is_found_in_any_order() {
 /// shared beginning; one is done on the fifth day, the other sees it before or after that; either takes in the
 /// other first.
 #[test]
-fn a_fault_that_was_seen_after_somebody_was_done_with_it_is_open() {
+fn a_fault_that_occurred_after_its_resolution_is_open_after_a_merge() {
     const DAY_US: i64 = 24 * HOUR_US;
     for (shared, done, seen_on, expected) in [
         (true, FaultState::Repaired, 4, FaultState::Repaired),
@@ -380,7 +380,7 @@ fn a_fault_that_was_seen_after_somebody_was_done_with_it_is_open() {
 
 /// Two who did the same are no conflict.
 #[test]
-fn two_who_agree_are_no_conflict() {
+fn two_concurrent_events_with_the_same_state_are_no_conflict() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
     for store in [&a, &b] {
@@ -396,7 +396,7 @@ fn two_who_agree_are_no_conflict() {
 /// Goal: a fault two laptops saw has one history here, and both its names lead to it: what the other
 /// laptop does later under its name is done to it, and a person finds it by either.
 #[test]
-fn both_names_of_one_fault_lead_to_it() {
+fn a_merged_fault_is_found_by_either_id() {
     let dir = tempdir().expect("a directory");
     let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
     let (ours, theirs) = (one_fault(&a, T0_US), one_fault(&b, T0_US + 5));
@@ -421,7 +421,7 @@ fn both_names_of_one_fault_lead_to_it() {
 
 /// Goal: a laptop that has not heard that a fault was closed does not pull the next one into it.
 #[test]
-fn a_stale_copy_does_not_swallow_the_next_fault() {
+fn an_older_copy_does_not_absorb_the_next_fault() {
     let dir = tempdir().expect("a directory");
     let (a, b, first) = shared_fault(&dir);
     b.set_state(first, FaultState::Closed, "lee", "", T0_US + 10)
@@ -439,7 +439,7 @@ fn a_stale_copy_does_not_swallow_the_next_fault() {
 /// Goal: a copy that went on by itself, under the same name, has runs in the same places of the chain; all
 /// of them are kept, and each is sealed.
 #[test]
-fn a_copy_that_went_on_by_itself_comes_home() {
+fn a_forked_copy_is_merged_with_all_its_runs() {
     let dir = tempdir().expect("a directory");
     let a = laptop(&dir, "a.db", 1);
     one_fault(&a, T0_US);
@@ -534,7 +534,7 @@ fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
 
 /// Goal: a file that was changed and rid of its seals and its name is not gone on with, and its run is named.
 #[test]
-fn a_changed_file_without_seals_and_name_begins_no_history() {
+fn a_changed_file_without_seals_and_id_gets_no_new_chain() {
     let dir = tempdir().expect("a directory");
     let a = laptop(&dir, "a.db", 1);
     let altered = measured_run(&a);

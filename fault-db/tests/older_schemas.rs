@@ -74,7 +74,7 @@ const PAST: &str = r#"
 /// Goal: what is counted, who repaired what, whose turn it was and the chain of runs follow from the old rows
 /// as they would have from new ones; and the file takes part in everything as one that was always new.
 #[test]
-fn what_happened_is_counted_and_sealed_like_new() {
+fn a_migrated_file_has_the_counts_and_seals_of_a_new_one() {
     for version in 1..=STEPS.len() {
         let dir = tempdir().expect("a directory");
         let path = dir.path().join("a.db");

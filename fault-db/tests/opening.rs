@@ -138,7 +138,7 @@ fn a_file_locked_by_another_is_named_so() {
 
 /// Goal: what is under way may wait longer for another writer than opening did.
 #[test]
-fn a_store_can_become_more_patient() {
+fn the_busy_timeout_of_an_open_store_can_be_changed() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let options = OpenOptions::new(ids(1)).busy_timeout_ms(1);
@@ -293,7 +293,7 @@ fn garbage_in_the_middle_is_found() {
 /// Goal: the database file copied alone, while a program had it open, is as it was when its log was last
 /// written back: whole, or refused, never something in between.
 #[test]
-fn a_file_without_its_log_is_an_earlier_one_or_none() {
+fn a_file_without_its_write_ahead_log_is_an_earlier_state_or_unreadable() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     full_file(&path);

@@ -79,7 +79,7 @@ fn a_killed_run_is_interrupted_and_keeps_its_fault() {
 
 /// Goal: an early return of the caller loses no step. Method: drop without finish.
 #[test]
-fn a_dropped_writer_writes_its_waiting_steps() {
+fn a_dropped_writer_writes_its_buffered_steps() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");

@@ -76,7 +76,7 @@ fn merging_takes_recordings_along_once() {
 }
 
 #[test]
-fn a_recording_goes_with_its_last_trace() {
+fn a_recording_is_deleted_with_its_last_trace() {
     let dir = tempdir().expect("a directory");
     let store = open(&dir.path().join("a.db"));
     let (closed, _) = two_procedures(&store);
@@ -97,7 +97,7 @@ fn a_recording_goes_with_its_last_trace() {
 }
 
 #[test]
-fn a_damaged_recording_is_found_and_never_handed_out() {
+fn a_damaged_recording_is_reported_and_never_returned() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);

@@ -175,7 +175,7 @@ proptest! {
 
 /// Goal: a blob of a few bytes must not make us allocate what it claims to hold.
 #[test]
-fn claims_beyond_the_limits_are_refused() {
+fn sizes_beyond_the_limits_are_refused() {
     let trace = realistic_trace(4, 1);
     let wanted: Vec<_> = (0..40).collect();
     let rows = MAX_ROWS + 1;

@@ -78,7 +78,7 @@ fn a_window_has_its_rows_its_times_and_its_trigger() {
 }
 
 #[test]
-fn a_head_says_what_a_trace_is() {
+fn a_trace_head_describes_the_trace() {
     let trace = realistic_trace(600, 2);
     let kept = Kept::new(&trace);
     let head = kept.store.trace_head(kept.id).expect("read");
@@ -95,7 +95,7 @@ fn a_head_says_what_a_trace_is() {
 /// Goal: no work for other channels, so no stumbling over their damage either; and damage by its name.
 /// Method: of a trace that is fetched in parts the last byte is changed, which is the last channel's.
 #[test]
-fn damage_is_of_one_channel() {
+fn damage_in_one_channel_leaves_the_others_readable() {
     for rows in [600, 40_000] {
         let trace = realistic_trace(rows, 4);
         let kept = Kept::new(&trace);

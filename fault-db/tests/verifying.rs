@@ -94,7 +94,7 @@ fn a_run_that_passes_the_step_verifies_the_repair() {
 }
 
 #[test]
-fn no_other_run_verifies_it() {
+fn a_run_without_the_step_does_not_verify_the_repair() {
     let another_step = StepRecord {
         name: "another".into(),
         ..step(3)
@@ -128,7 +128,7 @@ fn a_run_that_began_before_the_repair_proves_nothing() {
 }
 
 #[test]
-fn a_fault_that_is_seen_again_is_open_again() {
+fn a_repaired_fault_that_occurs_again_is_reopened() {
     let depot = Depot::with_fault();
     depot.repair(T0_US + DAY_US);
     depot.run("ATC-1", (step(3), Verdict::Passed));

@@ -3,7 +3,7 @@
 use super::model::{Model, NO_FAULT};
 use super::observation::{Observation, StepSeen};
 
-/// Probabilities of all hypotheses, and what they rest on.
+/// The probabilities of all hypotheses, and the evidence they rest on.
 #[derive(Clone, Debug)]
 pub struct Belief<'m, 'd> {
     /// What it is a belief in.
@@ -12,19 +12,19 @@ pub struct Belief<'m, 'd> {
     steps: Vec<Weighed>,
 }
 
-/// A step the dictionary knows, weighed.
+/// A step that the dictionary knows, with its likelihoods.
 #[derive(Clone, Debug)]
 pub(super) struct Weighed {
-    /// Its place in the observation, or among the steps taken in.
+    /// Its index in the observation, or among the steps added.
     pub seen: usize,
-    /// Place of its check in the dictionary.
+    /// Index of its check in the dictionary.
     pub place: usize,
-    /// Logarithm of how likely it is under each hypothesis.
+    /// Logarithm of its likelihood under each hypothesis.
     pub ln: Vec<f64>,
 }
 
 impl<'m, 'd> Belief<'m, 'd> {
-    /// Before anything was seen.
+    /// The prior, before any evidence.
     pub fn new(model: &'m Model<'d>) -> Self {
         Self {
             model,
@@ -33,7 +33,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         }
     }
 
-    /// After everything that was seen.
+    /// The posterior after all evidence.
     pub fn after(model: &'m Model<'d>, seen: &Observation) -> Self {
         let mut belief = Self::new(model);
         for (place, step) in seen.steps.iter().enumerate() {
@@ -47,7 +47,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         belief
     }
 
-    /// Takes in a step, the one with this number; one that the dictionary does not know says nothing.
+    /// Adds the step with this index; a step that the dictionary does not know changes nothing.
     pub fn see(&mut self, number: usize, step: &StepSeen) {
         let Some(place) = self.model.dictionary.place(&step.check) else {
             return;
@@ -63,7 +63,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         });
     }
 
-    /// The steps taken in, each with what it says.
+    /// The steps added, each with its likelihoods.
     pub(super) fn steps(&self) -> &[Weighed] {
         &self.steps
     }
@@ -73,12 +73,12 @@ impl<'m, 'd> Belief<'m, 'd> {
         normalised(&self.ln)
     }
 
-    /// Logarithms that the probabilities are made of.
+    /// Logarithms of the probabilities, not normalised.
     pub(super) fn ln(&self) -> &[f64] {
         &self.ln
     }
 
-    /// The part that is found, `Some("")` when the unit is healthy, nothing when the question is open.
+    /// The part that is found, `Some("")` when the unit is healthy, `None` when the question is open.
     pub fn answer(&self) -> Option<&'d str> {
         let model = self.model;
         let probabilities = self.probabilities();
@@ -91,13 +91,13 @@ impl<'m, 'd> Belief<'m, 'd> {
         model.lru(model.hypotheses[*found.first()?])
     }
 
-    /// Whether the question is settled: one part found, or the unit healthy.
+    /// Whether one part is found, or the unit is healthy.
     pub fn is_settled(&self) -> bool {
         self.answer().is_some()
     }
 }
 
-/// Weights given by their logarithms, so that their sum is 1.
+/// Normalises weights given by their logarithms.
 pub(super) fn normalised(ln: &[f64]) -> Vec<f64> {
     let greatest = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<_> = ln.iter().map(|ln| (ln - greatest).exp()).collect();

@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 
 use super::observation::{Result, Sign, StepSeen};
 
-/// Result and signs of a step together: what of it is a matter of kind, not of size.
+/// The result of a step with the signs that showed: what can be compared as equal or not.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Signature {
-    /// How it came out.
+    /// The step's result.
     pub result: Result,
-    /// What showed.
+    /// The signs that showed.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub signs: BTreeSet<Sign>,
 }
 
 impl Signature {
-    /// That of a step as seen.
+    /// The signature of an observed step.
     pub fn of(step: &StepSeen) -> Self {
         Self {
             result: step.result,
@@ -26,18 +26,18 @@ impl Signature {
     }
 }
 
-/// Values of one measurement (Welford's sums).
+/// Statistics of the values of one measurement (Welford's sums).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Values {
-    /// How many there were.
+    /// Number of values.
     pub n: u32,
     /// How often nothing could be measured.
     pub missing: u32,
     /// Their mean.
     pub mean: f64,
-    /// Sum of squared distances from it.
+    /// Sum of squared distances from the mean.
     pub squares: f64,
-    /// Least.
+    /// Smallest.
     pub low: f64,
     /// Greatest.
     pub high: f64,
@@ -60,9 +60,9 @@ impl Values {
         self.squares += off * (value - self.mean);
     }
 
-    /// Whether they lie where those of a healthy unit do, as far as so few can tell.
+    /// Whether they agree with those of a healthy unit, as far as so few values can tell.
     fn is_like(&self, healthy: &Self) -> bool {
-        /// Standard deviations of one value, and of the mean of several.
+        /// Limits in standard deviations, of one value, and of the mean of several.
         const FAR: f64 = 3.0;
         let sd = healthy.sd() + 1e-9 * healthy.mean.abs();
         let of_mean = (FAR / f64::from(self.n.max(1)).sqrt()).max(1.0);
@@ -83,14 +83,14 @@ impl Values {
     }
 }
 
-/// One check under one hypothesis.
+/// The counts of one check under one hypothesis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// How often each signature came.
+    /// How often each signature occurred.
     pub signatures: Vec<(Signature, u32)>,
     /// Mean bench time, s.
     pub time_s: f64,
-    /// What it measured.
+    /// Statistics of its measurements.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub values: BTreeMap<String, Values>,
 }
@@ -114,7 +114,7 @@ impl Cell {
         self.signatures.iter().map(|(_, count)| count).sum()
     }
 
-    /// How often it came out so.
+    /// How often it had this result.
     pub fn count(&self, result: Result) -> u32 {
         let of = self.signatures.iter().filter(|(s, _)| s.result == result);
         of.map(|(_, count)| count).sum()
@@ -137,11 +137,11 @@ impl Cell {
         }
     }
 
-    /// As good as a healthy unit's: the same signatures alone, and values where its lie.
+    /// Whether it equals a healthy unit's: no other signatures, and values that agree.
     pub fn is_like(&self, healthy: &Self) -> bool {
         let known = |(signature, _): &(Signature, u32)| {
             let of_healthy = healthy.signatures.iter().find(|(s, _)| s == signature);
-            // Once in many runs is an accident there, not its way.
+            // A signature seen once in many healthy runs is an accident.
             of_healthy.is_some_and(|(_, count)| 2 * count >= healthy.runs())
         };
         let lies_there = |(name, values): (&String, &Values)| {
@@ -151,8 +151,8 @@ impl Cell {
         self.runs() > 0 && self.signatures.iter().all(known) && self.values.iter().all(lies_there)
     }
 
-    /// Values that lie where a healthy unit's lie are taken to be just those: a few runs would make them
-    /// look as narrow as chance has it.
+    /// Takes a healthy unit's statistics for values that agree with them: a few runs alone would give too
+    /// small a deviation.
     pub fn take_values_from(&mut self, healthy: &Self) {
         for (name, values) in &mut self.values {
             if let Some(of_healthy) = healthy.values.get(name)

@@ -11,15 +11,15 @@ use super::cell::Cell;
 use super::observation::{CheckName, Observation, Sign};
 use crate::compression::{pack, unpack};
 
-/// Compression of a packed dictionary: read often, written seldom.
+/// Compression level: read often, written seldom.
 const ZSTD_LEVEL: i32 = 15;
 /// A dictionary unpacks to at most this many bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// What a dictionary was made of. Made of anything else it may be wrong.
+/// Provenance of a dictionary. With any other it may be wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Basis {
-    /// SHA-256 over everything below and the rest it was made of, in hex.
+    /// SHA-256 over everything below and all other inputs, in hex.
     pub sha256: String,
     /// SHA-256 of the unit configuration.
     pub unit_config_sha256: String,
@@ -33,38 +33,38 @@ pub struct Basis {
     pub app_version: String,
 }
 
-/// A fault mode as catalogues know it.
+/// A fault mode of the catalogue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModeName {
     /// `part.mode`.
     pub id: String,
     /// Part to replace.
     pub lru: String,
-    /// What is wrong, for people.
+    /// Description for users.
     pub text: String,
     /// `permanent`, `intermittent` or `degraded`.
     pub kind: String,
-    /// It can leave the train less protected.
+    /// Whether it can leave the train less protected.
     #[serde(rename = "unsafe")]
     pub unsafe_: bool,
     /// Relative prior weight.
     pub weight: f64,
 }
 
-/// Counts of one hypothesis.
+/// Counts of one variety.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Column {
-    /// How bad it is: `nominal`, or the effect's number.
+    /// Severity of the fault: `nominal`, or the number of the effect.
     pub level: String,
-    /// Runs of the suite.
+    /// Number of runs of the suite.
     pub runs: u32,
-    /// By the check's place; those like a healthy unit's are left out.
+    /// Counts by the index of the check; those equal to a healthy unit's are left out.
     pub cells: BTreeMap<usize, Cell>,
     /// In how many runs each sign showed anywhere.
     pub signs: Vec<(Sign, u32)>,
 }
 
-/// A fault mode and its varieties.
+/// A fault mode with its varieties.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
     /// Which.
@@ -76,17 +76,17 @@ pub struct Mode {
 /// A fault dictionary.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dictionary {
-    /// What it was made of.
+    /// Its provenance.
     pub basis: Basis,
-    /// Seeds it was made with.
+    /// Seeds of the campaign's runs.
     pub seeds: Vec<u64>,
     /// Checks in the order of the suite.
     pub checks: Vec<CheckName>,
-    /// A healthy unit.
+    /// Counts of a healthy unit.
     pub healthy: Column,
     /// Fault modes.
     pub modes: Vec<Mode>,
-    /// Places of the checks by name.
+    /// Indexes of the checks by name.
     #[serde(skip)]
     places: BTreeMap<CheckName, usize>,
 }
@@ -104,19 +104,18 @@ impl Dictionary {
         dictionary
     }
 
-    /// Packed, to be kept in a file.
+    /// Compresses it for storage.
     ///
-    /// # Errors
-    /// There is no memory for it.
+    /// Out of memory.
     pub fn to_bytes(&self) -> std::result::Result<Vec<u8>, String> {
         let json = serde_json::to_vec(self).map_err(|error| error.to_string())?;
         pack(&json, ZSTD_LEVEL).map_err(|error| error.to_string())
     }
 
-    /// Unpacks and checks a dictionary.
+    /// Decompresses and validates a dictionary.
     ///
     /// # Errors
-    /// It is no dictionary, or not sound in itself.
+    /// It is no dictionary, or inconsistent.
     pub fn from_bytes(packed: &[u8]) -> std::result::Result<Self, String> {
         let json = unpack(packed, MAX_BYTES).map_err(|error| error.to_string())?;
         let mut read: Self = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
@@ -127,7 +126,7 @@ impl Dictionary {
         }
     }
 
-    /// What is wrong with it in itself, if anything.
+    /// The first inconsistency, if any.
     fn unsound(&self) -> Option<String> {
         let columns = self.modes.iter().flat_map(|mode| &mode.columns);
         let mut places = columns
@@ -147,8 +146,8 @@ impl Dictionary {
         self.places = names.collect();
     }
 
-    /// Place of a check. A repetition, `name (2/3)`, is another run of the check `name` where the
-    /// dictionary knows no such repetition.
+    /// Index of a check. A repetition, `name (2/3)`, counts as the check `name` if the dictionary does not
+    /// have that repetition.
     pub fn place(&self, check: &CheckName) -> Option<usize> {
         self.places.get(check).copied().or_else(|| {
             let (step, turn) = check.step.rsplit_once(" (")?;
@@ -161,12 +160,12 @@ impl Dictionary {
         })
     }
 
-    /// Counts the runs of a healthy unit. Before any mode is added.
+    /// Adds runs of a healthy unit. Must come before any mode.
     pub fn set_healthy(&mut self, runs: &[Observation]) {
         self.healthy = self.count("nominal".into(), runs);
     }
 
-    /// Counts the runs of one variety of a mode.
+    /// Adds runs of one variety of a mode.
     pub fn add(&mut self, mode: &ModeName, level: String, runs: &[Observation]) {
         let mut column = self.count(level, runs);
         let healthy = &self.healthy.cells;
@@ -209,7 +208,7 @@ impl Dictionary {
         }
     }
 
-    /// Parts its modes are of, each once, in order.
+    /// The parts of its modes, each once, in order.
     pub fn lrus(&self) -> Vec<&str> {
         let all: BTreeSet<_> = self
             .modes
@@ -224,9 +223,9 @@ impl Dictionary {
 mod tests {
     use super::*;
 
-    /// What is packed well may still be anything.
+    /// Content that decompresses well may still be anything.
     #[test]
-    fn a_packed_text_may_be_anything() {
+    fn any_bytes_can_be_decompressed_or_are_refused() {
         let mode = ModeName {
             id: "eb_relay.slow".into(),
             lru: "eb_relay".into(),

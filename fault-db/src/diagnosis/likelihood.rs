@@ -7,24 +7,24 @@
 use super::cell::{Cell, Signature, Values};
 use super::observation::{Result, Sign, StepSeen};
 
-/// Runs beyond which more of them make nothing more certain: benches are not that much alike.
+/// Greatest number of runs that count: more would pretend that all benches are alike.
 const MOST_RUNS: f64 = 50.0;
-/// Chance of each result where nothing is known.
+/// Probability of each result if nothing is known.
 const NOTHING_KNOWN: [(Result, f64); 3] = [
     (Result::Passed, 0.50),
     (Result::Failed, 0.35),
     (Result::Error, 0.15),
 ];
-/// Chance of a sign where nothing is known.
+/// Probability of a sign if nothing is known.
 const SIGN_UNKNOWN: f64 = 0.05;
-/// Chance of a missing value where nothing is known.
+/// Probability of a missing value if nothing is known.
 const MISSING_UNKNOWN: f64 = 0.1;
-/// Share of values that lie anywhere.
+/// Share of values that are uniformly distributed.
 const ANYWHERE: f64 = 0.1;
-/// Least standard deviation of a value, of the range under all hypotheses.
+/// Smallest standard deviation of a value, as a share of the range under all hypotheses.
 const LEAST_SPREAD: f64 = 0.01;
 
-/// Where values of a measurement lie under all hypotheses together.
+/// The range of a measurement's values under all hypotheses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     low: f64,
@@ -61,12 +61,12 @@ impl Scale {
     }
 }
 
-/// What is expected of a check: its counts, and how many runs stand behind them.
+/// The counts expected of a check, and how many runs they represent.
 #[derive(Clone, Copy, Debug)]
 pub struct Expected<'a> {
     /// Counts.
     pub cell: &'a Cell,
-    /// Runs of the hypothesis: fewer than the cell's where a healthy unit's counts stand in.
+    /// Runs of the hypothesis: fewer than the cell's if a healthy unit's counts stand in.
     pub runs: u32,
     /// See [`super::Settings::doubt_runs`].
     pub doubt: f64,
@@ -101,7 +101,7 @@ impl Expected<'_> {
         self.smoothed(self.share(self.cell.count_sign(sign)), SIGN_UNKNOWN)
     }
 
-    /// Probability of a signature: as counted, or, for one never seen, of its parts.
+    /// Probability of a signature: as counted, or, if never seen, the product of its parts.
     pub fn signature(&self, signature: &Signature) -> f64 {
         let counted = self.cell.signatures.iter().find(|(s, _)| s == signature);
         let share = self.share(counted.map_or(0, |(_, count)| *count));
@@ -121,8 +121,8 @@ impl Expected<'_> {
         self.result(signature.result) * showing * silent
     }
 
-    /// Relative probability density of a measured value, where one that lies anywhere has
-    /// [`ANYWHERE`].
+    /// Probability density of a measured value, relative to the uniform one, with a share [`ANYWHERE`] of
+    /// uniform values.
     pub fn value(&self, name: &str, value: Option<f64>, scale: &Scale) -> f64 {
         let Some(values) = self.cell.values.get(name) else {
             return ANYWHERE;
@@ -149,7 +149,7 @@ fn student4(t: f64) -> f64 {
     0.375 * (1.0 + t * t / 4.0).powf(-2.5)
 }
 
-/// How likely a step is as `expected` counts it, `scale` telling where a measurement's values lie.
+/// Likelihood of a step under `expected` counts; `scale` gives the range of a measurement's values.
 pub fn likelihood<'s>(
     expected: Expected<'_>,
     step: &StepSeen,
@@ -162,7 +162,7 @@ pub fn likelihood<'s>(
     expected.signature(&Signature::of(step)) * of_values
 }
 
-/// The same where nothing is known of what happens.
+/// The same if nothing is known.
 pub fn likelihood_of_anything<'s>(
     step: &StepSeen,
     scale: impl Fn(&str) -> Option<&'s Scale>,
@@ -220,10 +220,10 @@ mod tests {
         assert!(expected(&cell).result(Result::Passed) > 0.85);
     }
 
-    /// A reaction time of 640 ms where 600 is allowed says less than none at all: under a slow relay
-    /// 640 ms is near, a missing value is not.
+    /// A reaction time of 640 ms with a limit of 600 ms is weaker evidence than none at all: under a slow
+    /// relay 640 ms is likely, a missing value is not.
     #[test]
-    fn a_value_says_more_than_its_verdict() {
+    fn a_measured_value_is_stronger_evidence_than_its_verdict() {
         let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(Result::Passed, Some(v))));
         let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(Result::Failed, Some(v))));
         let dead = cell(&[None, None, None].map(|v| step(Result::Failed, v)));

@@ -8,17 +8,17 @@ use super::likelihood::{Expected, Scale, likelihood, likelihood_of_anything};
 use super::observation::StepSeen;
 use super::settings::Settings;
 
-/// Place of [`Hypothesis::NoFault`] in every model.
+/// Index of [`Hypothesis::NoFault`] in every model.
 pub const NO_FAULT: usize = 0;
-/// Place of [`Hypothesis::Unknown`] in every model.
+/// Index of [`Hypothesis::Unknown`] in every model.
 const UNKNOWN: usize = 1;
 
-/// What may be the case. Modes and their varieties are named by their places.
+/// A hypothesis. Modes and varieties are given by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hypothesis {
     /// Nothing is wrong.
     NoFault,
-    /// Something that stands in no dictionary.
+    /// A fault that is not in the dictionary.
     Unknown,
     /// One variety of a fault mode.
     Mode {
@@ -29,18 +29,18 @@ pub enum Hypothesis {
     },
 }
 
-/// A dictionary made ready.
+/// A dictionary prepared for diagnosis.
 #[derive(Debug)]
 pub struct Model<'a> {
     /// The dictionary.
     pub dictionary: &'a Dictionary,
     /// Priors and thresholds.
     pub settings: &'a Settings,
-    /// All hypotheses but pairs.
+    /// All single hypotheses.
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
-    /// Hypotheses of each part, by their places.
+    /// Hypotheses of each part, by index.
     parts: Vec<Vec<usize>>,
     scales: BTreeMap<usize, BTreeMap<String, Scale>>,
     /// Share of checks that a healthy unit does not pass.
@@ -49,7 +49,7 @@ pub struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// With `lru_factor`, what a unit's history says of a part: 1 = nothing.
+    /// `lru_factor` weights a part's prior by the unit's history; 1 is neutral.
     pub fn new(
         dictionary: &'a Dictionary,
         settings: &'a Settings,
@@ -88,13 +88,13 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Place of a variety of a mode among the hypotheses.
+    /// Index of a variety of a mode among the hypotheses.
     pub fn position(&self, mode: usize, column: usize) -> Option<usize> {
         let sought = Hypothesis::Mode { mode, column };
         self.hypotheses.binary_search(&sought).ok()
     }
 
-    /// Part a hypothesis puts the blame on.
+    /// Part that a hypothesis blames.
     pub fn lru(&self, hypothesis: Hypothesis) -> Option<&'a str> {
         match hypothesis {
             Hypothesis::Mode { mode, .. } => Some(&self.dictionary.modes[mode].name.lru),
@@ -109,21 +109,21 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Hypotheses of each part, by their places.
+    /// Hypotheses of each part, by index.
     pub(super) fn parts(&self) -> &[Vec<usize>] {
         &self.parts
     }
 
-    /// The hypothesis does at this check what a healthy unit does.
+    /// Whether the check behaves as on a healthy unit under this hypothesis.
     pub fn is_like_healthy(&self, hypothesis: Hypothesis, place: usize) -> bool {
         match hypothesis {
             Hypothesis::Mode { .. } => !self.column(hypothesis).cells.contains_key(&place),
-            // What an unknown fault changes was never counted.
+            // Effects of an unknown fault were never counted.
             Hypothesis::NoFault | Hypothesis::Unknown => true,
         }
     }
 
-    /// What a hypothesis expects of a check, as far as it was counted.
+    /// The counts expected of a check under a hypothesis, as far as there are any.
     pub fn expected(&self, hypothesis: Hypothesis, place: usize) -> Expected<'_> {
         let column = self.column(hypothesis);
         let own = column.cells.get(&place);
@@ -138,12 +138,11 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Logarithms of how likely a step at `place` is under each hypothesis.
+    /// Logarithms of a step's likelihood under each hypothesis; `place` is the check's index.
     ///
-    /// A mode's runs are few, and what comes and goes hits another check each time. So besides what was
-    /// counted, a check that a mode changes may do what it does on a healthy unit, what another mode of
-    /// the same part makes it do, or anything; and a check that it was never seen to change may all the
-    /// same be hit now and then.
+    /// A mode was run few times, and an intermittent one affects another check each time. So, besides what
+    /// was counted, an affected check may behave as on a healthy unit, as under another mode of the same
+    /// part, or at random; and an unaffected check may be affected now and then.
     pub fn ln_likelihoods(&self, place: usize, step: &StepSeen) -> Vec<f64> {
         let settings = self.settings;
         let scale = |name: &str| self.scales.get(&place)?.get(name);
@@ -174,7 +173,7 @@ impl<'a> Model<'a> {
         likelihoods.into_iter().map(|p| weight * p.ln()).collect()
     }
 
-    /// The hypothesis is a mode that comes and goes.
+    /// Whether the hypothesis is an intermittent mode.
     pub fn is_intermittent(&self, hypothesis: Hypothesis) -> bool {
         match hypothesis {
             Hypothesis::Mode { mode, .. } => {
@@ -200,8 +199,8 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Logarithm of how likely it is that signs showed, and others did not, in a unit's own log: what
-    /// it has been through nobody knows, so that what did not show says little.
+    /// Logarithm of the likelihood of the signs in a unit's own log. The unit's operation before is unknown,
+    /// so a sign that did not show is weak evidence.
     pub fn ln_log(
         &self,
         hypothesis: Hypothesis,
@@ -209,10 +208,10 @@ impl<'a> Model<'a> {
     ) -> f64 {
         /// Weight of a sign that did not show.
         const SILENCE: f64 = 0.2;
-        /// Chance of a sign that has nothing to do with the fault: a log holds what testers did, too. The
-        /// same under every hypothesis, however many runs stand behind it.
+        /// Probability of a sign unrelated to the fault, as a log also holds the acts of testers. The same
+        /// under every hypothesis, however many runs it rests on.
         const STRAY: f64 = 0.02;
-        /// Chance of each sign under a fault that stands in no dictionary.
+        /// Probability of each sign under a fault that is not in the dictionary.
         const OF_UNKNOWN: f64 = 0.1;
         if hypothesis == Hypothesis::Unknown {
             return signs.len() as f64 * OF_UNKNOWN.ln();
@@ -235,15 +234,15 @@ impl<'a> Model<'a> {
     }
 }
 
-/// How far a mode is to be trusted to do what it was counted to do.
+/// How reliably a mode behaves as counted.
 struct Doubt {
-    /// Share of runs in which a check that it changes does something else.
+    /// Share of runs in which an affected check behaves otherwise.
     otherwise: f64,
-    /// Share of checks it was not seen to change that it hits all the same.
+    /// Share of unaffected checks that it affects nevertheless.
     new_hits: f64,
 }
 
-/// One or the other: the other with this share.
+/// A mixture with this share of the second.
 fn mixed(one: f64, other: f64, share: f64) -> f64 {
     (1.0 - share) * one + share * other
 }

@@ -11,15 +11,15 @@ use super::belief::Belief;
 use super::cell::Signature;
 use super::observation::CheckName;
 
-/// A check worth making.
+/// A recommended check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NextCheck {
     /// Procedure and step.
     #[serde(rename = "step", serialize_with = "as_text")]
     pub check: CheckName,
-    /// What it is expected to tell of the part, bits.
+    /// Expected information about the faulty part, bits.
     pub gain_bits: f64,
-    /// Time it takes, steps before it and bringing the unit up included, s.
+    /// Duration, s, including the steps before it and the set-up of the unit.
     pub cost_s: f64,
 }
 
@@ -27,7 +27,7 @@ fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> std::result::Resul
     to.collect_str(check)
 }
 
-/// What is worth knowing: each part, no fault and an unknown one, with their probabilities.
+/// The classes to tell apart: each part, no fault, and an unknown fault, with their probabilities.
 struct Classes {
     of_hypothesis: Vec<usize>,
     count: usize,
@@ -35,9 +35,9 @@ struct Classes {
 }
 
 impl Belief<'_, '_> {
-    /// The next best check, of the procedures in `may` if that is given. Checks in `done` are not asked
-    /// for again; those of the procedure `under_way` need not be run again for one after them. None when
-    /// nothing would tell enough.
+    /// The next best check, among the procedures in `may` if given. Checks in `done` are not repeated; the
+    /// steps of the procedure `under_way` that have run need not be run again. `None` if no check gives
+    /// enough information.
     pub fn next_check(
         &self,
         done: &BTreeSet<CheckName>,
@@ -99,7 +99,7 @@ impl Belief<'_, '_> {
         let mut of_hypothesis = Vec::new();
         let probabilities = self.probabilities();
         for (i, hypothesis) in self.model.hypotheses.iter().enumerate() {
-            // No fault and the unknown one stand first and are classes of their own.
+            // No fault and the unknown one are the first two classes.
             let class = match self.model.lru(*hypothesis) {
                 None => i,
                 lru => {

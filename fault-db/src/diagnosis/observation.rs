@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-/// How a step came out, as far as it says something. A step that was skipped or aborted is not seen.
+/// The result of a step. Skipped and aborted steps are not observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Result {
@@ -30,7 +30,7 @@ impl Result {
     }
 }
 
-/// Names a step: its procedure and its name there.
+/// Identifies a step: its procedure and its name there.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct CheckName {
     /// Procedure, for instance `atp/overspeed`.
@@ -45,7 +45,7 @@ impl std::fmt::Display for CheckName {
     }
 }
 
-/// Something the unit or the train said by itself: a fault's name and the part it points at.
+/// A fault event of the unit or the train: the fault's name and the part it points at.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Sign {
@@ -80,32 +80,32 @@ impl TryFrom<String> for Sign {
 pub struct StepSeen {
     /// Which.
     pub check: CheckName,
-    /// How it came out.
+    /// Its result.
     pub result: Result,
     /// Bench time it took, s.
     pub time_s: f64,
-    /// What it measured by name; none where nothing could be measured.
+    /// Its measured values by name; `None` where nothing could be measured.
     pub values: Vec<(String, Option<f64>)>,
-    /// What showed while it ran, or while its procedure was brought up.
+    /// Signs that showed while it ran, or during the set-up of its procedure.
     pub signs: BTreeSet<Sign>,
 }
 
-/// Everything that was seen, in order.
+/// All evidence, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Steps, in the order they were run.
     pub steps: Vec<StepSeen>,
-    /// Signs that belong to no step: out of a unit's own log.
+    /// Signs from the unit's own log, which belong to no step.
     pub signs: BTreeSet<Sign>,
 }
 
 impl Observation {
-    /// Nothing was seen.
+    /// Whether there is no evidence.
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty() && self.signs.is_empty()
     }
 
-    /// A step failed or could not be tested, or a sign showed.
+    /// Whether a step failed or could not be tested, or a sign showed.
     pub fn shows_a_fault(&self) -> bool {
         !self.signs.is_empty()
             || self

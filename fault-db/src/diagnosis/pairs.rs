@@ -7,10 +7,10 @@ use super::belief::{Belief, normalised};
 use super::model::{Hypothesis, NO_FAULT};
 use super::observation::{Observation, Result, StepSeen};
 
-/// Modes that explain the most, of which pairs are made.
+/// Number of best explaining modes that are combined to pairs.
 const MOST_EXPLAINING: usize = 12;
 
-/// Two varieties of modes of different parts, and their probability together.
+/// Varieties of two modes of different parts, and the probability of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// The two.
@@ -19,8 +19,8 @@ pub struct Pair {
     pub probability: f64,
 }
 
-/// The pairs worth a thought, the likeliest first, and the factor that their existence puts on the
-/// probabilities of single hypotheses.
+/// The pairs worth reporting, the likeliest first, and the factor by which they reduce the probabilities of
+/// single hypotheses.
 pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, f64) {
     let model = belief.model;
     let explaining = explaining(belief, seen);
@@ -57,8 +57,8 @@ fn is_strange(step: &StepSeen) -> bool {
     step.result != Result::Passed || !step.signs.is_empty()
 }
 
-/// Lasting modes that make what went wrong likelier than on a healthy unit, the best variety of each,
-/// the most explaining first; by their place in the model.
+/// Permanent modes that explain the failures better than a healthy unit, with their best variety, the best
+/// first; by index in the model.
 fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
     let steps = belief.steps().iter();
     let wrong: Vec<_> = steps.filter(|w| is_strange(&seen.steps[w.seen])).collect();
@@ -71,7 +71,7 @@ fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
         let Hypothesis::Mode { mode, .. } = hypothesis else {
             continue;
         };
-        // Two that come and go would explain whatever comes and goes.
+        // Two intermittent modes would explain any intermittent failure.
         if belief.model.is_intermittent(*hypothesis) {
             continue;
         }

@@ -4,19 +4,19 @@ use super::belief::Belief;
 use super::model::{Hypothesis, Model, NO_FAULT};
 use super::observation::{Observation, Result, StepSeen};
 
-/// At most so many reasons each way.
+/// Most reasons in each direction.
 const MOST: usize = 6;
-/// A step speaks for something when it is e times likelier under it.
+/// A step is a reason if its likelihood ratio is at least e.
 const SPEAKS_AT: f64 = 1.0;
-/// Rivals a mode is held against.
+/// Competing modes that a mode is compared with.
 const RIVALS: usize = 5;
 
-/// What speaks for a mode, and what against, the strongest first.
+/// The reasons for and against a mode, the strongest first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reasons {
-    /// For it: likelier than on a healthy unit.
+    /// For it: steps likelier than on a healthy unit.
     pub for_it: Vec<String>,
-    /// Against it: likelier on a healthy unit, or under another part's fault.
+    /// Against it: steps likelier on a healthy unit, or under another part's fault.
     pub against: Vec<String>,
 }
 
@@ -62,7 +62,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: usize, seen: &Observation) -
     reasons
 }
 
-/// The likeliest hypotheses that blame another part, by their places.
+/// The likeliest hypotheses that blame another part, by index.
 fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
     let model = belief.model;
     let own = model.lru(model.hypotheses[hypothesis]);
@@ -76,7 +76,7 @@ fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
     rivals.into_iter().map(|(i, _)| i).collect()
 }
 
-/// A step, how it came out, and how it comes out under the mode and on a healthy unit.
+/// A step, its result, and its expected result under the mode and on a healthy unit.
 fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen) -> String {
     let own = model.expected(hypothesis, place);
     let healthy = model.expected(Hypothesis::NoFault, place);
@@ -120,7 +120,7 @@ fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen
     text
 }
 
-/// Four figures are enough for a person.
+/// Four significant figures.
 fn rounded(value: f64) -> String {
     if value == 0.0 {
         return "0".into();

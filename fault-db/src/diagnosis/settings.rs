@@ -2,40 +2,39 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Priors, and when enough is enough.
+/// Priors and thresholds of the diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Probability that nothing is wrong with a unit that is brought to the bench.
+    /// Prior probability that a unit brought to the bench has no fault.
     pub no_fault: f64,
-    /// Probability that what is wrong stands in no dictionary.
+    /// Prior probability of a fault that is not in the dictionary.
     pub unknown_fault: f64,
-    /// Probability of a second fault beside a first, over that of the second alone.
+    /// Probability of a second fault given a first, relative to its own prior.
     pub second_fault: f64,
-    /// A part is found when its probability is this.
+    /// A part is found at this probability.
     pub found_at: f64,
-    /// A unit counts as healthy, for the diagnosis, when the probability of no fault is this.
+    /// A unit counts as healthy at this probability of no fault.
     pub healthy_at: f64,
-    /// A check that is expected to tell less than this, bits, is not worth its time.
+    /// Checks with less expected information, bits, are not recommended.
     pub least_gain_bits: f64,
-    /// Runs that nobody made, beside those that were counted, and that may come out otherwise: smoothing.
+    /// Pseudo-runs for smoothing, beside the counted runs.
     pub doubt_runs: f64,
-    /// The same of a mode that comes and goes.
+    /// The same for an intermittent mode.
     pub doubt_runs_intermittent: f64,
-    /// Share of those runs in which a check does what another mode of the same part makes it do.
+    /// Share of the pseudo-runs in which a check behaves as under another mode of the same part.
     pub doubt_same_part: f64,
-    /// Share of those runs in which it does anything; in the rest, what it does on a healthy unit.
+    /// Share of them with a random result; in the rest the check behaves as on a healthy unit.
     pub doubt_anything: f64,
-    /// Share of checks that a mode was never seen to change, and hits all the same.
+    /// Share of checks that a mode affects although no campaign showed it.
     pub new_hits: f64,
-    /// The same of a mode that comes and goes.
+    /// The same for an intermittent mode.
     pub new_hits_intermittent: f64,
-    /// Weight of a step's evidence: steps of one run are not independent of each other, so that it is less
-    /// than 1.
+    /// Weight of a step's evidence, below 1 because steps of one run are not independent.
     pub weight_of_step: f64,
-    /// Share of checks that a fault which stands in no dictionary hits.
+    /// Share of checks affected by a fault that is not in the dictionary.
     pub unknown_hits: f64,
-    /// Time to bring a unit up before a procedure, s, for the cost of a check.
+    /// Set-up time before a procedure, s, as part of the cost of a check.
     pub bring_up_s: f64,
     /// Factor on a part's prior for each earlier run in which a fault named it.
     pub recurrence_factor: f64,
@@ -46,7 +45,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What is wrong with them, if anything.
+    /// The first setting out of range.
     ///
     /// # Errors
     /// The key, its value and its range.

@@ -10,7 +10,7 @@ use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::{CheckName, Observation, Result, StepSeen};
 
-/// Isolates a fault check by check.
+/// Isolates a fault, check by check.
 #[derive(Debug)]
 pub struct Strategy<'m, 'd> {
     belief: Belief<'m, 'd>,
@@ -21,7 +21,7 @@ pub struct Strategy<'m, 'd> {
 }
 
 impl<'m, 'd> Strategy<'m, 'd> {
-    /// Nothing has been run. Only procedures in `may` can be, if that is given.
+    /// Starts without evidence. Only procedures in `may` can be run, if given.
     pub fn new(model: &'m Model<'d>, may: Option<BTreeSet<String>>) -> Self {
         Self {
             belief: Belief::new(model),
@@ -32,14 +32,14 @@ impl<'m, 'd> Strategy<'m, 'd> {
         }
     }
 
-    /// The check to go for, in a procedure that is to be begun; none when one part is found, the unit
-    /// is healthy, or nothing would tell more.
+    /// The check to run next, in a procedure to be started; `None` when one part is found, the unit is
+    /// healthy, or no check gives more information.
     pub fn begin(&mut self) -> Option<NextCheck> {
         self.aim(None);
         self.target.clone()
     }
 
-    /// A step was run; whether its procedure is to go on.
+    /// Adds the result of a step; whether its procedure is to go on.
     pub fn saw(&mut self, step: &StepSeen) -> bool {
         let new = self.done.insert(step.check.clone());
         if new {
@@ -55,14 +55,14 @@ impl<'m, 'd> Strategy<'m, 'd> {
         self.target.as_ref().is_some_and(here)
     }
 
-    /// The procedure ended by itself; checks it has not come to cannot be made.
+    /// The procedure has ended; checks in it that were not reached cannot be run.
     pub fn ended(&mut self, procedure: &str) {
         let checks = &self.belief.model.dictionary.checks;
         let of_procedure = checks.iter().filter(|check| check.procedure == procedure);
         self.done.extend(of_procedure.cloned());
     }
 
-    /// What was seen, and what is believed.
+    /// The evidence and the posterior.
     pub fn finish(self) -> (Observation, Belief<'m, 'd>) {
         (self.seen, self.belief)
     }
@@ -77,19 +77,19 @@ impl<'m, 'd> Strategy<'m, 'd> {
     }
 }
 
-/// Effort until the question was settled, or all was done.
+/// Effort until the question was answered, or all was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
     /// Steps run.
     pub steps: u32,
-    /// Bench time, bringing the unit up for each procedure included, s.
+    /// Bench time, including the set-up for each procedure, s.
     pub time_s: f64,
-    /// One part found, or the unit healthy.
+    /// Whether one part was found, or the unit is healthy.
     pub settled: bool,
 }
 
-/// Effort of the fixed order on a run that was made in full: until the answer is the one that stays.
-/// Nobody stops a fixed order before, since only its end tells that nothing changes any more.
+/// Effort of the fixed order on a complete run: until the answer that does not change any more. Nobody can
+/// stop a fixed order earlier, since only its end shows that.
 pub fn fixed_order(model: &Model<'_>, run: &Observation) -> Effort {
     let mut belief = Belief::new(model);
     let mut effort = Effort::default();

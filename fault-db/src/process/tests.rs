@@ -33,7 +33,7 @@ fn control_limits_are_those_of_an_individuals_chart() {
 
 /// 0.42 s rising 1 ms a day: 0.58 s after 160 days, whatever the noise.
 #[test]
-fn a_creeping_value_crosses_its_limit_when_it_does() {
+fn a_drifting_value_is_forecast_to_cross_its_limit() {
     let noise = [0.004, -0.003, 0.001, -0.005, 0.003, 0.0, 0.002, -0.002];
     let values: Vec<f64> = (0..60)
         .map(|day| 0.42 + 0.001 * f64::from(day) + noise[day as usize % noise.len()])
@@ -61,7 +61,7 @@ fn a_creeping_value_crosses_its_limit_when_it_does() {
 }
 
 #[test]
-fn noise_without_drift_foretells_nothing() {
+fn noise_without_drift_gives_no_forecast() {
     let values: Vec<f64> = (0..50)
         .map(|n| 0.42 + 0.01 * f64::from(n * 7 % 11 - 5))
         .collect();
@@ -73,7 +73,7 @@ fn noise_without_drift_foretells_nothing() {
 }
 
 #[test]
-fn days_of_several_values_count_as_all_of_them() {
+fn daily_groups_give_the_statistics_of_their_values() {
     let single = Process::of(&single(&[1.0, 3.0, 1.0, 3.0])).expect("values");
     let day = |day: i64| Sample {
         at_us: day * DAY,

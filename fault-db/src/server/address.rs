@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_says_where_and_never_the_password() {
+    fn an_address_is_shown_without_its_password() {
         let a =
             address("postgres://kim:s%40cret@depot.example:6543/history?sslrootcert=/etc/ca.pem");
         assert_eq!(a.password.as_deref(), Some("s@cret"));
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_server_elsewhere_has_to_prove_who_it_is() {
+    fn a_server_on_another_machine_has_to_prove_its_identity() {
         for (text, guard) in [
             ("postgres://depot/h", Guard::Verify),
             ("postgres://depot/h?sslmode=require", Guard::Verify),
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named_without_the_password() {
+    fn address_errors_never_quote_the_password() {
         for (text, words) in [
             ("mysql://h/d", "neither postgres://"),
             ("postgres://a,b/d", "several hosts"),

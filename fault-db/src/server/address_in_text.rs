@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_password_is_seen_however_the_address_is_spelled() {
+    fn a_password_is_recognised_in_misspelt_addresses() {
         for text in [
             "postgres://kim:s3cret@a/h",
             "postgresql://kim:s3cret@a/h?sslmode=disable",

@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_multiple_falls_back_exactly() {
+    fn samples_that_are_no_multiples_are_stored_exactly_as_floats() {
         for (samples, form) in [
             (vec![0.5, 0.25, -7.0], Form::RawF32),
             (vec![0.1, 1.0 / 3.0, 1e300], Form::RawF64),

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_is_seen_wherever_it_is() {
+    fn a_missing_sample_is_detected_at_every_position() {
         for rows in [0, 1, LANES, 3 * LANES + 1] {
             let mut samples = vec![1.0; rows];
             assert!(!has_gaps(&samples));

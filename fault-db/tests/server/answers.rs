@@ -459,7 +459,7 @@ fn views_say_the_same_on_a_server_as_in_a_file() {
 }
 
 #[test]
-fn a_question_in_sql_is_answered_and_cannot_change_anything() {
+fn an_sql_query_on_a_server_is_answered_and_cannot_change_anything() {
     let laptop = Laptop::new("sql");
     laptop.run("U-1", day(0), &[101, 102], false);
     let address = shared().database();

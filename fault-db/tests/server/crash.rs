@@ -172,7 +172,7 @@ fn commits(history: &Laptop) -> (u32, Counts) {
 }
 
 #[test]
-fn a_client_killed_at_any_commit_and_a_wire_cut_anywhere_lose_nothing_and_double_nothing() {
+fn a_client_killed_at_any_commit_or_a_connection_cut_anywhere_loses_and_duplicates_nothing() {
     let history = history();
     let (commits, whole) = commits(&history);
     assert!(
@@ -199,7 +199,7 @@ fn a_client_killed_at_any_commit_and_a_wire_cut_anywhere_lose_nothing_and_double
 }
 
 #[test]
-fn a_server_killed_at_any_commit_takes_up_again_where_it_was() {
+fn a_sync_continues_after_the_server_was_killed_at_any_commit() {
     let history = history();
     let (commits, whole) = commits(&history);
     let cluster = Arc::new(Cluster::start(&[NO_HURRY]));

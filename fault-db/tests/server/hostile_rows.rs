@@ -7,7 +7,7 @@ use crate::private::{name_of, shared};
 
 /// Goal: what a laptop's file holds since an earlier version took it stays behind, and the rest goes.
 #[test]
-fn a_laptops_bad_rows_stay_behind_and_the_rest_goes() {
+fn invalid_rows_of_a_laptop_are_not_sent_and_all_others_are() {
     for (sql, named, runs, events) in [
         (
             "UPDATE run SET started_at_us = 9223372036854775807 WHERE seq = 1",
@@ -94,7 +94,7 @@ fn a_laptops_bad_rows_stay_behind_and_the_rest_goes() {
 
 /// Goal: what a server of before took from one laptop blocks no other, nor what is said later.
 #[test]
-fn bad_rows_on_the_server_stand_in_nobodys_way() {
+fn invalid_rows_on_the_server_do_not_block_a_sync() {
     let address = shared().database();
     let (one, two) = (Laptop::new("one"), Laptop::new("two"));
     one.run("U-1", day(0), &[101], true);

@@ -4,7 +4,7 @@ use crate::laptop::{Laptop, day};
 use crate::private::{name_of, shared};
 
 #[test]
-fn what_was_recorded_can_be_neither_changed_nor_taken_away() {
+fn recorded_rows_on_a_server_can_be_neither_changed_nor_deleted() {
     let address = shared().database();
     let laptop = Laptop::new("careful");
     let run = laptop.run("U-1", day(0), &[101], true);

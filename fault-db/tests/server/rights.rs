@@ -59,7 +59,7 @@ const REFUSED: &[&str] = &[
 ];
 
 #[test]
-fn a_laptop_adds_and_reads_and_may_do_nothing_else() {
+fn a_laptops_account_may_insert_and_select_and_nothing_else() {
     let address = shared().database();
     let laptop = Laptop::new("careful");
     laptop.run("U-1", day(0), &[101], true);
@@ -218,7 +218,7 @@ fn setting_up_again_changes_nothing_and_an_older_server_is_brought_up_to_date() 
 }
 
 #[test]
-fn an_account_that_could_take_rows_away_is_no_laptops_account() {
+fn an_account_that_may_delete_rows_is_refused_as_the_laptops_account() {
     let address = shared().empty();
     let mut client = shared().client("postgres");
     client

@@ -44,7 +44,7 @@ fn everything_recorded_reaches_the_server_and_a_second_sync_changes_nothing() {
 /// A server that came back from a backup, and a file that did: what is missing is sent again, and what
 /// is there stays.
 #[test]
-fn a_cursor_that_is_too_far_on_one_side_loses_nothing() {
+fn a_cursor_too_far_ahead_on_one_side_loses_nothing() {
     let address = shared().database();
     let laptop = Laptop::new("restored");
     laptop.run("U-1", day(0), &[101], true);
@@ -130,7 +130,7 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
 
 /// A fault that a laptop comes to know late brings all that was ever said about it.
 #[test]
-fn a_laptop_is_told_of_what_was_said_before_it_knew_the_fault() {
+fn a_laptop_receives_events_from_before_it_knew_the_fault() {
     let address = shared().database();
     let (one, two) = (Laptop::new("one"), Laptop::new("late"));
     one.run("U-1", day(0), &[101], false);
@@ -153,7 +153,7 @@ fn a_laptop_is_told_of_what_was_said_before_it_knew_the_fault() {
 }
 
 #[test]
-fn two_people_who_decide_at_once_are_both_kept_and_the_rest_of_the_work_stands() {
+fn two_concurrent_decisions_are_kept_and_the_state_with_more_work_stands() {
     let address = shared().database();
     let (one, two) = (Laptop::new("one"), Laptop::new("two"));
     for laptop in [&one, &two] {
@@ -197,7 +197,7 @@ fn two_people_who_decide_at_once_are_both_kept_and_the_rest_of_the_work_stands()
 
 /// The laptop that is a year behind says its word last: it stands, whatever the clocks say.
 #[test]
-fn wrong_clocks_do_not_decide_what_stands() {
+fn wrong_clocks_do_not_decide_a_conflict() {
     const YEAR: i64 = 365;
     let address = shared().database();
     let (right, behind) = (Laptop::new("right"), Laptop::new("behind"));
@@ -237,7 +237,7 @@ fn wrong_clocks_do_not_decide_what_stands() {
 /// other's clock is a year behind. Method: done on the fifth day, seen on the fourth or sixth; the other one
 /// knows the fault from before, or takes it for a new one.
 #[test]
-fn a_fault_that_was_seen_again_after_it_was_done_with_elsewhere_is_open() {
+fn a_fault_that_occurred_after_its_resolution_elsewhere_is_open_after_a_sync() {
     const YEAR: i64 = 365;
     let seen_again_on = |seen: i64, done: FaultState, known: bool, seen_first: bool| {
         let address = shared().database();
@@ -290,7 +290,7 @@ fn a_fault_that_was_seen_again_after_it_was_done_with_elsewhere_is_open() {
 /// Goal: what was judged stays judged. Method: a laptop whose clock is hours ahead sees a fault; at the server,
 /// where that is known, it is closed; then the clock is set, and somebody says a word about the fault.
 #[test]
-fn a_clock_that_is_set_opens_nothing_again() {
+fn a_changed_clock_reopens_no_fault() {
     let address = shared().database();
     let (ahead, other) = (Laptop::new("ahead"), Laptop::new("other"));
     let hour_us = 3_600_000_000;
@@ -319,7 +319,7 @@ fn a_clock_that_is_set_opens_nothing_again() {
 /// Goal: a closing that came from the server is taken back by what a third laptop saw after it, also where no
 /// server is within reach. Method: the server knows of more occurrences than the laptop that was told.
 #[test]
-fn a_closing_that_was_pulled_is_no_wiser_than_the_file_it_came_to() {
+fn a_received_closing_event_knows_no_more_occurrences_than_its_new_file() {
     let address = shared().database();
     let (told, many, away) = (
         Laptop::new("told"),
@@ -354,7 +354,7 @@ fn a_closing_that_was_pulled_is_no_wiser_than_the_file_it_came_to() {
 
 /// Who did more does not win over who knew nothing of it: both are kept, and shown everywhere.
 #[test]
-fn who_did_more_does_not_win() {
+fn the_number_of_events_does_not_decide_a_conflict() {
     let address = shared().database();
     let (one, two) = (Laptop::new("one"), Laptop::new("two"));
     for laptop in [&one, &two, &one] {
@@ -397,7 +397,7 @@ fn who_did_more_does_not_win() {
 /// Goal: a laptop hears all that was ever said about its fault, also if that becomes one with an older one
 /// while it is listening. Method: the other laptop syncs when the first news has come.
 #[test]
-fn a_fault_that_becomes_one_with_an_older_one_while_its_laptop_listens_brings_all_of_it() {
+fn a_fault_merged_during_a_pull_brings_all_events_of_the_older_one() {
     let address = shared().database();
     let (one, two, three) = (Laptop::new("one"), Laptop::new("two"), Laptop::new("three"));
     // A fault that both others know is closed at the one, and seen again at the other.
@@ -454,7 +454,7 @@ fn a_fault_that_becomes_one_with_an_older_one_while_its_laptop_listens_brings_al
 /// What one closed, two sees again without knowing, and three, who never heard of it, takes for a new one:
 /// in the end it is one fault, open, wherever one looks.
 #[test]
-fn faults_that_turn_out_to_be_one_become_one_everywhere() {
+fn faults_found_to_be_the_same_are_merged_in_every_file() {
     let address = shared().database();
     let all @ [one, two, three] = &["one", "two", "three"].map(Laptop::new);
     for laptop in [one, two] {
@@ -512,7 +512,7 @@ fn faults_that_turn_out_to_be_one_become_one_everywhere() {
 }
 
 #[test]
-fn a_run_whose_program_died_is_sent_as_far_as_it_came() {
+fn an_interrupted_run_is_sent_as_it_is() {
     let address = shared().database();
     let laptop = Laptop::new("dead");
     for owner in ["dead", "alive"] {
@@ -556,7 +556,7 @@ fn a_run_whose_program_died_is_sent_as_far_as_it_came() {
 }
 
 #[test]
-fn a_run_that_says_something_else_on_the_server_is_named_and_left_as_it_is() {
+fn a_run_that_differs_on_the_server_is_reported_and_not_changed() {
     let address = shared().database();
     let laptop = Laptop::new("altered");
     let altered = laptop.run("U-1", day(0), &[], false);
@@ -590,7 +590,7 @@ fn a_run_that_says_something_else_on_the_server_is_named_and_left_as_it_is() {
 /// Goal: of two laptops that record into copies of one file the second is refused, and goes on under a name of
 /// its own; nothing of either is lost.
 #[test]
-fn a_copied_file_that_went_on_by_itself_gets_a_name_of_its_own() {
+fn a_forked_copy_gets_an_id_of_its_own() {
     let address = shared().database();
     let (one, copy) = (Laptop::new("one"), Laptop::new("copy"));
     one.run("U-1", day(0), &[], false);
@@ -623,7 +623,7 @@ fn a_copied_file_that_went_on_by_itself_gets_a_name_of_its_own() {
 
 /// Goal: a backup that was laid back is told from a file that was rewritten, and either from the file itself.
 #[test]
-fn what_the_server_has_seen_of_a_file_is_held_against_it() {
+fn a_file_is_compared_with_the_chain_the_server_knows() {
     let address = shared().database();
     let (laptop, backup) = (Laptop::new("laptop"), Laptop::new("backup"));
     laptop.run("U-1", day(0), &[], false);
@@ -676,7 +676,7 @@ fn what_the_server_has_seen_of_a_file_is_held_against_it() {
 }
 
 #[test]
-fn a_damaged_trace_stays_behind_and_is_named() {
+fn a_damaged_trace_is_not_sent_and_is_reported() {
     let address = shared().database();
     let laptop = Laptop::new("damaged");
     laptop.run("U-1", day(0), &[101, 102], true);
@@ -690,7 +690,7 @@ fn a_damaged_trace_stays_behind_and_is_named() {
 
 /// A list of channels that is not what was stored: its traces stay behind, all else goes both ways.
 #[test]
-fn traces_whose_channels_are_damaged_stay_behind_and_stop_nothing() {
+fn traces_with_a_damaged_channel_list_are_not_sent_and_block_nothing() {
     let address = shared().database();
     let (laptop, other) = (Laptop::new("damaged"), Laptop::new("other"));
     laptop.run("U-1", day(0), &[101, 102], true);
@@ -707,7 +707,7 @@ fn traces_whose_channels_are_damaged_stay_behind_and_stop_nothing() {
 
 /// A version without an outbox recorded it: the first sync sends it all the same.
 #[test]
-fn what_was_recorded_before_there_was_an_outbox_is_sent_too() {
+fn rows_recorded_before_the_outbox_existed_are_sent_too() {
     let address = shared().database();
     let laptop = Laptop::new("old");
     laptop.run("U-1", day(0), &[101], true);
@@ -719,7 +719,7 @@ fn what_was_recorded_before_there_was_an_outbox_is_sent_too() {
 }
 
 #[test]
-fn samples_can_wait_and_a_stop_between_batches_is_taken_up_again() {
+fn traces_can_be_sent_later_and_a_stopped_sync_is_continued() {
     let address = shared().database();
     let laptop = Laptop::new("stopped");
     for n in 0..3 {
@@ -791,7 +791,7 @@ fn texts_of_any_language_arrive() {
 /// A fault that was closed and one that was opened after it stay two, also when the server hears of the
 /// closing and of the new one at once.
 #[test]
-fn a_fault_after_a_closed_one_is_another_on_the_server_too() {
+fn a_fault_after_a_closed_one_is_a_new_fault_on_the_server_too() {
     let address = shared().database();
     let laptop = Laptop::new("one");
     laptop.run("U-1", day(0), &[101], false);

@@ -9,7 +9,7 @@ use crate::laptop::{Laptop, connect, day, read_only};
 use crate::private::{free_port, name_of, shared};
 
 #[test]
-fn a_server_that_is_away_is_named_with_what_is_wrong() {
+fn an_unreachable_server_is_reported_with_the_reason() {
     let nobody = format!(
         "postgres://ptu:secret@127.0.0.1:{}/h?sslmode=disable",
         free_port()
@@ -37,7 +37,7 @@ fn a_server_that_is_away_is_named_with_what_is_wrong() {
 }
 
 #[test]
-fn a_database_that_is_missing_foreign_or_empty_is_named_and_left_alone() {
+fn a_missing_foreign_or_empty_server_database_is_reported_and_not_changed() {
     let missing = shared().address("no_such_database");
     let refused = connect(&missing).expect_err("no database");
     assert!(
@@ -117,7 +117,7 @@ fn an_older_and_a_newer_schema_are_named() {
 }
 
 #[test]
-fn who_sets_a_server_up_at_the_same_time_makes_one_set_of_tables() {
+fn concurrent_server_setups_create_one_set_of_tables() {
     let address = shared().empty();
     let threads: Vec<_> = (0..6)
         .map(|_| {
@@ -136,7 +136,7 @@ fn who_sets_a_server_up_at_the_same_time_makes_one_set_of_tables() {
 
 /// An account that may only read can ask, and is told so when it wants to say something.
 #[test]
-fn a_reader_can_ask_and_not_write() {
+fn a_read_only_store_answers_queries_and_refuses_writes() {
     let address = shared().database();
     let laptop = Laptop::new("reader");
     let run = laptop.run("U-1", day(0), &[101], false);
@@ -178,7 +178,7 @@ fn a_reader_can_ask_and_not_write() {
 /// Method: one that says it has two gigabytes to tell, before and after somebody was let in, and counts what it
 /// gets rid of.
 #[test]
-fn a_message_longer_than_any_history_has_is_not_waited_for() {
+fn an_oversized_message_is_refused_without_being_read() {
     use std::io::{Read as _, Write as _};
     let let_in = |letter: u8| {
         let ready = [&b"R\0\0\0\x08\0\0\0\0"[..], b"Z\0\0\0\x05I"].concat();

@@ -9,7 +9,7 @@ use super::information::binary_entropy;
 use super::problem::{Belief, Problem, USELESS_BITS};
 use super::tree::{Node, Tree};
 
-/// Tests whose branches are grown before one is chosen.
+/// Candidate tests whose branches are grown before one is chosen.
 const CANDIDATES: usize = 8;
 
 /// Steps of work that rollout may take in all; one step reads one cell, about a nanosecond.
@@ -18,13 +18,13 @@ const CRISP_ROLLOUT: u64 = 8_000_000_000;
 /// The same in noisy matrices.
 const NOISY_ROLLOUT: u64 = 1_000_000_000;
 
-/// One part in so many of the rollout work left that one choice may take.
+/// The share of the remaining rollout work that one choice may take is one in this many.
 const CRISP_SHARE: u64 = 4;
 
-/// The same in noisy matrices, where most large branches cannot be grown to their ends.
+/// The same in noisy matrices, where most large branches cannot be completed.
 const NOISY_SHARE: u64 = 64;
 
-/// Steps that ranking takes for each test beside its cells, and at all: logarithms, memory.
+/// Work of ranking for each test in addition to its cells, and in total: logarithms, memory.
 const STEPS_PER_TEST: usize = 40;
 const STEPS_PER_RANKING: usize = 500;
 
@@ -37,20 +37,20 @@ const MAX_NOISY_NODES: usize = 20_000;
 /// Members rarer than this share are left out when the tests of a noisy matrix are weighed.
 const RARE: f64 = 1e-9;
 
-/// Whether choices are checked.
+/// Whether choices are verified by rollout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rollout {
-    /// Best gain per cost, whatever follows.
+    /// Most gain per cost, without rollout.
     #[cfg(test)]
     Off,
-    /// Best of a few by what follows.
+    /// The best of a few by rollout.
     On,
 }
 
-/// A tree that was grown.
+/// A complete tree.
 pub(super) struct Grown {
     pub(super) tree: Tree,
-    /// Whether some choices were made by gain alone because the work for rollout was used up.
+    /// Whether some choices were made by gain alone because the rollout work was used up.
     pub(super) unchecked: bool,
 }
 
@@ -96,7 +96,7 @@ pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> Grown {
     }
 }
 
-/// A branch that has not been grown yet.
+/// A branch that is not grown yet.
 struct Open {
     mass: f64,
     belief: Belief,
@@ -114,7 +114,7 @@ impl Open {
 }
 
 impl Ord for Open {
-    /// The likeliest is the greatest; of equals, the one that came first.
+    /// The likeliest is the greatest; of equals, the earlier one.
     fn cmp(&self, other: &Self) -> Ordering {
         self.mass
             .total_cmp(&other.mass)
@@ -177,7 +177,7 @@ impl<'a> Grower<'a> {
         }
     }
 
-    /// Tests that tell something here, best gain per cost first; none at an end.
+    /// Informative tests at this node, most gain per cost first; empty at a leaf.
     fn rank(&mut self, belief: &Belief) -> Vec<usize> {
         if belief.members.len() < 2 {
             return Vec::new();
@@ -232,7 +232,7 @@ impl<'a> Grower<'a> {
         some.iter().map(|test| (test, gain(test))).collect()
     }
 
-    /// Gains of the tests that have not been used and are of any use.
+    /// Gains of the unused tests that are of any use.
     fn score_noisy(&self, belief: &Belief) -> Vec<(usize, f64)> {
         let tests = self.problem.tests.len();
         let mass = belief.mass();
@@ -264,7 +264,7 @@ impl<'a> Grower<'a> {
             .collect()
     }
 
-    /// The best of the candidates by what follows them; nothing if that is too much work.
+    /// The best candidate by rollout; `None` if that is too much work.
     fn choose(&mut self, belief: &Belief, ranked: &[usize]) -> Option<usize> {
         if let [only] = ranked {
             return Some(*only);
@@ -285,8 +285,8 @@ impl<'a> Grower<'a> {
         best.map(|(_, test)| test)
     }
 
-    /// Cost of a test and of what follows by plain gain, times the probability to be here; nothing
-    /// once the work left is used up.
+    /// Cost of a test and of the greedy tree below it, times the probability of reaching this node; `None`
+    /// once the work is used up.
     fn cost_after(&mut self, belief: &Belief, test: usize, left: &mut u64) -> Option<f64> {
         let mut cost = belief.mass() * self.problem.costs[test];
         let (pass, fail) = self.problem.split(belief, test);
@@ -295,7 +295,7 @@ impl<'a> Grower<'a> {
             let before = self.work;
             let best = self.rank(&belief).first().copied();
             let taken = self.work - before;
-            // Work for rollout is counted apart from that for growing.
+            // Rollout work is counted apart from the work of growing.
             self.work = before;
             self.rollout_left = self.rollout_left.saturating_sub(taken);
             *left = left.checked_sub(taken)?;

@@ -11,7 +11,7 @@ pub(super) const USELESS_BITS: f64 = 1e-6;
 /// Share of the remaining probability by which rounding may miss the confidence.
 const ROUNDING: f64 = 1e-12;
 
-/// States that are left, those together that no test left tells apart, and tests that are left.
+/// The states that remain, grouped if no remaining test tells them apart, and the remaining tests.
 pub(super) struct Problem<'a> {
     pub(super) matrix: &'a Matrix,
     posterior: &'a Posterior,
@@ -24,12 +24,12 @@ pub(super) struct Problem<'a> {
     /// Probability of each group.
     pub(super) weights: Vec<f64>,
     cells: Vec<f64>,
-    /// Probability that one answer must have; of use in noisy matrices only.
+    /// Probability that an answer must have; only noisy matrices need it.
     pub(super) confidence: f64,
 }
 
-/// Groups that a point of the tree has left, with the probability to be there in that group; and
-/// tests used on the way.
+/// The groups possible at a node, each with the joint probability of group and node; and the tests used on
+/// the path.
 #[derive(Clone, Debug)]
 pub(super) struct Belief {
     pub(super) members: Vec<(usize, f64)>,
@@ -37,7 +37,7 @@ pub(super) struct Belief {
 }
 
 impl Belief {
-    /// Probability to be here.
+    /// Probability of reaching the node.
     pub(super) fn mass(&self) -> f64 {
         self.members.iter().map(|(_, weight)| weight).sum()
     }
@@ -48,8 +48,8 @@ impl<'a> Problem<'a> {
         let tests: Vec<usize> = (0..matrix.tests().len())
             .filter(|test| !posterior.is_done(*test))
             .collect();
-        // Certain tests tell a state of probability 0 apart like any other; where answers need only
-        // be likely it can never be one.
+        // With certain tests a state of probability 0 is told apart like any other; where an answer need only
+        // be likely, it never is the answer.
         let crisp = matrix.is_crisp();
         let groups = equal_rows(matrix, &tests, |state| {
             posterior.is_possible(state) && (crisp || posterior.probability(state) > 0.0)
@@ -75,7 +75,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether every test left is certain in what it says.
+    /// Whether every remaining test is certain.
     pub(super) fn is_crisp(&self) -> bool {
         self.matrix.is_crisp()
     }
@@ -85,12 +85,12 @@ impl<'a> Problem<'a> {
         self.groups.len()
     }
 
-    /// Probabilities that each test left fails in a group.
+    /// Probabilities that each remaining test fails in a group.
     pub(super) fn row(&self, group: usize) -> &[f64] {
         &self.cells[group * self.tests.len()..(group + 1) * self.tests.len()]
     }
 
-    /// All that is left, no test used.
+    /// The root: all groups, no test used.
     pub(super) fn root(&self) -> Belief {
         Belief {
             members: self.weights.iter().copied().enumerate().collect(),
@@ -98,7 +98,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Where passing and where failing a test leads.
+    /// The nodes after passing and after failing a test.
     pub(super) fn split(&self, belief: &Belief, test: usize) -> (Belief, Belief) {
         let mut used = belief.used.clone();
         used.insert(test);
@@ -119,15 +119,14 @@ impl<'a> Problem<'a> {
         (belief(pass), belief(fail))
     }
 
-    /// Whether the members that no unused test tells apart from each other reach the confidence
-    /// together.
+    /// Whether one class of members, not told apart by any unused test, reaches the confidence.
     pub(super) fn is_decided(&self, belief: &Belief) -> bool {
         let total = belief.mass();
         let allowed = total * (1.0 - self.confidence + ROUNDING);
         let mut rest = belief.members.clone();
         rest.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let mut seen = 0.0;
-        // Once more than allowed has been seen in other classes, no class can reach it any more.
+        // Once more than the allowed doubt lies in other classes, no class can reach the confidence.
         while seen <= allowed {
             let Some(&(first, _)) = rest.first() else {
                 return true;
@@ -155,8 +154,8 @@ impl<'a> Problem<'a> {
                 .all(|(test, (x, y))| x == y || used.contains(test))
     }
 
-    /// The answer at an end of the tree: all states left if tests are certain, else the likeliest
-    /// that reach the confidence together.
+    /// The answer at a leaf: all remaining states if tests are certain, else the likeliest ones that together
+    /// reach the confidence.
     pub(super) fn leaf(&self, belief: &Belief, cut: bool) -> Leaf {
         let mut states = Vec::new();
         for &(group, weight) in &belief.members {

@@ -3,48 +3,48 @@
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};
 
-/// A graph of what can be known: at each point tests may be done, each with two outcomes.
+/// A search graph: at each node tests can be done, each with two outcomes.
 pub(super) trait Space {
-    /// What makes two points the same.
+    /// Identifies a node.
     type Point: Copy + Eq + Hash;
 
-    /// What can be done at a point; nothing at an end.
+    /// The tests at a node; empty at a leaf.
     fn branches(&self, point: Self::Point) -> Vec<Branch<Self::Point>>;
 
-    /// A cost that no way from this point on can undercut; 0 at an end.
+    /// A lower bound of the cost from a node on; 0 at a leaf.
     fn bound(&self, point: Self::Point) -> f64;
 }
 
-/// A test that may be done.
+/// A test at a node.
 pub(super) struct Branch<P> {
     pub(super) test: usize,
-    /// What it adds to the cost of its point.
+    /// Its cost, added to that of its node.
     pub(super) cost: f64,
-    /// Where passing it leads, and what the cost from there counts.
+    /// The node after passing, and the weight of its cost.
     pub(super) pass: (P, f64),
-    /// Where failing it leads.
+    /// The node after failing, likewise.
     pub(super) fail: (P, f64),
 }
 
-/// How much may be looked at.
+/// Limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Points kept in memory.
+    /// Nodes kept in memory.
     pub(super) points: usize,
-    /// Branches weighed.
+    /// Branches examined.
     pub(super) branches: u64,
 }
 
-/// The limit is met before the optimum is known.
+/// A limit was reached before the optimum was known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct OutOfWork;
 
 #[derive(Clone, Copy)]
 struct Known {
-    /// The least cost if `solved`, else a bound of it.
+    /// The least cost if `solved`, else a lower bound.
     cost: f64,
     solved: bool,
-    /// The best test, if there is any to do.
+    /// The best test, if there is any.
     test: Option<usize>,
 }
 
@@ -66,8 +66,8 @@ impl<S: Space> Search<S> {
         }
     }
 
-    /// The least cost from a point on. As deep as tests follow each other, at most the number of
-    /// tests.
+    /// The least cost from a node on. The recursion is as deep as tests follow each other: at most their
+    /// number.
     pub(super) fn solve(&mut self, point: S::Point) -> Result<f64, OutOfWork> {
         if let Some(known) = self.known.get(&point).filter(|known| known.solved) {
             return Ok(known.cost);
@@ -91,7 +91,7 @@ impl<S: Space> Search<S> {
                 break;
             }
             let branch = &branches[index];
-            // The likelier branch first: it is the one to rule the test out.
+            // The likelier branch first, as it is the one to exclude the test.
             let (first, second) = match branch.pass.1 >= branch.fail.1 {
                 true => (branch.pass, branch.fail),
                 false => (branch.fail, branch.pass),
@@ -115,12 +115,12 @@ impl<S: Space> Search<S> {
         Ok(cost)
     }
 
-    /// The best test at a point that has been solved, unless it is an end.
+    /// The best test at a solved node; `None` at a leaf.
     pub(super) fn best_test(&self, point: S::Point) -> Option<usize> {
         self.known.get(&point).and_then(|known| known.test)
     }
 
-    /// What is known of the cost from a point on, at least its bound.
+    /// The cost known from a node on: at least its bound.
     fn least(&mut self, point: S::Point) -> f64 {
         if let Some(known) = self.known.get(&point) {
             return known.cost;

@@ -2,37 +2,37 @@
 
 use super::model::Matrix;
 
-/// Levels of a written tree that are set in; deeper ones would be blanks mostly.
+/// Levels of a written tree that are indented; deeper ones would be mostly blanks.
 const MAX_INDENT: usize = 40;
 
-/// A point of a decision tree; states and tests by their place in the matrix.
+/// A node of a decision tree; states and tests by their index in the matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// Do a test and go on by its outcome.
+    /// Do a test, and continue by its outcome.
     Test {
         /// The test.
         test: usize,
-        /// Probability to come here.
+        /// Probability of reaching the node.
         reached: f64,
-        /// Where passing it leads: a place in [`Tree::nodes`].
+        /// The node after passing: an index of [`Tree::nodes`].
         pass: usize,
-        /// Where failing it leads.
+        /// The node after failing.
         fail: usize,
     },
-    /// An end.
+    /// A leaf.
     Leaf(Leaf),
 }
 
 /// An answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leaf {
-    /// The one state that it must be, or several that cannot be told apart any further.
+    /// The only possible state, or several that cannot be told apart any further.
     pub states: Vec<usize>,
-    /// Probability that it is one of them, given the outcomes on the way.
+    /// Probability that it is one of them, given the outcomes on the path.
     pub p: f64,
-    /// Probability to come here.
+    /// Probability of reaching the leaf.
     pub reached: f64,
-    /// Whether tests that would tell more were left away because the tree grew too large.
+    /// Whether further informative tests were left out because the tree grew too large.
     pub cut: bool,
 }
 
@@ -53,7 +53,7 @@ impl Tree {
         &self.nodes
     }
 
-    /// The first test, unless there is none to do.
+    /// The first test, unless there is none.
     pub fn first_test(&self) -> Option<usize> {
         match self.nodes.first() {
             Some(Node::Test { test, .. }) => Some(*test),
@@ -61,7 +61,7 @@ impl Tree {
         }
     }
 
-    /// Expected cost of the tests on the way to an answer.
+    /// Expected cost of the tests.
     pub fn expected_cost(&self, matrix: &Matrix) -> f64 {
         let cost = |node: &Node| match node {
             Node::Test { test, reached, .. } => reached * matrix.tests()[*test].cost,
@@ -70,7 +70,7 @@ impl Tree {
         self.nodes.iter().map(cost).sum()
     }
 
-    /// Probability to come to an end where the tree was cut.
+    /// Probability of reaching a leaf where the tree was cut.
     pub fn cut_probability(&self) -> f64 {
         let cut = |node: &Node| match node {
             Node::Leaf(leaf) if leaf.cut => leaf.reached,
@@ -79,8 +79,8 @@ impl Tree {
         self.nodes.iter().map(cut).sum()
     }
 
-    /// `{"test", "pass": …, "fail": …}` down to `{"state" | "states", "p", "reached"}`, as text that
-    /// is set in by `indent` levels to begin with. No recursion: no depth is too much.
+    /// `{"test", "pass": …, "fail": …}` down to `{"state" | "states", "p", "reached"}`, as text indented by
+    /// `indent` levels. Not recursive, so any depth can be written.
     pub fn to_json(&self, matrix: &Matrix, indent: usize) -> String {
         enum Task<'a> {
             Node(usize, usize),
@@ -146,7 +146,7 @@ impl Leaf {
     }
 }
 
-/// A new line, set in; none at a level no tree has.
+/// A line break with indentation; without, below the levels that are indented.
 fn line(text: &mut String, level: usize) {
     if level != usize::MAX {
         text.push('\n');
