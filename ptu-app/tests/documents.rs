@@ -326,7 +326,8 @@ fn wrong_cargo(arguments: &[String]) -> Option<String> {
     let filter = (arguments[0] == "test")
         .then(|| test_filter(arguments))
         .flatten()?;
-    (!has_test(&folder, filter)).then(|| format!("{package} has no test called {filter}"))
+    let name = filter.rsplit("::").next()?;
+    (!has_test(&folder, name)).then(|| format!("{package} has no test called {filter}"))
 }
 
 /// The word that says which tests are run.
