@@ -269,12 +269,14 @@ fn wrong_ptu(arguments: &[String], whole: bool) -> Option<String> {
         .into_iter()
         .chain(arguments.iter().map(String::as_str));
     let error = Cli::try_parse_from(all).err()?;
-    let only_named = matches!(
-        error.kind(),
+    let option_named = arguments.last().is_some_and(|word| word.starts_with("--"));
+    let only_named = match error.kind() {
         ErrorKind::MissingRequiredArgument
-            | ErrorKind::MissingSubcommand
-            | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
-    );
+        | ErrorKind::MissingSubcommand
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => true,
+        ErrorKind::InvalidValue => option_named,
+        _ => false,
+    };
     let is_help = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
@@ -583,7 +585,9 @@ fn the_readers_of_documents_tell_right_from_wrong() {
     ] {
         assert!(wrong(line, true) && wrong(line, false), "{line}");
     }
-    assert!(wrong("ptu diagnose", true) && !wrong("ptu diagnose", false));
+    for line in ["ptu diagnose", "ptu drive --manual"] {
+        assert!(wrong(line, true) && !wrong(line, false), "{line}");
+    }
     for line in [
         "ptu",
         "ptu help run",
