@@ -1,4 +1,4 @@
-//! The unit's only source of chance: arm challenges and injected noise.
+//! The unit's only random generator: arm challenges and injected noise.
 
 /// SplitMix64: small, seeded, the same everywhere.
 #[derive(Clone, Debug)]

@@ -1,4 +1,5 @@
-//! How good units, trains and benches differ: what is drawn for each of many runs of check procedures.
+//! Scatter of good units, trains and benches: values drawn at random for each of many runs of check
+//! procedures.
 
 use protocol::Duration;
 use protocol::config::ConfigError;
@@ -181,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_bench_can_have_is_refused_by_key() {
+    fn an_impossible_bench_is_refused_and_the_key_is_named() {
         for (from, to, words) in [
             (
                 "late_share = { low = 0.0, high = 0.02 }",

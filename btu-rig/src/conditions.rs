@@ -1,4 +1,4 @@
-//! How the train, track and sensors of one run differ from what the unit is told.
+//! Deviations of train, track and sensors in one run from what the unit is configured for.
 
 /// Greatest factor on dead times and time constants that may be asked for.
 pub const MAX_DELAY_FACTOR: f64 = 5.0;

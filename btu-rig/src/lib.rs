@@ -1,8 +1,8 @@
-//! Everything around the unit under test.
+//! The bench around a unit under test: generators, train, TCMS, wayside, tester and check procedures.
 //!
-//! * [`conditions`]: how train, track and sensors differ from what the unit is told;
-//! * [`bench_scatter`]: how good units, trains and benches differ, drawn for many runs;
-//! * [`stimulus`]: what a procedure may do to the unit, as typed values;
+//! * [`conditions`]: deviations of train, track and sensors from the unit's configuration;
+//! * [`bench_scatter`]: scatter of good units, trains and benches, drawn for each run;
+//! * [`stimulus`]: everything that can be done to a unit, as typed values;
 //! * [`recorded`]: the stimuli of a run with their times, to repeat it;
 //! * [`lever`]: positions of the master controller;
 //! * [`tcms`]: train control and monitoring system, from cabs and unit to each car's demands;

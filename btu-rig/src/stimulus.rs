@@ -1,4 +1,5 @@
-//! What can be done to the unit: typed values that scripts build and the rig carries out.
+//! Stimuli: everything that can be done to a unit, as typed values that scripts build and the rig carries
+//! out.
 
 use protocol::Speed;
 use protocol::message::{DoorSide, ModeSwitch, RunningMode};

@@ -1,4 +1,4 @@
-//! How words of the wire and quantities are written in a recording.
+//! Serialisation of wire enumerations and quantities in recordings.
 
 use serde::{Deserialize, Deserializer, Serializer};
 

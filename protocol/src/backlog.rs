@@ -1,7 +1,7 @@
-//! Bytes that arrived while a program was held up, given to the scans it makes up as they came.
+//! Spreads bytes that arrived while the program did not run over the scans that it makes up afterwards.
 //!
-//! A program that reads all of them in the first of those scans hears frames ahead of its own time and
-//! then nothing: every frame after that seems late, and a partner that spoke all the while seems silent.
+//! If all of them were read in the first of those scans, frames would be ahead of the program's own time,
+//! every later frame would seem late, and a partner that has sent all the while would seem silent.
 
 use alloc::vec::Vec;
 
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn what_waited_is_spread_over_the_scans_that_are_made_up() {
+    fn waiting_bytes_are_spread_over_the_scans_that_are_made_up() {
         let mut backlog = Backlog::default();
         assert_eq!(
             shares(&mut backlog, 100, &[40, 31, 22, 13, 4]),

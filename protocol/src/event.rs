@@ -1,4 +1,4 @@
-//! The event dictionary: stable numbers, never reused, with severity and the part under suspicion.
+//! Event dictionary: stable numbers, never reused, each with severity and suspected part.
 
 use serde::{Deserialize, Serialize};
 

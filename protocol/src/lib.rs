@@ -1,14 +1,14 @@
-//! The words on the wire between a tester and an on-board ATC unit.
+//! Wire protocol between a tester and an on-board ATC unit, and the data that both share.
 //!
 //! Layers, bottom up:
 //! * [`frame`]: async-HDLC framing with FCS-32 and a streaming decoder that counts what it rejects;
 //! * [`link`]: sequence, time stamp, time-out and address checks for each peer;
 //! * [`message`]: the typed messages of the four channels, with declared field layouts;
 //! * [`signal`], [`event`]: the catalogue of recorded signals and of unit events;
-//! * [`Backlog`]: what a program does with bytes that waited while it was held up;
+//! * [`Backlog`]: spreads bytes that waited over the scans that are made up;
 //! * [`config`], [`mod@line`], [`injection`]: unit configuration, track database and fault modes as
 //!   checked data;
-//! * [`shown`]: text that others wrote, as people may be shown it.
+//! * [`shown`]: makes text from outside safe to display.
 //!
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
 //! units straight. `no_std` with `alloc`: no clock, no thread, no file.

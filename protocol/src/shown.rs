@@ -1,9 +1,9 @@
-//! Text that others wrote, as it may be shown to people.
+//! Makes text from outside safe to display.
 //!
-//! Notes, names, serial numbers and messages come from operators, scripts, files and units. A control
-//! character in them moves a terminal's cursor or changes its title, a bidirectional one turns the order of
-//! what is read, and one without width makes two names look the same. Each is shown by its number instead:
-//! `\x1b`, `\u{202e}`.
+//! Notes, names, serial numbers and messages come from operators, scripts, files and units. Control
+//! characters in them would move a terminal's cursor or change its title, bidirectional ones would reorder
+//! the text, and ones without width would make two names look the same. Each is shown by its number
+//! instead: `\x1b`, `\u{202e}`.
 
 use alloc::borrow::Cow;
 use alloc::string::String;
@@ -21,7 +21,7 @@ pub fn lines(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// A letter that acts, or hides, where it should only be read.
+/// A character that is invisible or controls the display.
 pub fn is_unseen(letter: char) -> bool {
     letter.is_control()
         || matches!(letter,
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_acts_on_a_terminal_is_spelled() {
+    fn control_characters_are_shown_by_their_numbers() {
         for (text, shown) in [
             ("\x1b]0;owned\x07", "\\x1b]0;owned\\x07"),
             ("a\x7fb\u{9b}31m", "a\\x7fb\\x9b31m"),

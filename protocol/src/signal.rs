@@ -208,7 +208,7 @@ impl Signal {
         self.definition().name
     }
 
-    /// Values of a counter that begins anew at 0 after its greatest; none of all that do not.
+    /// Number of values of a counter that wraps to 0; `None` for signals that do not wrap.
     pub const fn wraps_at(self) -> Option<f64> {
         match self {
             Self::MarkerCount => Some(256.0),

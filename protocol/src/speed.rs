@@ -1,4 +1,4 @@
-//! A speed that cannot be mistaken for one in another unit.
+//! Speed as a type, made from and read in a named unit only: m/s, km/h or cm/s.
 
 use core::fmt;
 use core::ops::{Add, Sub};

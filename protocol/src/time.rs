@@ -10,7 +10,7 @@ pub const CYCLE: Duration = Duration::from_ms(50);
 /// I/O scan: ATP supervision, tachometer counts and marker edges.
 pub const SCAN: Duration = Duration::from_ms(10);
 
-/// A point in virtual time, microseconds since the start of whoever counts it.
+/// A point in virtual time, microseconds since the start of the program that counts it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Instant(u64);
 

@@ -1,8 +1,8 @@
-//! Force that the track costs: gradients and curves of the track database under the train's length,
-//! and its running resistance.
+//! Feed-forward: force that gradients, curves (track database, under the train's length) and running
+//! resistance need.
 //!
-//! The printed laws have none of it: their integrators find it out after the fact, which a change of
-//! gradient within the last metres does not leave time for.
+//! The printed laws have none: their integrators would compensate afterwards, too late for a change of
+//! gradient within the last metres.
 
 use protocol::config::AtoTrainConfig;
 use protocol::line::Section;

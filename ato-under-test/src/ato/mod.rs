@@ -1,6 +1,6 @@
 //! ATO: drives the train from station to station while ATP says Automatic Run.
 //!
-//! One cycle, in order [S0 §3]: what the inputs are worth (`watch`), operating state ([`AtoState`],
+//! One cycle, in order [S0 §3]: whether the inputs are plausible (`monitor`), operating state ([`AtoState`],
 //! ART), speed to run at (`cruise`), where the train will be when the effort acts (`observer`), the
 //! speed controller ([`mod@controller`], SPR), what the track costs (`feed_forward`), and the share of
 //! available effort for TCMS (`reg`, REG).

@@ -1,14 +1,13 @@
-//! ATO's watch over its inputs and over itself [S0 §1: monitoring].
+//! Monitoring of ATO's inputs and of ATO itself [S0 §1].
 //!
-//! * Inputs no train can make end the run at once: nothing computed from them is worth more than a
-//!   brake.
-//! * A train that does not do what the effort asks is not driven any longer. What counts is not the
-//!   distance to the target, which is great in every departure, but the speed the efforts should
-//!   have made within the last seconds against the speed there is.
-//! * What the train did not give is not ATO's: what TCMS says it gives is held against what it was sent.
-//!   While TCMS brakes by itself or cuts powering nothing is judged; a deviation that at least half of
-//!   what it withheld explains is told as the train's, and only one in braking ends the run.
-//! * The end of a run away from the stop point is told.
+//! * Implausible inputs end the run at once: nothing computed from them can be trusted, so the train brakes.
+//! * A train that does not follow the effort is not driven any longer. The criterion is not the speed error,
+//!   which is great in every departure, but the difference between the speed that the efforts of the last
+//!   seconds should have produced and the measured speed.
+//! * Effort that the train did not give is not ATO's fault: the effort that TCMS reports is compared with the
+//!   effort it was sent. While TCMS brakes by itself or cuts powering nothing is judged. A deviation of which
+//!   withheld effort explains at least half is reported as the train's, and ends the run only in braking.
+//! * A run that ends away from the stop point is reported.
 
 use protocol::config::AtoConfig;
 use protocol::line::Section;
@@ -48,7 +47,7 @@ pub struct TrainReport {
     pub given: Option<i16>,
 }
 
-/// What the watch looks at besides ATO's inputs.
+/// What is monitored besides ATO's inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInputs {
     /// State until now.
@@ -63,7 +62,7 @@ pub struct MonitorInputs {
     pub arrived: bool,
 }
 
-/// What it found in this cycle.
+/// Findings of one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Findings {
     /// Inputs no train can make.
@@ -78,7 +77,7 @@ pub struct Findings {
     pub short_m: Option<f64>,
 }
 
-/// The watch.
+/// State of the monitoring from cycle to cycle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Monitor {
     before_mps: Option<f64>,

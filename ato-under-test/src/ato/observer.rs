@@ -1,4 +1,5 @@
-//! Speed and distance at which the effort of this cycle will meet the train.
+//! Observer: predicts speed and distance of the train for the time at which the effort of this cycle takes
+//! effect.
 //!
 //! The printed laws act on the present speed of a train whose effort is there at once. A measured speed
 //! is the mean of a window that lies in the past, and effort follows its command after a dead time and

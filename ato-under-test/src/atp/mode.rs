@@ -2,7 +2,7 @@
 //! Run, with the reason for every refusal.
 //!
 //! When ATO has failed in a run, or TCMS no longer lets it run (permission taken back, link lost, a brake
-//! not released), the service brake stops the train first: nobody may be driving. Then there is no
+//! not released), the service brake stops the train first: there may be no driver. Then there is no
 //! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
 //! train then waits for a departure that is given anew, or for the start button: the one that was still
 //! given began the run that failed.

@@ -1,4 +1,4 @@
-//! Two tachometers compared: speed, distance, direction, standstill, and which of them lies.
+//! Compares two tachometers: speed, distance, direction and standstill, and which of the two has failed.
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;

@@ -1,4 +1,4 @@
-//! The input image: the last I/O frame, and whether the harness is alive.
+//! Input image: the last I/O frame, and whether the harness still sends.
 
 use protocol::message::IoInput;
 use protocol::{Duration, Instant};

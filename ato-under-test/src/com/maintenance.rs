@@ -1,8 +1,7 @@
 //! The tester's session: identity, arm exchange, stimuli, event log, run record.
 //!
 //! Stimuli act only while armed. Arming needs the maintenance key and standstill, and lapses when
-//! the key goes off or the tester falls silent; whoever holds the TEST board then takes every test
-//! signal away.
+//! the key goes off or the tester falls silent; the TEST board then removes every test signal.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! Watches how many frames each channel loses.
+//! Counts frames that each channel loses, and logs when they are too many.
 
 use protocol::event::Event;
 use protocol::link::Counters;

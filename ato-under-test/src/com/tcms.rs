@@ -133,7 +133,7 @@ mod tests {
 
     /// Frames that no train can mean are passed over, and give the link up when no others come.
     #[test]
-    fn nonsense_is_not_taken() {
+    fn frames_with_implausible_content_are_refused() {
         let mut link = link();
         assert!(link.take(Instant::ZERO, FRAME));
         let nonsense = [
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_tcms_does_by_itself_hinders_and_counts_only_while_it_is_heard() {
+    fn tcms_overrides_effort_only_while_its_frames_arrive() {
         let mut link = link();
         for (bits, cuts, overrides) in [
             (TcmsToAtcBits::empty(), false, false),

@@ -1,4 +1,4 @@
-//! What comes out later than it went in.
+//! Delay queue: items become available at a given time.
 
 use alloc::collections::VecDeque;
 

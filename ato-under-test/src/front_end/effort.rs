@@ -1,4 +1,4 @@
-//! The effort on its way out of the ATO processor.
+//! Output of ATO's effort to TCMS, where injected faults bound, stop or delay it.
 
 use alloc::collections::VecDeque;
 

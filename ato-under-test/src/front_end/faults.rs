@@ -1,4 +1,4 @@
-//! Injected faults by place. Only the signal path asks; nothing that judges does.
+//! Injected faults by place. Only the signal path reads them; no function that judges does.
 
 use alloc::vec::Vec;
 
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_loose_acts_while_the_wheels_turn_fast() {
+    fn a_loose_contact_acts_while_the_wheels_turn_fast() {
         let mut faults = Faults::new(&[loose(40.0)], 1);
         let mut acts_at = |kmh: f64| {
             for i in 0..200u64 {

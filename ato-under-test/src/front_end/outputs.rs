@@ -1,4 +1,4 @@
-//! Relays and drivers: what the processors want becomes what the contacts do.
+//! Relays and drivers: turn what the processors command into the state of the contacts.
 
 use protocol::injection::{Effect, Place};
 use protocol::message::Outputs;

@@ -1,4 +1,4 @@
-//! A speed sensor and its input: wrapping counts become pulses of this scan.
+//! Speed sensors and their inputs: wrapping counts become the pulses of this scan.
 
 use protocol::injection::{Effect, Place};
 

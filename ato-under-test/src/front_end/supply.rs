@@ -1,4 +1,4 @@
-//! Power supply and clock of the unit: what comes before everything else it does.
+//! Power supply and clock of the unit, where injected faults act before everything else.
 
 use protocol::injection::{Effect, Place};
 use protocol::{Duration, Instant};
@@ -29,7 +29,7 @@ pub struct PowerAndClock {
 }
 
 impl PowerAndClock {
-    /// Powered up again at `now`; the unit's own time begins anew.
+    /// Powered up again at `now`; the unit's own time restarts at 0.
     pub fn restarted(now: Instant) -> Self {
         Self {
             last: now,

@@ -1,4 +1,5 @@
-//! A bounded ring whose indices are never reused: what falls off keeps its number.
+//! Bounded ring buffer with indices that are never reused: when the oldest entry is dropped, the others keep
+//! theirs.
 
 use alloc::collections::VecDeque;
 

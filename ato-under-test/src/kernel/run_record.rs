@@ -1,4 +1,4 @@
-//! The record of automatic runs: what ATO saw and did, every cycle, in a bounded ring [S0 §2, §3.1].
+//! Record of automatic runs: what ATO measured and ordered in each cycle, in a bounded ring [S0 §2, §3.1].
 
 use protocol::Instant;
 use protocol::message::{AtoState, RunRow};

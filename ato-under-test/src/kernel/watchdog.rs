@@ -1,4 +1,4 @@
-//! Watchdog over ATO's processor: its cycle counter has to move on.
+//! Watchdog of ATO's processor: reports when its cycle counter stops.
 
 /// Cycles without progress after which the processor counts as stopped [default].
 const CYCLES: u8 = 3;

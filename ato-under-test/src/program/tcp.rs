@@ -1,5 +1,5 @@
-//! One TCP client at a time. Who comes meanwhile is told who has the unit, and turned away: of what a client
-//! sends while it waits nothing may act later as if it were fresh.
+//! Serves one TCP client at a time. A second one is told who has the unit and is disconnected: nothing that
+//! it sent while it waited may act later as if it were fresh.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
@@ -32,7 +32,7 @@ pub struct Server {
     unheard: Vec<u8>,
 }
 
-/// Who has the unit.
+/// The client that has the unit.
 struct Client {
     stream: TcpStream,
     address: SocketAddr,
@@ -42,7 +42,7 @@ struct Client {
     heard_at: Instant,
 }
 
-/// Who came while another had it.
+/// A client that connected while another has the unit.
 struct SecondClient {
     stream: TcpStream,
     address: SocketAddr,

@@ -83,7 +83,7 @@ impl Locator {
         }
     }
 
-    /// At a departure loop the section begins anew.
+    /// At a departure loop a new section begins.
     pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) {
         let Some(section) = line.section(data.section) else {
             return;
@@ -229,7 +229,7 @@ impl Locator {
         }
     }
 
-    /// A marker that must have come by now, wherever in its window it lies.
+    /// A marker that is overdue: the train is past the end of its window.
     fn look_for_overdue(&mut self, now: Instant, log: &mut EventLog) {
         let next = self.fix.marker + 1;
         let Some(place_m) = self.section.as_ref().and_then(|s| place_m(s, next)) else {

@@ -1,12 +1,8 @@
-//! Which marker is believed.
-//!
-//! A marker is believed within a window around its place: some metres, and what wheels can be wrong by
-//! since the last fix: a share of the distance run, small once markers have calibrated them, and what
-//! they are thought to have slid. A pulse outside its window
-//! corrects nothing. Two such pulses in order, as far apart as their places, are believed
-//! together: then not the markers were wrong but the position. One alone that comes early, by no
-//! more than uncalibrated wheels of the wrong size make of the distance, tells how much further the train
-//! may be ([`further_m`]).
+//! Plausibility of a marker: accepted within a window around its place, whose width is some metres and what
+//! the wheels may have measured wrong since the last fix. A pulse outside its window corrects nothing. Two
+//! such pulses in order, as far apart as their places, are accepted together: then the position was wrong and
+//! not the markers. One alone that comes early, by no more than uncalibrated wheels of a wrong diameter
+//! explain, tells how much further the train may be ([`further_m`]).
 
 use protocol::config::MarkerConfig;
 use protocol::line::Section;
@@ -28,7 +24,7 @@ pub struct Fix {
     pub marker: u8,
 }
 
-/// A marker pulse and the distance the odometer told when it came.
+/// A marker pulse and the odometer's distance at that moment.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerDetection {
     /// 1 to 4.
@@ -57,7 +53,7 @@ impl Wheels {
     }
 }
 
-/// What is made of a detection.
+/// Result of the check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MarkerCheck {
     /// Its place is the train's position.

@@ -1,4 +1,5 @@
-//! Distance between tachometer pulses: a pulse is centimetres, a stop is to be known to one.
+//! Distance run, interpolated between tachometer pulses: a pulse is several centimetres, but the stop
+//! position is to be known to one.
 //!
 //! The way to the last pulse edge is counted; what has been run since follows from the speed and its
 //! change. So does where the train was when a marker's edge came, some milliseconds ago.

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_cannot_be_is_told_and_corrected_to_the_bound_only() {
+    fn an_impossible_wheel_is_reported_and_corrected_to_the_bound_only() {
         let mut wheel = fresh();
         wheel.learn(437.5, 437.5 * 1.04);
         assert_eq!(wheel.correction(), -0.03);

@@ -123,7 +123,7 @@ impl Unit {
         };
         let fault = self.faults.at(Place::AtoCpu);
         if matches!(fault, Some(Effect::Dead)) {
-            // A processor that has stopped leaves its outputs as they were; nothing happens anew.
+            // A processor that has stopped leaves its outputs as they were and reports no new event.
             self.ato_outputs.findings = Findings::default();
             self.ato_outputs.slid_m = 0.0;
         } else {

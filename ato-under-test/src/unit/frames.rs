@@ -16,7 +16,7 @@ use crate::twc::TrainState;
 const DAMAGE: u8 = 0x12;
 
 impl Unit {
-    /// Latches what came; answers requests of the tester.
+    /// Latches received inputs and answers requests of the tester.
     pub(super) fn receive_frames(&mut self, now: Instant, out: &mut Vec<u8>) {
         while let Some(Received { header, message }) = self.link.poll(now) {
             match message {

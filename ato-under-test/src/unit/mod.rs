@@ -157,7 +157,7 @@ impl Unit {
         self.drive_outputs(now, out);
     }
 
-    /// Begins anew after a dip of the supply; the hardware, and what is wrong with it, stays the same.
+    /// Restarts after a dip of the supply; the hardware and its injected faults stay.
     fn restart(&mut self, now: Instant) {
         let faults = core::mem::replace(&mut self.faults, Faults::new(&[], 0));
         *self = Self::powered_up(self.setup.clone(), faults);

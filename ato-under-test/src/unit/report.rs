@@ -1,4 +1,4 @@
-//! What the unit tells the tester and TCMS about itself.
+//! Messages in which the unit reports its identity and state to the tester and TCMS.
 
 use protocol::Instant;
 use protocol::message::{AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits};

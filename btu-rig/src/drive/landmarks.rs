@@ -1,4 +1,4 @@
-//! What happened where on a run.
+//! Landmarks of a run: events with time and position, from its rows and the unit's log.
 
 use protocol::Instant;
 

@@ -1,4 +1,4 @@
-//! What the unit's log and its refusals say, in words.
+//! Entries of the unit's log and refusals of automatic mode, as text.
 
 use protocol::event::Event;
 use protocol::message::{AbsurdInputs, ArmRefusal, AtoFailure, Channel, Mode, Refusals, SelfTest};

@@ -51,7 +51,7 @@ const STANDS_AT_MOST: Duration = Duration::from_ms(10_000);
 const RUN_BASE: Duration = Duration::from_ms(60_000);
 /// Slowest believable mean speed of a run, m/s.
 const SLOWEST_MPS: f64 = 4.0;
-/// A train nobody drives any more is watched for so long, should nothing brake it.
+/// A train that is no longer driven is observed for this long if nothing brakes it.
 const COASTS: Duration = Duration::from_ms(60_000);
 /// Distance after which the train has left the departure station's loop, m.
 const LOOP_LEFT_M: f64 = 50.0;

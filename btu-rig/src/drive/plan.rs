@@ -1,4 +1,4 @@
-//! What is run: a section, its codes, the train's load, and what is other than nominal.
+//! Plan of an automatic run: section, speed codes, load, and what deviates from nominal.
 
 use protocol::config::UnitConfig;
 use protocol::line::{Line, Section};

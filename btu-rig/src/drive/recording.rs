@@ -1,4 +1,4 @@
-//! Gathers rows and the unit's log while a run goes on.
+//! Collects rows and the unit's log during an automatic run.
 
 use protocol::signal::Signal;
 use protocol::{CYCLE, Instant, SCAN};

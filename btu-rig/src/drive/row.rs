@@ -1,4 +1,4 @@
-//! What is recorded of a run each 50 ms cycle.
+//! One row of an automatic run's record, each 50 ms cycle.
 
 /// One cycle. What the unit has not said is not-a-number.
 #[derive(Clone, Copy, Debug, PartialEq)]

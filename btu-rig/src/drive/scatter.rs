@@ -1,4 +1,4 @@
-//! How trains, tracks and days differ: what is drawn for each of many runs.
+//! Scatter of trains, tracks and sensors: values drawn at random for each of many runs.
 
 use std::collections::BTreeMap;
 
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_spread_is_told_what_is_right_and_where() {
+    fn an_error_in_a_spread_names_its_place_and_the_permitted_forms() {
         for instead in [
             "0.03",
             "{ spread = 0.03 }",
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn spreads_no_train_can_have_are_refused_by_key() {
+    fn an_impossible_spread_is_refused_and_the_key_is_named() {
         let good = "load_kg = { low = 0, high = 1e5 }
             gradient_offset_permille = { mean = 0, sigma = 1 }
             adhesion = { low = 0.1, high = 0.3 }

@@ -1,4 +1,4 @@
-//! Carrying out a list of actions, one after the other, without ever blocking.
+//! Carries out a list of actions, one after the other, without blocking.
 
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};

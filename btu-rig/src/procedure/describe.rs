@@ -1,4 +1,4 @@
-//! A plan in words: what a technician reads before anything is driven, and in messages after.
+//! Text of a plan: what a technician reads before a unit is driven, and in messages afterwards.
 
 use std::fmt::{self, Display, Formatter};
 

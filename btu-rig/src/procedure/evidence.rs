@@ -1,12 +1,11 @@
-//! How far what the bench hears can be trusted: whether the unit's log is read, whether frames get
-//! through, and what the unit says of its own self-test.
+//! How far the bench can trust what it receives: whether the unit's log is read, whether frames arrive as
+//! they were sent, and what the unit's self-test reports.
 //!
-//! A verdict is about the unit only where nothing between it and the bench stands in the way. One byte
-//! stream carries all channels, so what a bad line does looks like faults of several parts at once:
-//! channels that lose frames, partners that fall silent. Two things tell them apart. A part hurts its
-//! own channel and nothing else: no part of a unit damages frames of the tester or of the I/O rack. And
-//! the unit counts frames that fail their checks on arrival, which only the line can have damaged: a
-//! modem that loses a frame loses it after those checks.
+//! A verdict on the unit needs a good line between unit and bench. One byte stream carries all channels, so a
+//! bad line looks like faults of several parts at once: channels lose frames, partners fall silent. Two
+//! facts distinguish them. A failed part affects its own channel only: no part of a unit damages frames of
+//! the tester or of the I/O rack. And the unit counts frames that fail their checks on arrival, which only
+//! the line can have damaged: a modem loses frames after those checks.
 
 use protocol::event::Event;
 use protocol::message::{AtoFailure, SelfTest};
@@ -32,7 +31,7 @@ pub struct LineState {
     pub harmed_lately: u64,
 }
 
-/// What a driver knows of its own eyes and ears.
+/// How far a driver can trust what it receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Evidence {
     /// The unit's log.
@@ -46,7 +45,7 @@ pub struct Evidence {
 }
 
 impl Default for Evidence {
-    /// Nothing stands in the way.
+    /// Everything is received and read.
     fn default() -> Self {
         Self {
             log: LogState::Read,

@@ -1,4 +1,4 @@
-//! Watching one expectation while its step runs.
+//! One expectation while its step runs.
 
 use protocol::Instant;
 

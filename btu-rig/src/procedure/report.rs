@@ -1,4 +1,4 @@
-//! What a run says: verdicts, measurements, step results, and the one stream of events.
+//! Results of a run: verdicts, measurements, step results, and the one stream of events.
 
 use protocol::{Duration, Instant};
 

@@ -28,7 +28,7 @@ pub(super) struct StepRun {
     /// Each once, with how often it came.
     problems: Vec<(Problem, u32)>,
     logged: EventSet,
-    /// Part that the first event nobody asked for names.
+    /// Suspected part of the first event that no step provoked.
     blamed: Option<&'static str>,
     /// The step was given up: its remaining expectations are not judged.
     given_up: bool,
@@ -50,7 +50,7 @@ pub(super) struct StepEnd {
     pub message: String,
     pub bench_time: Duration,
     pub measurements: Vec<Measurement>,
-    /// Part that an event nobody asked for names.
+    /// Suspected part of an event that no step provoked.
     pub blamed: Option<&'static str>,
 }
 
@@ -108,7 +108,7 @@ impl StepRun {
         )));
     }
 
-    /// Holds an emergency brake nobody asked for against the step.
+    /// Fails the step for an emergency brake that it did not provoke.
     pub(super) fn blame_brake(&mut self) {
         self.hold(Problem::Failed(
             "the emergency brake was applied, which this step does not ask for".into(),

@@ -1,4 +1,4 @@
-//! A stimulus in words.
+//! Text of a stimulus.
 
 use std::fmt;
 

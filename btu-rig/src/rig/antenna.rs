@@ -133,7 +133,7 @@ mod tests {
 
     /// Level and frequencies are off as the sensors say, noise has its spread, and nothing stays nothing.
     #[test]
-    fn what_arrives_is_off_and_noisy() {
+    fn the_received_signal_is_off_its_nominal_value_and_noisy() {
         let mut antenna = Antenna::new(Random::new(3));
         antenna.set_sensors(Sensors {
             level_factor: 0.8,

@@ -1,4 +1,4 @@
-//! What each stimulus does, and how the bench is made safe.
+//! Carries out each stimulus on the rig, and makes the bench safe.
 
 use protocol::Instant;
 

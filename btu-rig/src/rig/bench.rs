@@ -29,7 +29,7 @@ pub trait UnitLink {
     ) -> Result<(), LinkFailure>;
 }
 
-/// A rig with its unit. Time is virtual; over a port, whoever calls paces the ticks.
+/// A rig with its unit. Time is virtual; over a port the caller paces the ticks.
 #[derive(Debug)]
 pub struct Bench<L> {
     rig: Rig,

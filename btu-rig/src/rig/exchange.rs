@@ -23,7 +23,7 @@ const MAX_ATTEMPTS: usize = 3;
 const ANSWER_TIME: Duration = Duration::from_ms(300);
 /// Pause before arming is tried again while the unit starts up or another session lapses.
 const ARM_PAUSE: Duration = Duration::from_ms(200);
-/// How long that is tried: shorter than a procedure waits, so that the unit's reason is told.
+/// How long that is tried: shorter than a procedure waits, so that the unit's reason is reported.
 const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 
 /// Something asked of the unit.
@@ -68,7 +68,7 @@ pub struct Exchange {
     may_send: Instant,
     armed_at: Option<Instant>,
     failure: Option<Refusal>,
-    /// Nobody waits for the outcome: the bench is being made safe.
+    /// The outcome is not awaited: the bench is being made safe.
     quiet: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Counts frames between tester and unit that did not get through as they were sent, either way.
+//! Counts frames between tester and unit that were lost or damaged on the line, in both directions.
 //!
 //! Counted here are only losses that no part of a unit can cause. From the unit: gaps in the sequence of
 //! the PTU and I/O channels, frames of theirs out of place, and refused bytes beyond what a modem of the
@@ -219,7 +219,7 @@ fn out_of_place(counters: &Counters) -> u64 {
         .sum()
 }
 
-/// Refused as damaged or as nobody's, and of a channel no part of the unit damages, or of none.
+/// Refused as damaged or wrongly addressed, on a channel that no part of the unit damages, or on none.
 fn refused_whole(counters: &Counters) -> u64 {
     refused(counters, &[Some(Channel::Ptu), Some(Channel::Io), None])
 }

@@ -1,4 +1,4 @@
-//! Says what is wrong with the connection to the unit, in words a technician can act on.
+//! Reports what is wrong with the connection to the unit, in words a technician can act on.
 //!
 //! Only channels that no fault of the unit can silence are watched: a unit that does not answer
 //! TCMS or the wayside is a finding, not a bench error.

@@ -88,7 +88,7 @@ pub struct LogReader {
 }
 
 impl LogReader {
-    /// Begins anew, as with a unit that was started again.
+    /// Starts over, as after a restart of the unit.
     pub fn restart(&mut self) {
         *self = Self {
             events: std::mem::take(&mut self.events),

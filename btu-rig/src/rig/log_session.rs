@@ -1,5 +1,5 @@
-//! A tester that only listens: who the unit is and what its log holds. It gives no input, arms nothing
-//! and sends no stimulus, so that a unit in a train, too, is left as it was.
+//! A tester that only listens: it reads the unit's identity and log. It gives no input, arms nothing and
+//! sends no stimulus, so a unit in a train is left as it was.
 
 use protocol::link::{End, Link};
 use protocol::message::{Identity, Message, StatusBits};
@@ -51,7 +51,7 @@ impl LogSession {
         }
     }
 
-    /// Takes what came from the unit.
+    /// Takes bytes from the unit.
     pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
         self.watch.note(bytes.len());
         self.link.push(bytes);

@@ -114,7 +114,7 @@ pub struct Rig {
     /// Events of TCMS that were not taken yet, and how many there were.
     tcms_events: Vec<UnitEvent>,
     tcms_logged: u32,
-    /// Those of them that nobody took in time.
+    /// Number of them that were not taken in time.
     tcms_dropped: u64,
     injected: Injected,
     faults: TrainFaults,
@@ -236,7 +236,7 @@ impl Rig {
         self.record();
     }
 
-    /// Takes what came from the unit.
+    /// Takes bytes from the unit.
     pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
         self.now = now;
         self.watch.note(bytes.len());
@@ -303,7 +303,7 @@ impl Rig {
     }
 
     /// Log entries that were overwritten or cleared in the unit before they could be read, and those of
-    /// TCMS that nobody took in time.
+    /// TCMS that were not taken in time.
     pub fn events_overwritten(&self) -> u64 {
         self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
     }

@@ -1,4 +1,4 @@
-//! What a wheel did in one scan, exactly enough to time each pulse within it.
+//! Motion of a wheel in one scan, exact enough to time each pulse within it.
 //!
 //! Distance: rolled whatever the direction, never falling. Position: forward counts up,
 //! backward down.

@@ -1,4 +1,4 @@
-//! The rig's only source of chance: one small generator, seeded once and handed down.
+//! The rig's only random generator, seeded once and handed down.
 
 /// SplitMix64 (Steele, Lea and Flood 2014): small, and good enough to scatter pulses and bit errors.
 #[derive(Clone, Debug)]

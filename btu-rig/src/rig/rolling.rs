@@ -1,4 +1,4 @@
-//! The wheels turn: by the generators, or by the train model, whose true state the rig tells.
+//! Motion of the wheels: by the generators, or by the train model, whose true state the rig also reports.
 
 use protocol::{Duration, SCAN};
 

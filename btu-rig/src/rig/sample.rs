@@ -1,4 +1,4 @@
-//! One value of every signal: what the rig makes, and what the unit was last heard to say.
+//! The latest value of every signal: what the rig makes, and what the unit last sent.
 
 use protocol::message::{
     AtcToTcms, AtcToTcmsBits, IoOutput, Outputs, Status, StatusBits, TrainLines, TwcTrain,
@@ -229,7 +229,7 @@ mod tests {
     /// Every signal of the unit is heard in some frame and forgotten 500 ms after the last; the
     /// count of TWC answers is the wayside's own knowledge and stays.
     #[test]
-    fn what_is_not_said_again_is_forgotten() {
+    fn a_value_that_is_not_received_again_is_forgotten() {
         let mut latest = LatestSample::default();
         latest.on_io(Instant::ZERO, &IoOutput::default());
         latest.on_tcms(Instant::ZERO, &AtcToTcms::default());

@@ -1,4 +1,4 @@
-//! TCMS on the bench: what it is given in a scan, and what it shows as signals.
+//! TCMS on the bench: its inputs of each scan, and its state as signals.
 
 use protocol::message::{Channel, EbCause, Mode};
 use protocol::signal::{Sample, Signal};

@@ -179,7 +179,7 @@ impl Tester {
         self.exchange.push(request)
     }
 
-    /// Falls silent, dropping what was under way, or speaks again.
+    /// Stops sending, dropping requests in progress, or starts again.
     pub fn set_silent(&mut self, now: Instant, silent: bool) {
         if silent && !self.silent {
             self.exchange.replace([]);
@@ -223,7 +223,7 @@ impl Tester {
         !self.silent && !self.exchange.armed() && self.exchange.idle()
     }
 
-    /// Since when it speaks; `None` while it is silent.
+    /// Since when it sends; `None` while it is silent.
     pub fn speaks_since(&self) -> Option<Instant> {
         (!self.silent).then_some(self.speaks_since)
     }
@@ -283,7 +283,7 @@ impl Tester {
         self.changed.clone().or_else(unread)
     }
 
-    /// What the unit logged since contact and nobody knows.
+    /// Entries logged since contact that cannot be read any more.
     pub fn missed(&self) -> Option<String> {
         (self.missed > 0).then(|| {
             format!(

@@ -15,7 +15,7 @@ use super::random::Random;
 pub struct CabDeskFaults {
     /// What the door contact says, whatever the doors do.
     pub doors: Option<bool>,
-    /// What the head control relay does, whatever it is told.
+    /// State of a failed head control relay, independent of its command.
     pub hcr: Option<bool>,
     /// Voltage of the master controller's potentiometer, whatever its position.
     pub volts: Option<f64>,

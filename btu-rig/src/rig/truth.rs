@@ -1,4 +1,4 @@
-//! What the train really does, whatever tachometers and unit make of it.
+//! True motion and forces of the train, independent of what tachometers and unit measure.
 
 /// The train's true state at a scan's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

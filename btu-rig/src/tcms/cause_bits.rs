@@ -1,4 +1,4 @@
-//! Sets of causes and lamps, as signals show them: bits with names.
+//! Bit sets of causes and lamps, with a name for each bit as signals show it.
 
 macro_rules! causes {
     ($(#[doc = $doc:literal])* $name:ident { $( $(#[doc = $each:literal])* $bit:ident = $at:literal $label:literal, )* }) => {

@@ -1,4 +1,4 @@
-//! What cuts powering, and the lamps that tell the driver.
+//! Causes that cut powering, and the driver's lamps.
 
 use protocol::message::Outputs;
 
@@ -9,7 +9,7 @@ use super::full_service_brake::BrakeOutputs;
 use super::inputs::TcmsInputs;
 use super::mode::TcmsMode;
 
-/// What a scan has found by the time powering is decided.
+/// Findings of a scan on which the decision about powering depends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Findings<'a> {
     /// Mode.

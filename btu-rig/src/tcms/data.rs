@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_by_its_key() {
+    fn impossible_tcms_data_is_refused_and_the_key_is_named() {
         let mut keys = std::collections::BTreeSet::new();
         for (key, value) in [
             ("power_notches", "[15, 30, 30, 75, 100]"),

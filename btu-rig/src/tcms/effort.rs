@@ -178,7 +178,7 @@ impl Effort {
         }
     }
 
-    /// Works out anew who gives what when that has changed.
+    /// Recalculates the shares when load or cut-outs have changed.
     fn share_between(&mut self, no_electric: CarSet, no_air: CarSet) {
         let wanted = SharedFor {
             load_kg: self.consist.load_kg(),

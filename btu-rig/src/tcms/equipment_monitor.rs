@@ -1,5 +1,5 @@
-//! What TCMS watches of the train's equipment: inverters and brake control units that do not answer,
-//! cylinders that do not follow, brakes that are not released (S4).
+//! Monitoring of the train's equipment: inverters and brake control units that do not answer, cylinders that
+//! do not follow their demand, brakes that are not released (S4).
 //!
 //! What was found is kept until the opposite has lasted as long, so that it does not come and go: a
 //! unit that answers again, cylinders that follow a full demand. Cutting the car's equipment out ends
@@ -35,7 +35,7 @@ pub struct MonitorInputs<'a> {
     pub forced_release: bool,
 }
 
-/// What was found.
+/// Failures of the equipment found so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EquipmentFailures {
     /// Inverters that do not answer and are not cut out (BCXVVVFF).
@@ -50,7 +50,7 @@ pub struct EquipmentFailures {
     pub not_released_brakes: bool,
 }
 
-/// Something wrong with cars that lasts, until its opposite has lasted.
+/// A failure of cars, latched once it has lasted and until its opposite has lasted as long.
 #[derive(Clone, Debug, Default)]
 struct LatchedFault {
     wrong: OnDelayCars,
@@ -110,7 +110,7 @@ impl EquipmentMonitor {
         monitor
     }
 
-    /// Takes each car's full service anew, N.
+    /// Sets each car's full service brake, N.
     pub fn weigh(&mut self, full_service_n: PerCar) {
         self.full_service_n = full_service_n;
         for (car, full_n) in full_service_n.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What the equipment's reports mean to TCMS: speed, motor current, effort given.
+//! Speed, motor current and effort of the train, from the equipment's reports.
 
 use crate::train::{Equipment, PerCar};
 

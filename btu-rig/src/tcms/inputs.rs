@@ -1,4 +1,4 @@
-//! What TCMS is given in a scan: cabs, train lines, the unit's contacts, the equipment's reports.
+//! Inputs of TCMS in a scan: cabs, train lines, the unit's contacts, the equipment's reports.
 
 use protocol::message::{ModeSwitch, Outputs};
 

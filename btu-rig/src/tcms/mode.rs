@@ -8,7 +8,7 @@ use super::inputs::CabInputs;
 /// Who has the train by the mode bits of the paper's modules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Driver {
-    /// Whoever is in the cab: emergency, yard and manual mode.
+    /// The driver: emergency, yard and manual mode.
     Hand,
     /// ATO: automatic and driverless mode.
     Ato,

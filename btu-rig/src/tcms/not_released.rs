@@ -15,7 +15,7 @@ use crate::train::CarSet;
 
 use super::timer::OnDelayCars;
 
-/// What is known in a scan.
+/// Inputs of a scan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReleaseCheck {
     /// Nothing brakes but what was found here: no brake, holding, full service, emergency, security

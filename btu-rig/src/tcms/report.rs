@@ -33,7 +33,7 @@ pub(super) struct Scan<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Report {
     events: Vec<TcmsEvent>,
-    /// Events nobody took in time.
+    /// Events that were not taken in time.
     lost: u32,
     found: EquipmentFailures,
     regeneration: CarSet,
@@ -73,7 +73,7 @@ impl Report {
         std::mem::take(&mut self.events)
     }
 
-    /// Events that were lost because nobody took them.
+    /// Events lost because they were not taken in time.
     pub fn lost(&self) -> u32 {
         self.lost
     }

@@ -1,4 +1,4 @@
-//! One scan of TCMS, from inputs to what the train is told.
+//! One scan of TCMS, from its inputs to the demands on the train.
 
 use protocol::message::{AtcToTcms, Outputs};
 use protocol::{Duration, Instant};
@@ -48,7 +48,7 @@ pub struct Tcms {
     report: Report,
 }
 
-/// What the first steps of a scan find and the others go by.
+/// Results of the first steps of a scan that later steps use.
 #[derive(Clone, Copy, Debug)]
 struct ScanContext<'a> {
     now: Instant,
@@ -124,12 +124,12 @@ impl Tcms {
         self.report.take()
     }
 
-    /// Events that were lost because nobody took them.
+    /// Events lost because they were not taken in time.
     pub fn events_lost(&self) -> u32 {
         self.report.lost()
     }
 
-    /// One scan: what the train is told.
+    /// One scan; returns the demands on the train.
     pub fn step(&mut self, now: Instant, inputs: &TcmsInputs<'_>) -> TrainInputs {
         let cab = inputs.active_cab();
         let order = self.atc.step(now);
@@ -343,7 +343,7 @@ impl Tcms {
         );
     }
 
-    /// What the train is told.
+    /// Demands on the train.
     fn tell(&self, scan: &ScanContext<'_>, share: f64, load_kg: f64) -> TrainInputs {
         let (inputs, view) = (scan.inputs, &self.view);
         let held = if view.holding {

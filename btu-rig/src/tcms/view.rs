@@ -1,4 +1,4 @@
-//! What TCMS shows of a scan: for signals, lamps, the event log and the unit.
+//! State of TCMS after a scan: for signals, lamps, the event log and the unit.
 
 use protocol::event::Event;
 

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cars_go_in_and_out() {
+    fn cars_can_be_added_to_and_removed_from_a_set() {
         let mut set = CarSet::one(3).with(CarSet::one(7));
         assert_eq!(set.iter().collect::<Vec<_>>(), [3, 7]);
         assert_eq!(set.bits(), 0b1000_1000);

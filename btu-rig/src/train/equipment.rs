@@ -1,5 +1,5 @@
-//! What stands between TCMS and the rails: inverters and brake control units, what they report back,
-//! and what can be wrong with them.
+//! Equipment between TCMS and the rails: inverters and brake control units, what they report, and their
+//! faults.
 
 use super::{CarSet, PerCar};
 

@@ -1,4 +1,4 @@
-//! A train of cars.
+//! Model of a train of cars: demands of TCMS become forces of each car, and those the motion of the train.
 
 use crate::conditions::Conditions;
 

@@ -1,4 +1,4 @@
-//! The train: what it does with the commands it gets, as forces on rails.
+//! The train: commands become forces on the rails, and those its motion.
 //!
 //! Two models behind [`Train::step`]: the papers' ideal point mass (`ideal`), and a train of cars
 //! (`formation`): demands of TCMS for each car → what its inverters and brakes give (`equipment`,

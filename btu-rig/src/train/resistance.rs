@@ -1,4 +1,4 @@
-//! What resists motion: starting, rolling, air, tunnel and curves.
+//! Resistance to motion: starting, rolling, air, tunnel and curves.
 
 use super::data::Resistance;
 use super::{KGF_PER_T, PerCar};

@@ -303,7 +303,7 @@ fn it_departs_without_rolling_back_or_jumping() {
 /// On rails that carry 0.05 full service slides: deceleration is what friction gives, the axle with
 /// the tachometers rolls less distance than the train. On good rails again, everything recovers.
 #[test]
-fn it_slides_on_leaves_and_recovers() {
+fn braked_wheels_slide_on_leaves_and_recover() {
     let leaves = Conditions {
         adhesion: 0.05,
         ..Conditions::default()

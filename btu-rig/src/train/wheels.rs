@@ -1,4 +1,4 @@
-//! What the rails carry: adhesion of each car, slip and slide, and the protection against it.
+//! Adhesion: forces that the rails carry, slip and slide of each car, and the protection against them.
 //!
 //! While a car holds, its rotating parts move with the train. When it is asked for more than
 //! adhesion carries it breaks away: the rails carry sliding friction, the rest turns the wheels away

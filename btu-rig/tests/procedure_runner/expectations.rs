@@ -84,7 +84,7 @@ fn each_expectation_passes_fails_and_errs() {
 }
 
 #[test]
-fn bits_that_are_not_as_wanted_are_named() {
+fn bits_that_do_not_match_are_named() {
     let script = format!(
         "{HEAD}step('a', do = until(lamps, lacks = lamp.failure + lamp.not_released, within = s(1)))"
     );

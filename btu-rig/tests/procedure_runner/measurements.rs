@@ -45,7 +45,7 @@ fn a_brake_that_is_already_applied_has_no_reaction_time() {
 }
 
 #[test]
-fn what_many_measurements_waited_for_is_said_once() {
+fn a_condition_that_many_measurements_await_is_reported_once() {
     let script = format!(
         "{HEAD}step('a', measure = [at('v%d' % n, speed, when = is_(eb, 'applied')) for n in range(17)])"
     );

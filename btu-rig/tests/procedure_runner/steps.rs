@@ -169,7 +169,7 @@ fn waits_are_reported_twice_a_second() {
 }
 
 #[test]
-fn a_check_that_failed_is_said_before_one_that_could_not_be_made() {
+fn a_failed_check_outranks_one_that_could_not_be_made() {
     let two = format!(
         "{HEAD}step('a', expect = becomes(eb, 'applied', within = s(1)))\n\
          step('b', expect = becomes(alarm, True, within = s(1)))"
@@ -189,7 +189,7 @@ fn a_check_that_failed_is_said_before_one_that_could_not_be_made() {
 }
 
 #[test]
-fn a_reason_stands_once_with_its_count() {
+fn a_repeated_reason_is_reported_once_with_its_count() {
     let until = "until(eb, 'applied', within = s(1))";
     let script = format!("procedure(title = 'x', cleanup = [{until}, {until}])\nstep('a')");
     let message = "clean-up: eb = applied did not come within 1.000 s (2 times)";

@@ -175,7 +175,7 @@ fn a_paused_procedure_goes_step_by_step_and_on() {
 
 /// A pause keeps neither stop nor a lost link from clean-up and safe outputs.
 #[test]
-fn a_pause_holds_up_no_stop() {
+fn a_pause_does_not_delay_a_stop() {
     let script = format!("{HEAD}step('a')\nstep('b')");
     let outcome = run(&script, |world| match world.ms() {
         0 => world.runner.pause(),

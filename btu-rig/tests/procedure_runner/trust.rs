@@ -63,7 +63,7 @@ fn a_stalled_tester_reports_an_error_and_no_fault() {
 
 /// Goal: no verdict on time from a bench that was late. Method: the same failures, in time and behind.
 #[test]
-fn what_fails_while_the_bench_is_behind_is_an_error_unless_the_unit_said_so() {
+fn a_failure_while_the_bench_is_behind_is_an_error_unless_the_unit_logged_it() {
     let script =
         format!("{HEAD}step('a', do = wait(s(1)), expect = becomes(eb, 'applied', within = s(1)))");
     let verdict_of = |behind_ms: u64, says: bool| {
@@ -193,7 +193,7 @@ fn a_procedure_ends_with_its_log_read() {
 /// Goal: what a bad line does is no fault of a part, and what a part does on a good line is one. Method: the
 /// same events, brake and missing reaction, with and without frames that did not come through.
 #[test]
-fn what_lost_frames_explain_is_an_error_and_no_fault() {
+fn an_event_that_lost_frames_explain_is_an_error_and_no_fault() {
     let script = format!("{HEAD}step('a', do = wait(s(2)))");
     let expects =
         format!("{HEAD}step('a', do = wait(s(2)), expect = becomes(alarm, True, within = s(1)))");
@@ -247,7 +247,7 @@ fn what_lost_frames_explain_is_an_error_and_no_fault() {
 }
 
 #[test]
-fn a_failed_self_test_is_said_item_by_item_and_is_no_pass() {
+fn a_failed_self_test_is_reported_item_by_item_and_is_no_pass() {
     let outcome = run(&format!("{HEAD}step('a', do = wait(s(1)))"), |world| {
         world.fake.evidence.self_test = SelfTest::MEMORY | SelfTest::from_bits_retain(1 << 9);
     });

@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_breaks_a_reader_is_found_and_the_same_again() {
+    fn a_reader_that_breaks_is_found_and_the_same_seed_finds_it_again() {
         let found = || {
             let fuzz = Fuzz::new("reader", "no folder", ["speed = 12", "limit = [1, 2]"]);
             let mut runs = 0;

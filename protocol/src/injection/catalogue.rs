@@ -1,4 +1,4 @@
-//! The catalogue of parts and fault modes.
+//! Catalogue of parts (LRUs) and their fault modes.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -112,7 +112,7 @@ car = 5
     }
 
     #[test]
-    fn what_nobody_could_carry_out_is_refused_with_the_reason() {
+    fn a_fault_mode_that_cannot_be_injected_is_refused_with_the_reason() {
         let cases = [
             (
                 "major",
@@ -194,7 +194,7 @@ car = 5
 
     /// What the unit's memory holds is there from power-up on.
     #[test]
-    fn a_fault_of_stored_data_has_no_onset_and_does_not_come_and_go() {
+    fn a_fault_of_stored_data_has_no_onset_and_is_not_intermittent() {
         for (key, line) in [
             ("onset_s", "onset_s = 3.0"),
             ("occurs", "occurs = { when = \"above_speed\", kmh = 30.0 }"),

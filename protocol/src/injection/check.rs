@@ -1,5 +1,5 @@
-//! Which effect can happen at which place, and within which bounds: what the unit and the rig really
-//! carry out. Anything else would be a fault that is injected and does nothing.
+//! Permitted effects at each place and the bounds of their parameters: what unit and rig can carry out. Any
+//! other fault mode would have no effect, so it is refused.
 
 use alloc::format;
 use alloc::string::{String, ToString};

@@ -1,9 +1,9 @@
-//! Fault modes as data: where in the signal path, what happens there (`check`: what can happen where),
-//! when ([`Occurrence`]) and how much of it (`severity`). The parts and modes there are stand in the
-//! [`FaultCatalogue`].
+//! Fault modes as data: the place in the signal path, the effect there (`check` has the permitted ones), when
+//! it acts ([`Occurrence`]) and how strongly (`severity`). The [`FaultCatalogue`] lists them with their
+//! parts.
 //!
-//! The unit applies those of its own places, the rig those of the train and its wiring. Nothing
-//! that judges a result ever sees them.
+//! The unit applies fault modes at its own places, the rig those of the train and its wiring. Nothing that
+//! judges a result can read them.
 
 mod catalogue;
 mod check;

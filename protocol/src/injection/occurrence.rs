@@ -1,7 +1,7 @@
-//! When a fault mode acts: always, in spells, by speed, or the more the warmer it gets.
+//! When a fault mode acts: always, intermittently, above a speed, or increasingly as the unit warms up.
 //!
-//! Unit and bench step the same [`OccurrenceState`], each with draws that nothing else takes part in:
-//! a sound twin with the same seed sees the same chances everywhere.
+//! Unit and bench step the same [`OccurrenceState`] with random numbers that nothing else draws, so that a
+//! good twin with the same seed draws the same numbers everywhere else.
 
 use serde::{Deserialize, Serialize};
 
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_shakes_loose_does_so_above_its_speed_and_holds_on_a_little_below() {
+    fn a_fault_by_speed_acts_above_its_speed_and_on_to_a_little_below() {
         let occurs = Occurrence::AboveSpeed { kmh: 40.0 };
         let strengths = course(occurs, 100, |t| if t < 50.0 { t } else { 100.0 - t });
         let at = |kmh: usize| (strengths[kmh * 100], strengths[10_000 - kmh * 100]);
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_acts_before_it_has_set_in() {
+    fn no_fault_acts_before_its_onset() {
         let mut state = OccurrenceState::new(Occurrence::Always, Instant::from_ms(3_000));
         let mut at = |ms| state.step(Instant::from_ms(ms), Speed::ZERO, &mut || 0.5);
         assert_eq!([at(2_990), at(3_000)], [0.0, 1.0]);

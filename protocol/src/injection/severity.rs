@@ -1,5 +1,5 @@
-//! How much of an effect there is: levels of a mode, strengths of what comes and goes, and the kinds
-//! of modes that follow from both.
+//! Severity of an injected fault mode: its levels, the strengths of intermittent ones, and the kinds of modes
+//! that follow from both.
 
 use serde::{Deserialize, Serialize};
 

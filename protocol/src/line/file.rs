@@ -1,4 +1,4 @@
-//! A line file: what is wrong is said with its line, and a checksum guards against slips.
+//! Reads line files (TOML). An error names the line of the file; a checksum detects unintended changes.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -171,7 +171,7 @@ speed_codes = [
 
     /// What is wrong, at which line, in which words.
     #[test]
-    fn what_cannot_be_is_refused_with_its_line() {
+    fn an_impossible_line_is_refused_and_its_place_in_the_file_is_named() {
         let wrong = [
             (
                 "741.53, 829.03",

@@ -1,4 +1,4 @@
-//! What must hold for the data of a line.
+//! Consistency rules for the data of a line.
 
 use alloc::format;
 use alloc::string::String;

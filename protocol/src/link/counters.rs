@@ -33,9 +33,9 @@ impl Counters {
         self.accepted.iter().sum()
     }
 
-    /// Frames refused on a channel for their sequence number or time stamp between two that followed
-    /// one another: repeated, delayed or exchanged on the way. Those of a sender that began anew are not
-    /// among them.
+    /// Frames refused on a channel for their sequence number or time stamp although the frames before and
+    /// after them are consecutive: repeated, delayed or reordered by the line. Frames of a restarted sender
+    /// are not counted.
     pub const fn out_of_place(&self, channel: Channel) -> u64 {
         self.out_of_place[channel as usize]
     }

@@ -185,7 +185,7 @@ mod tests {
     /// A tester whose numbers and clock begin anew is heard at once on a connection of its own, and half a
     /// frame of the one before it spoils none of its frames.
     #[test]
-    fn on_another_connection_every_channel_begins_anew() {
+    fn after_a_reset_connection_every_channel_starts_fresh() {
         let keep_alive = Message::from(KeepAlive { session: 0 });
         let (mut unit, mut before) = (Link::new(End::Unit), Link::new(End::Bench));
         let mut frames = Vec::new();

@@ -66,7 +66,7 @@ impl Channel {
     }
 }
 
-/// Who speaks or is spoken to.
+/// Source or destination of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Address {
     /// The maintenance program, PTU or BTU.

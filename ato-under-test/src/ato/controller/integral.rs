@@ -1,4 +1,4 @@
-//! Integral part that does not wind up.
+//! Integral part of a controller, with anti-windup.
 
 use protocol::CYCLE;
 

@@ -1,4 +1,4 @@
-//! SPR: the speed controllers behind one seam [S0 §3.1, S1, S2 §3.2].
+//! SPR: the speed controllers, all behind the trait [`SpeedController`] [S0 §3.1, S1, S2 §3.2].
 //!
 //! Each makes its own target speed from the cruising target and the distance to the stop point, and a
 //! force that brings the train there. What gravity and resistance by the track database cost is
@@ -73,7 +73,7 @@ pub struct Demand {
 pub trait SpeedController: Debug + Send {
     /// One cycle.
     fn step(&mut self, input: &ControllerInput) -> Demand;
-    /// The train stands and is not driven: begin anew.
+    /// Resets the controller's state; the train stands and is not driven.
     fn reset(&mut self);
 }
 

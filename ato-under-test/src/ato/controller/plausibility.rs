@@ -1,4 +1,4 @@
-//! Inputs that no train can have: braked, not driven on.
+//! Plausibility check of a controller's input: a value that no train can have brakes the train.
 
 use protocol::config::AtoConfig;
 

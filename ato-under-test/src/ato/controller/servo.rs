@@ -22,7 +22,7 @@ use super::plausibility::PlausibilityCheck;
 use super::{ControllerInput, Demand, Gains, SpeedController, place};
 use crate::ato::profile::{FinalStop, FinalStopLimits, MarkerApproach, SCurve, Setpoint};
 
-/// Cycles at rest too far from the stop point after which it begins anew.
+/// Cycles at rest too far from the stop point after which the profile restarts.
 const REST_CYCLES: u32 = 20;
 /// Speed by which an order must be below the station stop's profile to rule instead, m/s.
 const ORDER_MPS: f64 = 0.05;

@@ -1,4 +1,4 @@
-//! Coming down to the stop curve without breaking the jerk limit, and staying on it.
+//! Approach to the stop curve within the jerk limit, and following it.
 //!
 //! Terms: *gap* = speed of the stop curve less the reference's own.
 //!
@@ -38,7 +38,7 @@ impl Descent {
 
     /// Greatest acceleration that may be asked for, m/s²: in the last part of the curve the brake is
     /// never released by more than half, so that a train that comes in slow halts there instead of
-    /// creeping on at a speed nobody can measure.
+    /// creeping on at a speed too low to be measured.
     pub fn most_mps2(&self, to_stop_m: Option<f64>) -> f64 {
         to_stop_m
             .and_then(|distance| self.curve.halt_mps2(distance))

@@ -22,7 +22,7 @@ pub struct ReferenceInputs {
     pub to_stop_m: Option<f64>,
 }
 
-/// Where a train is to be.
+/// Reference for the controller in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// Speed and acceleration.
@@ -33,7 +33,7 @@ pub struct Reference {
     pub most_mps2: f64,
 }
 
-/// The generator of references.
+/// Generates the reference from cycle to cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct ReferenceGenerator {
     ramp: JerkLimited,
@@ -96,7 +96,7 @@ impl ReferenceGenerator {
         }
     }
 
-    /// Begin anew with the train's speed.
+    /// Restarts from the train's speed.
     pub fn reset(&mut self) {
         self.command_mps = None;
     }

@@ -118,7 +118,7 @@ impl FinalStop {
         speed_mps * rate / jerk_mps3 / 2.0
     }
 
-    /// Begins anew from rest.
+    /// Restarts from rest.
     pub fn creep(&mut self) {
         self.setpoint = Setpoint::default();
         self.creeping = true;

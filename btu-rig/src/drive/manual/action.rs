@@ -1,4 +1,4 @@
-//! What a driver, or somebody at the train's switches, does.
+//! Actions of the driver and at the train's switches.
 
 use std::fmt;
 

@@ -216,7 +216,7 @@ pub(super) mod tests {
 
     /// A notch in between ends the stretch, and a brake from 50 km/h has no 60.
     #[test]
-    fn what_a_run_does_not_show_is_none() {
+    fn figures_that_a_run_does_not_show_are_none() {
         let mut rows = trapezium();
         rows[150].value = 500.0;
         assert_eq!(from_rest(&rows), None);

@@ -1,4 +1,4 @@
-//! What a run by hand came to.
+//! Result of a manual run.
 
 use protocol::message::{EbCause, FsbCause};
 use thiserror::Error;
@@ -13,7 +13,7 @@ pub enum Ending {
     /// All steps were done.
     #[error("all steps done")]
     Played,
-    /// Whoever drove ended it.
+    /// The driver ended it.
     #[error("ended by hand")]
     ByHand,
     /// The bench cannot do what the sequence asks for.

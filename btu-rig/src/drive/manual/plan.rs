@@ -1,4 +1,4 @@
-//! What is driven: a sequence on a train, under a speed code, somewhere on a line.
+//! Plan of a manual run: sequence, train, speed code and section.
 
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::line::{Line, Section};

@@ -1,4 +1,4 @@
-//! Gathers rows, what was done, and the logs of unit and TCMS.
+//! Collects rows, performed steps and the logs of unit and TCMS during a manual run.
 
 use protocol::signal::{Sample, Signal};
 use protocol::{CYCLE, Instant};

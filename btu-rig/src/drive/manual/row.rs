@@ -1,4 +1,4 @@
-//! What is recorded of a run by hand each 50 ms cycle.
+//! One row of a manual run's record, each 50 ms cycle.
 
 /// MT pairs that are recorded.
 pub const PAIRS: usize = 4;

@@ -1,4 +1,4 @@
-//! A sequence of notches and switches: what is done when, on which train.
+//! A sequence of notches and switches: each step's condition and actions, and the train's load.
 
 use std::fmt::{self, Write};
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a sequence.
+//! Errors of a sequence file.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! Everything a script passes around, free of Starlark: the verbs take and give these.
+//! Values that scripts pass around, independent of Starlark; verbs take and return them.
 
 use std::sync::Arc;
 

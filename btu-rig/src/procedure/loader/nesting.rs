@@ -1,4 +1,4 @@
-//! Refuses text nested so deeply that parsing it would need an endless stack.
+//! Refuses text nested so deeply that parsing it would overflow the stack.
 //!
 //! The parser and what it builds recurse, and a stack that overflows ends the whole program. So the
 //! text is measured first, without a parser: each open bracket counts, and in each bracket the

@@ -1,4 +1,4 @@
-//! What parameters take, and how that is said when they get something else.
+//! Types of a verb's parameters, and the message when an argument does not fit.
 
 use super::context::Context;
 use super::item::Item;

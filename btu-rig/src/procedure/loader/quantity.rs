@@ -1,4 +1,4 @@
-//! Quantities of scripts: a number that knows what it is a number of.
+//! Quantities of scripts: a number with its dimension.
 
 use std::cmp::Ordering;
 

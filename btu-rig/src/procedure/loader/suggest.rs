@@ -1,4 +1,4 @@
-//! "Did you mean …?"
+//! Suggests known names that are close to a misspelt one.
 
 /// The end of a message: `; did you mean X?` if a candidate is near, else the candidates if they
 /// are few, else nothing.

@@ -83,7 +83,7 @@ pub struct Runner {
     not_kept_before: Option<u64>,
     /// Self-test items that failed, as the unit said while steps were run.
     self_test: SelfTest,
-    /// Events nobody asked for that were reported.
+    /// Reported events that no step provoked.
     reported: usize,
     /// Those that were not, because there were too many.
     not_reported: u64,
@@ -199,7 +199,7 @@ impl Runner {
     ) -> Poll {
         self.begin(now);
         self.take_evidence(driver.evidence());
-        // First: what comes in with this scan is the hold-up's doing.
+        // First, because what this scan brings results from the stall.
         if let Some(reason) = self.stalled.take() {
             self.break_off(now, sample, reason);
         }

@@ -1,11 +1,11 @@
-//! What is run, in which order and how often.
+//! The steps to run, in order and with their repetitions.
 
 use crate::procedure::plan::{Procedure, Step};
 
 /// What a prompt does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PromptPolicy {
-    /// Nobody is there: a prompt is an error.
+    /// No operator is present: a prompt is an error.
     #[default]
     Refuse,
     /// A [`RunEvent::Prompt`](crate::procedure::RunEvent::Prompt) is sent and [`Runner::answer`](super::Runner::answer) awaited.

@@ -1,4 +1,4 @@
-//! What the unit does without having been asked: events and emergency brakes.
+//! Events and emergency brakes of the unit that no step provoked.
 
 use protocol::Instant;
 use protocol::event::{Event, LOG_ENTRIES, Severity};
@@ -31,7 +31,7 @@ const BRAKING_EVENTS: [Event; 15] = [
 ];
 
 impl Runner {
-    /// Hands the unit's events to the live step and reports those nobody asked for.
+    /// Hands the unit's events to the live step and reports those that no step provoked.
     ///
     /// Only while steps run: power-up, making safe and what the last procedure left behind cause
     /// events of their own.

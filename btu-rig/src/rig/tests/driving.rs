@@ -95,7 +95,7 @@ fn making_safe_keeps_what_a_turning_wheel_needs() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_in_words() {
+fn an_impossible_request_is_refused_with_a_reason() {
     let mut bench = bench(FakeUnit::default());
     let now = bench.now();
     for (stimulus, text) in [

@@ -1,4 +1,4 @@
-//! Faults of the train act where they sit, from their onset on, and nothing on the bench mends them.
+//! Faults of the train act at their place from their onset on, and nothing on the bench removes them.
 
 use protocol::injection::{FaultCatalogue, FaultMode, Occurrence};
 use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
@@ -184,7 +184,7 @@ fn make_safe(bench: &mut Bench<FakeUnit>) {
 }
 
 #[test]
-fn every_fault_of_the_train_shows_where_it_sits_and_nothing_mends_it() {
+fn every_fault_of_the_train_acts_at_its_place_and_nothing_removes_it() {
     for (id, shows) in CASES {
         let mut bench = bench(FakeUnit::default());
         bench.rig_mut().inject(&[mode(id)], POWER_AT);

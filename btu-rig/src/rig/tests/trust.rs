@@ -1,4 +1,4 @@
-//! What the rig may not believe: a log that is not answered or does not end, another unit, a bad line.
+//! What the rig must not believe: a log that is not answered or does not end, another unit, a bad line.
 
 use protocol::Instant;
 use protocol::link::{End, Link};
@@ -318,7 +318,7 @@ fn a_wrong_baud_rate_is_suspected_only_where_no_check_sequence_fits() {
 
 /// Bytes that hold no frame, where a unit was heard before.
 #[test]
-fn a_unit_that_is_drowned_by_noise_is_not_called_silent_alone() {
+fn a_unit_whose_frames_drown_in_noise_is_not_reported_as_silent_only() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4_000);
     bench.link_mut().dead = Channel::ALL.to_vec();
@@ -333,7 +333,7 @@ fn a_unit_that_is_drowned_by_noise_is_not_called_silent_alone() {
 
 /// A supply that dips again before the link has taken the unit's new numbers in.
 #[test]
-fn a_unit_that_starts_again_and_again_is_not_told_as_a_bad_line() {
+fn a_unit_that_restarts_repeatedly_is_not_reported_as_a_bad_line() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4_000);
     for (down_ms, up_ms) in [(50, 900), (700, 0)] {

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_by_name() {
+    fn an_impossible_train_is_refused_and_the_key_is_named() {
         let cut = LINE6.find("[[cars]]").unwrap_or(LINE6.len());
         // The train less the first car of a name.
         let without = |name: &str| {

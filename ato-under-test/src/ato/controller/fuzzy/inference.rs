@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_brakes_and_what_is_endless_is_the_outermost_set() {
+    fn nan_brakes_and_infinity_belongs_to_the_outermost_set() {
         assert_eq!(infer(f64::NAN, 0.0), -1.0);
         assert_eq!(infer(1.0, f64::NAN), -1.0);
         assert_eq!(infer(f64::INFINITY, f64::INFINITY), infer(1.0, 1.0));

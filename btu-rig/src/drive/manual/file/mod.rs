@@ -1,4 +1,4 @@
-//! Sequence files: TOML, checked line by line.
+//! Reads sequence files (TOML); an error names the line of the file.
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! What the bench makes: antenna signal, tachometers, train model, markers, and time.
+//! Verbs for the bench's generators: antenna signal, tachometers, train model, markers, and time.
 
 use protocol::Speed;
 

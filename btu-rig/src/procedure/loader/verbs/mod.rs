@@ -1,4 +1,4 @@
-//! The words of the script language, by what they are about.
+//! The verbs of the script language, by subject.
 
 mod bench;
 mod cab;

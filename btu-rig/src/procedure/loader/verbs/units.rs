@@ -1,4 +1,4 @@
-//! Units: they make a quantity of a number.
+//! Verbs that make a quantity of a number: `kmh(40)`, `s(1)`.
 
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
