@@ -34,6 +34,9 @@ const _: () = {
 
 /// Ends one frame and begins the next.
 pub const FLAG: u8 = 0x7E;
+/// Ends the bytes of one scan where both ends move on in lock step: frames have no more than two flags in
+/// a row, and a decoder passes over empty ones.
+pub const SCAN_END: [u8; 3] = [FLAG; 3];
 /// Says that the next byte is sent with [`ESCAPE_XOR`].
 pub const ESCAPE: u8 = 0x7D;
 /// What an escaped byte is exclusive-ored with.

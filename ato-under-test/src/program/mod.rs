@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use ato_under_test::Unit;
 use clap::{ArgGroup, Parser};
+use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration, Instant, SCAN};
 use rustix::time::{ClockId, Timespec};
 
@@ -59,6 +60,10 @@ pub struct Arguments {
     /// the same, `ptu run --slower`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
     slower: u32,
+    /// Scan once for each scan of the tester instead of by the clock; the tester is `ptu run --unit
+    /// lockstep:PATH`
+    #[arg(long, requires = "pty", conflicts_with = "slower")]
+    lock_step: bool,
     /// Directory with units/ and lines/
     #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
     scripts: Option<PathBuf>,
@@ -72,7 +77,32 @@ pub fn serve(arguments: &Arguments) -> Result<()> {
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name
     ));
-    run(Unit::new(setup), &mut wire, arguments.slower)
+    let unit = Unit::new(setup);
+    if arguments.lock_step {
+        return run_in_lock_step(unit, &mut wire);
+    }
+    run(unit, &mut wire, arguments.slower)
+}
+
+/// One scan for each that the tester has sent, and the answer to it at once.
+fn run_in_lock_step(mut unit: Unit, wire: &mut Wire) -> Result<()> {
+    let mut now = Instant::ZERO;
+    let mut received = Vec::with_capacity(1024);
+    let mut to_send = Vec::with_capacity(1024);
+    loop {
+        received.clear();
+        while !received.ends_with(&SCAN_END) {
+            let mut read = [0u8; 4096];
+            let count = wire.read(&mut read).context("reading from the wire")?;
+            received.extend_from_slice(&read[..count]);
+        }
+        unit.receive(&received);
+        to_send.clear();
+        unit.step(now, &mut to_send);
+        to_send.extend(SCAN_END);
+        wire.write(&to_send).context("writing to the wire")?;
+        now += SCAN;
+    }
 }
 
 /// One scan every 10 ms of the monotonic clock, or so many times that; a late scan is made up, not skipped.

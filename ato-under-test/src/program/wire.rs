@@ -1,4 +1,5 @@
-//! The far end of the wire: pseudo-terminal, serial port or TCP socket, never blocking.
+//! The far end of the wire: pseudo-terminal, serial port or TCP socket. Only a pseudo-terminal in lock step
+//! waits for its tester.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -34,10 +35,10 @@ impl Wire {
         if let Some(address) = &arguments.tcp {
             return Ok(Self::Tcp(Server::listen(address)?));
         }
-        Self::open_pty()
+        Self::open_pty(arguments.lock_step)
     }
 
-    fn open_pty() -> Result<Self> {
+    fn open_pty(waits: bool) -> Result<Self> {
         let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
         let master = rustix::pty::openpt(flags).context("opening a pseudo-terminal")?;
         rustix::pty::grantpt(&master)?;
@@ -48,7 +49,9 @@ impl Wire {
         let mut raw = rustix::termios::tcgetattr(&slave)?;
         raw.make_raw();
         rustix::termios::tcsetattr(&slave, OptionalActions::Now, &raw)?;
-        rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
+        if !waits {
+            rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
+        }
         tell::place(&name.to_string_lossy())?;
         Ok(Self::Pty {
             master: File::from(master),

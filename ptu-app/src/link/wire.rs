@@ -1,17 +1,21 @@
-//! A unit on a serial port or a TCP socket.
+//! A unit on a serial port or a TCP socket, by the clock, or on a pseudo-terminal in lock step.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use btu_rig::rig::{LinkFailure, UnitLink};
+use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration as BenchDuration, Instant};
 use serialport::SerialPort;
 
+use super::Pace;
 use crate::failure::Failure;
 
 /// Baud rate when none is given.
 const BAUD: u32 = 115_200;
+/// Longest time a unit in lock step takes for a scan.
+const STEP: Duration = Duration::from_secs(10);
 /// Patience with a TCP connection.
 const CONNECT: Duration = Duration::from_secs(3);
 
@@ -29,6 +33,18 @@ pub enum Endpoint {
     },
     /// A TCP socket, `HOST:PORT`.
     Tcp(String),
+    /// A pseudo-terminal whose unit scans once for each scan of the bench, however fast that is.
+    LockStep(String),
+}
+
+impl Endpoint {
+    /// How a bench with this unit keeps its time, so many times slower than the clock where it goes by it.
+    pub fn pace(&self, slower: u32) -> Pace {
+        match self {
+            Self::LockStep(_) => Pace::Virtual,
+            _ => Pace::slower(slower),
+        }
+    }
 }
 
 impl std::str::FromStr for Endpoint {
@@ -46,8 +62,16 @@ impl std::str::FromStr for Endpoint {
                 _ => Err(format!("\"{address}\" is not HOST:PORT")),
             };
         }
+        if let Some(path) = text
+            .strip_prefix("lockstep:")
+            .filter(|path| !path.is_empty())
+        {
+            return Ok(Self::LockStep(path.to_owned()));
+        }
         let Some(port) = text.strip_prefix("serial:") else {
-            return Err("a unit is `sim`, `serial:PATH[@BAUD]` or `tcp:HOST:PORT`".into());
+            return Err(
+                "a unit is `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`".into(),
+            );
         };
         let (path, baud) = match port.rsplit_once('@') {
             Some((path, baud)) => (
@@ -73,11 +97,12 @@ impl std::fmt::Display for Endpoint {
             Self::Sim => f.write_str("sim"),
             Self::Serial { path, baud } => write!(f, "serial:{path}@{baud}"),
             Self::Tcp(address) => write!(f, "tcp:{address}"),
+            Self::LockStep(path) => write!(f, "lockstep:{path}"),
         }
     }
 }
 
-/// An open link; reading and writing never wait.
+/// An open link; only in lock step do reading and writing wait.
 pub struct WireLink {
     name: String,
     port: Port,
@@ -92,6 +117,7 @@ pub struct WireLink {
 enum Port {
     Serial(Box<dyn SerialPort>),
     Tcp(TcpStream),
+    LockStep(Box<dyn SerialPort>),
 }
 
 impl WireLink {
@@ -102,7 +128,10 @@ impl WireLink {
     pub fn open(endpoint: &Endpoint) -> Result<Self, Failure> {
         let port = match endpoint {
             Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),
-            Endpoint::Serial { path, baud } => open_serial(path, *baud)?,
+            Endpoint::Serial { path, baud } => {
+                Port::Serial(open_serial(path, *baud, Duration::ZERO)?)
+            }
+            Endpoint::LockStep(path) => Port::LockStep(open_serial(path, BAUD, STEP)?),
             Endpoint::Tcp(address) => connect(address)?,
         };
         Ok(Self {
@@ -135,11 +164,11 @@ impl WireLink {
     }
 }
 
-fn open_serial(path: &str, baud: u32) -> Result<Port, Failure> {
+fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialPort>, Failure> {
     // Not exclusive: a killed tester must not keep the next one out of a port whose other end
     // stays open.
     let port = serialport::new(path, baud)
-        .timeout(Duration::ZERO)
+        .timeout(waits)
         .exclusive(false)
         .open()
         .map_err(|error| {
@@ -148,7 +177,7 @@ fn open_serial(path: &str, baud: u32) -> Result<Port, Failure> {
             ))
         })?;
     let _ = port.clear(serialport::ClearBuffer::All);
-    Ok(Port::Serial(port))
+    Ok(port)
 }
 
 fn connect(address: &str) -> Result<Port, Failure> {
@@ -178,6 +207,12 @@ impl UnitLink for WireLink {
         let exchanged = match &mut self.port {
             Port::Serial(port) => exchange(port, to_unit, &mut self.read),
             Port::Tcp(stream) => exchange(stream, to_unit, &mut self.read),
+            Port::LockStep(port) => {
+                return exchange_scan(port, to_unit, from_unit).map_err(|reason| LinkFailure {
+                    link: self.name.clone(),
+                    reason,
+                });
+            }
         };
         let behind = self.behind(now);
         self.backlog.share(&self.read, behind, from_unit);
@@ -208,6 +243,25 @@ fn exchange(
         Err(error) if is_nothing(&error) => Ok(()),
         Err(error) => Err(format!("writing failed: {error}")),
     }
+}
+
+/// Sends the bytes of one scan and waits for those of the unit's answer.
+fn exchange_scan(
+    port: &mut Box<dyn SerialPort>,
+    to_unit: &[u8],
+    from_unit: &mut Vec<u8>,
+) -> Result<(), String> {
+    let not_in_step = |error: std::io::Error| {
+        format!("the unit does not answer in lock step ({error}); serve it with --pty --lock-step")
+    };
+    port.write_all(to_unit).map_err(not_in_step)?;
+    port.write_all(&SCAN_END).map_err(not_in_step)?;
+    let mut chunk = [0; 4096];
+    while !from_unit.ends_with(&SCAN_END) {
+        let count = port.read(&mut chunk).map_err(not_in_step)?;
+        from_unit.extend_from_slice(&chunk[..count]);
+    }
+    Ok(())
 }
 
 fn is_nothing(error: &std::io::Error) -> bool {

@@ -17,7 +17,7 @@ use super::session::Session;
 use super::settle::{READY_WITHIN, started};
 use super::unit_text;
 use crate::failure::{Exit, Failure};
-use crate::link::{Pace, WireLink};
+use crate::link::WireLink;
 use crate::stop::Stop;
 
 /// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
@@ -49,7 +49,7 @@ impl BenchSetup {
         let link = WireLink::open(&self.endpoint)?.slower(self.slower);
         let mut bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
         bench.rig_mut().leave_log_before_contact();
-        let mut session = Session::new(bench, Pace::slower(self.slower), stop.clone(), false)
+        let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
             .attended_by(self.attendant.clone())
             .keeping_up(self.bears());
         let mut found = Vec::new();

@@ -36,6 +36,14 @@ impl Unit {
         Self::serve(&[&["--pty"], arguments].concat(), "serial:")
     }
 
+    /// On a new pseudo-terminal, scan by scan with its tester.
+    pub fn in_lock_step(arguments: &[&str]) -> Self {
+        Self::serve(
+            &[&["--pty", "--lock-step"], arguments].concat(),
+            "lockstep:",
+        )
+    }
+
     /// On a free TCP port.
     pub fn on_tcp(arguments: &[&str]) -> Self {
         Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")

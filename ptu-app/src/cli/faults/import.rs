@@ -10,7 +10,7 @@ use crate::cli::{ScriptsOption, print_json, print_out, since_argument};
 use crate::clock::{local, now_us, rfc3339};
 use crate::failure::{Exit, Failure};
 use crate::field::{Imported, Judged, LogRead, Source, import, judge, read_log};
-use crate::link::{Endpoint, Pace, WireLink};
+use crate::link::{Endpoint, WireLink};
 use crate::run::unit_text;
 use crate::stop::Stop;
 use crate::table::Table;
@@ -100,7 +100,13 @@ impl ImportArguments {
         stop.listen();
         let from_us = now_us();
         let mut link = WireLink::open(&self.unit)?;
-        let read = read_log(&mut link, Instant::ZERO, &mut Pace::real(), &stop, &now_us);
+        let read = read_log(
+            &mut link,
+            Instant::ZERO,
+            &mut self.unit.pace(1),
+            &stop,
+            &now_us,
+        );
         let read = read.map_err(|why| Failure::bench(format!("{}: {why}", self.unit)))?;
         let identity = &read.identity;
         let serial = unit_text::serial(identity);
