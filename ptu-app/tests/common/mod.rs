@@ -1,6 +1,6 @@
 //! What the end-to-end tests share: a place of its own for each test, and the program run in it.
 
-#![allow(dead_code, reason = "each test program uses its own part")]
+#![allow(dead_code, reason = "each of the two test programs uses its part")]
 
 pub mod served;
 pub mod steady;

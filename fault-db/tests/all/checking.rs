@@ -1,0 +1,606 @@
+//! What was changed by hand is found and named, whatever was changed; and what only follows from other rows
+//! is made anew.
+
+use std::path::Path;
+
+use crate::common::{T0_US, by_hand, end, fault, measurement, open, run_record, step};
+use fault_db::{Id, Problem, PruneRule, RepairRecord, RunWriter, Store, StoreError, Verdict};
+use rusqlite::Connection;
+use tempfile::tempdir;
+
+/// Three runs, each with a step, a measurement and a fault; one repair, one note.
+fn three_runs(store: &Store) -> Vec<Id> {
+    let mut runs = Vec::new();
+    for n in 0..3 {
+        let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
+        let mut measured = step(0);
+        measured.measurements = vec![measurement("eb_reaction", 0.42)];
+        writer.step(measured).expect("kept");
+        let stored = writer.fault(&fault(n, T0_US)).expect("stored");
+        writer.finish(&end(Verdict::Failed)).expect("finished");
+        if n == 0 {
+            let repair = RepairRecord {
+                part: "eb_relay".to_owned(),
+                serial_old: Some("SN-1".to_owned()),
+                serial_new: Some("SN-2".to_owned()),
+                note: "replaced".to_owned(),
+            };
+            let at_us = T0_US + 60;
+            store
+                .record_repair(stored.fault, &repair, "kim", at_us)
+                .expect("repaired");
+        }
+        runs.push(writer.id());
+    }
+    runs
+}
+
+fn problems(store: &Store) -> Vec<Problem> {
+    store.check().expect("checked").problems
+}
+
+/// Goal: each way to make a run say something else than it did is found, and the run or seal is named.
+/// Method: rows changed behind the program's back; `{1}` stands for the second run's id.
+#[test]
+fn every_change_to_a_run_is_detected() {
+    let no_trace_of_run_2 = "DELETE FROM measurement WHERE run = 2; DELETE FROM step WHERE run = 2;
+        DELETE FROM run_script WHERE run = 2; DELETE FROM fault_occurrence WHERE run = 2;
+        DELETE FROM run WHERE seq = 2";
+    let no_run_2 = format!("{no_trace_of_run_2}; DELETE FROM seal WHERE ordinal = 6");
+    let no_last_run = no_run_2.replace("= 2", "= 3").replace("= 6", "= 8");
+    let changed = "run {1} was changed";
+    let cases: &[(&str, &[&str])] = &[
+        (
+            "UPDATE run SET verdict = 'passed' WHERE seq = 2",
+            &[changed],
+        ),
+        ("UPDATE run SET operator = 'lee' WHERE seq = 2", &[changed]),
+        ("UPDATE run SET train = '601' WHERE seq = 2", &[changed]),
+        ("UPDATE step SET message = 'fine' WHERE run = 2", &[changed]),
+        (
+            "UPDATE step SET step_index = 4 WHERE run = 2; UPDATE measurement SET step_index = 4 WHERE run = 2",
+            &[changed],
+        ),
+        ("UPDATE measurement SET high = 9 WHERE run = 2", &[changed]),
+        (
+            "UPDATE fault_occurrence SET message = '' WHERE run = 2",
+            &[changed],
+        ),
+        (
+            "UPDATE fault_occurrence SET freeze_json = '[]' WHERE run = 2",
+            &[changed],
+        ),
+        (
+            "UPDATE run_script SET sha256 = '' WHERE run = 2",
+            &[changed],
+        ),
+        ("DELETE FROM run_script WHERE run = 2", &[changed]),
+        (
+            "UPDATE seal SET digest = (SELECT digest FROM seal WHERE ordinal = 3) WHERE ordinal = 6",
+            &["seal 6 of file", changed],
+        ),
+        (
+            "UPDATE seal SET hash = zeroblob(32) WHERE ordinal = 6",
+            &["seal 6 of file", "seal 7 of file"],
+        ),
+        (
+            "UPDATE seal SET id = (SELECT id FROM run WHERE seq = 3) WHERE ordinal = 6",
+            &[
+                "run {2} was changed",
+                "run {1} was finished and has no seal",
+            ],
+        ),
+        (
+            &no_run_2,
+            &[
+                "before it seals were taken out, number 6",
+                "1 runs that were recorded here",
+            ],
+        ),
+        (
+            no_trace_of_run_2,
+            &["seal 6 of file", "1 runs that were recorded here"],
+        ),
+        (&no_last_run, &["1 runs that were recorded here"]),
+        (
+            "DELETE FROM seal WHERE ordinal = 6",
+            &["number 6", "run {1} was finished and has no seal"],
+        ),
+        (
+            "DELETE FROM seal WHERE ordinal < 6",
+            &["number 1 to 5", "the beginning", "{0} was finished"],
+        ),
+        (
+            "UPDATE run SET verdict = NULL WHERE seq = 2",
+            &[changed, "run {1} has a seal and no verdict"],
+        ),
+    ];
+    for (sql, expected) in cases {
+        let dir = tempdir().expect("a directory");
+        let path = dir.path().join("a.db");
+        let store = open(&path);
+        let runs = three_runs(&store);
+        assert_eq!(problems(&store), []);
+        assert_eq!(store.check().expect("checked").runs, 3);
+        by_hand(&path, sql);
+        let found: Vec<_> = problems(&store)
+            .into_iter()
+            .filter(|problem| problem.kind == "seal")
+            .collect();
+        let expected: Vec<_> = expected
+            .iter()
+            .map(|text| {
+                (0..3).fold((*text).to_owned(), |text, n| {
+                    text.replace(&format!("{{{n}}}"), &runs[n].to_string())
+                })
+            })
+            .collect();
+        assert_eq!(found.len(), expected.len(), "{sql}: {found:?}");
+        for (problem, expected) in found.iter().zip(&expected) {
+            assert!(problem.detail.contains(expected), "{sql}: {found:?}");
+            assert!(!problem.advice.is_empty());
+        }
+    }
+}
+
+/// Goal: a count, a sum, a repair or a note's words that are not what the rows say are found without
+/// anything being written, and made anew from them.
+#[test]
+fn derived_rows_are_checked_and_can_be_rebuilt() {
+    for (sql, kind, expected) in [
+        (
+            "UPDATE tally SET seen = seen + 1 WHERE dim = 1 AND grain = 1",
+            "tally",
+            "counts by day or month",
+        ),
+        (
+            "UPDATE tally SET units = x'' WHERE dim = 0",
+            "tally",
+            "counts by day or month",
+        ),
+        ("DELETE FROM tally", "tally", "counts by day or month"),
+        (
+            "UPDATE repair SET opened_at_us = 5",
+            "tally",
+            "1 rows of the table of repairs",
+        ),
+        (
+            "UPDATE repair SET back_at_us = 5",
+            "tally",
+            "rows of the table of repairs",
+        ),
+        (
+            "UPDATE measured_day SET x = x * 1.0001",
+            "tally",
+            "sums of measured values by day",
+        ),
+        (
+            "UPDATE measured_day SET most = 7",
+            "tally",
+            "sums of measured values by day",
+        ),
+        (
+            "UPDATE measured_month SET tx = tx * 1.0001",
+            "tally",
+            "sums of measured values by month",
+        ),
+        (
+            "DELETE FROM measured_month",
+            "tally",
+            "1 sums of measured values by month",
+        ),
+        (
+            "INSERT INTO event_words(event_words) VALUES ('delete-all')",
+            "tally",
+            "1 notes on faults",
+        ),
+        (
+            "UPDATE fault SET occurrences = 9 WHERE code = 1",
+            "count",
+            "does not stand as its occurrences and events say",
+        ),
+    ] {
+        let dir = tempdir().expect("a directory");
+        let path = dir.path().join("a.db");
+        let store = open(&path);
+        three_runs(&store);
+        by_hand(&path, sql);
+        let reader = Store::open_read_only(&path).expect("opens");
+        let found = problems(&reader);
+        let [problem] = &found[..] else {
+            panic!("{sql}: {found:?}");
+        };
+        assert!(
+            problem.kind == kind && problem.detail.contains(expected),
+            "{sql}: {found:?}"
+        );
+        assert!(problem.advice.contains("db rebuild"), "{problem:?}");
+        store.rebuild(T0_US).expect("made anew");
+        assert_eq!(problems(&store), [], "{sql}");
+    }
+}
+
+/// A file full of the same mistake is told of in as many lines as a person reads.
+#[test]
+fn at_most_a_hundred_findings_of_a_kind_are_listed() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    store
+        .transaction(|| {
+            for _ in 0..120 {
+                RunWriter::begin(&store, &run_record("ATC-7"))?.finish(&end(Verdict::Passed))?;
+            }
+            Ok(())
+        })
+        .expect("recorded");
+    by_hand(&path, "UPDATE run SET operator = 'lee'");
+    let found = problems(&store);
+    assert_eq!(found.len(), 101);
+    assert_eq!(found[100].detail, "and 20 more of this kind");
+}
+
+/// Goal: writes that are committed together are all there or none is, and one that fails within is taken
+/// back alone.
+#[test]
+fn a_transaction_commits_all_writes_or_none() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let count = |store: &Store| {
+        let runs = store.runs(&fault_db::RunFilter::default(), &|_| false);
+        runs.expect("listed").len()
+    };
+    let failed = store.transaction(|| {
+        three_runs(&store);
+        assert_eq!(count(&store), 3, "seen within");
+        store.resolve_run("nonsense")
+    });
+    failed.expect_err("nothing of it");
+    assert_eq!(count(&store), 0);
+    store
+        .transaction(|| {
+            three_runs(&store);
+            let nobody = Id::from_bytes([7; 16]);
+            store
+                .add_note(nobody, "kim", "", T0_US)
+                .expect_err("no such fault");
+            Ok(())
+        })
+        .expect("the rest goes on");
+    assert_eq!(count(&store), 3);
+    assert_eq!(problems(&store), []);
+}
+
+/// What a file with a little of everything says, and its path.
+fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
+    let path = dir.join("a.db");
+    let store = open(&path);
+    let mut runs = three_runs(&store);
+    let at_us = T0_US + 70;
+    (store.add_run_note(runs[1], "kim", "door 3 rattles", at_us)).expect("noted");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-8")).expect("begun");
+    let stored = writer.fault(&fault(9, T0_US)).expect("stored");
+    let samples = crate::common::realistic_trace(40, 3);
+    let trace = writer
+        .trace(&[stored.occurrence], &samples)
+        .expect("stored");
+    let recording = fault_db::RecordingRecord {
+        ordinal: 1,
+        procedure: "atp.overspeed".to_owned(),
+        t0_bench_us: 0,
+        bench_json: "{}".to_owned(),
+        stimuli_json: "[]".to_owned(),
+    };
+    writer.recording(&recording, &[trace]).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    runs.push(writer.id());
+    drop(writer);
+    let acknowledged = store.acknowledge(stored.fault, "lee", "", T0_US + 80);
+    acknowledged.expect("acknowledged");
+    assert_eq!(problems(&store), []);
+    (path, store, runs)
+}
+
+/// Goal: whatever a row says, a change of it is found, and no `rebuild` takes the finding away.
+#[test]
+fn every_row_that_says_something_is_covered() {
+    for (sql, expected) in [
+        ("UPDATE run_note SET text = 'all fine'", "note"),
+        ("UPDATE run_note SET who = 'lee'", "note"),
+        ("UPDATE run_note SET at_us = at_us + 1", "note"),
+        ("DELETE FROM run_note", "its note was taken out"),
+        (
+            "INSERT INTO run_note SELECT 9, randomblob(16), run, at_us, who, text FROM run_note",
+            "one of the notes",
+        ),
+        (
+            "UPDATE fault_event SET body = replace(body, 'SN-2', 'SN-3') WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET at_us = 5 WHERE kind = 'acknowledged'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET who = 'kim' WHERE kind = 'acknowledged'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET state = 'closed' WHERE kind = 'acknowledged'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET turn = 9 WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET seen = 9 WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "UPDATE fault_event SET fault = fault + 1 WHERE kind = 'repair'",
+            "event",
+        ),
+        (
+            "DELETE FROM fault_event WHERE kind = 'repair'",
+            "its event was taken out",
+        ),
+        (
+            "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
+             VALUES (randomblob(16), 1, 'closed', 5, 'x', '', 'closed')",
+            "one of the events",
+        ),
+        (
+            "UPDATE fault SET code_name = 'OTHER' WHERE seq = 1",
+            "has a name or a severity",
+        ),
+        (
+            "UPDATE fault SET severity = 'minor' WHERE seq = 1",
+            "has a name or a severity",
+        ),
+        (
+            "UPDATE fault SET state = 'closed' WHERE seq = 1",
+            "does not stand as",
+        ),
+        (
+            "UPDATE fault SET first_at_us = 5 WHERE seq = 1",
+            "does not stand as",
+        ),
+        (
+            "UPDATE fault SET last_at_us = last_at_us + 5 WHERE seq = 1",
+            "does not stand as",
+        ),
+        (
+            "UPDATE fault SET code = 77 WHERE seq = 1",
+            "is of another unit, code or part",
+        ),
+        (
+            "UPDATE fault_occurrence SET code_name = 'OTHER' WHERE seq = 1",
+            "was changed after it was sealed",
+        ),
+        (
+            "UPDATE fault_occurrence SET severity = 'minor' WHERE seq = 1",
+            "was changed after it was sealed",
+        ),
+        (
+            "UPDATE fault_occurrence SET at_us = 5 WHERE seq = 1",
+            "was changed after",
+        ),
+        (
+            "UPDATE fault_occurrence SET line = 'x' WHERE seq = 1",
+            "was changed after",
+        ),
+        ("UPDATE trace SET t0_us = t0_us + 1", "trace"),
+        ("UPDATE trace SET trigger_row = 1", "trace"),
+        ("UPDATE trace SET recording = NULL", "trace"),
+        ("UPDATE fault_occurrence SET trace = NULL", "trace"),
+        ("DELETE FROM trace", "no seal says that it was pruned"),
+        ("DELETE FROM recording", "no seal says that it was pruned"),
+        ("UPDATE recording SET bench_json = '[]'", "recording"),
+        ("UPDATE recording SET t0_bench_us = 7", "recording"),
+        (
+            "UPDATE run SET sw_versions = '{}' WHERE seq = 1",
+            "was changed after",
+        ),
+        (
+            "UPDATE run SET owner = '' WHERE seq = 1",
+            "was changed after",
+        ),
+        (
+            "UPDATE unit SET sw_versions = '{}'",
+            "what no run found it to be",
+        ),
+        (
+            "UPDATE unit SET config_name = 'x'",
+            "what no run found it to be",
+        ),
+    ] {
+        let dir = tempdir().expect("a directory");
+        let (path, store, _) = a_little_of_everything(dir.path());
+        by_hand(&path, sql);
+        let all = problems(&store);
+        let named = |all: &[Problem]| all.iter().any(|found| found.detail.contains(expected));
+        assert!(named(&all), "{sql}: {all:#?}");
+        store.rebuild(T0_US).expect("counted anew");
+        let stays = store.check().expect("checked");
+        let told = stays.remarks.join("; ").contains("counted anew at");
+        assert!(named(&stays.problems) || told, "{sql}: {stays:#?}");
+    }
+}
+
+/// Goal: a trigger that somebody planted is named and nothing is written to its file, which can still be read.
+#[test]
+fn a_planted_trigger_is_refused_by_name() {
+    for (sql, what) in [
+        (
+            "CREATE TRIGGER better AFTER UPDATE OF verdict ON run WHEN NEW.verdict = 'failed'
+             BEGIN UPDATE run SET verdict = 'passed' WHERE seq = NEW.seq; END",
+            "the trigger \"better\" on run is not of this program",
+        ),
+        (
+            "DROP TRIGGER event_said",
+            "the trigger \"event_said\" is missing",
+        ),
+        (
+            "DROP VIEW runs; CREATE VIEW runs AS SELECT 1 AS id",
+            "the view \"runs\" is not as this program made it",
+        ),
+        (
+            "CREATE INDEX mine ON run(operator)",
+            "the index \"mine\" on run is not of this program",
+        ),
+    ] {
+        let dir = tempdir().expect("a directory");
+        let (path, store, runs) = a_little_of_everything(dir.path());
+        store.close().expect("closed");
+        let conn = Connection::open(&path).expect("opens");
+        conn.execute_batch(sql).expect("planted");
+        drop(conn);
+        let options = fault_db::OpenOptions::new(crate::common::ids(2));
+        let refused = Store::open(&path, options).expect_err("not to be written to");
+        assert!(matches!(refused, StoreError::Altered { .. }), "{refused}");
+        assert!(refused.to_string().contains(what), "{refused}");
+        let reader = Store::open_read_only(&path).expect("opens");
+        assert_eq!(reader.foreign_objects().expect("looked at"), [what]);
+        reader.run(runs[0], &|_| false).expect("read");
+        let found = problems(&reader);
+        assert_eq!((found[0].kind, &found[0].detail[..]), ("schema", what));
+    }
+}
+
+/// Goal: a trigger planted while a run is under way gets nothing sealed but what was recorded.
+#[test]
+fn the_seal_covers_the_recorded_values_not_those_changed_by_a_trigger() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    writer.step(step(0)).expect("kept");
+    let planted = "CREATE TRIGGER better AFTER UPDATE OF verdict ON run WHEN NEW.verdict = 'failed'
+        BEGIN UPDATE run SET verdict = 'passed' WHERE seq = NEW.seq; END;
+        CREATE TRIGGER best AFTER INSERT ON step
+        BEGIN UPDATE step SET message = 'fine' WHERE run = NEW.run; END";
+    (Connection::open(&path).expect("opens"))
+        .execute_batch(planted)
+        .expect("planted");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let run = writer.id();
+    let told = store.run(run, &|_| false).expect("there").run.verdict;
+    assert_eq!(told, Some(Verdict::Passed), "the trigger's work");
+    let found = problems(&store);
+    let changed = format!("run {run} was changed after it was sealed");
+    assert!(
+        found.iter().any(|found| found.detail == changed),
+        "{found:#?}"
+    );
+    by_hand(&path, "DROP TRIGGER IF EXISTS none");
+    let conn = Connection::open(&path).expect("opens");
+    conn.execute_batch("DROP TRIGGER better; DROP TRIGGER best")
+        .expect("gone");
+    let found = problems(&store);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!(found[0].detail, changed);
+}
+
+/// Goal: taken out seals are no beginning of a new history, whatever is done with the file.
+#[test]
+fn no_command_makes_seals_that_were_taken_out() {
+    let dir = tempdir().expect("a directory");
+    let (path, store, runs) = a_little_of_everything(dir.path());
+    store.close().expect("closed");
+    by_hand(
+        &path,
+        "DELETE FROM seal; UPDATE run SET verdict = 'passed' WHERE seq = 1",
+    );
+    let store = open(&path);
+    store.rebuild(T0_US).expect("counted anew");
+    store.close().expect("closed");
+    let store = open(&path);
+    let found = problems(&store);
+    let named = |text: &str| {
+        found
+            .iter()
+            .filter(|found| found.detail.contains(text))
+            .count()
+    };
+    assert_eq!(
+        named("was finished and has no seal"),
+        runs.len(),
+        "{found:#?}"
+    );
+    assert!(
+        named("the beginning of this file's own chain") == 1,
+        "{found:#?}"
+    );
+    by_hand(&path, "DELETE FROM about");
+    drop(store);
+    let options = fault_db::OpenOptions::new(crate::common::ids(2));
+    let refused = Store::open(&path, options).expect_err("without a name");
+    assert!(
+        refused.to_string().contains("own name was taken out"),
+        "{refused}"
+    );
+}
+
+/// Goal: traces that were pruned are told as pruned, with what they were, and one that merely went is not.
+#[test]
+fn a_pruned_trace_leaves_a_seal_of_its_deletion() {
+    let dir = tempdir().expect("a directory");
+    let (path, store, runs) = a_little_of_everything(dir.path());
+    let faults = store
+        .faults(&fault_db::FaultFilter::default())
+        .expect("listed");
+    for fault in faults {
+        let _ = store.set_state(
+            fault.id,
+            fault_db::FaultState::Closed,
+            "kim",
+            "",
+            T0_US + 99,
+        );
+    }
+    let rule = PruneRule {
+        at_us: T0_US + 100,
+        ..PruneRule::default()
+    };
+    let counts = store.prune(&rule).expect("pruned");
+    assert_eq!((counts.traces, counts.recordings), (1, 1));
+    assert_eq!(problems(&store), []);
+    let conn = Connection::open(&path).expect("opens");
+    let says: Vec<String> = {
+        let mut select = conn
+            .prepare("SELECT says FROM seal WHERE what = 'pruned' ORDER BY ordinal")
+            .expect("a question");
+        let rows = select.query_map([], |row| row.get(0)).expect("asked");
+        rows.collect::<Result<_, _>>().expect("read")
+    };
+    assert_eq!(says.len(), 2, "{says:?}");
+    for said in says {
+        assert!(said.contains(&runs[3].to_string()), "{said}");
+        assert!(said.contains(&(T0_US + 100).to_string()), "{said}");
+    }
+    by_hand(&path, "DELETE FROM seal WHERE what = 'pruned'");
+    assert!(problems(&store).len() >= 2, "gaps, and two that are gone");
+}
+
+/// Goal: a chain that was rewritten throughout fits itself; what was counted meanwhile is the only thing here
+/// that shows it, and stays on record when it is counted anew.
+#[test]
+fn differences_found_by_a_rebuild_are_sealed() {
+    let dir = tempdir().expect("a directory");
+    let (path, store, _) = a_little_of_everything(dir.path());
+    by_hand(&path, "UPDATE measured_day SET most = 7");
+    let differed = store.rebuild(T0_US).expect("counted anew");
+    assert_eq!(differed.len(), 1, "{differed:?}");
+    let report = store.check().expect("checked");
+    assert_eq!(report.problems, []);
+    let [remark] = &report.remarks[..] else {
+        panic!("{:?}", report.remarks);
+    };
+    assert!(
+        remark
+            .starts_with("counted anew at 2026-03-01 00:00:00 UTC; until then 1 sums of measured"),
+        "{remark}"
+    );
+    assert_eq!(store.rebuild(T0_US).expect("again"), [""; 0]);
+}

@@ -1,0 +1,309 @@
+//! Files of somebody else, as data: what holds what no history holds, or does not fit its seal, is named and
+//! left out, and the rest comes.
+
+use std::path::Path;
+
+use crate::common::{
+    T0_US, change, end, fault, ids, measurement, realistic_trace, run_record, step,
+};
+use fault_db::{
+    Id, MergeCounts, OpenOptions, RecordingRecord, RepairRecord, RunWriter, Store, Synchronous,
+    Verdict,
+};
+use tempfile::tempdir;
+
+fn opened(path: &Path, seed: u64) -> Store {
+    let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
+    Store::open(path, options).expect("opens")
+}
+
+/// A run of all there is: steps, values, a fault with a trace and its recording, events and a note.
+fn whole_run(store: &Store, serial: &str) -> Id {
+    let mut writer = RunWriter::begin(store, &run_record(serial)).expect("begun");
+    let mut measured = step(0);
+    measured.measurements = vec![measurement("eb_reaction", 0.42)];
+    writer.step(measured).expect("kept");
+    let stored = writer.fault(&fault(101, T0_US)).expect("stored");
+    let trace = writer
+        .trace(&[stored.occurrence], &realistic_trace(60, 1))
+        .expect("a trace");
+    let recording = RecordingRecord {
+        ordinal: 0,
+        procedure: "atp.overspeed".to_owned(),
+        t0_bench_us: 0,
+        bench_json: "{}".to_owned(),
+        stimuli_json: "[]".to_owned(),
+    };
+    writer.recording(&recording, &[trace]).expect("a recording");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let repair = RepairRecord {
+        part: "relay".to_owned(),
+        serial_old: None,
+        serial_new: None,
+        note: String::new(),
+    };
+    store
+        .record_repair(stored.fault, &repair, "kim", T0_US + 1)
+        .expect("repaired");
+    let run = store.resolve_run("latest").expect("the run");
+    store
+        .add_run_note(run, "kim", "noted", T0_US + 2)
+        .expect("a note");
+    run
+}
+
+/// The rows of the bad unit.
+const BAD: &str = "(SELECT seq FROM run WHERE unit = (SELECT seq FROM unit WHERE serial = 'BAD'))";
+const BAD_FAULT: &str =
+    "(SELECT seq FROM fault WHERE unit = (SELECT seq FROM unit WHERE serial = 'BAD'))";
+
+/// What is changed, what is named, and how many runs, traces, events and notes still come, of two, two, four
+/// and two.
+const POISONED: &[(&str, &str, [usize; 4])] = &[
+    (
+        "UPDATE run SET verdict = 'passed' WHERE seq = {run}",
+        "changed after it was sealed",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE run SET verdict = NULL WHERE seq = {run}",
+        "verdict was taken away",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE step SET message = 'x' WHERE run = {run}",
+        "changed after it was sealed",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE measurement SET value = 0.1 WHERE run = {run}",
+        "changed after it was sealed",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE run SET id = x'0102' WHERE seq = {run}",
+        "id has 2 bytes",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE run SET started_at_us = 9223372036854775807 WHERE seq = {run}",
+        "started_at_us is 92233720",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE run SET operator = printf('%070000d', 1) WHERE seq = {run}",
+        "operator has 70000 bytes",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE step SET started_bench_us = -9223372036854775808 WHERE run = {run}",
+        "started_bench_us",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE measurement SET value = 9e999 WHERE run = {run}",
+        "value is inf",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE measurement SET step_index = 7 WHERE run = {run}",
+        "is not there",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE fault_occurrence SET at_us = 9223372036854775807 WHERE run = {run}",
+        "at_us is 92233720",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE fault_occurrence SET freeze_json = '{' WHERE run = {run}",
+        "freeze_json is no JSON",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE fault SET id = x'01' WHERE seq = {fault}",
+        "fault of 1 bytes",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE fault_occurrence SET fault = 99 WHERE run = {run}",
+        "is not there",
+        [1, 1, 4, 1],
+    ),
+    (
+        "DELETE FROM unit WHERE serial = 'BAD'",
+        "the unit they are of is not there",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE unit SET sw_versions = '[' WHERE serial = 'BAD'",
+        "unit BAD",
+        [1, 1, 2, 1],
+    ),
+    (
+        "UPDATE trace SET t0_us = 9223372036854775807 WHERE run = {run}",
+        "t0_us is 92233720",
+        [2, 1, 4, 2],
+    ),
+    (
+        "UPDATE trace SET period_us = 9223372036854775807 WHERE run = {run}",
+        "period_us",
+        [2, 1, 4, 2],
+    ),
+    (
+        "UPDATE trace SET data = x'00' WHERE run = {run}",
+        "does not match its checksum",
+        [2, 1, 4, 2],
+    ),
+    (
+        "UPDATE trace SET id = x'' WHERE run = {run}",
+        "trace of 0 bytes",
+        [2, 1, 4, 2],
+    ),
+    (
+        "UPDATE trace SET data = zeroblob(60000000) WHERE run = {run}",
+        "more than 50331648 bytes",
+        [2, 1, 4, 2],
+    ),
+    (
+        "UPDATE channel_set SET json = '[]'",
+        "channel set",
+        [2, 0, 4, 2],
+    ),
+    (
+        "UPDATE recording SET bench_json = '{' WHERE run = {run}",
+        "recording 0: bench_json",
+        [2, 2, 4, 2],
+    ),
+    (
+        "UPDATE fault_event SET at_us = -5 WHERE fault = {fault} AND kind = 'repair'",
+        "at_us is -5",
+        [2, 2, 3, 2],
+    ),
+    (
+        "UPDATE fault_event SET body = '{}' WHERE fault = {fault} AND kind = 'repair'",
+        "is no repair",
+        [2, 2, 3, 2],
+    ),
+    (
+        "UPDATE fault_event SET follows = x'010203' WHERE fault = {fault} AND kind = 'repair'",
+        "follows",
+        [2, 2, 3, 2],
+    ),
+    (
+        "UPDATE run_note SET at_us = 9223372036854775807 WHERE run = {run}",
+        "run note",
+        [2, 2, 4, 1],
+    ),
+    (
+        "UPDATE run_note SET run = 99 WHERE run = {run}",
+        "the run they are of is not there",
+        [2, 2, 4, 1],
+    ),
+    (
+        "INSERT INTO fault_alias VALUES (x'0102', {fault})",
+        "fault alias of 2 bytes",
+        [2, 2, 4, 2],
+    ),
+];
+
+/// Goal: each kind of bad row is named and left out with what hangs on it, and nothing else is.
+#[test]
+fn an_invalid_row_is_reported_and_all_others_are_merged() {
+    let dir = tempdir().expect("a directory");
+    let source = dir.path().join("source.db");
+    let theirs = opened(&source, 1);
+    whole_run(&theirs, "GOOD");
+    whole_run(&theirs, "BAD");
+    theirs.close().expect("closed");
+    for (number, (sql, words, [runs, traces, events, notes])) in POISONED.iter().enumerate() {
+        let foreign = dir.path().join(format!("{number}.db"));
+        std::fs::copy(&source, &foreign).expect("copied");
+        change(
+            &foreign,
+            &sql.replace("{run}", BAD).replace("{fault}", BAD_FAULT),
+        );
+        let ours = opened(
+            &dir.path().join(format!("ours{number}.db")),
+            100 + number as u64,
+        );
+        let counts = ours
+            .import(&foreign)
+            .unwrap_or_else(|error| panic!("{sql}: {error}"));
+        let named: Vec<_> = (counts.refused.named.iter())
+            .map(|one| format!("{}: {}", one.what, one.reason))
+            .collect();
+        assert!(
+            named.iter().any(|one| one.contains(words)),
+            "{sql}: {named:?}"
+        );
+        let came = [counts.runs, counts.traces, counts.events, counts.notes];
+        assert_eq!(came, [*runs, *traces, *events, *notes], "{sql}: {named:?}");
+        // A trace that its run's seal names and that did not come is missing.
+        let problems = || ours.check().expect("a check").problems.into_iter();
+        let missing = "no seal says that it was pruned";
+        let other: Vec<_> = problems()
+            .filter(|one| !one.detail.contains(missing))
+            .collect();
+        assert_eq!(other, [], "{sql}");
+        // Again it is the same, and nothing is added.
+        let again = ours
+            .import(&foreign)
+            .unwrap_or_else(|error| panic!("{sql}: {error}"));
+        assert_eq!((again.runs, again.events), (0, 0), "{sql}");
+        // The good file brings what is missing.
+        let rest = ours.import(&source).expect("the good file");
+        assert_eq!(rest.refused, fault_db::Refusals::default(), "{sql}");
+        assert_eq!(counts.runs + rest.runs, 2, "{sql}");
+        assert_eq!(problems().collect::<Vec<_>>(), [], "{sql}");
+    }
+}
+
+/// Goal: nothing is sealed here that was not sealed there.
+#[test]
+fn runs_without_seals_are_not_merged() {
+    let dir = tempdir().expect("a directory");
+    let source = dir.path().join("source.db");
+    let theirs = opened(&source, 1);
+    let run = whole_run(&theirs, "GOOD");
+    theirs.close().expect("closed");
+    change(&source, "DELETE FROM seal");
+    let ours = opened(&dir.path().join("ours.db"), 2);
+    let counts = ours.import(&source).expect("merged");
+    assert_eq!((counts.runs, counts.faults, counts.events), (0, 0, 0));
+    let named: Vec<_> = counts
+        .refused
+        .named
+        .iter()
+        .map(|one| one.what.clone())
+        .collect();
+    assert_eq!(named, [format!("run {run}")]);
+}
+
+/// Goal: what is read of a foreign file are its rows, whatever else it holds.
+/// Method: a view that never ends stands in the place of a table; a trigger waits in it.
+#[test]
+fn a_view_in_the_place_of_a_table_is_refused_at_once() {
+    let dir = tempdir().expect("a directory");
+    for (number, sql) in [
+        "DROP TABLE run_note; CREATE VIEW run_note AS WITH RECURSIVE n(id, run, at_us, who, text) AS
+            (SELECT 1, 1, 1, '', '' UNION ALL SELECT id + 1, 1, 1, '', '' FROM n) SELECT * FROM n",
+        "CREATE TRIGGER planted AFTER INSERT ON run BEGIN UPDATE run SET verdict = 'passed'; END",
+        "CREATE TABLE mine(a)",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let source = dir.path().join(format!("{number}.db"));
+        let theirs = opened(&source, 1);
+        whole_run(&theirs, "GOOD");
+        theirs.close().expect("closed");
+        change(&source, sql);
+        let ours = opened(&dir.path().join(format!("ours{number}.db")), 2);
+        let begun = std::time::Instant::now();
+        let refused = ours.import(&source).expect_err(sql).to_string();
+        assert!(begun.elapsed().as_secs() < 10, "{sql}");
+        assert!(refused.contains(&format!("{number}.db")), "{sql}: {refused}");
+        assert_eq!(ours.merge_from(&opened(&dir.path().join("empty.db"), 3)).expect("merged"), MergeCounts::default());
+    }
+}

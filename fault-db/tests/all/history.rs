@@ -1,0 +1,203 @@
+//! A unit's own history: what counts for a part, and what does not.
+
+use crate::common::{T0_US, end, fault, open, run_record};
+use fault_db::{
+    FaultRecord, FaultState, Id, LOG_SOURCE, PartHistory, RepairRecord, RunRecord, RunWriter,
+    Store, Verdict,
+};
+
+const DAY_US: i64 = 86_400_000_000;
+const RELAY: &str = "eb_relay";
+const SENSOR: &str = "speed_sensor_1";
+
+/// A store with a run a day, the days counted from 1.
+struct History {
+    store: Store,
+    _folder: tempfile::TempDir,
+}
+
+impl History {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder for the test");
+        Self {
+            store: open(&folder.path().join("history.db")),
+            _folder: folder,
+        }
+    }
+
+    /// A run on a unit that sees these faults.
+    fn run(&self, day: i64, record: RunRecord, faults: &[FaultRecord]) -> (Id, Vec<Id>) {
+        let record = RunRecord {
+            started_at_us: T0_US + day * DAY_US,
+            ..record
+        };
+        let mut writer = RunWriter::begin(&self.store, &record).expect("a run");
+        let stored = faults
+            .iter()
+            .map(|f| writer.fault(f).expect("a fault").fault);
+        let stored = stored.collect();
+        writer.finish(&end(Verdict::Failed)).expect("its end");
+        (writer.id(), stored)
+    }
+
+    fn repair(&self, fault: Id, part: &str, day: i64) {
+        let repair = RepairRecord {
+            part: part.into(),
+            serial_old: None,
+            serial_new: Some("N-2".into()),
+            note: String::new(),
+        };
+        let at_us = T0_US + day * DAY_US + DAY_US / 2;
+        self.store
+            .record_repair(fault, &repair, "kim", at_us)
+            .expect("a repair");
+    }
+
+    /// What is known of a part before the run of that day, of the 90 days before.
+    fn part(&self, part: &str, day: i64) -> PartHistory {
+        let before_us = T0_US + day * DAY_US;
+        let span = (before_us - 90 * DAY_US, before_us);
+        let parts = self.store.part_history("U-1", span, None).expect("history");
+        parts.get(part).cloned().unwrap_or_default()
+    }
+}
+
+fn naming(lru: &str, day: i64) -> FaultRecord {
+    let at_us = T0_US + day * DAY_US + 60_000_000;
+    FaultRecord {
+        lru: lru.into(),
+        message: format!("on day {day}"),
+        ..fault(230, at_us)
+    }
+}
+
+fn log_of_unit() -> RunRecord {
+    RunRecord {
+        source: format!("{LOG_SOURCE}tcp:127.0.0.1:7000"),
+        ..run_record("U-1")
+    }
+}
+
+#[test]
+fn runs_count_once_each_and_only_those_of_the_unit_before_and_not_too_old() {
+    let history = History::new();
+    history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
+    history.run(2, run_record("U-1"), &[naming(RELAY, 2), naming(RELAY, 2)]);
+    history.run(3, run_record("U-1"), &[naming(SENSOR, 3)]);
+    history.run(3, run_record("U-2"), &[naming(RELAY, 3)]);
+    history.run(4, run_record("U-1"), &[]);
+    history.run(9, run_record("U-1"), &[naming(RELAY, 9)]);
+    assert_eq!(history.part(RELAY, 5).runs, 2);
+    assert_eq!(history.part(SENSOR, 5).runs, 1);
+    assert_eq!(history.part(RELAY, 10).runs, 3);
+    assert_eq!(history.part(RELAY, 92).runs, 2, "day 1 is 91 days ago");
+    assert_eq!(history.part(RELAY, 200).runs, 0);
+}
+
+#[test]
+fn the_run_itself_does_not_count() {
+    let history = History::new();
+    let (run, _) = history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
+    let span = (T0_US, T0_US + 2 * DAY_US);
+    let parts = history
+        .store
+        .part_history("U-1", span, Some(run))
+        .expect("history");
+    assert!(parts.is_empty(), "{parts:?}");
+}
+
+#[test]
+fn an_imported_entry_that_a_run_saw_too_does_not_count_again() {
+    let history = History::new();
+    history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
+    history.run(2, log_of_unit(), &[naming(RELAY, 1)]);
+    assert_eq!(history.part(RELAY, 5).runs, 1);
+    // Two testers read the same log, and their files were merged.
+    history.run(3, log_of_unit(), &[naming(SENSOR, 2)]);
+    history.run(4, log_of_unit(), &[naming(SENSOR, 2)]);
+    assert_eq!(history.part(SENSOR, 5).runs, 1);
+    history.run(4, log_of_unit(), &[naming(SENSOR, 4)]);
+    assert_eq!(history.part(SENSOR, 5).runs, 2);
+}
+
+#[test]
+fn a_repair_restarts_the_count_and_a_fault_that_comes_back_shows_that_it_failed() {
+    let history = History::new();
+    let (_, faults) = history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
+    history.repair(faults[0], "EB_relay ", 1);
+    let part = history.part(RELAY, 3);
+    let repair = part.repair.as_ref().expect("a repair");
+    assert_eq!(part.runs, 0, "the part that failed is out");
+    assert!(repair.replaced && !repair.came_back, "{repair:?}");
+    assert!(repair.faults.contains(&(230, RELAY.to_owned())));
+
+    // Another fault of the unit says nothing of that repair.
+    history.run(4, run_record("U-1"), &[naming(SENSOR, 4)]);
+    assert_eq!(history.part(RELAY, 5), part);
+    history.run(6, run_record("U-1"), &[naming(RELAY, 6)]);
+    let part = history.part(RELAY, 7);
+    assert_eq!(part.runs, 1);
+    assert!(part.repair.expect("a repair").came_back);
+}
+
+/// A part replaced for a fault that names another part.
+#[test]
+fn a_repair_counts_for_the_part_that_was_replaced() {
+    let history = History::new();
+    let (_, faults) = history.run(1, run_record("U-1"), &[naming("unknown", 1)]);
+    history.repair(faults[0], SENSOR, 1);
+    history.run(3, run_record("U-1"), &[naming("unknown", 3)]);
+    let part = history.part(SENSOR, 4);
+    assert_eq!(part.runs, 0);
+    assert!(part.repair.expect("a repair").came_back);
+}
+
+/// A log is read late: an entry older than the repair does not undo it.
+#[test]
+fn an_old_entry_does_not_reopen_a_repaired_fault() {
+    let history = History::new();
+    let (_, faults) = history.run(1, run_record("U-1"), &[naming(RELAY, 1)]);
+    history.repair(faults[0], RELAY, 5);
+    let state = || {
+        history
+            .store
+            .fault(faults[0])
+            .expect("the fault")
+            .fault
+            .state
+    };
+    history.run(6, log_of_unit(), &[naming(RELAY, 4)]);
+    assert_eq!(state(), FaultState::Repaired);
+    history.run(7, log_of_unit(), &[naming(RELAY, 6)]);
+    assert_eq!(state(), FaultState::Open);
+}
+
+#[test]
+fn occurrences_and_times_under_test_are_known() {
+    let history = History::new();
+    let on_port = RunRecord {
+        source: "tcp:127.0.0.1:7000".into(),
+        ..run_record("U-1")
+    };
+    history.run(0, on_port, &[naming(RELAY, 0)]);
+    history.run(1, run_record("U-1"), &[]);
+    history.run(2, log_of_unit(), &[]);
+    let spans = history.store.tested_spans("U-1").expect("spans");
+    assert_eq!(spans, [(T0_US, T0_US + 5_000_000)]);
+    let at_us = naming(RELAY, 0).at_us;
+    let known = |unit, code, message, at_us| {
+        history
+            .store
+            .knows_occurrence(unit, (code, message), at_us)
+            .expect("an answer")
+    };
+    assert!(known("U-1", 230, "on day 0", Some(at_us + 3_000_000)));
+    assert!(
+        known("U-1", 230, "on day 0", None),
+        "of a clock that tells nothing"
+    );
+    assert!(!known("U-1", 230, "on day 0", Some(at_us + 30_000_000)));
+    assert!(!known("U-1", 231, "on day 0", Some(at_us)));
+    assert!(!known("U-1", 230, "on day 1", Some(at_us)));
+    assert!(!known("U-2", 230, "on day 0", Some(at_us)));
+}

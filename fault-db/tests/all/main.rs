@@ -1,0 +1,24 @@
+//! What the crate promises, without a server.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod care;
+mod checking;
+mod counting;
+mod daily;
+mod diagnosis;
+mod foreign_files;
+mod history;
+mod matrix;
+mod matrix_reading;
+mod merging;
+mod older_schemas;
+mod opening;
+mod pruning;
+mod recording;
+mod run_notes;
+mod stimuli;
+mod trace_codec;
+mod trace_reading;
+mod verifying;

@@ -1,0 +1,583 @@
+//! Laptops that meet in any order: the same faults, states and counts everywhere, and nothing hidden of
+//! what people did without knowing of each other.
+
+use std::path::{Path, PathBuf};
+
+use crate::common::{Random, T0_US, by_hand, end, fault, ids, measurement, run_record, step};
+use fault_db::{
+    FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter, Store, StoreError,
+    Synchronous, Verdict,
+};
+use rusqlite::Connection;
+use tempfile::{TempDir, tempdir};
+
+const HOUR_US: i64 = 3_600_000_000;
+
+fn opened(path: &Path, seed: u64) -> Store {
+    let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
+    Store::open(path, options).expect("opens")
+}
+
+/// A laptop with a name.
+fn laptop(dir: &TempDir, name: &str, seed: u64) -> Store {
+    opened(&dir.path().join(name), seed)
+}
+
+/// What a file says, without what differs between files: row numbers, and which of its ids a fault goes by.
+fn said(store: &Store) -> Vec<String> {
+    let conn = Connection::open(store.path()).expect("opens");
+    let questions = [
+        "SELECT u.serial || ' ' || f.code || f.lru || ' ' || f.state || ' ' || f.first_at_us || ' '
+            || f.last_at_us || ' ' || f.occurrences || ' ' || f.repairs || ' ' || f.line || ' '
+            || ifnull(f.closed_at_us, '-') || ' seen '
+            || (SELECT group_concat(hex(id)) FROM (SELECT id FROM fault_occurrence o
+                WHERE o.fault = f.seq ORDER BY id)) || ' done '
+            || (SELECT group_concat(hex(id) || turn) FROM (SELECT id, turn FROM fault_event e
+                WHERE e.fault = f.seq ORDER BY id))
+            || ' ids ' || (SELECT group_concat(hex(id)) FROM (SELECT id FROM fault WHERE seq = f.seq
+                UNION SELECT id FROM fault_alias a WHERE a.fault = f.seq ORDER BY id))
+         FROM fault f JOIN unit u ON u.seq = f.unit",
+        "SELECT dim || ' ' || grain || ' ' || at || ' '
+            || CASE dim WHEN 3 THEN (SELECT serial FROM unit WHERE seq = key) ELSE key END || ' '
+            || seen || ' ' || opened || ' ' || closed || ' ' || bare
+         FROM tally WHERE seen <> 0 OR opened <> 0 OR closed <> 0",
+        "SELECT hex(e.id) || ' ' || r.part || ' ' || r.line || ' ' || r.opened_at_us || ' '
+            || ifnull(r.back_at_us, '-') FROM repair r JOIN fault_event e ON e.seq = r.event",
+        "SELECT DISTINCT what || hex(id) FROM seal WHERE what <> 'begun'",
+        "SELECT hex(id) || ifnull(verdict, '-') || train FROM run",
+        "SELECT name || procedure || day || ' ' || n || ' ' || least || ' ' || most FROM measured_day",
+    ];
+    let mut said = Vec::new();
+    for question in questions {
+        let mut select = conn.prepare(question).expect("a question");
+        let lines = select.query_map([], |row| row.get::<_, String>(0));
+        let mut lines: Vec<_> = lines
+            .expect("asked")
+            .collect::<Result<_, _>>()
+            .expect("answers");
+        lines.sort();
+        said.extend(lines);
+    }
+    said
+}
+
+fn whole(store: &Store, what: &str) {
+    assert_eq!(store.check().expect("checked").problems, [], "{what}");
+}
+
+/// Runs, faults out of order, and people who do what they may, with a clock of their own.
+fn live(store: &Store, random: &mut Random, clock_us: i64) {
+    let mut at_us = clock_us;
+    let mut known: Vec<Id> = faults(store);
+    for _ in 0..8 {
+        at_us += (random.next() % 50) as i64 * HOUR_US;
+        let mut record = run_record(["ATC-1", "ATC-2"][(random.next() % 2) as usize]);
+        record.line = format!("line-{}", random.next() % 2);
+        record.train = format!("T{}", random.next() % 3);
+        record.started_at_us = at_us;
+        let mut writer = RunWriter::begin(store, &record).expect("begun");
+        let mut measured = step(0);
+        measured.measurements = vec![measurement("eb_reaction", 0.42 + random.noise() / 10.0)];
+        writer.step(measured).expect("kept");
+        for _ in 0..random.next() % 4 {
+            let code = (random.next() % 2) as i64;
+            // Out of the unit's log: some are older than what is known.
+            let back_us = (random.next() % 2_000_000_000) as i64 * 100;
+            let stored = writer.fault(&fault(code, at_us - back_us)).expect("stored");
+            known.push(stored.fault);
+        }
+        if !random.one_in(6) {
+            writer.finish(&end(Verdict::Failed)).expect("finished");
+        }
+        for _ in 0..6 {
+            if known.is_empty() {
+                break;
+            }
+            let fault = known[(random.next() % known.len() as u64) as usize];
+            let when_us = at_us + (random.next() % 1_000) as i64 * 60_000_000;
+            match act(store, fault, random.next() % 6, when_us) {
+                Ok(()) | Err(StoreError::Transition { .. }) => {}
+                Err(error) => panic!("{error}"),
+            }
+        }
+    }
+}
+
+fn act(store: &Store, fault: Id, act: u64, at_us: i64) -> Result<(), StoreError> {
+    let repair = RepairRecord {
+        part: "EB_relay".to_owned(),
+        serial_old: None,
+        serial_new: Some("SN-7".to_owned()),
+        note: "교체함".to_owned(),
+    };
+    match act {
+        0 => store.acknowledge(fault, "kim", "", at_us).map(drop),
+        1 => store.record_repair(fault, &repair, "lee", at_us).map(drop),
+        2 => store
+            .set_state(fault, FaultState::Verified, "kim", "", at_us)
+            .map(drop),
+        3 => store
+            .set_state(fault, FaultState::Open, "kim", "again", at_us)
+            .map(drop),
+        4 => store.add_note(fault, "park", "seen before", at_us),
+        _ => store
+            .set_state(fault, FaultState::Closed, "lee", "이상 없음", at_us)
+            .map(drop),
+    }
+}
+
+fn faults(store: &Store) -> Vec<Id> {
+    let all = store.faults(&fault_db::FaultFilter::default());
+    all.expect("listed")
+        .into_iter()
+        .map(|fault| fault.id)
+        .collect()
+}
+
+/// Goal: whatever laptops did, knowing of each other's work in part, all files that have seen both say the
+/// same, in whichever order that was, and their counts are those of their rows.
+/// Method: lives drawn from a seed; two laptops share a beginning, one has met the other half-way, and
+/// their clocks are days apart.
+#[test]
+fn files_merged_in_any_order_have_the_same_content() {
+    for seed in 1..=12 {
+        let dir = tempdir().expect("a directory");
+        let mut random = Random::new(seed);
+        let a = laptop(&dir, "a.db", 1000 + seed);
+        let b = laptop(&dir, "b.db", 2000 + seed);
+        let done = a.transaction(|| {
+            live(&a, &mut random, T0_US);
+            Ok(())
+        });
+        done.expect("lived");
+        if seed % 3 != 0 {
+            b.merge_from(&a).expect("a shared beginning");
+        }
+        live(&b, &mut random, T0_US - 200 * HOUR_US);
+        if seed % 2 == 0 {
+            a.merge_from(&b).expect("met half-way");
+            live(&b, &mut random, T0_US + 100 * HOUR_US);
+        }
+        live(&a, &mut random, T0_US + 300 * HOUR_US);
+        for (store, name) in [(&a, "a"), (&b, "b")] {
+            whole(store, &format!("seed {seed}: {name} before"));
+        }
+
+        let (ab, ba) = (laptop(&dir, "ab.db", 3), laptop(&dir, "ba.db", 4));
+        for (store, order) in [(&ab, [&a, &b]), (&ba, [&b, &a])] {
+            for from in order {
+                store.merge_from(from).expect("merged");
+            }
+            whole(store, &format!("seed {seed}: merged"));
+            for from in order {
+                let again = store.merge_from(from).expect("merged again");
+                assert_eq!(again, MergeCounts::default(), "seed {seed}: nothing is new");
+            }
+        }
+        let expected = said(&ab);
+        assert_eq!(said(&ba), expected, "seed {seed}: in the other order");
+        a.merge_from(&b).expect("merged");
+        b.merge_from(&a).expect("and back");
+        for store in [&a, &b] {
+            whole(store, &format!("seed {seed}: into each other"));
+            assert_eq!(said(store), expected, "seed {seed}: into each other");
+        }
+        assert_eq!(
+            ab.conflicts().expect("looked").len(),
+            b.conflicts().expect("looked").len()
+        );
+    }
+}
+
+/// A file with one fault, and a copy of it on another laptop.
+fn shared_fault(dir: &TempDir) -> (Store, Store, Id) {
+    let (a, b) = (laptop(dir, "a.db", 1), laptop(dir, "b.db", 2));
+    let stored = one_fault(&a, T0_US);
+    b.merge_from(&a).expect("merged");
+    (a, b, stored)
+}
+
+fn one_fault(store: &Store, at_us: i64) -> Id {
+    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
+    let stored = writer.fault(&fault(1, at_us)).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    stored.fault
+}
+
+fn state(store: &Store, fault: Id) -> FaultState {
+    store.fault(fault).expect("there").fault.state
+}
+
+/// Goal: what two people did to a fault without knowing of each other is shown, with the state that leaves
+/// the most to do standing, whatever their clocks say, until one of them has looked again.
+#[test]
+fn conflicting_events_are_kept_and_listed_until_resolved() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    a.acknowledge(fault, "kim", "mine", T0_US + 10)
+        .expect("his clock is slow");
+    b.set_state(fault, FaultState::Closed, "lee", "not a fault", T0_US + 900)
+        .expect("her clock is fast");
+    assert_eq!(a.conflicts().expect("looked"), [], "nobody knows yet");
+    a.merge_from(&b).expect("merged");
+    b.merge_from(&a).expect("merged");
+    for store in [&a, &b] {
+        let [conflict] = &store.conflicts().expect("looked")[..] else {
+            panic!("one conflict");
+        };
+        assert_eq!((conflict.fault, &conflict.unit[..]), (fault, "ATC-7"));
+        assert_eq!(conflict.stands, FaultState::Acknowledged);
+        let rivals: Vec<_> = conflict
+            .rivals
+            .iter()
+            .map(|rival| (&rival.who[..], rival.state, rival.at_us))
+            .collect();
+        let expected = [
+            ("kim", FaultState::Acknowledged, T0_US + 10),
+            ("lee", FaultState::Closed, T0_US + 900),
+        ];
+        assert_eq!(rivals, expected);
+        assert_eq!(state(store, fault), FaultState::Acknowledged);
+        whole(store, "with a conflict");
+    }
+    // Later by turn, whatever the clock says.
+    b.set_state(
+        fault,
+        FaultState::Closed,
+        "lee",
+        "we have talked",
+        T0_US + 5,
+    )
+    .expect("acknowledged may be closed");
+    a.merge_from(&b).expect("merged");
+    for store in [&a, &b] {
+        assert_eq!(store.conflicts().expect("looked"), []);
+        assert_eq!(state(store, fault), FaultState::Closed);
+    }
+}
+
+/// Goal: who did more does not win over who knew nothing of it. Method: on one laptop a fault is repaired; on
+/// another it is taken and closed, and both meet in either order.
+#[test]
+fn the_number_of_events_does_not_decide_a_conflict() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    act(&b, fault, 1, T0_US + 10).expect("repaired");
+    a.acknowledge(fault, "kim", "", T0_US + 20).expect("taken");
+    a.set_state(fault, FaultState::Closed, "kim", "not found", T0_US + 30)
+        .expect("closed");
+    a.merge_from(&b).expect("merged");
+    b.merge_from(&a).expect("merged");
+    for store in [&a, &b] {
+        let [conflict] = &store.conflicts().expect("looked")[..] else {
+            panic!("one conflict");
+        };
+        assert_eq!(conflict.stands, FaultState::Repaired);
+        let rivals: Vec<_> = conflict.rivals.iter().map(|rival| rival.state).collect();
+        assert_eq!(rivals, [FaultState::Repaired, FaultState::Closed]);
+        assert_eq!(state(store, fault), FaultState::Repaired);
+        whole(store, "with a conflict");
+    }
+}
+
+/// What one is at needs no word with those who only saw it once more.
+#[test]
+fn an_occurrence_conflicts_only_with_a_resolution() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    act(&a, fault, 1, T0_US + 10).expect("repaired");
+    b.merge_from(&a).expect("merged");
+    for store in [&a, &b] {
+        assert_eq!(one_fault(store, T0_US + HOUR_US), fault, "it is open again");
+    }
+    a.acknowledge(fault, "kim", "mine", T0_US + 2 * HOUR_US)
+        .expect("taken");
+    a.merge_from(&b).expect("merged");
+    assert_eq!(a.conflicts().expect("looked"), []);
+    assert_eq!(state(&a, fault), FaultState::Acknowledged);
+    whole(&a, "taken");
+}
+
+/// Goal: a repair that did not hold is found out in whatever order three laptops meet, although another one has
+/// closed the fault since, without knowing of either. Method: repaired on the first day, seen on the third, closed
+/// on the fifth; all orders.
+#[test]
+fn a_recurrence_between_two_resolutions_is_found_in_any_order() {
+    const DAY_US: i64 = 24 * HOUR_US;
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    let c = laptop(&dir, "c.db", 3);
+    c.merge_from(&a).expect("merged");
+    act(&a, fault, 1, T0_US + DAY_US).expect("repaired");
+    act(&b, fault, 5, T0_US + 5 * DAY_US).expect("closed");
+    one_fault(&c, T0_US + 3 * DAY_US);
+    let orders = [
+        [&a, &b, &c],
+        [&a, &c, &b],
+        [&b, &a, &c],
+        [&b, &c, &a],
+        [&c, &a, &b],
+        [&c, &b, &a],
+    ];
+    let mut expected = None;
+    for (n, order) in (0..).zip(orders) {
+        let met = laptop(&dir, &format!("met-{n}.db"), 10 + n);
+        for from in order {
+            met.merge_from(from).expect("merged");
+        }
+        assert_eq!(state(&met, fault), FaultState::Open, "order {n}");
+        assert_eq!(met.conflicts().expect("looked").len(), 1, "order {n}");
+        whole(&met, "met");
+        let said = said(&met);
+        assert_eq!(
+            expected.get_or_insert_with(|| said.clone()),
+            &said,
+            "order {n}"
+        );
+    }
+}
+
+/// Goal: a fault that was seen after somebody was done with it is open, also when the two did not know of each
+/// other, and whether or not they knew that it was the same fault. Method: two laptops, with and without a
+/// shared beginning; one is done on the fifth day, the other sees it before or after that; either takes in the
+/// other first.
+#[test]
+fn a_fault_that_occurred_after_its_resolution_is_open_after_a_merge() {
+    const DAY_US: i64 = 24 * HOUR_US;
+    for (shared, done, seen_on, expected) in [
+        (true, FaultState::Repaired, 4, FaultState::Repaired),
+        (true, FaultState::Repaired, 6, FaultState::Open),
+        (true, FaultState::Closed, 4, FaultState::Closed),
+        (true, FaultState::Closed, 6, FaultState::Open),
+        (false, FaultState::Repaired, 4, FaultState::Repaired),
+        (false, FaultState::Repaired, 6, FaultState::Open),
+    ] {
+        let case = format!("shared: {shared}, {done} on day 5, seen on day {seen_on}");
+        let dir = tempdir().expect("a directory");
+        let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+        let fault = one_fault(&a, T0_US);
+        if shared {
+            b.merge_from(&a).expect("merged");
+        }
+        let how = if done == FaultState::Repaired { 1 } else { 5 };
+        act(&a, fault, how, T0_US + 5 * DAY_US).expect("done");
+        one_fault(&b, T0_US + seen_on * DAY_US);
+        a.merge_from(&b).expect("merged");
+        b.merge_from(&a).expect("merged");
+        assert_eq!(said(&a), said(&b), "{case}");
+        for store in [&a, &b] {
+            let [fault] = faults(store)[..] else {
+                panic!("{case}: one fault");
+            };
+            assert_eq!(state(store, fault), expected, "{case}");
+            assert_eq!(store.conflicts().expect("looked"), [], "{case}");
+            whole(store, &case);
+        }
+    }
+}
+
+/// Two who did the same are no conflict.
+#[test]
+fn two_concurrent_events_with_the_same_state_are_no_conflict() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, fault) = shared_fault(&dir);
+    for store in [&a, &b] {
+        store
+            .acknowledge(fault, "kim", "", T0_US + 10)
+            .expect("taken");
+    }
+    a.merge_from(&b).expect("merged");
+    assert_eq!(a.conflicts().expect("looked"), []);
+    assert_eq!(state(&a, fault), FaultState::Acknowledged);
+}
+
+/// Goal: a fault two laptops saw has one history here, and both its names lead to it: what the other
+/// laptop does later under its name is done to it, and a person finds it by either.
+#[test]
+fn a_merged_fault_is_found_by_either_id() {
+    let dir = tempdir().expect("a directory");
+    let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+    let (ours, theirs) = (one_fault(&a, T0_US), one_fault(&b, T0_US + 5));
+    a.merge_from(&b).expect("merged");
+    for asked in [
+        theirs.to_string(),
+        theirs.short(),
+        theirs.to_string()[..25].to_owned(),
+    ] {
+        assert_eq!(a.resolve_fault(&asked).ok(), Some(ours), "{asked}");
+    }
+    a.add_note(theirs, "kim", "by its other name", T0_US + 20)
+        .expect("found");
+    // There nobody knows of the join, and the fault comes to its end.
+    b.set_state(theirs, FaultState::Closed, "lee", "", T0_US + 30)
+        .expect("closed");
+    a.merge_from(&b).expect("merged");
+    assert_eq!(faults(&a), [ours]);
+    assert_eq!(state(&a, ours), FaultState::Closed);
+    whole(&a, "joined");
+}
+
+/// Goal: a laptop that has not heard that a fault was closed does not pull the next one into it.
+#[test]
+fn an_older_copy_does_not_absorb_the_next_fault() {
+    let dir = tempdir().expect("a directory");
+    let (a, b, first) = shared_fault(&dir);
+    b.set_state(first, FaultState::Closed, "lee", "", T0_US + 10)
+        .expect("closed");
+    let next = one_fault(&b, T0_US + HOUR_US);
+    assert_ne!(first, next);
+    a.merge_from(&b).expect("merged");
+    assert_eq!(
+        (state(&a, first), state(&a, next)),
+        (FaultState::Closed, FaultState::Open)
+    );
+    whole(&a, "two faults");
+}
+
+/// Goal: a copy that went on by itself, under the same name, has runs in the same places of the chain; all
+/// of them are kept, and each is sealed.
+#[test]
+fn a_forked_copy_is_merged_with_all_its_runs() {
+    let dir = tempdir().expect("a directory");
+    let a = laptop(&dir, "a.db", 1);
+    one_fault(&a, T0_US);
+    let copy: PathBuf = dir.path().join("copy.db");
+    a.backup(&copy).expect("copied");
+    let b = opened(&copy, 2);
+    one_fault(&a, T0_US + 1);
+    one_fault(&b, T0_US + 2);
+    one_fault(&b, T0_US + 3);
+    let home = a.merge_from(&b).expect("merged");
+    let copy = home.copy.clone().expect("it is named");
+    assert_eq!((home.runs, copy.went_on, copy.after), (2, true, 3));
+    whole(&a, "with the copy's runs");
+    let again = MergeCounts {
+        copy: home.copy,
+        ..MergeCounts::default()
+    };
+    assert_eq!(a.merge_from(&b).expect("merged"), again);
+}
+
+/// Ways in which a copy of a file was changed by hand.
+const TAMPERED: [(&str, &str); 8] = [
+    ("a verdict", "UPDATE run SET verdict = 'passed'"),
+    ("a verdict taken away", "UPDATE run SET verdict = NULL"),
+    (
+        "a step",
+        "INSERT INTO step SELECT run, 7, procedure, name, verdict, 0, 0, '', NULL FROM step",
+    ),
+    (
+        "a measurement",
+        "INSERT INTO measurement SELECT run, 0, 9, name, 0.1, unit, low, high, verdict FROM measurement",
+    ),
+    (
+        "a script",
+        "INSERT INTO run_script SELECT run, 'scripts/other.star', sha256 FROM run_script",
+    ),
+    (
+        "an occurrence",
+        "INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
+         SELECT randomblob(16), fault, run, at_us, bench_us, '', '[]', unit, code, lru FROM fault_occurrence",
+    ),
+    (
+        "a fault",
+        "INSERT INTO fault(seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, occurrences)
+         SELECT 99, randomblob(16), unit, 77, lru, 'made_up', severity, 'open', 5, 5, 1 FROM fault;
+         INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
+         VALUES (randomblob(16), 99, 'opened', 5, '', '', 'open');
+         INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
+         SELECT randomblob(16), 99, run, 5, 5, '', '[]', unit, 77, lru FROM fault_occurrence",
+    ),
+    (
+        "all of it, sealed again",
+        "UPDATE run SET verdict = 'passed'; UPDATE seal SET digest = zeroblob(32)",
+    ),
+];
+
+/// Goal: a run that is over here stays as it was sealed, whatever another file says of it; it is named, and the
+/// rest comes.
+/// Method: a copy is changed by hand in each of several ways, and goes on with a run of its own.
+#[test]
+fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
+    for (what, sql) in TAMPERED {
+        let dir = tempdir().expect("a directory");
+        let a = laptop(&dir, "a.db", 1);
+        let altered = measured_run(&a);
+        let copy = dir.path().join("copy.db");
+        a.backup(&copy).expect("copied");
+        by_hand(&copy, sql);
+        let b = opened(&copy, 2);
+        one_fault(&b, T0_US + 1);
+        let before = a.run(altered, &|_| false).expect("there");
+        let added = a.merge_from(&b).expect("merged");
+        let named: Vec<_> = (added.different.iter().map(|run| (run.what, run.id))).collect();
+        assert_eq!(named, [("run", altered)], "{what}");
+        assert_eq!((added.runs, added.steps), (1, 0), "{what}");
+        assert_eq!(a.run(altered, &|_| false).expect("there"), before, "{what}");
+        assert_eq!(faults(&a).len(), 1, "{what}");
+        whole(&a, what);
+        // The other way round nothing is added to theirs either, but for a verdict that is missing there.
+        let back = b.merge_from(&a).expect("and back");
+        assert_eq!((back.runs, back.steps), (0, 0), "{what}");
+        let named: Vec<_> = back.different.iter().map(|run| run.id).collect();
+        if what == "a verdict taken away" {
+            assert_eq!(named, [], "it has it again");
+            let again = b.merge_from(&a).expect("again");
+            assert_eq!(again, MergeCounts::default());
+        } else {
+            assert_eq!(named, [altered], "{what}");
+        }
+    }
+}
+
+/// Goal: a file that was changed and rid of its seals and its name is not gone on with, and its run is named.
+#[test]
+fn a_changed_file_without_seals_and_id_gets_no_new_chain() {
+    let dir = tempdir().expect("a directory");
+    let a = laptop(&dir, "a.db", 1);
+    let altered = measured_run(&a);
+    let copy = dir.path().join("copy.db");
+    a.backup(&copy).expect("copied");
+    by_hand(
+        &copy,
+        "UPDATE run SET verdict = 'passed'; DELETE FROM seal; DELETE FROM about WHERE key = 'file_id'",
+    );
+    let refused = Store::open(&copy, OpenOptions::new(ids(2))).expect_err("it has no name");
+    assert!(matches!(refused, StoreError::Altered { .. }), "{refused}");
+    let added = a.import(&copy).expect("merged");
+    let named: Vec<_> = added.different.iter().map(|run| run.id).collect();
+    assert_eq!((named, added.runs), (vec![altered], 0));
+    whole(&a, "as it was");
+}
+
+/// Goal: what is less is not different: a run copied while it was under way, and its own file meeting that copy
+/// again.
+#[test]
+fn an_earlier_copy_of_a_run_is_not_different() {
+    let dir = tempdir().expect("a directory");
+    let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+    let mut writer = RunWriter::begin(&a, &run_record("ATC-7")).expect("begun");
+    writer.fault(&fault(1, T0_US)).expect("stored");
+    b.merge_from(&a).expect("in the middle");
+    writer.step(step(0)).expect("kept");
+    writer.fault(&fault(1, T0_US + 1)).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let met = a.merge_from(&b).expect("the earlier copy");
+    assert_eq!(met, MergeCounts::default());
+    let rest = b.merge_from(&a).expect("the rest");
+    assert_eq!((rest.steps, rest.occurrences), (1, 1));
+    assert_eq!(b.merge_from(&a).expect("again"), MergeCounts::default());
+    whole(&a, "where it was recorded");
+    whole(&b, "in two parts");
+}
+
+/// A run with a step, a measurement and a fault.
+fn measured_run(store: &Store) -> Id {
+    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
+    let mut measured = step(0);
+    measured.measurements = vec![measurement("eb_reaction", 0.42)];
+    writer.step(measured).expect("kept");
+    writer.fault(&fault(1, T0_US)).expect("stored");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    writer.id()
+}

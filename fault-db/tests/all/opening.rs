@@ -1,0 +1,312 @@
+//! Files that are not what they should be: named, with the next move, and left as they were.
+
+use std::path::Path;
+
+use crate::common::{T0_US, end, fault, ids, open, run_record};
+use fault_db::{
+    APPLICATION_ID, FaultFilter, OpenOptions, RunFilter, RunWriter, SCHEMA_VERSION, Store,
+    StoreError, Verdict,
+};
+use rusqlite::Connection;
+use tempfile::tempdir;
+
+fn refusal(path: &Path) -> StoreError {
+    Store::open(path, OpenOptions::new(ids(1))).expect_err("not ours to write")
+}
+
+#[test]
+fn a_text_file_is_not_a_database_and_stays_as_it_is() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("notes.txt");
+    for text in ["x", "speed codes\n", &"a long text ".repeat(1_000)] {
+        std::fs::write(&path, text).expect("written");
+        for error in [
+            refusal(&path),
+            Store::open_read_only(&path).expect_err("nor to read"),
+        ] {
+            assert!(matches!(error, StoreError::NotADatabase { .. }), "{error}");
+            assert!(
+                error
+                    .to_string()
+                    .ends_with("notes.txt is not a database; choose another file")
+            );
+        }
+        assert_eq!(std::fs::read_to_string(&path).expect("still there"), text);
+    }
+}
+
+#[test]
+fn another_programs_database_is_refused_untouched() {
+    let dir = tempdir().expect("a directory");
+    for (name, sql) in [
+        (
+            "id.db",
+            "PRAGMA application_id = 77; CREATE TABLE theirs(x)",
+        ),
+        ("none.db", "CREATE TABLE theirs(x)"),
+        ("version.db", "PRAGMA user_version = 1"),
+    ] {
+        let path = dir.path().join(name);
+        Connection::open(&path)
+            .and_then(|conn| conn.execute_batch(sql))
+            .expect("made");
+        let before = std::fs::read(&path).expect("there");
+        let error = refusal(&path);
+        assert!(
+            matches!(error, StoreError::ForeignDatabase { .. }),
+            "{name}: {error}"
+        );
+        assert_eq!(std::fs::read(&path).expect("there"), before, "{name}");
+    }
+}
+
+#[test]
+fn a_newer_schema_is_refused_and_an_older_one_not_migrated_by_reading() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    open(&path).close().expect("closed");
+    let set = |version: i32| {
+        let conn = Connection::open(&path).expect("opens");
+        conn.pragma_update(None, "user_version", version)
+            .expect("set");
+    };
+    set(SCHEMA_VERSION + 1);
+    for error in [
+        refusal(&path),
+        Store::open_read_only(&path).expect_err("nor to read"),
+    ] {
+        let expected = format!(
+            "schema {}, this one knows {SCHEMA_VERSION}",
+            SCHEMA_VERSION + 1
+        );
+        assert!(matches!(error, StoreError::NewerSchema { .. }), "{error}");
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+}
+
+#[test]
+fn a_missing_file_is_created_by_writing_only() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let error = Store::open_read_only(&path).expect_err("nothing there");
+    assert!(matches!(error, StoreError::Missing { .. }), "{error}");
+    assert!(!path.exists());
+    let nowhere = dir.path().join("no/such/directory.db");
+    assert!(matches!(refusal(&nowhere), StoreError::CannotOpen { .. }));
+    assert!(matches!(refusal(dir.path()), StoreError::CannotOpen { .. }));
+    open(&path);
+    let conn = Connection::open(&path).expect("opens");
+    let pragma = |name: &str| -> i64 {
+        conn.pragma_query_value(None, name, |row| row.get(0))
+            .expect("readable")
+    };
+    assert_eq!(pragma("application_id"), i64::from(APPLICATION_ID));
+    assert_eq!(pragma("user_version"), i64::from(SCHEMA_VERSION));
+    assert_eq!(pragma("auto_vacuum"), 2, "incremental");
+}
+
+#[test]
+fn a_file_locked_by_another_is_named_so() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let options = OpenOptions::new(ids(1)).busy_timeout_ms(20);
+    let store = Store::open(&path, options).expect("opens");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let other = Connection::open(&path).expect("opens");
+    other.execute_batch("BEGIN EXCLUSIVE").expect("locked");
+    let error = writer.fault(&fault(1, T0_US)).expect_err("locked out");
+    assert!(matches!(error, StoreError::Locked { .. }), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("a.db is locked by another program"),
+        "{error}"
+    );
+    assert_eq!(
+        store
+            .runs(&RunFilter::default(), &|_| true)
+            .expect("reading goes on")
+            .len(),
+        1
+    );
+    other.execute_batch("ROLLBACK").expect("released");
+    writer.fault(&fault(1, T0_US)).expect("goes on");
+    writer.finish(&end(Verdict::Passed)).expect("finished");
+}
+
+/// Goal: what is under way may wait longer for another writer than opening did.
+#[test]
+fn the_busy_timeout_of_an_open_store_can_be_changed() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let options = OpenOptions::new(ids(1)).busy_timeout_ms(1);
+    let store = Store::open(&path, options).expect("opens");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    store.set_busy_timeout_ms(30_000).expect("set");
+    let other = Connection::open(&path).expect("opens");
+    other.execute_batch("BEGIN EXCLUSIVE").expect("locked");
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            std::thread::sleep(std::time::Duration::from_millis(300));
+            other.execute_batch("ROLLBACK").expect("released");
+        });
+        writer.fault(&fault(1, T0_US)).expect("in the end");
+    });
+    writer.finish(&end(Verdict::Passed)).expect("finished");
+}
+
+/// Method: tests may run as root, whom permissions do not stop; an immutable attribute or a
+/// read-only mount is not to be had everywhere. What is left is a reader's own connection.
+#[test]
+fn reading_never_writes() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a b?#.db");
+    let writer = open(&path);
+    RunWriter::begin(&writer, &run_record("ATC-7")).expect("begun");
+    writer.close().expect("closed");
+    let before = std::fs::read(&path).expect("there");
+    let store = Store::open_read_only(&path).expect("opens");
+    assert!(store.is_read_only());
+    assert_eq!(
+        store
+            .runs(&RunFilter::default(), &|_| false)
+            .expect("listed")
+            .len(),
+        1
+    );
+    assert_eq!(store.faults(&FaultFilter::default()).expect("listed"), []);
+    let Err(error) = RunWriter::begin(&store, &run_record("ATC-7")) else {
+        panic!("a reader must not write");
+    };
+    assert!(matches!(error, StoreError::ReadOnly { .. }), "{error}");
+    assert_eq!(std::fs::read(&path).expect("there"), before);
+}
+
+#[test]
+fn a_truncated_file_is_damaged_not_a_panic() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    for code in 0..50 {
+        writer.fault(&fault(code, T0_US)).expect("stored");
+    }
+    drop(writer);
+    store.close().expect("closed");
+    let bytes = std::fs::read(&path).expect("there");
+    for part in [10, 3, 2] {
+        std::fs::write(&path, &bytes[..bytes.len() / part]).expect("cut");
+        let found = Store::open_read_only(&path)
+            .and_then(|store| store.check())
+            .map(|report| report.problems.len());
+        assert!(
+            !matches!(found, Ok(0)),
+            "a part of 1/{part} passed for whole"
+        );
+    }
+}
+
+/// A file with enough in it to be cut and scratched.
+fn full_file(path: &Path) -> Vec<u8> {
+    let store = open(path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    for code in 0..50 {
+        writer.fault(&fault(code, T0_US)).expect("stored");
+    }
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    drop(writer);
+    store.close().expect("closed");
+    std::fs::read(path).expect("there")
+}
+
+/// Goal: a copy that broke off is refused by name, also for writing and as the source of an import, and
+/// nothing is written to it.
+#[test]
+fn a_half_copied_file_is_named_and_left_as_it_is() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("half.db");
+    let bytes = full_file(&path);
+    let ours = open(&dir.path().join("ours.db"));
+    for part in [2, 3, 10] {
+        let half = &bytes[..bytes.len() / part];
+        std::fs::write(&path, half).expect("cut");
+        for error in [
+            refusal(&path),
+            Store::open_read_only(&path).expect_err("nor to read"),
+            ours.import(&path).expect_err("nor to merge"),
+        ] {
+            assert!(
+                matches!(error, StoreError::Corrupt { .. }),
+                "{part}: {error}"
+            );
+            let text = error.to_string();
+            assert!(
+                text.contains("half.db") && text.contains("db check"),
+                "{text}"
+            );
+        }
+        assert_eq!(std::fs::read(&path).expect("there"), half, "1/{part}");
+    }
+    assert_eq!(
+        ours.runs(&RunFilter::default(), &|_| false)
+            .expect("listed"),
+        []
+    );
+}
+
+/// Goal: a file with a stretch of garbage in it never passes for whole, wherever that is, and neither a
+/// check nor a refused import writes to it.
+#[test]
+fn garbage_in_the_middle_is_found() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("scratched.db");
+    let bytes = full_file(&path);
+    let pages = bytes.len() / 4096;
+    let mut refused = 0;
+    for page in (1..pages).step_by(3) {
+        let mut scratched = bytes.clone();
+        scratched[page * 4096..][..4096].fill(0xA5);
+        std::fs::write(&path, &scratched).expect("written");
+        let found = Store::open_read_only(&path)
+            .and_then(|store| store.check())
+            .map(|report| report.problems.len());
+        assert!(!matches!(found, Ok(0)), "page {page} passed for whole");
+        // A merge may not need that page; if it does, all or nothing, and the right file is named.
+        let ours = open(&dir.path().join(format!("ours{page}.db")));
+        if let Err(error) = ours.import(&path) {
+            refused += 1;
+            assert!(error.to_string().contains("scratched.db"), "{error}");
+            let runs = ours.runs(&RunFilter::default(), &|_| false);
+            assert_eq!(runs.expect("listed"), []);
+        }
+        assert_eq!(
+            std::fs::read(&path).expect("there"),
+            scratched,
+            "page {page}"
+        );
+    }
+    assert!(refused > 3, "{refused}");
+}
+
+/// Goal: the database file copied alone, while a program had it open, is as it was when its log was last
+/// written back: whole, or refused, never something in between.
+#[test]
+fn a_file_without_its_write_ahead_log_is_an_earlier_state_or_unreadable() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    full_file(&path);
+    let store = Store::open(&path, OpenOptions::new(ids(2))).expect("opens");
+    for code in 100..104 {
+        let mut writer = RunWriter::begin(&store, &run_record("ATC-8")).expect("begun");
+        writer.fault(&fault(code, T0_US)).expect("stored");
+        writer.finish(&end(Verdict::Failed)).expect("finished");
+    }
+    let alone = dir.path().join("alone.db");
+    std::fs::copy(&path, &alone).expect("copied");
+    let copy = Store::open_read_only(&alone).expect("opens");
+    assert_eq!(copy.check().expect("checked").problems, []);
+    let runs = copy
+        .runs(&RunFilter::default(), &|_| false)
+        .expect("listed");
+    assert_eq!(runs.len(), 1, "what was in the log is not there");
+}

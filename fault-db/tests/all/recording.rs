@@ -1,0 +1,389 @@
+//! What a run records is in the file, also when the program dies, the disk fills or another run
+//! writes at the same time.
+
+use crate::common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
+use fault_db::limits::{MOST_NAME, MOST_TEXT};
+use fault_db::{
+    FaultFilter, FaultState, OpenOptions, RepairRecord, RunFilter, RunRecord, RunState, RunWriter,
+    StepRecord, Store, StoreError, Synchronous, Verdict,
+};
+use tempfile::tempdir;
+
+/// With other writers: a busy machine may hold one up in the middle of a commit.
+const PATIENCE_MS: u32 = 30_000;
+
+const NOBODY_LIVES: &dyn Fn(&str) -> bool = &|_| false;
+
+#[test]
+fn a_finished_run_reads_back_as_recorded() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let mut record = run_record("ATC-7");
+    record.injected = Some("atp.rx.dead".to_owned());
+    let mut writer = RunWriter::begin(&store, &record).expect("begun");
+    let mut measured = step(1);
+    measured.verdict = Verdict::Failed;
+    measured.measurements = vec![
+        measurement("eb_reaction", 0.42),
+        measurement("none", f64::NAN),
+    ];
+    writer.step(step(0)).expect("kept");
+    writer.step(measured).expect("kept");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let after = writer.step(step(2)).expect_err("it is over");
+    assert!(matches!(after, StoreError::RunFinished { .. }));
+
+    let detail = store.run(writer.id(), NOBODY_LIVES).expect("known");
+    assert_eq!(detail.run.seed, u64::MAX - 3);
+    assert_eq!(detail.run.verdict, Some(Verdict::Failed));
+    assert_eq!(detail.run.state, RunState::Finished);
+    assert_eq!((detail.run.steps, detail.run.steps_not_passed), (2, 1));
+    assert_eq!(detail.run.injected.as_deref(), Some("atp.rx.dead"));
+    assert_eq!(detail.scripts, record.scripts);
+    assert_eq!(detail.steps[1].measurements[0].value, Some(0.42));
+    assert_eq!(
+        detail.steps[1].measurements[1].value, None,
+        "NaN is no value"
+    );
+}
+
+/// Goal: a killed program leaves an interrupted run with its fault. Method: forget the writer, as
+/// a kill does, and look from a second connection.
+#[test]
+fn a_killed_run_is_interrupted_and_keeps_its_fault() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    writer.step(step(0)).expect("kept");
+    let stored = writer.fault(&fault(17, T0_US)).expect("committed");
+    writer.step(step(1)).expect("kept in memory");
+    std::mem::forget(writer);
+
+    let reader = Store::open_read_only(&path).expect("readable meanwhile");
+    let is_ours = |owner: &str| owner == "pid 1 started 2";
+    let list = |alive| reader.runs(&RunFilter::default(), alive).expect("listed");
+    assert_eq!(list(&is_ours)[0].state, RunState::Running);
+    let run = &list(NOBODY_LIVES)[0];
+    assert_eq!((run.state, run.verdict), (RunState::Interrupted, None));
+    assert_eq!(
+        (run.steps, run.faults),
+        (1, 1),
+        "the fault took the waiting step along"
+    );
+    let detail = reader.fault(stored.fault).expect("committed");
+    assert_eq!(detail.occurrences[0].freeze, fault(17, T0_US).freeze);
+}
+
+/// Goal: an early return of the caller loses no step. Method: drop without finish.
+#[test]
+fn a_dropped_writer_writes_its_buffered_steps() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    writer.step(step(0)).expect("kept");
+    drop(writer);
+    let runs = store
+        .runs(&RunFilter::default(), NOBODY_LIVES)
+        .expect("listed");
+    assert_eq!((runs[0].steps, runs[0].state), (1, RunState::Interrupted));
+}
+
+/// Goal: two programs that start together on a new file both get it. Method: many new files, since
+/// the moment that matters is short.
+#[test]
+fn two_programs_create_one_file_at_the_same_time() {
+    let dir = tempdir().expect("a directory");
+    for round in 0..40 {
+        let path = dir.path().join(format!("{round}.db"));
+        std::thread::scope(|scope| {
+            for seed in [11, 12, 13] {
+                let path = &path;
+                scope.spawn(move || {
+                    let options = OpenOptions::new(ids(seed)).busy_timeout_ms(PATIENCE_MS);
+                    let store = Store::open(path, options).expect("opens");
+                    RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+                });
+            }
+        });
+        let runs = open(&path)
+            .runs(&RunFilter::default(), NOBODY_LIVES)
+            .expect("listed");
+        assert_eq!(runs.len(), 3, "round {round}");
+    }
+}
+
+#[test]
+fn two_runs_write_one_file_at_the_same_time() {
+    const STEPS: u32 = 1_000;
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    std::thread::scope(|scope| {
+        for seed in [11, 12] {
+            let path = &path;
+            // Both create the file, too.
+            scope.spawn(move || {
+                let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
+                let options = options.busy_timeout_ms(PATIENCE_MS);
+                let store = Store::open(path, options).expect("opens");
+                let serial = format!("ATC-{seed}");
+                let mut writer = RunWriter::begin(&store, &run_record(&serial)).expect("begun");
+                for index in 0..STEPS {
+                    writer.step(step(index)).expect("written in the end");
+                    if index % 100 == 0 {
+                        writer.fault(&fault(5, T0_US)).expect("committed");
+                    }
+                }
+                writer.finish(&end(Verdict::Passed)).expect("finished");
+            });
+        }
+    });
+    let store = open(&path);
+    let runs = store
+        .runs(&RunFilter::default(), NOBODY_LIVES)
+        .expect("listed");
+    assert_eq!(
+        runs.iter().map(|run| run.steps).collect::<Vec<_>>(),
+        [STEPS, STEPS]
+    );
+    let faults = store.faults(&FaultFilter::default()).expect("listed");
+    assert_eq!(
+        faults
+            .iter()
+            .map(|fault| fault.occurrences)
+            .collect::<Vec<_>>(),
+        [10, 10]
+    );
+    assert_eq!(store.check().expect("checked").problems, []);
+}
+
+/// Goal: a full disk costs nothing that was committed, and writing goes on when there is room.
+#[test]
+fn a_full_disk_is_an_error_and_loses_nothing() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    open(&path).close().expect("closed");
+    let small = OpenOptions::new(ids(2)).max_pages(60);
+    let store = Store::open(&path, small).expect("opens");
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let stored = writer.fault(&fault(1, T0_US)).expect("room for one");
+    let mut kept = 0;
+    let error = loop {
+        match writer.step(step(kept)) {
+            Ok(()) => kept += 1,
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, StoreError::Full { .. }), "{error}");
+    assert!(error.to_string().contains("a.db"), "{error}");
+    let failed = writer
+        .finish(&end(Verdict::Passed))
+        .expect_err("still full");
+    assert!(matches!(failed, StoreError::Full { .. }), "{failed}");
+    let waiting = writer.waiting_steps() as u32;
+    assert!(waiting > 0);
+    let id = writer.id();
+    drop(writer);
+
+    let reader = Store::open_read_only(&path).expect("readable");
+    assert_eq!(reader.check().expect("checked").problems, []);
+    let run = reader.run(id, NOBODY_LIVES).expect("kept");
+    assert_eq!(
+        run.run.steps + waiting,
+        kept + 1,
+        "each step is written or waits"
+    );
+    assert_eq!(run.run.state, RunState::Interrupted);
+    assert_eq!(
+        reader.fault(stored.fault).expect("kept").occurrences.len(),
+        1
+    );
+}
+
+#[test]
+fn step_indexes_must_rise() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    writer.step(step(4)).expect("kept");
+    let error = writer.step(step(4)).expect_err("again");
+    assert_eq!(
+        error.to_string(),
+        "step 4 recorded after step 4: step indexes must rise"
+    );
+}
+
+/// The rule of one fault per unit, code and part until it is closed.
+#[test]
+fn occurrences_join_reopen_or_begin_a_fault() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let first = writer.fault(&fault(17, T0_US)).expect("stored");
+    assert!(first.is_new && !first.reopened);
+    let second = writer.fault(&fault(17, T0_US + 9)).expect("stored");
+    assert_eq!((second.fault, second.is_new), (first.fault, false));
+    let mut elsewhere = fault(17, T0_US);
+    elsewhere.lru = "ATP-CPU".to_owned();
+    assert_ne!(
+        writer.fault(&elsewhere).expect("stored").fault,
+        first.fault,
+        "another part"
+    );
+    let mut other = RunWriter::begin(&store, &run_record("ATC-8")).expect("begun");
+    assert_ne!(
+        other.fault(&fault(17, T0_US)).expect("stored").fault,
+        first.fault,
+        "another unit"
+    );
+
+    let id = first.fault;
+    let repair = RepairRecord {
+        part: "ATP-RX".to_owned(),
+        serial_old: Some("1".to_owned()),
+        serial_new: Some("2".to_owned()),
+        note: "swapped".to_owned(),
+    };
+    assert_eq!(
+        store.acknowledge(id, "kim", "", T0_US + 10).ok(),
+        Some(FaultState::Acknowledged)
+    );
+    let still = writer.fault(&fault(17, T0_US + 11)).expect("stored");
+    assert!(!still.reopened, "nobody has repaired it yet");
+    assert_eq!(
+        store.record_repair(id, &repair, "kim", T0_US + 12).ok(),
+        Some(FaultState::Repaired)
+    );
+    let again = writer.fault(&fault(17, T0_US + 13)).expect("stored");
+    assert_eq!((again.fault, again.reopened), (id, true));
+    let detail = store.fault(id).expect("known");
+    assert_eq!(detail.fault.state, FaultState::Open);
+    assert_eq!(detail.fault.occurrences, 4);
+    assert_eq!(
+        (detail.fault.first_at_us, detail.fault.last_at_us),
+        (T0_US, T0_US + 13)
+    );
+    let kinds: Vec<_> = detail
+        .events
+        .iter()
+        .map(|event| event.kind.as_str())
+        .collect();
+    assert_eq!(kinds, ["opened", "acknowledged", "repair", "recurred"]);
+    assert_eq!(detail.events[2].repair, Some(repair));
+
+    store
+        .set_state(id, FaultState::Closed, "kim", "no fault found", T0_US + 14)
+        .expect("closed");
+    let error = store
+        .acknowledge(id, "kim", "", T0_US + 15)
+        .expect_err("it is over");
+    assert!(matches!(error, StoreError::Transition { .. }), "{error}");
+    let new = writer.fault(&fault(17, T0_US + 16)).expect("stored");
+    assert!(new.is_new && new.fault != id, "a closed fault stays closed");
+}
+
+#[test]
+fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let a = writer.fault(&fault(1, T0_US)).expect("stored");
+    let b = writer.fault(&fault(2, T0_US)).expect("stored");
+    let mut data = realistic_trace(600, 5);
+    data.columns[0][3] = f64::NAN;
+    let id = writer
+        .trace(&[a.occurrence, b.occurrence], &data)
+        .expect("stored");
+    for fault in [a.fault, b.fault] {
+        assert_eq!(store.fault(fault).expect("known").fault.trace_id, Some(id));
+    }
+    let whole = store.trace(id).expect("readable");
+    assert!(whole.gaps && whole.columns[0][3].is_nan());
+    assert_eq!(whole.columns[1..], data.columns[1..]);
+    let two = store
+        .trace_channels(id, &["effort", "speed_limit"])
+        .expect("readable");
+    assert_eq!(
+        two.columns,
+        [data.columns[9].clone(), data.columns[7].clone()]
+    );
+    assert_eq!(two.trigger_row, data.trigger_row);
+    let error = store.trace_channels(id, &["sped"]).expect_err("misspelt");
+    assert!(
+        error.to_string().contains("no channel \"sped\"") && error.to_string().contains("speed")
+    );
+    assert_eq!(store.traces(writer.id()).expect("listed")[0].occurrences, 2);
+
+    let missing = writer
+        .trace(&[writer.id()], &data)
+        .expect_err("a run is no occurrence");
+    assert!(matches!(
+        missing,
+        StoreError::NotFound {
+            what: "fault occurrence",
+            ..
+        }
+    ));
+    assert_eq!(
+        store.traces(writer.id()).expect("listed").len(),
+        1,
+        "rolled back"
+    );
+}
+
+/// Goal: one door for every text that people and scripts bring. Method: each a letter too long, and what was
+/// there is as it was.
+#[test]
+fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let (name, note) = ("이".repeat(MOST_NAME + 1), "이".repeat(MOST_TEXT + 1));
+    let refused = |result: Result<(), StoreError>, word: &str| match result {
+        Err(StoreError::TextTooLong { what, length, most }) => {
+            assert!(what.contains(word) && length == most + 1, "{what}");
+        }
+        other => panic!("{word}: {other:?}"),
+    };
+    for (word, change) in [
+        (
+            "operator",
+            (|run, name| run.operator = name) as fn(&mut RunRecord, String),
+        ),
+        ("train", |run, name| run.train = name),
+        ("serial", |run, name| run.unit.serial = name),
+        ("line", |run, name| run.line = name),
+    ] {
+        let mut record = run_record("ATC-7");
+        change(&mut record, name.clone());
+        refused(RunWriter::begin(&store, &record).map(drop), word);
+    }
+    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
+    let long = StepRecord {
+        message: note.clone(),
+        ..step(0)
+    };
+    writer.step(long).expect("kept");
+    let fault = writer.fault(&fault(7, T0_US)).expect("stored").fault;
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let run = writer.id();
+    let kept = &store.run(run, NOBODY_LIVES).expect("there").steps[0].message;
+    assert!(kept.chars().count() == MOST_TEXT && kept.ends_with('…'));
+    refused(store.add_run_note(run, "kim", &note, 1), "note");
+    refused(store.add_run_note(run, &name, "short", 1), "who says it");
+    refused(store.add_note(fault, "kim", &note, 1), "note");
+    refused(
+        store.acknowledge(fault, &name, "", 1).map(drop),
+        "who says it",
+    );
+    refused(store.acknowledge(fault, "kim", &note, 1).map(drop), "note");
+    let repair = RepairRecord {
+        part: "relay".into(),
+        serial_old: Some(name),
+        serial_new: None,
+        note: String::new(),
+    };
+    let repaired = store.record_repair(fault, &repair, "kim", 1);
+    refused(repaired.map(drop), "serial number");
+    let detail = store.fault(fault).expect("there");
+    assert_eq!(detail.events.len(), 1, "opened, and nothing else");
+}

@@ -1,0 +1,82 @@
+//! Notes on runs: in their order, merged once, untouched by pruning, found when damaged.
+
+use crate::common::{T0_US, end, ids, open, realistic_trace, run_record};
+use fault_db::{Id, OpenOptions, PruneRule, RunNote, RunWriter, Store, StoreError, Verdict};
+use rusqlite::Connection;
+use tempfile::tempdir;
+
+fn one_run(store: &Store) -> Id {
+    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
+    writer.trace(&[], &realistic_trace(60, 3)).expect("stored");
+    writer.finish(&end(Verdict::Passed)).expect("finished");
+    writer.id()
+}
+
+fn note(store: &Store, run: Id, text: &str, at_us: i64) {
+    store.add_run_note(run, "kim", text, at_us).expect("noted");
+}
+
+fn notes(store: &Store, run: Id) -> Vec<RunNote> {
+    store.run(run, &|_| false).expect("there").notes
+}
+
+#[test]
+fn notes_stand_at_their_run_in_their_order_and_survive_pruning() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let (run, other) = (one_run(&store), one_run(&store));
+    note(&store, run, "second", T0_US + 2);
+    note(&store, run, "first; \"김\"\n'--", T0_US + 1);
+    let rule = PruneRule {
+        older_than_us: Some(T0_US + 9),
+        ..PruneRule::default()
+    };
+    assert_eq!(store.prune(&rule).expect("pruned").traces, 2);
+    let texts: Vec<_> = notes(&store, run).into_iter().map(|n| n.text).collect();
+    assert_eq!(texts, ["first; \"김\"\n'--", "second"]);
+    assert_eq!(notes(&store, other), []);
+}
+
+#[test]
+fn merging_takes_notes_along_once_and_both_files_notes_stay() {
+    let dir = tempdir().expect("a directory");
+    let ours = open(&dir.path().join("a.db"));
+    let options = OpenOptions::new(ids(2));
+    let theirs = Store::open(&dir.path().join("b.db"), options).expect("opens");
+    // Their run gets another number here.
+    one_run(&theirs);
+    let run = one_run(&ours);
+    note(&ours, run, "ours", T0_US + 1);
+    assert_eq!(theirs.merge_from(&ours).expect("merged").notes, 1);
+    assert_eq!(theirs.merge_from(&ours).expect("merged").notes, 0);
+    note(&theirs, run, "theirs", T0_US + 2);
+    assert_eq!(ours.merge_from(&theirs).expect("merged").notes, 1);
+    assert_eq!(notes(&ours, run), notes(&theirs, run));
+    assert_eq!(notes(&ours, run).len(), 2);
+    let exported = dir.path().join("c.db");
+    let counts = ours.export(&exported, OpenOptions::new(ids(3)));
+    assert_eq!(counts.expect("exported").notes, 2);
+}
+
+#[test]
+fn a_note_on_no_run_is_refused_and_one_whose_run_is_lost_is_found() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let run = one_run(&store);
+    let nobody = "ffffffff-ffff-7fff-bfff-ffffffffffff"
+        .parse()
+        .expect("an id");
+    let error = store
+        .add_run_note(nobody, "kim", "x", T0_US)
+        .expect_err("no run");
+    assert!(matches!(error, StoreError::NotFound { .. }), "{error}");
+    note(&store, run, "x", T0_US);
+    let other = Connection::open(&path).expect("opens");
+    let damage = "PRAGMA foreign_keys = OFF; UPDATE run_note SET run = 99";
+    other.execute_batch(damage).expect("damaged");
+    let problems = store.check().expect("checked").problems;
+    let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
+    assert_eq!(kinds, ["foreign_key", "seal"], "{problems:?}");
+    assert!(problems[0].detail.contains("run_note"), "{problems:?}");
+}

@@ -1,0 +1,150 @@
+//! The life of a fault: a repair is verified by a run that passed what saw the fault, by no other.
+
+use crate::common::{T0_US, end, fault, open, run_record, step};
+use fault_db::{
+    FaultState, Id, RepairRecord, RunEnd, RunRecord, RunWriter, StepRecord, Store, Verdict,
+};
+use tempfile::TempDir;
+
+const DAY_US: i64 = 86_400_000_000;
+
+struct Depot {
+    store: Store,
+    fault: Id,
+    _folder: TempDir,
+}
+
+impl Depot {
+    /// A fault seen in step 3 of a run on ATC-1.
+    fn with_fault() -> Self {
+        let folder = TempDir::new().expect("a folder");
+        let store = open(&folder.path().join("a.db"));
+        let mut writer = RunWriter::begin(&store, &run_record("ATC-1")).expect("begun");
+        writer
+            .step(StepRecord {
+                verdict: Verdict::Failed,
+                ..step(3)
+            })
+            .expect("kept");
+        let fault = writer.fault(&fault(7, T0_US)).expect("stored").fault;
+        writer.finish(&end(Verdict::Failed)).expect("finished");
+        drop(writer);
+        Self {
+            store,
+            fault,
+            _folder: folder,
+        }
+    }
+
+    fn repair(&self, at_us: i64) {
+        let repair = RepairRecord {
+            part: "eb_relay".into(),
+            serial_old: Some("A-1".into()),
+            serial_new: Some("A-2".into()),
+            note: String::new(),
+        };
+        let state = self.store.record_repair(self.fault, &repair, "kim", at_us);
+        assert_eq!(state.expect("repaired"), FaultState::Repaired);
+    }
+
+    /// A run of one step with these verdicts.
+    fn run(&self, unit: &str, (of_step, verdict): (StepRecord, Verdict)) {
+        let record = RunRecord {
+            started_at_us: T0_US + 2 * DAY_US,
+            ..run_record(unit)
+        };
+        let mut writer = RunWriter::begin(&self.store, &record).expect("begun");
+        writer.step(of_step).expect("kept");
+        writer
+            .finish(&RunEnd {
+                finished_at_us: T0_US + 3 * DAY_US,
+                ..end(verdict)
+            })
+            .expect("finished");
+    }
+
+    fn state(&self) -> FaultState {
+        self.store.fault(self.fault).expect("known").fault.state
+    }
+}
+
+#[test]
+fn a_run_that_passes_the_step_verifies_the_repair() {
+    let depot = Depot::with_fault();
+    // The clock of the laptop that recorded the repair was a year ahead: what was known first counts.
+    depot.repair(T0_US + 365 * DAY_US);
+    depot.run("ATC-1", (step(3), Verdict::Passed));
+    assert_eq!(depot.state(), FaultState::Verified);
+    let events = depot.store.fault(depot.fault).expect("known").events;
+    let verified = events
+        .iter()
+        .find(|event| event.kind == "verified")
+        .expect("an event");
+    assert!(
+        verified.note.starts_with("passed in run "),
+        "{}",
+        verified.note
+    );
+    let closed = depot
+        .store
+        .set_state(depot.fault, FaultState::Closed, "lee", "", T0_US);
+    assert_eq!(closed.expect("verified before"), FaultState::Closed);
+}
+
+#[test]
+fn a_run_without_the_step_does_not_verify_the_repair() {
+    let another_step = StepRecord {
+        name: "another".into(),
+        ..step(3)
+    };
+    let failed_step = StepRecord {
+        verdict: Verdict::Failed,
+        ..step(3)
+    };
+    for (unit, run) in [
+        ("ATC-2", (step(3), Verdict::Passed)),
+        ("ATC-1", (another_step, Verdict::Passed)),
+        ("ATC-1", (failed_step, Verdict::Failed)),
+        ("ATC-1", (step(3), Verdict::Failed)),
+        ("ATC-1", (step(3), Verdict::Aborted)),
+    ] {
+        let depot = Depot::with_fault();
+        depot.repair(T0_US + DAY_US);
+        depot.run(unit, run.clone());
+        assert_eq!(depot.state(), FaultState::Repaired, "{unit} {run:?}");
+    }
+}
+
+#[test]
+fn a_run_that_began_before_the_repair_proves_nothing() {
+    let depot = Depot::with_fault();
+    let mut writer = RunWriter::begin(&depot.store, &run_record("ATC-1")).expect("begun");
+    writer.step(step(3)).expect("kept");
+    depot.repair(T0_US + 1);
+    writer.finish(&end(Verdict::Passed)).expect("finished");
+    assert_eq!(depot.state(), FaultState::Repaired);
+}
+
+#[test]
+fn a_repaired_fault_that_occurs_again_is_reopened() {
+    let depot = Depot::with_fault();
+    depot.repair(T0_US + DAY_US);
+    depot.run("ATC-1", (step(3), Verdict::Passed));
+    let mut writer = RunWriter::begin(&depot.store, &run_record("ATC-1")).expect("begun");
+    let seen = writer.fault(&fault(7, T0_US + 5 * DAY_US)).expect("stored");
+    assert!(seen.reopened && seen.fault == depot.fault);
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    assert_eq!(depot.state(), FaultState::Open);
+}
+
+/// The laptop that recorded the repair was a day ahead: what a run sees now still comes after it.
+#[test]
+fn a_repair_dated_tomorrow_does_not_hide_what_is_seen_today() {
+    let depot = Depot::with_fault();
+    depot.repair(T0_US + 2 * DAY_US);
+    let mut writer = RunWriter::begin(&depot.store, &run_record("ATC-1")).expect("begun");
+    let seen = writer.fault(&fault(7, T0_US + DAY_US)).expect("stored");
+    assert!(seen.reopened && seen.fault == depot.fault);
+    drop(writer);
+    assert_eq!(depot.state(), FaultState::Open);
+}

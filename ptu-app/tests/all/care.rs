@@ -1,0 +1,307 @@
+//! What changes the history: the life of a fault, and the care of the database.
+
+use crate::common::{Place, Said, list, number, record_bad_unit, relay_fault, text};
+
+#[test]
+fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = relay_fault(&place);
+    let id = text(&fault["id"]);
+    let state = || text(&relay_fault(&place)["state"]).to_owned();
+    place
+        .ptu(&["faults", "state", id, "acknowledged", "--who", "Lee"])
+        .exits(0);
+    assert_eq!(state(), "acknowledged");
+    let repair = ["--part", "eb_relay", "--old", "SN-1", "--new", "SN-2"];
+    let arguments = [
+        &["faults", "repair", id],
+        &repair[..],
+        &["--who", "Lee", "--note", "worn"],
+    ];
+    let said = place.ptu(&arguments.concat()).exits(0);
+    assert_eq!(said.err, "", "a part that a fault named");
+    assert_eq!(state(), "repaired");
+    for next in ["verified", "closed"] {
+        place.ptu(&["faults", "state", id, next]).exits(0);
+        assert_eq!(state(), next);
+    }
+    let closed = place.json(&["faults", "list", "--state", "closed", "--json"]);
+    assert_eq!(list(&closed).len(), 1);
+    let shown = place.json(&["faults", "show", id, "--json"]);
+    let repairs: Vec<_> = list(&shown["events"])
+        .iter()
+        .filter(|event| event["repair"].is_object())
+        .collect();
+    assert_eq!(repairs.len(), 1, "{shown}");
+    assert_eq!(repairs[0]["who"], "Lee");
+    assert_eq!(repairs[0]["repair"]["serial_new"], "SN-2");
+    record_bad_unit(&place);
+    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    let states: Vec<_> = list(&faults).iter().map(|f| text(&f["state"])).collect();
+    assert_eq!(states, ["open", "closed"]);
+    assert_ne!(faults[0]["id"], *id);
+}
+
+/// Goal: a slip in a part's name is told, and a part that no fault ever named is not.
+#[test]
+fn a_repair_of_a_part_nothing_knows_is_told_of_the_one_that_is_near() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = relay_fault(&place);
+    let repaired = |part: &str| {
+        let said = place.ptu(&["faults", "repair", text(&fault["id"]), "--part", part]);
+        said.exits(0).err
+    };
+    let near = "did you mean \"eb_relay\"?";
+    let said = repaired("eb_rely");
+    assert!(
+        said.contains(near) && said.contains("recorded as it is"),
+        "{said}"
+    );
+    assert_eq!(repaired("eb_rely"), "", "known by the repair before");
+    assert_eq!(repaired("EB_Relay"), "");
+    assert_eq!(repaired("zinc block"), "", "nothing is near");
+    let shown = place.ptu(&["faults", "show", text(&fault["id"])]).exits(0);
+    assert!(shown.out.contains("eb_rely ?"), "{}", shown.out);
+}
+
+#[test]
+fn the_database_is_checked_copied_merged_and_asked() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let check = place.json(&["db", "check", "--json"]);
+    assert!(list(&check["problems"]).is_empty(), "{check}");
+    assert!(number(&check["traces"]) > 0.0);
+
+    let report = place.json(&["runs", "show", "latest", "--json"]);
+    place.ptu(&["db", "backup", "copy.db"]).exits(0);
+    let copy = ["runs", "show", "latest", "--json", "--db", "copy.db"];
+    assert_eq!(place.json(&copy), report);
+    place
+        .ptu(&["db", "backup", "copy.db"])
+        .exits(2)
+        .explains(&["copy.db exists already"]);
+    for verb in ["backup", "export"] {
+        place
+            .ptu(&["db", verb, "/no/such/folder/copy.db"])
+            .exits(3)
+            .explains(&["there is no folder /no/such/folder", "name another target"]);
+        // /proc refuses new files even to root.
+        place
+            .ptu(&["db", verb, "/proc/self/copy.db"])
+            .exits(3)
+            .explains(&["cannot write /proc/self/copy.db", "name another target"]);
+    }
+    place.write("notes.txt", "short\n");
+    for file in ["notes.txt", "missing.db"] {
+        let said = place.ptu(&["db", "import", file]).exits(3);
+        assert!(!said.err.contains("--db"), "{}", said.all());
+        said.explains(&[file, "; name another file"]);
+    }
+
+    let said = place.ptu(&["db", "export", "depot.db"]).exits(0);
+    assert!(said.out.contains("added 1 runs"), "{}", said.all());
+    let depot = ["runs", "show", "latest", "--json", "--db", "depot.db"];
+    assert_eq!(place.json(&depot), report);
+    let said = place
+        .ptu(&["db", "import", "copy.db", "--db", "depot.db"])
+        .exits(0);
+    assert!(said.out.contains("added 0 runs"), "{}", said.all());
+    place
+        .ptu(&["run", "tcms/link", "--db", "depot.db"])
+        .exits(0);
+    let said = place.ptu(&["db", "import", "depot.db"]).exits(0);
+    assert!(said.out.contains("added 1 runs"), "{}", said.all());
+    assert_eq!(place.run_ids().len(), 2);
+
+    let sql = "SELECT verdict, count(*) AS n FROM run GROUP BY 1 ORDER BY 1";
+    let answer = place.json(&["db", "query", sql, "--json"]);
+    assert_eq!(answer["columns"], serde_json::json!(["verdict", "n"]));
+    assert_eq!(
+        answer["rows"],
+        serde_json::json!([["failed", 1], ["passed", 1]])
+    );
+}
+
+/// Goal: a run that says something else in another file is left as it is and named, in words and in JSON.
+#[test]
+fn a_run_that_says_something_else_in_another_file_is_named() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let run = place.run_ids()[0].clone();
+    place.ptu(&["db", "backup", "copy.db"]).exits(0);
+    let copy = rusqlite::Connection::open(place.path("copy.db")).expect("the copy");
+    copy.execute_batch("UPDATE run SET verdict = 'passed'")
+        .expect("altered");
+    drop(copy);
+    place.ptu(&["db", "import", "copy.db"]).exits(3).explains(&[
+        &run,
+        "does not say the same",
+        "ptu db check",
+    ]);
+    let said = place.ptu(&["db", "import", "copy.db", "--json"]).exits(3);
+    let told: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    let expected = serde_json::json!([{"what": "run", "id": run}]);
+    assert_eq!(told["different"], expected);
+    assert_eq!(
+        (&told["runs"], &told["conflicts"]),
+        (&0.into(), &serde_json::json!([]))
+    );
+    let shown = place.json(&["runs", "show", "latest", "--json"]);
+    assert_eq!(shown["run"]["verdict"], "failed");
+    let check = place.json(&["db", "check", "--json"]);
+    assert!(list(&check["problems"]).is_empty(), "{check}");
+    place.ptu(&["db", "export", "copy.db"]).exits(3);
+}
+
+#[test]
+fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let traces = || number(&place.json(&["db", "check", "--json"])["traces"]);
+    let all = traces();
+    assert!(all > 0.0);
+    // Nothing is older than a day; everything is older than tomorrow, but every fault is open.
+    for older_than in ["1d", "2999-01"] {
+        place
+            .ptu(&["db", "prune", "--older-than", older_than])
+            .exits(0);
+        assert_eq!(traces(), all);
+    }
+    for fault in list(&place.json(&["faults", "list", "--json"])) {
+        let id = text(&fault["id"]);
+        let repair = ["--part", text(&fault["lru"])];
+        place
+            .ptu(&[&["faults", "repair", id], &repair[..]].concat())
+            .exits(0);
+        for state in ["verified", "closed"] {
+            place.ptu(&["faults", "state", id, state]).exits(0);
+        }
+    }
+    let dry = place
+        .ptu(&["db", "prune", "--older-than", "2999-01", "--dry-run"])
+        .exits(0);
+    assert!(dry.out.contains("would go"), "{}", dry.all());
+    assert!(!dry.out.contains("smaller"), "{}", dry.all());
+    assert_eq!(traces(), all);
+    let pruned = place
+        .ptu(&["db", "prune", "--older-than", "2999-01"])
+        .exits(0);
+    assert!(pruned.out.contains("smaller"), "{}", pruned.all());
+    assert_eq!(traces(), 0.0);
+    assert_eq!(place.run_ids().len(), 1, "runs stay");
+    assert!(
+        !list(&place.json(&["faults", "list", "--json"])).is_empty(),
+        "faults stay"
+    );
+}
+
+/// Whatever the umask allows, history and settings are their owner's alone; what others were given before is
+/// told, and stays.
+#[cfg(unix)]
+#[test]
+fn history_and_settings_are_for_their_owner_alone() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let place = Place::new();
+    let ptu = |arguments: &str| {
+        let mut shell = std::process::Command::new("sh");
+        let command = format!("umask 000; exec {} {arguments}", env!("CARGO_BIN_EXE_ptu"));
+        let usual = place.command(&[]);
+        let environment = usual
+            .get_envs()
+            .filter_map(|(name, value)| Some((name, value?)));
+        shell
+            .args(["-c", &command])
+            .envs(environment)
+            .env_remove("PTU_DB");
+        shell.current_dir(place.path("."));
+        Said::from(shell.output().expect("ptu starts"))
+    };
+    let mode = |name: &str| {
+        let about = std::fs::metadata(place.path(name)).expect(name);
+        format!("{:o}", about.permissions().mode() & 0o777)
+    };
+    ptu("run tcms/link").exits(0);
+    ptu("faults list --state open --save waiting").exits(0);
+    ptu("db backup copy.db").exits(0);
+    ptu("db export other.db").exits(0);
+    for file in ["ptu/history.db", "copy.db", "other.db"] {
+        assert_eq!(mode(file), "600", "{file}");
+    }
+    assert_eq!(mode("ptu"), "700");
+    let kept = std::fs::read_dir(place.path("ptu"))
+        .expect("a folder")
+        .flatten();
+    for file in kept.filter(|file| file.path().is_file()) {
+        let name = format!("ptu/{}", file.file_name().to_string_lossy());
+        assert_eq!(mode(&name), "600", "{name}");
+    }
+    // While it is open, what SQLite keeps beside it.
+    let store = rusqlite::Connection::open(place.path("ptu/history.db")).expect("opens");
+    store
+        .execute_batch("BEGIN IMMEDIATE; UPDATE run SET line = line; COMMIT")
+        .expect("written");
+    for file in ["ptu/history.db-wal", "ptu/history.db-shm"] {
+        assert_eq!(mode(file), "600", "{file}");
+    }
+    drop(store);
+
+    let shared = std::fs::Permissions::from_mode(0o644);
+    std::fs::set_permissions(place.path("ptu/history.db"), shared).expect("shared");
+    let said = ptu("run tcms/link").exits(0);
+    assert!(
+        said.err.contains("mode 644") && said.err.contains("chmod 600"),
+        "{}",
+        said.err
+    );
+    assert_eq!(mode("ptu/history.db"), "644");
+    let said = ptu("db backup second.db").exits(0);
+    assert_eq!(mode("second.db"), "600", "{}", said.err);
+}
+
+/// Goal: of somebody else's file comes what fits, and the rest is named, with the exit code that says so.
+#[test]
+fn what_does_not_fit_its_seal_is_named_and_left_out_of_an_import() {
+    let place = Place::new();
+    let (theirs, ours) = (place.text_path("theirs.db"), place.text_path("ours.db"));
+    for _ in 0..2 {
+        place.ptu(&["run", "tcms/link", "--db", &theirs]).exits(0);
+    }
+    let runs = place.json(&["runs", "list", "--json", "--db", &theirs]);
+    let id = text(&list(&runs)[0]["id"]).to_owned();
+    let conn = rusqlite::Connection::open(&theirs).expect("opens");
+    let change = "UPDATE step SET message = 'x' WHERE run = (SELECT max(seq) FROM run)";
+    conn.execute_batch(change).expect("changed");
+    drop(conn);
+    let said = place
+        .ptu(&["db", "import", &theirs, "--db", &ours])
+        .exits(3);
+    assert!(
+        said.out.contains("added 1 runs") && said.out.contains("refused 1"),
+        "{}",
+        said.out
+    );
+    said.explains(&[&format!("refused run {id}"), "changed after it was sealed"]);
+    let said = place
+        .ptu(&["db", "import", &theirs, "--json", "--db", &ours])
+        .exits(3);
+    let told: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!(told["refused"]["count"], 1, "{told}");
+    place.ptu(&["db", "check", "--db", &ours]).exits(0);
+    // A view in the place of a table is looked at, and not asked.
+    let conn = rusqlite::Connection::open(&theirs).expect("opens");
+    conn.execute_batch(
+        "DROP TABLE run_note; CREATE VIEW run_note AS WITH RECURSIVE n(id, run, at_us, who, text) AS
+            (SELECT randomblob(16), 1, 1, '', '' UNION ALL SELECT randomblob(16), 1, 1, '', '' FROM n)
+         SELECT * FROM n",
+    )
+    .expect("changed");
+    drop(conn);
+    let begun = std::time::Instant::now();
+    (place
+        .ptu(&["db", "import", &theirs, "--db", &ours])
+        .exits(3))
+    .explains(&["theirs.db was altered by hand"]);
+    assert!(begun.elapsed().as_secs() < 20);
+}

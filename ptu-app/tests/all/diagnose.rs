@@ -1,0 +1,252 @@
+//! From a run to the part: the dictionary that comes with the scripts, campaigns, adaptive runs, and
+//! what is said when the evidence or the dictionary is not good enough.
+
+use std::path::Path;
+
+use crate::common::{Place, has_shape, list, number, scripts, text};
+use serde_json::Value;
+
+/// Parts whose fault modes look different enough that a whole run at the default seed must tell them.
+const TOLD: [(&str, &str); 4] = [
+    ("eb_relay.slow", "eb_relay"),
+    ("speed_sensor_1.dead", "speed_sensor_1"),
+    ("door_contact.open", "door_contact"),
+    ("inverter.dead", "inverter"),
+];
+
+fn diagnosis(place: &Place) -> Value {
+    let said = place.json(&["diagnose", "latest", "--json"]);
+    has_shape(
+        &said,
+        &[
+            ("candidates", "list"),
+            ("conclusion", "text"),
+            ("finding", "text"),
+            ("warnings", "list"),
+        ],
+    );
+    for candidate in list(&said["candidates"]) {
+        has_shape(
+            candidate,
+            &[
+                ("lru", "text"),
+                ("fault", "text"),
+                ("probability", "number"),
+                ("for", "list"),
+                ("against", "list"),
+            ],
+        );
+        let p = number(&candidate["probability"]);
+        assert!((0.0..=1.0).contains(&p), "{candidate}");
+    }
+    said
+}
+
+/// The scripts directory with one script changed, in a place of its own.
+fn changed_scripts(place: &Place) -> String {
+    let to = place.path("scripts");
+    copy(&scripts(), &to);
+    let script = to.join("door/interlocks.star");
+    let text = std::fs::read_to_string(&script).expect("a script") + "\n# another remark\n";
+    std::fs::write(&script, text).expect("changed");
+    to.display().to_string()
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).expect("copied");
+        }
+    }
+}
+
+#[test]
+fn the_shipped_dictionary_is_of_these_scripts() {
+    let place = Place::new();
+    place.recorded_run();
+    let said = diagnosis(&place);
+    assert_eq!(
+        list(&said["warnings"]),
+        [] as [Value; 0],
+        "make it anew: `ptu campaign --save scripts/dictionary.zst`"
+    );
+}
+
+#[test]
+fn a_whole_run_names_the_part_with_reasons() {
+    for (fault, lru) in TOLD {
+        let place = Place::new();
+        place.ptu(&["run", "--inject", fault]).exits(1);
+        let said = diagnosis(&place);
+        let first = &said["candidates"][0];
+        assert_eq!(first["lru"], lru, "{fault}: {said:#}");
+        assert_eq!(said["finding"], "found", "{fault}: {}", said["conclusion"]);
+        assert!(!list(&first["for"]).is_empty(), "{fault}");
+        assert!(text(&said["conclusion"]).contains(lru), "{fault}");
+        assert!(said["next_check"].is_null(), "{fault}: nothing is open");
+    }
+}
+
+#[test]
+fn an_adaptive_run_finds_the_part_in_fewer_steps() {
+    let place = Place::new();
+    let (_, whole) = place.run(&["--inject", "tra.dead"]);
+    let place = Place::new();
+    let (said, report) = place.run(&["--adaptive", "--inject", "tra.dead"]);
+    let said = said.exits(1);
+    let steps = |report: &Value| list(&report["steps"]).len();
+    assert!(steps(&report) * 4 < steps(&whole), "{}", said.all());
+    assert!(said.out.contains("replace tra"), "{}", said.all());
+    assert_eq!(diagnosis(&place)["candidates"][0]["lru"], "tra");
+}
+
+#[test]
+fn a_healthy_unit_is_found_healthy_and_a_short_run_says_what_is_next() {
+    let place = Place::new();
+    place.ptu(&["run"]).exits(0);
+    assert_eq!(diagnosis(&place)["finding"], "no_fault");
+    let place = Place::new();
+    place.recorded_run();
+    let said = diagnosis(&place);
+    assert_eq!(said["finding"], "not_enough", "{said:#}");
+    let next = &said["next_check"];
+    has_shape(
+        next,
+        &[
+            ("step", "text"),
+            ("gain_bits", "number"),
+            ("cost_s", "number"),
+        ],
+    );
+    assert!(number(&next["gain_bits"]) > 0.0 && number(&next["cost_s"]) > 0.0);
+}
+
+/// What was injected stands in the record of the run, and diagnosis must not look at it.
+#[test]
+fn the_record_of_what_was_injected_is_not_looked_at() {
+    let place = Place::new();
+    place
+        .ptu(&[
+            "run",
+            "tcms/link",
+            "--inject",
+            "ato_cpu.wrong_track_database",
+        ])
+        .exits(0);
+    let said = diagnosis(&place);
+    let cpu = list(&said["lrus"])
+        .iter()
+        .find(|part| part["lru"] == "ato_cpu")
+        .map_or(0.0, |part| number(&part["probability"]));
+    assert!(cpu < 0.3, "{said:#}");
+}
+
+#[test]
+fn a_stale_dictionary_says_so_and_leads_no_adaptive_run() {
+    let place = Place::new();
+    let changed = changed_scripts(&place);
+    place
+        .ptu(&["run", "tcms/link", "--scripts", &changed])
+        .exits(0);
+    place
+        .ptu(&["diagnose", "latest", "--scripts", &changed])
+        .exits(0)
+        .explains(&["stale", "door/interlocks", "ptu campaign"]);
+    place
+        .ptu(&["run", "--adaptive", "--scripts", &changed])
+        .exits(2)
+        .explains(&["stale", "ptu campaign"]);
+}
+
+/// A run of scripts that are others than the dictionary's: what it says of them does not count.
+#[test]
+fn steps_of_other_scripts_are_left_out() {
+    let place = Place::new();
+    let changed = changed_scripts(&place);
+    place
+        .ptu(&[
+            "run",
+            "door",
+            "--scripts",
+            &changed,
+            "--inject",
+            "io_board.door_enable_dead",
+        ])
+        .exits(1);
+    let said = diagnosis(&place);
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("door/interlocks"), "{warnings}");
+    assert_ne!(said["finding"], "found", "{said:#}");
+}
+
+#[test]
+fn what_cannot_be_diagnosed_is_refused_with_the_next_move() {
+    let place = Place::new();
+    place.ptu(&["diagnose", "latest"]).exits(3);
+    place.recorded_run();
+    place
+        .ptu(&["diagnose", "ffffffff"])
+        .exits(2)
+        .explains(&["ffffffff"]);
+    place.ptu(&["diagnose"]).exits(2);
+    let bare = changed_scripts(&place);
+    std::fs::remove_file(Path::new(&bare).join("dictionary.zst")).expect("removed");
+    place
+        .ptu(&["diagnose", "latest", "--scripts", &bare])
+        .exits(2)
+        .explains(&["no fault dictionary", "ptu campaign"]);
+    std::fs::write(Path::new(&bare).join("dictionary.zst"), b"nonsense").expect("written");
+    place
+        .ptu(&["diagnose", "latest", "--scripts", &bare])
+        .exits(2)
+        .explains(&["dictionary.zst"]);
+}
+
+#[test]
+fn a_small_campaign_makes_a_dictionary_and_says_what_it_knows() {
+    let place = Place::new();
+    let arguments = [
+        "campaign",
+        "--faults",
+        "eb_relay.open",
+        "--seeds",
+        "1",
+        "--held-out",
+        "1",
+        "--good",
+        "1",
+        "--json",
+    ];
+    let said = place.json(&arguments);
+    has_shape(
+        &said,
+        &[
+            ("modes", "number"),
+            ("detected", "number"),
+            ("isolated_1", "number"),
+            ("isolated_2", "number"),
+            ("isolated_3", "number"),
+            ("false_alarms", "number"),
+            ("good_runs", "number"),
+            ("undetected", "list"),
+            ("ambiguous", "list"),
+        ],
+    );
+    assert_eq!((&said["modes"], &said["detected"]), (&1.into(), &1.into()));
+    assert_eq!(
+        (&said["good_runs"], &said["false_alarms"]),
+        (&1.into(), &0.into())
+    );
+    place
+        .ptu(&["campaign", "--faults", "eb_rely.*"])
+        .exits(2)
+        .explains(&["eb_rely.*", "ptu catalog faults"]);
+    // The shipped one knows more, and is the one that is used.
+    place.recorded_run();
+    assert_eq!(list(&diagnosis(&place)["warnings"]).len(), 0);
+}

@@ -1,0 +1,223 @@
+//! `ptu diagnose --matrix`: the contract of its JSON, its examples, and what it refuses.
+
+use crate::common::{Place, list, number, scripts, text};
+use serde_json::{Value, json};
+
+fn example(name: &str) -> String {
+    scripts().join("matrices").join(name).display().to_string()
+}
+
+/// Sends a state down a crisp tree: tests on its way and the end it comes to.
+fn way<'a>(tree: &'a Value, outcomes: &Value, state: &str) -> (Vec<String>, &'a Value) {
+    let (mut node, mut tests) = (tree, Vec::new());
+    while let Some(test) = node["test"].as_str() {
+        tests.push(test.to_owned());
+        let failed = outcomes[test][state].as_f64().unwrap_or(0.0) == 1.0;
+        node = &node[if failed { "fail" } else { "pass" }];
+    }
+    (tests, node)
+}
+
+/// Worked by hand: with tests of cost 1 a tree costs the mean length of a code for the states, and
+/// Huffman's for 0.3, 0.2, 0.2, 0.1, 0.1, 0.1 has 0.2 + 0.3 + 0.4 + 0.6 + 1 = 2.5; the tests allow
+/// it: pulses, then sensor 1 or the self test, and so on.
+#[test]
+fn six_by_six_costs_what_huffman_says() {
+    let place = Place::new();
+    let file = example("six_by_six.json");
+    let answer = place.json(&["diagnose", "--matrix", &file, "--json"]);
+    assert!((number(&answer["expected_cost"]) - 2.5).abs() < 1e-12);
+    assert_eq!(answer["optimal"], true);
+    assert_eq!(answer["next_test"], answer["tree"]["test"]);
+    let matrix: Value =
+        serde_json::from_str(&std::fs::read_to_string(&file).expect("example")).expect("JSON");
+    let mut cost = 0.0;
+    for state in list(&matrix["states"]) {
+        let (tests, end) = way(&answer["tree"], &matrix["outcomes"], text(&state["id"]));
+        assert_eq!(end["state"], state["id"]);
+        cost += number(&state["p"]) * tests.len() as f64;
+    }
+    assert!((cost - 2.5).abs() < 1e-12);
+    let greedy = place.json(&["diagnose", "--matrix", &file, "--tree", "greedy", "--json"]);
+    assert_eq!(greedy["optimal"], false);
+    assert!(number(&greedy["expected_cost"]) >= 2.5 - 1e-12);
+}
+
+#[test]
+fn outcomes_give_posterior_and_next_test() {
+    let place = Place::new();
+    let file = example("six_by_six.json");
+    let asked = |outcomes: &str| {
+        let arguments = [
+            "diagnose",
+            "--matrix",
+            &file,
+            "--outcomes",
+            outcomes,
+            "--json",
+        ];
+        place.json(&arguments)
+    };
+    let inline = asked("pulses at 40 km/h=1");
+    let states: Vec<&str> = list(&inline["posterior"])
+        .iter()
+        .map(|s| text(&s["id"]))
+        .collect();
+    assert_eq!(states, ["speed sensor 1", "speed sensor 2"]);
+    assert_eq!(number(&inline["posterior"][0]["p"]), 0.5);
+    assert_eq!(number(&inline["expected_cost"]), 1.0);
+    let found = place.write("found.json", r#"{"pulses at 40 km/h": "fail"}"#);
+    assert_eq!(asked(&found), inline);
+    let done = asked("pulses at 40 km/h=fail, sensor 1 alone=pass");
+    assert_eq!(done["next_test"], Value::Null);
+    assert_eq!(done["tree"]["state"], "speed sensor 2");
+    assert_eq!(number(&done["expected_cost"]), 0.0);
+}
+
+#[test]
+fn states_that_are_alike_end_together_and_are_pointed_out() {
+    let place = Place::new();
+    let file = example("ambiguous.json");
+    let answer = place.json(&["diagnose", "--matrix", &file, "--json"]);
+    let tree = answer["tree"].to_string();
+    assert!(
+        tree.contains(r#""states":["twc antenna","antenna cable"]"#),
+        "{tree}"
+    );
+    assert!(text(&answer["warnings"][0]).contains("\"twc antenna\", \"antenna cable\""));
+    let said = place.ptu(&["diagnose", "--matrix", &file]).exits(0);
+    for word in [
+        "twc antenna or antenna cable",
+        "note: no test tells",
+        "IF IT FAILS",
+    ] {
+        assert!(said.out.contains(word), "{}", said.all());
+    }
+}
+
+#[test]
+fn uncertain_tests_end_at_the_confidence_asked() {
+    let place = Place::new();
+    let file = example("false_alarms.json");
+    let cost = |confidence: &str| {
+        let answer = place.json(&[
+            "diagnose",
+            "--matrix",
+            &file,
+            "--confidence",
+            confidence,
+            "--json",
+        ]);
+        assert_eq!(answer["optimal"], true);
+        let mut open = vec![&answer["tree"]];
+        while let Some(node) = open.pop() {
+            if node["test"].is_string() {
+                open.extend([&node["pass"], &node["fail"]]);
+            } else if node["state"].is_string() {
+                assert!(number(&node["p"]) >= confidence.parse::<f64>().expect("a number") - 1e-9);
+            }
+        }
+        number(&answer["expected_cost"])
+    };
+    assert!(cost("0.9") < cost("0.99"), "surer answers cost more");
+}
+
+#[test]
+fn wrong_matrices_and_outcomes_are_named_and_refused() {
+    let place = Place::new();
+    let good = json!({
+        "states": [{"id": "a", "p": 0.5}, {"id": "b", "p": 0.5}],
+        "tests": [{"id": "flow", "cost": 1}],
+        "outcomes": {"flow": {"a": 1}},
+    });
+    let with = |pointer: &str, value: Value| {
+        let mut matrix = good.clone();
+        *matrix.pointer_mut(pointer).expect("there") = value;
+        matrix.to_string()
+    };
+    let cases: [(String, &[&str]); 7] = [
+        (
+            with("/tests/0/cost", json!(-1)),
+            &["wrong.json: test \"flow\"", "-1"],
+        ),
+        (
+            with("/tests/0/cost", json!(0)),
+            &["wrong.json: test \"flow\"", "above 0"],
+        ),
+        (
+            with("/states/0/p", json!(0.6)),
+            &["wrong.json:", "sum to 1.1"],
+        ),
+        (
+            with("/outcomes/flow", json!({"c": 1})),
+            &["wrong.json:", "state \"c\""],
+        ),
+        (
+            with("/outcomes/flow", json!({"a": 2})),
+            &["wrong.json: test \"flow\"", "2"],
+        ),
+        (
+            "{\"states\": [\n  nothing".into(),
+            &["wrong.json:", "line 2 column"],
+        ),
+        (
+            with("/states", json!([])),
+            &["wrong.json:", "\"states\" is empty"],
+        ),
+    ];
+    for (matrix, words) in cases {
+        let file = place.write("wrong.json", &matrix);
+        let said = place.ptu(&["diagnose", "--matrix", &file, "--json"]);
+        let said = said.exits(2).explains(words);
+        assert_eq!(said.out, "");
+    }
+    let file = place.write("good.json", &good.to_string());
+    let cases: [(&[&str], &[&str]); 7] = [
+        (
+            &["--outcomes", "flwo=1"],
+            &["\"flwo\"", "did you mean \"flow\""],
+        ),
+        (
+            &["--outcomes", "flow=1,flow=0"],
+            &["two outcomes", "\"flow\""],
+        ),
+        (&["--outcomes", "flow=maybe"], &["flow=maybe"]),
+        (&["--outcomes", "no_such_file.json"], &["no_such_file.json"]),
+        (&["--confidence", "0.2"], &["--confidence", "0.2"]),
+        (&["--tree", "best"], &["best", "optimal", "greedy"]),
+        (&["--outcomes", ""], &["cannot read"]),
+    ];
+    for (options, words) in cases {
+        let arguments = [&["diagnose", "--matrix", &file], options].concat();
+        place.ptu(&arguments).exits(2).explains(words);
+    }
+    place
+        .ptu(&["diagnose", "--matrix", "nowhere.json"])
+        .exits(2)
+        .explains(&["nowhere.json"]);
+}
+
+#[test]
+fn an_optimal_tree_that_is_too_large_is_refused_with_the_limit() {
+    let place = Place::new();
+    let count = 70;
+    let states: Vec<_> = (0..count)
+        .map(|i| json!({"id": format!("s{i}"), "p": 1.0 / f64::from(count)}))
+        .collect();
+    let tests: Vec<_> = (0..count)
+        .map(|i| json!({"id": format!("t{i}"), "cost": 1}))
+        .collect();
+    let outcomes: serde_json::Map<_, _> = (0..count)
+        .map(|i| (format!("t{i}"), json!({format!("s{i}"): 1})))
+        .collect();
+    let matrix = json!({"states": states, "tests": tests, "outcomes": outcomes});
+    let file = place.write("large.json", &matrix.to_string());
+    let optimal = ["diagnose", "--matrix", &file, "--tree", "optimal"];
+    place
+        .ptu(&optimal)
+        .exits(2)
+        .explains(&["at most 64", "70", "greedy"]);
+    let answer = place.json(&["diagnose", "--matrix", &file, "--json"]);
+    // Each test ends one of n alike: (2 + … + 70) / 70.
+    assert!((number(&answer["expected_cost"]) - 2484.0 / 70.0).abs() < 1e-9);
+}

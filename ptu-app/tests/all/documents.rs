@@ -1,0 +1,598 @@
+//! The documents are true: links lead somewhere, files and functions that are named exist, command lines are ones the
+//! programs take, and those in code blocks marked `sh run` end with the exit code that stands behind them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common::Place;
+use clap::Parser;
+use clap::error::ErrorKind;
+use ptu_app::cli::Cli;
+use ptu_app::words::Language;
+
+/// Longest README, lines, and its longest line, characters.
+const README_LINES: usize = 120;
+const README_COLUMNS: usize = 120;
+/// Longest other document, lines.
+const DOCUMENT_LINES: usize = 400;
+/// Code blocks with this information string are run; those with the first word of it alone are only read.
+const RUN: &str = "sh run";
+const SHOWN: &str = "sh";
+/// Endings of files that are looked for when a document names them.
+const ENDINGS: [&str; 9] = [
+    "rs", "md", "star", "toml", "py", "json", "zst", "png", "txt",
+];
+
+/// One Markdown file.
+struct Document {
+    path: PathBuf,
+    text: String,
+}
+
+/// A code block: its information string, and its lines with their numbers.
+struct Block<'a> {
+    info: &'a str,
+    lines: Vec<(usize, &'a str)>,
+}
+
+/// A command line of a document, and the exit code it is to end with.
+#[derive(Debug)]
+struct CommandLine {
+    words: Vec<String>,
+    exit: i32,
+}
+
+impl Document {
+    fn read(path: PathBuf) -> Self {
+        let text = fs::read_to_string(&path).expect("a document");
+        Self { path, text }
+    }
+
+    /// README.md and what is in docs/.
+    fn guides() -> Vec<Self> {
+        let all = Self::all();
+        let folder = root().join("docs");
+        let readme = root().join("README.md");
+        let is_guide = |path: &Path| path == readme || path.starts_with(&folder);
+        all.into_iter().filter(|doc| is_guide(&doc.path)).collect()
+    }
+
+    /// Every Markdown file of the project.
+    fn all() -> Vec<Self> {
+        let mut folders = vec![root()];
+        let mut all = Vec::new();
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                if path.is_dir() && !name.starts_with('.') && name != "target" {
+                    folders.push(path);
+                } else if name.ends_with(".md") {
+                    all.push(Self::read(path));
+                }
+            }
+        }
+        all.sort_by(|a, b| a.path.cmp(&b.path));
+        assert!(all.len() > 4, "documents are found");
+        all
+    }
+
+    fn at(&self, line: usize) -> String {
+        format!(
+            "{}:{line}",
+            self.path.strip_prefix(root()).expect("inside").display()
+        )
+    }
+
+    /// Lines outside code blocks, with their numbers.
+    fn prose(&self) -> Vec<(usize, &str)> {
+        let mut inside = false;
+        let mut prose = Vec::new();
+        for (number, line) in (1..).zip(self.text.lines()) {
+            if line.trim_start().starts_with("```") {
+                inside = !inside;
+            } else if !inside {
+                prose.push((number, line));
+            }
+        }
+        prose
+    }
+
+    fn blocks(&self) -> Vec<Block<'_>> {
+        let mut open: Option<Block<'_>> = None;
+        let mut blocks = Vec::new();
+        for (number, line) in (1..).zip(self.text.lines()) {
+            match (line.trim_start().strip_prefix("```"), &mut open) {
+                (Some(_), Some(_)) => blocks.extend(open.take()),
+                (Some(info), None) => {
+                    open = Some(Block {
+                        info: info.trim(),
+                        lines: Vec::new(),
+                    });
+                }
+                (None, Some(block)) => block.lines.push((number, line)),
+                (None, None) => {}
+            }
+        }
+        assert!(open.is_none(), "{}: a code block has no end", self.at(1));
+        blocks
+    }
+
+    /// Inline code, with the lines it is in.
+    fn codes(&self) -> impl Iterator<Item = (usize, &str)> {
+        let prose = self.prose().into_iter();
+        prose.flat_map(|(number, line)| codes_of(line).map(move |code| (number, code)))
+    }
+
+    /// Names of its headings in links, as GitHub makes them.
+    fn anchors(&self) -> Vec<String> {
+        let mut times: BTreeMap<String, u32> = BTreeMap::new();
+        let headings = self.prose().into_iter().filter_map(|(_, line)| {
+            let text = line.trim_start_matches('#');
+            (text.len() < line.len()).then_some(text.strip_prefix(' ')?)
+        });
+        let anchors = headings.map(|heading| {
+            let kept = heading.to_lowercase().replace(' ', "-");
+            let kept: String = kept
+                .chars()
+                .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
+                .collect();
+            let before = times.entry(kept.clone()).or_default();
+            *before += 1;
+            match *before {
+                1 => kept,
+                again => format!("{kept}-{}", again - 1),
+            }
+        });
+        anchors.collect()
+    }
+}
+
+fn root() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    root.canonicalize().expect("the project's folder")
+}
+
+fn codes_of(line: &str) -> impl Iterator<Item = &str> {
+    line.split('`').skip(1).step_by(2)
+}
+
+/// Targets of the links in a line.
+fn links_of(line: &str) -> impl Iterator<Item = &str> {
+    let targets = line.split("](").skip(1);
+    targets.filter_map(|rest| rest.split_once(')').map(|(target, _)| target))
+}
+
+/// Why a link leads nowhere, if so.
+fn broken(document: &Document, target: &str) -> Option<String> {
+    if target.contains("://") {
+        return None;
+    }
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let path = match file {
+        "" => document.path.clone(),
+        file => document.path.parent().expect("a folder").join(file),
+    };
+    if !path.exists() {
+        return Some(format!("there is no {file}"));
+    }
+    if anchor.is_empty() {
+        return None;
+    }
+    let anchors = Document::read(path).anchors();
+    let known = anchors.iter().any(|known| known == anchor);
+    (!known).then(|| {
+        format!(
+            "no heading is called #{anchor}; there are #{}",
+            anchors.join(", #")
+        )
+    })
+}
+
+/// A file or folder of the project, by what is written: no pattern and nothing to fill in.
+fn named_path(code: &str) -> Option<&str> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
+    let inside = code
+        .split('/')
+        .next()
+        .is_some_and(|first| !first.is_empty() && first != "target" && root().join(first).is_dir());
+    let ending = code.rsplit('.').next().unwrap_or_default();
+    let whole = code.ends_with('/') || ENDINGS.contains(&ending);
+    let to_fill_in = code.contains("NAME");
+    (code.contains('/') && code.chars().all(plain) && inside && whole && !to_fill_in)
+        .then_some(code)
+}
+
+/// Shell words of a line without its comment. Quotes keep what they enclose together.
+fn words(line: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut quote = None;
+    let mut begins = true;
+    for c in line.trim().chars() {
+        match quote {
+            Some(open) if c == open => quote = None,
+            None if c == '\'' || c == '"' => {
+                quote = Some(c);
+                if std::mem::replace(&mut begins, false) {
+                    words.push(String::new());
+                }
+            }
+            None if c == ' ' => begins = true,
+            None if c == '#' && begins => break,
+            _ => {
+                if std::mem::replace(&mut begins, false) {
+                    words.push(String::new());
+                }
+                words.last_mut().expect("just pushed").push(c);
+            }
+        }
+    }
+    assert!(quote.is_none(), "a quote has no end in: {line}");
+    words
+}
+
+impl CommandLine {
+    fn of(line: &str) -> Self {
+        let exit = line
+            .split_once("# exit ")
+            .map_or(0, |(_, rest)| leading_number(rest));
+        Self {
+            words: words(line),
+            exit,
+        }
+    }
+
+    /// Why no program of the project takes it, if so. `whole`: nothing that it needs may be missing.
+    fn wrong(&self, whole: bool) -> Option<String> {
+        let is_setting = |word: &&String| word.contains('=') && !word.starts_with('-');
+        let settings = self.words.iter().take_while(is_setting).count();
+        let (program, arguments) = self.words.get(settings..)?.split_first()?;
+        match program.as_str() {
+            "ptu" => wrong_ptu(arguments, whole),
+            "ato-under-test" => wrong_unit(arguments),
+            "cargo" => wrong_cargo(arguments),
+            _ => None,
+        }
+    }
+}
+
+fn leading_number(text: &str) -> i32 {
+    let digits: String = text.chars().take_while(char::is_ascii_digit).collect();
+    digits.parse().expect("an exit code")
+}
+
+fn wrong_ptu(arguments: &[String], whole: bool) -> Option<String> {
+    let all = ["ptu"]
+        .into_iter()
+        .chain(arguments.iter().map(String::as_str));
+    let error = Cli::try_parse_from(all).err()?;
+    let option_named = arguments.last().is_some_and(|word| word.starts_with("--"));
+    let only_named = match error.kind() {
+        ErrorKind::MissingRequiredArgument
+        | ErrorKind::MissingSubcommand
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => true,
+        ErrorKind::InvalidValue => option_named,
+        _ => false,
+    };
+    let is_help = matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    );
+    (!is_help && (whole || !only_named)).then(|| error.to_string())
+}
+
+/// The served unit's options are fields of one structure.
+fn wrong_unit(arguments: &[String]) -> Option<String> {
+    let source = root().join("ato-under-test/src/program/mod.rs");
+    let source = fs::read_to_string(source).expect("its arguments");
+    let options = arguments.iter().filter_map(|word| word.strip_prefix("--"));
+    let mut unknown = options.filter(|option| {
+        let field = format!("    {}: ", option.replace('-', "_"));
+        !source.contains(&field)
+    });
+    unknown
+        .next()
+        .map(|option| format!("ato-under-test has no --{option}"))
+}
+
+/// Package and target exist; what is to be run of the tests is the name of one.
+fn wrong_cargo(arguments: &[String]) -> Option<String> {
+    let after = |option: &str| {
+        let at = arguments.iter().position(|word| word == option)?;
+        arguments.get(at + 1).map(String::as_str)
+    };
+    let package = after("-p")?;
+    let folder = root().join(package);
+    if !folder.join("Cargo.toml").is_file() {
+        return Some(format!("there is no package {package}"));
+    }
+    let manifest = fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest");
+    for (option, place) in [
+        ("--test", "tests"),
+        ("--bench", "benches"),
+        ("--example", "examples"),
+    ] {
+        let Some(target) = after(option) else {
+            continue;
+        };
+        let file = folder.join(place).join(format!("{target}.rs"));
+        let main = folder.join(place).join(target).join("main.rs");
+        let declared = manifest.contains(&format!("name = \"{target}\""));
+        if !file.is_file() && !main.is_file() && !declared {
+            return Some(format!("{package} has no target {option} {target}"));
+        }
+    }
+    let filter = (arguments[0] == "test")
+        .then(|| test_filter(arguments))
+        .flatten()?;
+    let name = filter.rsplit("::").next()?;
+    (!has_test(&folder, name)).then(|| format!("{package} has no test called {filter}"))
+}
+
+/// The word that says which tests are run.
+fn test_filter(arguments: &[String]) -> Option<&str> {
+    let with_value = ["-p", "--test", "--bench"];
+    let mut before = "test";
+    arguments.iter().skip(1).map(String::as_str).find(|word| {
+        let is_value = with_value.contains(&std::mem::replace(&mut before, word));
+        !word.starts_with('-') && !is_value
+    })
+}
+
+/// A function or file of the package has this in its name.
+fn has_test(folder: &Path, filter: &str) -> bool {
+    let mut folders = vec![folder.join("src"), folder.join("tests")];
+    while let Some(folder) = folders.pop() {
+        let Ok(entries) = fs::read_dir(&folder) else {
+            continue;
+        };
+        for path in entries.map(|entry| entry.expect("an entry").path()) {
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let text = fs::read_to_string(&path).unwrap_or_default();
+            let mut functions = text.lines().filter_map(|line| line.split_once("fn "));
+            if stem.contains(filter) || functions.any(|(_, name)| name.contains(filter)) {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// Runs the lines of a block one after the other, in a folder and with a database of their own.
+fn run(document: &Document, block: &Block<'_>) -> Vec<String> {
+    let place = Place::new();
+    std::os::unix::fs::symlink(crate::common::scripts(), place.path("scripts")).expect("a link");
+    let mut wrong = Vec::new();
+    for (number, line) in &block.lines {
+        let command = CommandLine::of(line);
+        let Some((program, arguments)) = command.words.split_first() else {
+            continue;
+        };
+        assert_eq!(program, "ptu", "{}: only ptu is run", document.at(*number));
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let said = place.ptu(&arguments);
+        if said.code != Some(command.exit) || said.err.contains("panicked") {
+            wrong.push(format!("{}: {line}\n{}", document.at(*number), said.all()));
+        }
+    }
+    wrong
+}
+
+#[track_caller]
+fn none(wrong: &[String]) {
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_link_leads_to_a_file_and_a_heading() {
+    let mut wrong = Vec::new();
+    for document in Document::all() {
+        for (number, line) in document.prose() {
+            let why = links_of(line).filter_map(|target| broken(&document, target));
+            wrong.extend(why.map(|why| format!("{}: {why}", document.at(number))));
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn every_file_that_a_guide_names_exists() {
+    let mut wrong = Vec::new();
+    for document in Document::guides() {
+        let paths = document
+            .codes()
+            .filter_map(|(number, code)| Some((number, named_path(code)?)));
+        let missing = paths.filter(|(_, path)| !root().join(path).exists());
+        wrong.extend(missing.map(|(number, path)| format!("{}: no {path}", document.at(number))));
+    }
+    none(&wrong);
+}
+
+/// Goal: who follows a pulse, a fault or a click through the code finds each function where the table says.
+/// Method: a row with files and `function()`s: each is defined in one of them.
+#[test]
+fn every_function_that_a_row_of_the_architecture_names_is_in_its_file() {
+    let document = Document::read(root().join("docs/architecture.md"));
+    let (mut wrong, mut found) = (Vec::new(), 0);
+    for (number, line) in document.prose() {
+        let files = codes_of(line).filter_map(named_path);
+        let sources: Vec<String> = files
+            .filter(|path| path.ends_with(".rs"))
+            .map(|path| fs::read_to_string(root().join(path)).unwrap_or_default())
+            .collect();
+        let functions = codes_of(line).filter_map(|code| code.strip_suffix("()"));
+        for function in functions {
+            let defines = |source: &String| {
+                source.contains(&format!("fn {function}("))
+                    || source.contains(&format!("fn {function}<"))
+            };
+            if sources.iter().any(defines) {
+                found += 1;
+            } else {
+                wrong.push(format!(
+                    "{}: no {function}() in the file",
+                    document.at(number)
+                ));
+            }
+        }
+    }
+    none(&wrong);
+    assert!(found > 40, "{found} functions");
+}
+
+#[test]
+fn every_command_line_is_one_that_the_programs_take() {
+    let (mut wrong, mut read) = (Vec::new(), 0);
+    let mut examine = |place: String, line: &str, whole: bool| {
+        read += 1;
+        let why = CommandLine::of(line).wrong(whole);
+        wrong.extend(why.map(|why| format!("{place}: {line}\n  {why}")));
+    };
+    for document in Document::guides() {
+        for block in document.blocks() {
+            if matches!(block.info, RUN | SHOWN) {
+                for (number, line) in &block.lines {
+                    examine(document.at(*number), line, true);
+                }
+            }
+        }
+        for (number, code) in document.codes().filter(|(_, code)| !code.contains('…')) {
+            examine(document.at(number), code, false);
+        }
+    }
+    none(&wrong);
+    assert!(read > 100, "{read} command lines");
+}
+
+#[test]
+fn every_command_line_marked_to_be_run_ends_as_it_says() {
+    let guides = Document::guides();
+    let (mut wrong, mut ran) = (Vec::new(), 0);
+    std::thread::scope(|scope| {
+        let runs = guides.iter().map(|document| {
+            let blocks = document.blocks().into_iter();
+            let blocks: Vec<_> = blocks.filter(|block| block.info == RUN).collect();
+            ran += blocks.len();
+            scope.spawn(move || {
+                blocks
+                    .iter()
+                    .flat_map(|block| run(document, block))
+                    .collect()
+            })
+        });
+        let runs: Vec<_> = runs.collect();
+        for run in runs {
+            let failed: Vec<String> = run.join().expect("it is run");
+            wrong.extend(failed);
+        }
+    });
+    none(&wrong);
+    assert!(ran > 5, "{ran} blocks");
+}
+
+/// Goal: who reads of a button finds it. Method: what stands in bold begins a text of the window.
+#[test]
+fn what_the_manuals_have_in_bold_is_in_the_window() {
+    for (file, language) in [
+        ("manual.md", Language::English),
+        ("manual.ko.md", Language::Korean),
+    ] {
+        let document = Document::read(root().join("docs").join(file));
+        let texts = format!("{:?}", language.words());
+        let (mut wrong, mut found) = (Vec::new(), 0);
+        for (number, line) in document.prose() {
+            for bold in line.split("**").skip(1).step_by(2) {
+                found += 1;
+                if !texts.contains(&format!("\"{bold}")) {
+                    wrong.push(format!("{}: {bold}", document.at(number)));
+                }
+            }
+        }
+        none(&wrong);
+        assert!(found > 50, "{found} texts");
+    }
+}
+
+#[test]
+fn both_manuals_have_the_same_sections_tables_and_pictures() {
+    let [english, korean] = ["docs/manual.md", "docs/manual.ko.md"].map(|file| {
+        let document = Document::read(root().join(file));
+        let parts = ["#", "|", "!["];
+        parts.map(|part| {
+            let lines = document.prose().into_iter();
+            lines.filter(|(_, line)| line.starts_with(part)).count()
+        })
+    });
+    assert_eq!(english, korean);
+}
+
+#[test]
+fn the_readme_fits_two_screens_and_no_guide_is_a_book() {
+    let readme = Document::read(root().join("README.md"));
+    let lines = readme.text.lines().count();
+    assert!(lines <= README_LINES, "README.md has {lines} lines");
+    let mut wrong = Vec::new();
+    for (number, line) in (1..).zip(readme.text.lines()) {
+        let columns = line.chars().count();
+        if columns > README_COLUMNS {
+            wrong.push(format!("{}: {columns} columns", readme.at(number)));
+        }
+    }
+    for guide in Document::guides() {
+        let lines = guide.text.lines().count();
+        if lines > DOCUMENT_LINES {
+            wrong.push(format!("{} has {lines} lines", guide.at(lines)));
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn the_readers_of_documents_tell_right_from_wrong() {
+    let document = Document {
+        path: root().join("docs/example.md"),
+        text: "# One thing: `a`\n## Two\n## Two\n```sh\n# no heading\n```\n".into(),
+    };
+    assert_eq!(document.anchors(), ["one-thing-a", "two", "two-1"]);
+    assert!(broken(&document, "../README.md").is_none());
+    assert!(broken(&document, "https://example.org/").is_none());
+    assert!(broken(&document, "missing.md").is_some());
+    assert!(broken(&document, "../README.md#missing").is_some());
+    assert!(broken(&document, "../README.md#license").is_none());
+    assert_eq!(named_path("ptu-app/src/cli/"), Some("ptu-app/src/cli/"));
+    assert_eq!(named_path("scripts/lines/NAME.toml"), None);
+    assert_eq!(named_path("atp/overspeed"), None);
+    assert_eq!(
+        words(r#"ptu db query "SELECT 1 # 2" 'a b'c   # exit 1"#),
+        ["ptu", "db", "query", "SELECT 1 # 2", "a bc"]
+    );
+    assert_eq!(CommandLine::of("ptu run # exit 1: it fails").exit, 1);
+    let wrong = |line: &str, whole| CommandLine::of(line).wrong(whole).is_some();
+    for line in [
+        "ptu run --no-such-flag",
+        "ptu no-such-verb",
+        "ato-under-test --no-such-flag",
+        "cargo test -p no-such-crate",
+        "cargo test -p ptu-app --test no_such_target",
+        "cargo test -p ptu-app no_test_is_called_so",
+    ] {
+        assert!(wrong(line, true) && wrong(line, false), "{line}");
+    }
+    for line in ["ptu diagnose", "ptu drive --manual"] {
+        assert!(wrong(line, true) && !wrong(line, false), "{line}");
+    }
+    for line in [
+        "ptu",
+        "ptu help run",
+        "FUZZ_RUNS=3 cargo test -p ptu-app --test all documents",
+        "ato-under-test --pty --slower 4",
+        "apt install postgresql",
+    ] {
+        assert!(!wrong(line, true), "{line}");
+    }
+}

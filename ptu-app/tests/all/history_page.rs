@@ -1,0 +1,145 @@
+//! The fault history and the diagnosis in the window: from a fault to what is done about it, and from
+//! a run that cannot be told to the check that would tell.
+
+use crate::common::window::Window;
+use crate::common::{Place, scripts};
+use eframe::egui::Key;
+use ptu_app::bench_worker::Phase;
+use ptu_app::gui::{Page, Settings};
+use ptu_app::words::Language;
+use serde_json::Value;
+
+/// A place whose database has one run with this fault.
+fn with_a_run(fault: &str, procedures: &[&str]) -> Place {
+    let place = Place::new();
+    let arguments = [&["run", "--inject", fault][..], procedures].concat();
+    let said = place.ptu(&arguments);
+    assert_eq!(said.code, Some(1), "{}", said.err);
+    place
+}
+
+fn on(place: Place, page: Page, language: Language) -> Window {
+    let settings = Settings {
+        page,
+        language,
+        operator: "Kim".into(),
+        ..Settings::default()
+    };
+    Window::with(place, scripts(), settings)
+}
+
+#[test]
+fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away() {
+    let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
+    let mut window = on(place, Page::Faults, Language::English);
+    window.write("text", "eb_relay");
+    window.wait_for_part("1 of ");
+    let of_relay = ["faults", "list", "--lru", "eb_relay", "--json"];
+    let fault: Value = window.place.json(&of_relay)[0].clone();
+    window.click("eb_relay");
+    window.wait_for("what was done");
+    window.wait_for("eb_loop");
+    window.write("note", "relay ordered");
+    window.click("Acknowledge");
+    window.wait_for("acknowledged");
+    window.wait_for("relay ordered");
+    window.write("serial number put in", "SN-77");
+    window.click("Repaired");
+    window.wait_for("repaired");
+    window.wait_for_part("SN-77");
+    let id = fault["id"].as_str().expect("an id").to_owned();
+    let stored = window.place.json(&["faults", "show", &id, "--json"]);
+    assert_eq!(stored["state"], "repaired");
+    let events = stored["events"].as_array().expect("events");
+    let who = |event: &&Value| event["who"] == "Kim";
+    assert_eq!(events.iter().filter(who).count(), 2);
+    // A repair is proven by a run, not by a person's word: closing is not offered.
+    assert!(!window.shows("Close"));
+
+    for (button, page) in [
+        ("Trace", Page::Traces),
+        ("Run", Page::Report),
+        ("Diagnosis", Page::Diagnosis),
+    ] {
+        window.key(Page::Faults.key());
+        // The page of the same name stands before it among what can be clicked.
+        window.click_last(button);
+        window.until(button, |window| window.app().page() == page);
+    }
+}
+
+/// Goal: what is written about one fault is never stored on another. Method: a note and a serial number
+/// typed for the one, then the other is chosen, acknowledged and repaired.
+#[test]
+fn what_was_typed_for_one_fault_is_not_stored_on_another() {
+    let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
+    let faults = place.json(&["faults", "list", "--json"]);
+    let part = |fault: &Value| fault["lru"].as_str().expect("a part").to_owned();
+    let faults = faults.as_array().expect("faults");
+    let other = faults
+        .iter()
+        .find(|fault| part(fault) != "eb_relay")
+        .expect("the run tells of more than the relay");
+    let (other, id) = (part(other), other["id"].as_str().expect("an id").to_owned());
+    let mut window = on(place, Page::Faults, Language::English);
+    window.wait_for_part("2 of 2");
+    window.click("eb_relay");
+    window.wait_for("what was done");
+    assert!(!window.enabled("Add note"), "there is nothing to add");
+    window.write("note", "relay ordered");
+    window.write("serial number put in", "SN-77");
+    assert!(window.enabled("Add note"));
+    window.click(&other);
+    window.until("an empty form", |window| !window.enabled("Add note"));
+    window.click("Acknowledge");
+    window.wait_for("acknowledged");
+    window.click("Repaired");
+    window.wait_for("repaired");
+    let stored = window.place.json(&["faults", "show", &id, "--json"]);
+    assert_eq!(stored["state"], "repaired");
+    let stored = stored.to_string();
+    assert!(!stored.contains("relay ordered"), "{stored}");
+    assert!(!stored.contains("SN-77"), "{stored}");
+}
+
+#[test]
+fn filters_leave_what_they_say_in_korean_too() {
+    let place = with_a_run("tra.dead", &["ato/markers"]);
+    let of = place.json(&["faults", "list", "--json"]);
+    let of = of.as_array().map_or(0, Vec::len);
+    let mut window = on(place, Page::Faults, Language::Korean);
+    window.wait_for(&format!("고장 {of}건 중 {of}건"));
+    window.write("검색어", "no such fault");
+    window.wait_for(&format!("고장 {of}건 중 0건"));
+}
+
+#[test]
+fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
+    // A run of one procedure that fails leaves more than one part to blame.
+    let place = with_a_run("atp_receiver.dead", &["atp/limit_speed"]);
+    let answer = place.json(&["diagnose", "latest", "--json"]);
+    let next = answer["next_check"]["step"]
+        .as_str()
+        .expect("a next check")
+        .to_owned();
+    let mut window = on(place, Page::Diagnosis, Language::English);
+    window.wait_for(&next);
+    window.key(Key::F9);
+    window.until("the unit", |window| {
+        window.app().units().chosen().phase() == Phase::Idle
+    });
+    window.click("Run it");
+    window.until("the procedures page", |window| {
+        window.app().page() == Page::Procedures
+    });
+    window.wait_for_part("Run over: ");
+    let run = window.place.json(&["runs", "show", "latest", "--json"]);
+    let step = &run["steps"][0];
+    let ran = format!(
+        "{}: {}",
+        step["procedure"].as_str().unwrap_or_default(),
+        step["name"].as_str().unwrap_or_default()
+    );
+    assert_eq!(ran, next);
+    assert_eq!(run["steps"].as_array().map(Vec::len), Some(1));
+}

@@ -1,0 +1,784 @@
+//! Questions about the history as a depot asks them, from the first fault to the closed one.
+
+#![allow(clippy::print_stderr, reason = "says why a test proves nothing here")]
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+use crate::common::{Place, Said, list, number, relay_fault, text};
+use chrono::{Local, NaiveDate, Utc};
+use fault_db::{
+    FaultRecord, FaultState, Id, MeasurementRecord, RepairRecord, RunEnd, RunRecord, RunWriter,
+    StepRecord, Store, UnitRecord, Verdict,
+};
+use serde_json::Value;
+
+/// A unit of train 8203 with a slow relay, which is repaired, proven by a run and closed.
+fn mended() -> Place {
+    let place = Place::new();
+    let unit = "run atp/overspeed --serial-no BAD-1 --train-no 8203";
+    let unit: Vec<_> = unit.split(' ').collect();
+    let slow = [&unit[..], &["--inject", "eb_relay.slow"]].concat();
+    place.ptu(&slow).exits(1);
+    let fault = relay_fault(&place);
+    let id = text(&fault["id"]);
+    let repair = [
+        "faults",
+        "repair",
+        id,
+        "--part",
+        "EB_relay",
+        "--old",
+        "R-17",
+        "--new",
+        "R/99_b",
+        "--who",
+        "김",
+        "--note",
+        "비상제동 릴레이 교체함",
+    ];
+    place.ptu(&repair).exits(0);
+    place.ptu(&unit).exits(0);
+    place
+}
+
+#[test]
+fn a_repair_is_verified_by_the_run_that_passes_and_then_closed() {
+    let place = mended();
+    let fault = relay_fault(&place);
+    assert_eq!(fault["state"], "verified");
+    let id = text(&fault["id"]);
+    let shown = place.ptu(&["faults", "show", id]).exits(0).out;
+    assert!(
+        shown.contains("passed in run ") && shown.contains("R-17 → R/99_b"),
+        "{shown}"
+    );
+    place
+        .ptu(&["faults", "note", id, "released to service", "--who", "Lee"])
+        .exits(0);
+    place
+        .ptu(&["faults", "state", id, "closed", "--who", "Lee"])
+        .exits(0);
+    let stats = place.json(&[
+        "faults", "stats", "--by", "lru", "--lru", "eb_relay", "--json",
+    ]);
+    let relay = &stats[0];
+    for (key, value) in [
+        ("faults", 1.0),
+        ("not_closed", 0.0),
+        ("repairs", 1.0),
+        ("closed", 1.0),
+        ("no_fault_found", 0.0),
+        ("units", 1.0),
+        // Nobody knows yet whether it holds.
+        ("repairs_judged", 0.0),
+    ] {
+        assert_eq!(number(&relay[key]), value, "{key} of {relay}");
+    }
+    assert!(number(&relay["mttr_hours"]) < 1.0, "{relay}");
+    // The same again is a new fault, and the repair did not hold.
+    place
+        .ptu(&[
+            "run",
+            "atp/overspeed",
+            "--serial-no",
+            "BAD-1",
+            "--inject",
+            "eb_relay.slow",
+        ])
+        .exits(1);
+    let stats = place.json(&[
+        "faults", "stats", "--by", "lru", "--lru", "eb_relay", "--json",
+    ]);
+    assert_eq!(
+        (
+            number(&stats[0]["faults"]),
+            number(&stats[0]["repairs_back"])
+        ),
+        (2.0, 1.0),
+        "{stats}"
+    );
+}
+
+/// Makes a test that speaks of today; again if it fails while another day, or month, began.
+fn within_a_day(test: impl Fn()) {
+    let today = || (Local::now().date_naive(), Utc::now().date_naive());
+    loop {
+        let day = today();
+        match catch_unwind(AssertUnwindSafe(&test)) {
+            Ok(()) => return,
+            Err(panic) if day == today() => resume_unwind(panic),
+            Err(_) => eprintln!("another day began"),
+        }
+    }
+}
+
+#[test]
+fn faults_are_found_by_what_people_know() {
+    within_a_day(are_found_by_what_people_know);
+}
+
+fn are_found_by_what_people_know() {
+    let place = mended();
+    let found = |options: &[&str]| {
+        let faults = place.json(&[&["faults", "list", "--json"], options].concat());
+        list(&faults).iter().any(|fault| fault["lru"] == "eb_relay")
+    };
+    let today = ["--when", "today"];
+    let relay = relay_fault(&place);
+    let all = place.json(&["db", "query", "SELECT DISTINCT code FROM faults", "--json"]);
+    let codes: Vec<_> = list(&all["rows"])
+        .iter()
+        .map(|row| row[0].to_string())
+        .collect();
+    let (codes, severity) = (codes.join(","), text(&relay["severity"]));
+    for options in [
+        &["--note", "릴레이"][..],
+        &["--note", "교체"],
+        &["--note", "비상제동 교체"],
+        &["--note", "R-17"],
+        &["--serial", "R-17"],
+        &["--serial", "R/99_b"],
+        &["--train", "8203"],
+        &["--lru", "EB_RELAY"],
+        &["--procedure", "atp/overspeed"],
+        &["--unit", "BAD-1", "--state", "verified"],
+        &["--state", "open,verified"],
+        &["--code", &codes],
+        &["--severity", &severity.to_uppercase()],
+        &["--when", "2026..", "--line", "line8"],
+        &today,
+    ] {
+        assert!(found(options), "{options:?}");
+    }
+    for options in [
+        &["--note", "릴레이 브레이크"][..],
+        &["--serial", "R-1"],
+        &["--serial", "R/99"],
+        &["--train", "8204"],
+        &["--procedure", "atp/receiver"],
+        &["--state", "closed"],
+        &["--state", "open,closed"],
+        &["--when", "..2020"],
+        &["--line", "line1"],
+    ] {
+        assert!(!found(options), "{options:?}");
+    }
+}
+
+#[test]
+fn counts_come_as_table_json_and_csv() {
+    within_a_day(come_as_table_json_and_csv);
+}
+
+fn come_as_table_json_and_csv() {
+    let place = mended();
+    for by in ["code", "lru", "unit", "line", "month"] {
+        let json = place.json(&["faults", "stats", "--by", by, "--json"]);
+        let csv = place
+            .ptu(&["faults", "stats", "--by", by, "--csv"])
+            .exits(0)
+            .out;
+        let mut lines = csv.lines();
+        let heading = lines.next().expect("a heading");
+        assert!(
+            heading.starts_with("key,name,faults,not_closed,occurrences,share"),
+            "{heading}"
+        );
+        assert_eq!(lines.count(), list(&json).len(), "{csv}");
+        let table = place.ptu(&["faults", "stats", "--by", by]).exits(0).out;
+        assert!(
+            table.contains("MTBF") && table.contains("within 30 days"),
+            "{table}"
+        );
+        let seen: f64 = list(&json)
+            .iter()
+            .map(|row| number(&row["occurrences"]))
+            .sum();
+        let all = place.json(&["db", "query", "SELECT count(*) FROM occurrences", "--json"]);
+        assert_eq!(seen, number(&all["rows"][0][0]), "{by}");
+    }
+    let csv = place.ptu(&["faults", "list", "--csv"]).exits(0);
+    assert!(
+        csv.out.starts_with("id,") && csv.err.is_empty(),
+        "{}",
+        csv.all()
+    );
+    for form in ["--csv", "--json"] {
+        let first = place.ptu(&["faults", "list", "--limit", "1", form]);
+        first.exits(0).explains(&["only the first 1; see --limit"]);
+    }
+}
+
+#[test]
+fn csv_has_its_headings_without_rows_too_and_keeps_the_last_row_as_it_is() {
+    let place = mended();
+    let csv = |arguments: &[&str]| place.ptu(&[arguments, &["--csv"]].concat()).exits(0).out;
+    for arguments in [
+        &["faults", "list"][..],
+        &["faults", "stats"],
+        &["faults", "stats", "--by", "month"],
+    ] {
+        let some = csv(arguments);
+        let none = csv(&[arguments, &["--train", "none"]].concat());
+        assert_eq!(some.lines().next(), none.strip_suffix('\n'), "{some}");
+    }
+    for (sql, answer) in [
+        ("SELECT 1 AS a, 2 AS a WHERE 1 = 0", "a,a_\n"),
+        ("SELECT 1 AS a, 'x  ' AS b", "a,b\n1,x  \n"),
+        (
+            "SELECT 1 AS a UNION ALL SELECT NULL UNION ALL SELECT NULL",
+            "a\n1\n\"\"\n\"\"\n",
+        ),
+    ] {
+        assert_eq!(csv(&["db", "query", sql]), answer);
+    }
+    let sql = "SELECT 1 AS a WHERE 1 = 0";
+    place.ptu(&["db", "query", sql, "--save", "none"]).exits(0);
+    assert_eq!(csv(&["saved", "none"]), "a\n");
+}
+
+/// Noon of a day of 2025, UTC.
+fn noon_us(month: u32, day: u32) -> i64 {
+    let date = NaiveDate::from_ymd_opt(2025, month, day).expect("a day");
+    let noon = date.and_hms_opt(12, 0, 0).expect("noon");
+    noon.and_utc().timestamp_micros()
+}
+
+/// A run that measured something, and found a fault if there is one.
+fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
+    let record = RunRecord {
+        unit: UnitRecord {
+            serial: "U-1".into(),
+            kind: "ATC".into(),
+            config_name: "default".into(),
+            sw_versions: std::collections::BTreeMap::new(),
+        },
+        line: "line8".into(),
+        train: String::new(),
+        seed: 1,
+        operator: String::new(),
+        source: "sim".into(),
+        started_at_us: at_us,
+        app_version: "1".into(),
+        scripts_sha256: String::new(),
+        unit_config_sha256: String::new(),
+        injected: None,
+        owner: String::new(),
+        scripts: Vec::new(),
+    };
+    let mut writer = RunWriter::begin(store, &record).expect("begun");
+    let measured = MeasurementRecord {
+        name: "eb_reaction".into(),
+        value: Some(0.4),
+        unit: "s".into(),
+        low: None,
+        high: Some(0.5),
+        verdict: Verdict::Passed,
+    };
+    let step = StepRecord {
+        index: 0,
+        procedure: "atp/overspeed".into(),
+        name: "step".into(),
+        verdict: Verdict::Passed,
+        started_bench_us: 0,
+        bench_time_us: 1,
+        message: String::new(),
+        script_line: None,
+        measurements: vec![measured],
+    };
+    writer.step(step).expect("kept");
+    let id = fault.map(|lru| {
+        let record = FaultRecord {
+            code: 9000,
+            code_name: "check_failed".into(),
+            lru: lru.into(),
+            severity: "major".into(),
+            at_us,
+            bench_us: 0,
+            step_index: Some(0),
+            message: String::new(),
+            freeze: Vec::new(),
+        };
+        writer.fault(&record).expect("stored").fault
+    });
+    let verdict = match fault {
+        Some(_) => Verdict::Failed,
+        None => Verdict::Passed,
+    };
+    let end = RunEnd {
+        verdict,
+        finished_at_us: at_us,
+        bench_time_us: 1,
+        wall_time_us: 1,
+    };
+    writer.finish(&end).expect("finished");
+    id
+}
+
+/// The history of a place, to write to.
+fn store(place: &Place) -> Store {
+    let options = ptu_app::clock::open_options();
+    Store::open(&place.path("history.db"), options).expect("a history")
+}
+
+/// The answer where local time is so (POSIX: `EST5` is five hours behind UTC).
+fn in_zone(place: &Place, zone: &str, arguments: &[&str]) -> Said {
+    let output = place.command(arguments).env("TZ", zone).output();
+    Said::from(output.expect("ptu starts")).exits(0)
+}
+
+/// Goal: what is done to a fault counts in the month it is done, after the last occurrence, too. Method: a unit
+/// is known from 15 February on, has its only fault on 5 March, is repaired on the 10th, and the fault is
+/// closed on 2 April.
+#[test]
+fn months_count_all_that_was_done_in_them() {
+    within_a_day(count_all_that_was_done_in_them);
+}
+
+fn count_all_that_was_done_in_them() {
+    let place = Place::new();
+    let history = store(&place);
+    record(&history, noon_us(2, 15), None);
+    let fault = record(&history, noon_us(3, 5), Some("eb_relay")).expect("a fault");
+    let repair = RepairRecord {
+        part: "eb_relay".into(),
+        serial_old: None,
+        serial_new: None,
+        note: String::new(),
+    };
+    history
+        .record_repair(fault, &repair, "kim", noon_us(3, 10))
+        .expect("repaired");
+    let act = |state, day| {
+        let at_us = noon_us(4, day);
+        history
+            .set_state(fault, state, "kim", "", at_us)
+            .expect("may")
+    };
+    act(FaultState::Verified, 1);
+    act(FaultState::Closed, 2);
+    drop(history);
+
+    let stats = |by: &str, more: &[&str]| -> Vec<Value> {
+        let arguments = [&["faults", "stats", "--json", "--by", by], more].concat();
+        let said = in_zone(&place, "UTC0", &arguments);
+        serde_json::from_str(&said.out).expect("a list")
+    };
+    let months = stats("month", &[]);
+    let counts: Vec<_> = months
+        .iter()
+        .take(4)
+        .map(|month| {
+            let counts = ["faults", "repairs", "closed"].map(|key| number(&month[key]));
+            (text(&month["key"]), counts)
+        })
+        .collect();
+    assert_eq!(
+        counts,
+        [
+            ("2025-02", [0.0, 0.0, 0.0]),
+            ("2025-03", [1.0, 1.0, 0.0]),
+            ("2025-04", [0.0, 0.0, 1.0]),
+            ("2025-05", [0.0, 0.0, 0.0]),
+        ]
+    );
+    let march = &months[1];
+    let last = in_zone(
+        &place,
+        "UTC0",
+        &["faults", "stats", "--by", "month", "--limit", "1"],
+    );
+    let earlier = format!("… {} earlier months; see --limit\n", months.len() - 1);
+    assert!(last.out.starts_with(&earlier), "{}", last.out);
+    let this = text(&months.last().expect("months")["key"]);
+    assert!(last.out.contains(&format!("\n{this} ")), "{}", last.out);
+    assert_eq!(number(&march["mtbf_days"]), 31.0, "the whole of March");
+    assert_eq!(number(&march["mttr_hours"]), 5.0 * 24.0);
+    let all = &stats("lru", &[])[0];
+    for key in ["faults", "repairs", "closed", "occurrences"] {
+        let sum: f64 = months.iter().map(|month| number(&month[key])).sum();
+        assert_eq!(sum, number(&all[key]), "{key}");
+    }
+
+    let same = |by: &str, span: &str| {
+        let mut rows = stats(by, &["--when", span]);
+        for row in &mut rows {
+            row["key"] = Value::Null;
+            row["name"] = Value::Null;
+        }
+        rows
+    };
+    for span in ["2025-02", "2025-03", "2025-03-08..2025-03-20", "2025-04"] {
+        assert_eq!(same("month", span), same("code", span), "{span}");
+    }
+    // No month is made up before the history or after today.
+    for span in ["2999-01", "1990-01", "2999-01..", "..1990"] {
+        assert!(stats("month", &["--when", span]).is_empty(), "{span}");
+    }
+    assert_eq!(stats("month", &["--when", "1800..2999"]), months);
+}
+
+#[test]
+fn a_history_without_faults_has_no_months_of_them() {
+    let place = Place::new();
+    let history = store(&place);
+    let by_month = ["faults", "stats", "--by", "month"];
+    let said = |why: &str| {
+        let said = place.ptu(&by_month).exits(0).out;
+        assert_eq!(said, "no faults recorded\n", "{why}");
+    };
+    said("empty");
+    record(&history, noon_us(2, 15), None);
+    said("a run that passed");
+}
+
+/// Goal: what is counted by days of UTC has months of UTC. Method: west of Greenwich, 1 March there begins on
+/// the last evening of February.
+#[test]
+fn months_of_a_fleet_are_named_as_they_are_counted() {
+    let place = Place::new();
+    record(&store(&place), noon_us(3, 1), None);
+    for zone in ["EST5", "UTC0", "NZST-12"] {
+        let said = in_zone(&place, zone, &["faults", "trend", "eb_reaction"]).out;
+        assert!(
+            said.contains("2025-03") && !said.contains("2025-02"),
+            "{zone}: {said}"
+        );
+    }
+}
+
+#[test]
+fn a_fault_is_said_to_be_seen_once_or_so_many_times() {
+    let place = Place::new();
+    let history = store(&place);
+    for (day, said) in [(5, "  seen once, 2025-03-0"), (6, "  seen 2 times, ")] {
+        let fault = record(&history, noon_us(3, day), Some("eb_relay")).expect("a fault");
+        let shown = place.ptu(&["faults", "show", &fault.to_string()]).exits(0);
+        assert!(shown.out.contains(said), "{}", shown.out);
+    }
+}
+
+#[test]
+fn a_trend_says_where_a_measurement_is_going() {
+    let place = mended();
+    let of_overspeed = [
+        "faults",
+        "trend",
+        "eb_reaction",
+        "--procedure",
+        "atp/overspeed",
+    ];
+    let trend = place.json(&[&of_overspeed[..], &["--unit", "BAD-1", "--json"]].concat());
+    let points = list(&trend["points"]).len() as f64;
+    assert!(points >= 8.0, "{trend}");
+    assert_eq!(number(&trend["process"]["n"]), points);
+    assert!(number(&trend["capability"]["cpk"]).is_finite());
+    let fleet = place.json(&[&of_overspeed[..], &["--json"]].concat());
+    assert_eq!(number(&fleet["process"]["n"]), points);
+    assert_eq!(fleet["process"]["mean"], trend["process"]["mean"]);
+    assert_eq!(list(&fleet["units"]).len(), 1);
+    let text = place.ptu(
+        &[
+            &of_overspeed[..],
+            &["--unit", "BAD-1", "--plot", "creep.html"],
+        ]
+        .concat(),
+    );
+    let text = text.exits(0).out;
+    assert!(
+        text.contains("control limits") && text.contains("Cpk"),
+        "{text}"
+    );
+    assert!(place.read("creep.html").contains("<svg"));
+    let since = place.json(
+        &[
+            &of_overspeed[..],
+            &["--unit", "BAD-1", "--since-repair", "eb_relay", "--json"],
+        ]
+        .concat(),
+    );
+    assert!(number(&since["process"]["n"]) < points, "{since}");
+}
+
+#[test]
+fn a_question_is_saved_and_asked_again() {
+    let place = mended();
+    let said = place
+        .ptu(&[
+            "faults", "stats", "--by", "lru", "--when", "30d", "--save", "worst",
+        ])
+        .exits(0);
+    assert!(
+        place
+            .ptu(&["saved"])
+            .exits(0)
+            .out
+            .contains("ptu faults stats --by lru --when 30d")
+    );
+    assert_eq!(place.ptu(&["saved", "worst"]).exits(0).out, said.out);
+    let csv = place.ptu(&["saved", "worst", "--csv"]).exits(0).out;
+    assert!(csv.starts_with("key,"), "{csv}");
+    let sql = "SELECT part, serial_new FROM repairs WHERE note <> ''";
+    place.ptu(&["db", "query", sql, "--save", "parts"]).exits(0);
+    assert!(
+        place
+            .ptu(&["saved", "parts"])
+            .exits(0)
+            .out
+            .contains("R/99_b")
+    );
+    place.ptu(&["saved", "wort"]).exits(2).explains(&[
+        "no question \"wort\"",
+        "\"worst\"",
+        "`ptu saved`",
+    ]);
+    let rows = |more: &[&str]| {
+        let csv = place.ptu(&[&["saved", "one"], more].concat()).exits(0).out;
+        csv.lines().count() - 1
+    };
+    let one = "faults list --limit 1 --csv --since 30d --save one";
+    place.ptu(&one.split(' ').collect::<Vec<_>>()).exits(0);
+    assert_eq!(rows(&[]), 1);
+    assert!(rows(&["--limit", "3"]) > 1, "what is given now replaces it");
+    assert_eq!(rows(&["--limit=9", "--when", "..2020"]), 0);
+    let json = place.json(&["saved", "one", "--json"]);
+    assert_eq!(list(&json).len(), 1);
+    place
+        .ptu(&["faults", "list", "--limit", "1", "--limit", "2"])
+        .exits(2)
+        .explains(&["--limit", "multiple times"]);
+    place
+        .ptu(&["saved", "worst", "--save", "worst"])
+        .exits(2)
+        .explains(&["is saved already"]);
+    place.ptu(&["saved", "worst"]).exits(0);
+    place.ptu(&["saved", "--forget", "worst"]).exits(0);
+    place.ptu(&["saved", "worst"]).exits(2);
+}
+
+/// Who writes the file of questions may have one ask another, but not itself.
+#[test]
+fn a_saved_question_that_asks_itself_is_refused_with_its_circle() {
+    let place = Place::new();
+    place.recorded_run();
+    place.ptu(&["faults", "list", "--save", "all"]).exits(0);
+    let file = place.path(".config/ptu/questions.json");
+    let questions = r#"{
+        "all": ["faults", "list"], "once more": ["saved", "all"], "me": ["saved", "me"],
+        "in": ["saved", "a"], "a": ["saved", "b"], "b": ["saved", "c", "--json"], "c": ["saved", "a"]
+    }"#;
+    std::fs::write(&file, questions).expect("the file of questions");
+    let all = place.ptu(&["saved", "all"]).exits(0).out;
+    assert_eq!(place.ptu(&["saved", "once more"]).exits(0).out, all);
+    for (name, circle) in [
+        ("me", "me → me"),
+        ("a", "a → b → c → a"),
+        ("in", "a → b → c → a"),
+    ] {
+        let said = place.ptu(&["saved", name]).exits(2);
+        said.explains(&["asks itself: ", circle, "questions.json", "--forget"]);
+    }
+    place.ptu(&["saved", "--forget", "c"]).exits(0);
+    place
+        .ptu(&["saved", "a"])
+        .exits(2)
+        .explains(&["no question \"c\""]);
+}
+
+/// A terminal shows the beginning of a long text; JSON and CSV have all of it.
+#[test]
+fn a_cell_of_any_length_is_answered() {
+    let place = Place::new();
+    place.recorded_run();
+    let sql = "SELECT hex(zeroblob(40000)) AS zeros, 1 AS one, hex(zeroblob(40000)) AS more";
+    let table = place.ptu(&["db", "query", sql]).exits(0).out;
+    let row = table.lines().nth(1).expect("a row");
+    assert!(
+        row.contains("000…    1  000") && row.ends_with("0…"),
+        "{row}"
+    );
+    assert!(row.len() < 10_000, "{}", row.len());
+    let all = "0".repeat(80_000);
+    let json = place.json(&["db", "query", sql, "--json"]);
+    assert_eq!(json["rows"][0][0], all.as_str());
+    let csv = place.ptu(&["db", "query", sql, "--csv"]).exits(0).out;
+    assert_eq!(csv.lines().nth(1), Some(format!("{all},1,{all}").as_str()));
+}
+
+#[test]
+fn the_views_answer_and_the_page_tells_of_them() {
+    let place = mended();
+    let page = place.ptu(&["db", "schema"]).exits(0).out;
+    for view in page
+        .lines()
+        .filter_map(|line| line.strip_prefix("## ")?.split_once(':'))
+    {
+        let sql = format!("SELECT * FROM {} LIMIT 3", view.0);
+        let answer = place.json(&["db", "query", &sql, "--json"]);
+        assert!(list(&answer["columns"]).len() > 4, "{}: {answer}", view.0);
+    }
+    let relay = relay_fault(&place);
+    let sql = format!(
+        "SELECT last_at, name FROM faults WHERE id = '{}'",
+        text(&relay["id"])
+    );
+    let answer = place.json(&["db", "query", &sql, "--json"]);
+    assert_eq!(answer["rows"][0][0], relay["last_at"]);
+    let csv = place
+        .ptu(&["db", "query", "SELECT 1 AS a, 'x,y' AS b", "--csv"])
+        .exits(0)
+        .out;
+    assert_eq!(csv, "a,b\n1,\"x,y\"\n");
+}
+
+#[test]
+fn what_cannot_be_asked_is_named() {
+    let place = mended();
+    for (arguments, words) in [
+        (
+            &["list", "--when", "2026-13"][..],
+            &["2026-13", "2026-03..2026-05"][..],
+        ),
+        (
+            &["list", "--when", "2026-05..2026-03"],
+            &["ends before it begins"],
+        ),
+        (&["stats", "--when", ".."], &["a beginning or an end"]),
+        (&["stats", "--by", "colour"], &["colour", "lru"]),
+        (&["stats", "--back-within", "0"], &["0"]),
+        (&["list", "--note", "\"*"], &["no word to search for"]),
+        (&["list", "--state", "broken"], &["broken", "acknowledged"]),
+        (&["list", "--unit", "BAD-2"], &["no unit \"BAD-2\""]),
+        (&["list", "--unit", "bad1"], &["did you mean \"BAD-1\"?"]),
+        (&["list", "--limit", "0"], &["0", "1.."]),
+        (&["stats", "--limit", "0"], &["0", "1.."]),
+        (&["trend", "eb_reaction", "--limit", "0"], &["0", "1.."]),
+        (&["list", "--severity", "huge"], &["huge", "critical"]),
+        (&["list", "--when", "-30d"], &["\"-30d\" is no time"]),
+        (&["stats", "--since", "-30d"], &["\"-30d\" is no time"]),
+        (
+            &["list", "--code", "check_failed,foo"],
+            &["no fault \"foo\""],
+        ),
+        (
+            &["trend", "eb_reaction", "--plot", "out.png"],
+            &["out.png", ".html"],
+        ),
+        (
+            &["trend", "eb_reaction", "--unit", "bad-1"],
+            &["did you mean \"BAD-1\"?"],
+        ),
+        (
+            &["trend", "eb_reaction", "--when", "2999-01"],
+            &["in 2999-01-01 .. 2999-01-31", "recorded from 20"],
+        ),
+        (
+            &["trend", "eb_reaction", "--procedure", "tcms/link"],
+            &["measured by atp/overspeed"],
+        ),
+        (&["list", "--run", "latest", "--since", "x"], &["\"x\""]),
+        (&["list", "--since", "2026-03..2026-05"], &["is a span"]),
+        (
+            &[
+                "trend",
+                "eb_reaction",
+                "--unit",
+                "BAD-1",
+                "--since-repair",
+                "tra",
+            ],
+            &["no repair of tra", "BAD-1"],
+        ),
+        (
+            &["trend", "eb_reaction", "--since-repair", "tra"],
+            &["--unit"],
+        ),
+        (&["repair", "latest", "--part", " "], &["--part"]),
+        (&["note", "latest", " "], &["says something"]),
+        (&["list", "--json", "--csv"], &["--csv"]),
+    ] {
+        place
+            .ptu(&[&["faults"], arguments].concat())
+            .exits(2)
+            .explains(words);
+    }
+    assert!(!place.path("out.png").exists());
+}
+
+/// Goal: an empty answer does not say that there is nothing when a name was only written otherwise.
+#[test]
+fn a_name_that_nothing_has_is_told_with_the_one_that_is_near() {
+    let place = mended();
+    for (option, asked, said) in [
+        (
+            "--lru",
+            "eb_rely",
+            "part \"eb_rely\" (did you mean \"eb_relay\"?)",
+        ),
+        ("--lru", "EB_RELY", "(did you mean \"eb_relay\"?)"),
+        ("--code", "4711", "no fault \"4711\" was ever recorded\n"),
+        (
+            "--line",
+            "line99",
+            "line \"line99\" (did you mean \"line8\"?)",
+        ),
+        ("--train", "99", "train \"99\" was ever recorded\n"),
+        ("--train", "203", "(did you mean \"8203\"?)"),
+        ("--procedure", "foo", "procedure \"foo\"\n"),
+        (
+            "--procedure",
+            "overspeed",
+            "(did you mean \"atp/overspeed\"?)",
+        ),
+        ("--serial", "S-4", "serial number \"S-4\" was ever"),
+        ("--serial", "r17", "(did you mean \"R-17\"?)"),
+        ("--state", "closed", "no such faults recorded\n"),
+    ] {
+        for verb in ["list", "stats"] {
+            let hint = place.ptu(&["faults", verb, option, asked]).exits(0).out;
+            assert!(hint.contains(said), "{verb} {option} {asked}: {hint}");
+        }
+    }
+    let runs = place.ptu(&["runs", "list", "--unit", "bad-1"]).exits(0).out;
+    assert!(runs.contains("did you mean \"BAD-1\"?"), "{runs}");
+    assert_eq!(
+        place
+            .ptu(&["runs", "list", "--unit", "bad-1", "--json"])
+            .exits(0)
+            .out,
+        "[]\n"
+    );
+}
+
+#[test]
+fn help_is_broken_where_the_terminal_ends() {
+    const COLUMNS: usize = 60;
+    let place = Place::new();
+    let mut command = place.command(&["faults", "stats", "--help"]);
+    let output = command.env("COLUMNS", COLUMNS.to_string()).output();
+    let help = Said::from(output.expect("ptu starts")).exits(0).out;
+    let lines: Vec<_> = help
+        .lines()
+        .take_while(|line| *line != "Examples:")
+        .collect();
+    assert!(lines.len() > 8, "{help}");
+    for two in lines.windows(2).filter(|two| !two.contains(&"")) {
+        let word = two[1].split(' ').next().unwrap_or_default();
+        assert!(two[0].len() + 1 + word.len() > COLUMNS, "{two:?} in {help}");
+    }
+    assert!(
+        help.contains("\n  ptu faults stats --by lru --when 2026\n"),
+        "{help}"
+    );
+}
+
+#[test]
+fn a_database_named_by_a_variable_is_no_option_that_has_to_be_given() {
+    let place = Place::new();
+    let wrong = place.ptu(&["db", "prune"]).exits(2);
+    assert!(!wrong.err.contains("--db"), "{}", wrong.all());
+    let output = place.command(&["runs", "list"]).env("PTU_DB", "").output();
+    Said::from(output.expect("ptu starts"))
+        .exits(2)
+        .explains(&["PTU_DB is empty"]);
+}

@@ -1,0 +1,197 @@
+//! The page with the test sheet: what it shows, the files it writes, and notes on a run.
+
+use crate::common::window::Window;
+use crate::common::{Place, list, record_bad_unit, scripts};
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use ptu_app::gui::{Page, Settings};
+use ptu_app::words::Language;
+
+/// A window on the report page over a run that passed, and a later one that failed.
+fn window(language: Language) -> Window {
+    let place = Place::new();
+    place.recorded_run();
+    record_bad_unit(&place);
+    on(place, language)
+}
+
+fn on(place: Place, language: Language) -> Window {
+    let settings = Settings {
+        page: Page::Report,
+        language,
+        operator: "Lee".into(),
+        ..Settings::default()
+    };
+    Window::with(place, scripts(), settings)
+}
+
+/// Writes into a field in place of what is in it.
+fn write_over(window: &mut Window, label: &str, text: &str) {
+    window.wait_for(label);
+    let harness = window.harness();
+    harness
+        .get_all_by_label(label)
+        .last()
+        .expect("seen")
+        .focus();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    window.write(label, text);
+}
+
+fn begins(window: &Window, name: &str, with: &[u8]) -> bool {
+    std::fs::read(window.place.path(name)).is_ok_and(|file| file.starts_with(with))
+}
+
+#[test]
+fn the_latest_run_is_shown_and_written_to_files() {
+    let mut window = window(Language::English);
+    window.wait_for("Test sheet");
+    window.wait_for("Failed");
+    window.wait_for_part("Unit BAD-1, run");
+    window.wait_for("code 25: alarm, FSB, EB");
+    window.wait_for("472");
+    let file = window.place.text_path("mine.pdf");
+    write_over(&mut window, "file", &file);
+    for (button, name, begin) in [
+        ("PDF", "mine.pdf", &b"%PDF-"[..]),
+        ("HTML", "mine.html", b"<!DOCTYPE html>"),
+        ("CSV", "mine.csv", b"run,unit_serial,"),
+    ] {
+        window.click(button);
+        window.wait_for(&format!("Written: {}", window.place.text_path(name)));
+        assert!(begins(&window, name, begin), "{name}");
+    }
+    assert!(window.place.read("mine.html").contains("eb_reaction"));
+    // Never over a file that is there.
+    window.click("PDF");
+    let beside = window.place.text_path("mine-2.pdf");
+    window.wait_for(&format!("Written: {beside}"));
+}
+
+/// What was done last is what the person wants to see, whether it passed or not.
+#[test]
+fn a_run_that_passed_after_one_that_failed_is_shown() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let good = place.recorded_run();
+    let mut window = on(place, Language::English);
+    let short = good.get(good.len() - 8..).expect("an id");
+    window.wait_for_part(&format!(", run {short}"));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_said() {
+    let mut window = window(Language::English);
+    let nowhere = window.place.text_path("no/such/folder/x.pdf");
+    write_over(&mut window, "file", &nowhere);
+    window.click("PDF");
+    window.wait_for_part("The report was not written");
+    window.wait_for_part("there is no folder");
+    write_over(&mut window, "file", " ");
+    window.click("HTML");
+    window.wait_for("name a file");
+}
+
+#[test]
+fn a_note_is_kept_and_stands_on_the_sheet() {
+    let mut window = window(Language::English);
+    window.wait_for("code 25: alarm, FSB, EB");
+    assert!(!window.enabled("Save note"), "nothing to save");
+    window.write("note on this run", "relay K3 clicks late");
+    window.click("Save note");
+    window.wait_for("Note saved");
+    window.wait_for("relay K3 clicks late");
+    window.wait_for("Noted by");
+    let bad = window.place.run_ids().swap_remove(0);
+    let run = window.place.json(&["runs", "show", &bad, "--json"]);
+    let [note] = list(&run["notes"]) else {
+        panic!("one note: {run}")
+    };
+    assert_eq!(
+        (&note["who"], &note["text"]),
+        (&"Lee".into(), &"relay K3 clicks late".into())
+    );
+}
+
+#[test]
+fn a_note_is_written_as_soon_as_a_run_is_over() {
+    let mut settings = Settings {
+        page: Page::Procedures,
+        operator: "Lee".into(),
+        ..Settings::default()
+    };
+    settings.unit.faults = vec!["tra.dead".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Find the part");
+    window.wait_for_part("Run over: failed");
+    window.write("note on this run", "TRA warm to the touch");
+    window.click("Save note");
+    window.wait_for("Note saved");
+    let latest = ["runs", "show", "latest", "--json"];
+    let run = window.place.json(&latest);
+    assert_eq!(run["notes"][0]["text"], "TRA warm to the touch", "{run}");
+}
+
+/// The sheet has a language of its own, and the window's until one is chosen.
+#[test]
+fn the_sheet_is_korean_in_a_korean_window_and_english_if_wanted() {
+    let mut window = window(Language::Korean);
+    window.wait_for("시험 성적서");
+    window.wait_for("불합격");
+    window.wait_for("미합격 항목");
+    // It stands beside its name.
+    window.click_last("성적서 언어");
+    window.click("English");
+    window.wait_for("What did not pass");
+    let file = window.place.text_path("english");
+    write_over(&mut window, "파일", &file);
+    window.click("HTML");
+    window.wait_for_part("저장 완료");
+    assert!(window.place.read("english.html").contains("lang=\"en\""));
+}
+
+#[test]
+fn the_sheet_leads_to_the_traces_and_is_there_again_afterwards() {
+    let mut window = window(Language::English);
+    window.wait_for("code 25: alarm, FSB, EB");
+    let traces = window
+        .shown()
+        .into_iter()
+        .find(|name| name.starts_with("Traces ("));
+    window.click(&traces.expect("traces of failures"));
+    let of_run = |name: &String| name.ends_with(": check_failed");
+    let first = window.shown().into_iter().find(of_run);
+    window.click(&first.expect("a trace"));
+    window.until("the traces page", |window| {
+        window.app().page() == Page::Traces
+    });
+    window.key(Key::F6);
+    window.wait_for("code 25: alarm, FSB, EB");
+}
+
+#[test]
+fn notes_are_written_and_shown_on_the_command_line_and_in_reports() {
+    let place = Place::new();
+    let run = place.recorded_run();
+    let note = ["runs", "note", &run, "=HYPERLINK(\"x\")", "--who", "김"];
+    place.ptu(&note).exits(0);
+    place.ptu(&["runs", "note", &run, " "]).exits(2);
+    place.ptu(&["runs", "note", "ffffffff", "x"]).exits(2);
+    let said = place.ptu(&["runs", "show", &run]).exits(0);
+    assert!(
+        said.out.contains("=HYPERLINK") && said.out.contains('김'),
+        "{}",
+        said.out
+    );
+    for language in ["en", "ko"] {
+        let (html, pdf) = (format!("{language}.html"), format!("{language}.pdf"));
+        let show = ["runs", "show", &run, "--lang", language];
+        let reports = ["--report", &html, "--report", &pdf];
+        place.ptu(&[&show[..], &reports].concat()).exits(0);
+        assert!(place.read(&html).contains("=HYPERLINK(&quot;x&quot;)"));
+    }
+}

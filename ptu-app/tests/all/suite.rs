@@ -1,0 +1,341 @@
+//! The whole acceptance suite on the embedded unit: it passes, it is recorded as it was planned, and
+//! the same seed gives the same record.
+
+use std::sync::OnceLock;
+
+use crate::common::{Place, has_shape, list, normalised, number, text};
+use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
+use serde_json::Value;
+
+const VERDICTS: [&str; 5] = ["passed", "failed", "error", "skipped", "aborted"];
+/// Breaks the unit at random, so that a record depends on its seed.
+const RANDOM_FAULT: &str = "fsk_board.receiver_errors";
+/// One run of everything, shared by the tests that only look at it.
+fn whole_suite() -> &'static (Place, Value) {
+    static SUITE: OnceLock<(Place, Value)> = OnceLock::new();
+    SUITE.get_or_init(|| {
+        let place = Place::new();
+        let (said, report) = place.run(&["--report", "report.junit.xml"]);
+        said.exits(0);
+        (place, report)
+    })
+}
+
+/// A run of everything on a fresh database, normalised.
+fn report_of(exit: i32, arguments: &[&str]) -> Value {
+    let (said, report) = Place::new().run(arguments);
+    said.exits(exit);
+    normalised(report)
+}
+
+#[test]
+fn a_good_unit_passes_every_step_and_leaves_no_fault() {
+    let (place, report) = whole_suite();
+    assert_eq!(report["run"]["verdict"], "passed");
+    for step in list(&report["steps"]) {
+        assert_eq!(step["verdict"], "passed", "{step}");
+    }
+    assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
+    assert!(list(&place.json(&["faults", "list", "--json"])).is_empty());
+}
+
+#[test]
+fn the_report_has_the_shape_of_the_contract() {
+    let (_, report) = whole_suite();
+    has_shape(
+        &report["run"],
+        &[
+            ("id", "text"),
+            ("verdict", "text"),
+            ("unit_serial", "text"),
+            ("line", "text"),
+            ("seed", "number"),
+            ("started_at", "text"),
+            ("bench_time_s", "number"),
+            ("wall_time_s", "number"),
+        ],
+    );
+    assert!(number(&report["run"]["bench_time_s"]) > 60.0);
+    for step in list(&report["steps"]) {
+        has_shape(
+            step,
+            &[
+                ("procedure", "text"),
+                ("name", "text"),
+                ("verdict", "text"),
+                ("bench_time_s", "number"),
+                ("measurements", "list"),
+                ("message", "text"),
+            ],
+        );
+        assert!(VERDICTS.contains(&text(&step["verdict"])), "{step}");
+        for measurement in list(&step["measurements"]) {
+            has_shape(
+                measurement,
+                &[
+                    ("name", "text"),
+                    ("value", "number?"),
+                    ("unit", "text"),
+                    ("low", "number?"),
+                    ("high", "number?"),
+                    ("verdict", "text"),
+                ],
+            );
+            assert!(
+                VERDICTS.contains(&text(&measurement["verdict"])),
+                "{measurement}"
+            );
+        }
+    }
+}
+
+/// Goal: what was listed before is what ran and what was stored, measurements included.
+#[test]
+fn every_listed_step_is_reported_with_its_measurements() {
+    let (place, report) = whole_suite();
+    let mut planned = Vec::new();
+    for procedure in list(&place.json(&["run", "--list", "--json"])) {
+        for step in list(&procedure["steps"]) {
+            for _ in 0..number(&step["repeat"]) as u32 {
+                planned.push((
+                    text(&procedure["procedure"]).to_owned(),
+                    text(&step["name"]).to_owned(),
+                ));
+            }
+        }
+    }
+    let steps = list(&report["steps"]);
+    let reported: Vec<_> = steps
+        .iter()
+        .map(|s| {
+            (
+                text(&s["procedure"]).to_owned(),
+                text(&s["name"]).to_owned(),
+            )
+        })
+        .collect();
+    assert_eq!(reported, planned);
+
+    let listing = place.ptu(&["run", "--list"]).exits(0).out;
+    let planned = listing
+        .lines()
+        .filter(|line| line.trim_start().starts_with("measure "))
+        .count();
+    let measurements = steps.iter().flat_map(|step| list(&step["measurements"]));
+    let mut count = 0;
+    for measurement in measurements {
+        assert!(number(&measurement["value"]).is_finite(), "{measurement}");
+        assert_eq!(measurement["verdict"], "passed", "{measurement}");
+        count += 1;
+    }
+    assert!(planned > 0);
+    assert_eq!(count, planned);
+}
+
+#[test]
+fn a_recorded_run_is_shown_as_it_was_reported() {
+    let (place, report) = whole_suite();
+    assert_eq!(&place.json(&["runs", "show", "latest", "--json"]), report);
+    let id = text(&report["run"]["id"]);
+    assert_eq!(&place.json(&["runs", "show", id, "--json"]), report);
+    let table = place.ptu(&["runs", "show", &id[id.len() - 8..]]).exits(0);
+    assert!(table.out.contains("atp/overspeed"), "{}", table.all());
+}
+
+#[test]
+fn the_junit_report_is_well_formed_and_counts_the_same() {
+    let (place, report) = whole_suite();
+    let steps = list(&report["steps"]);
+    let junit = Report::deserialize_from_str(&place.read("report.junit.xml")).expect("JUnit XML");
+    assert_eq!(
+        (junit.tests, junit.failures, junit.errors),
+        (steps.len(), 0, 0)
+    );
+    let cases: Vec<_> = junit
+        .test_suites
+        .iter()
+        .flat_map(|suite| &suite.test_cases)
+        .map(|case| case.name.as_str().to_owned())
+        .collect();
+    let names: Vec<_> = steps.iter().map(|s| text(&s["name"]).to_owned()).collect();
+    assert_eq!(cases, names);
+}
+
+#[test]
+fn the_junit_report_of_a_broken_unit_tells_failures_from_errors() {
+    let place = Place::new();
+    let (said, report) = place.run(&["--inject", "test_board.dead", "--report", "r.junit.xml"]);
+    said.exits(1);
+    let count = |verdict: &str| {
+        list(&report["steps"])
+            .iter()
+            .filter(|step| step["verdict"] == verdict)
+            .count()
+    };
+    let junit = Report::deserialize_from_str(&place.read("r.junit.xml")).expect("JUnit XML");
+    assert!(count("failed") > 0 && count("error") > 0);
+    assert_eq!(junit.failures, count("failed"));
+    assert_eq!(junit.errors, count("error"));
+    let said_why = |status: &TestCaseStatus| match status {
+        TestCaseStatus::NonSuccess { kind, message, .. } => {
+            matches!(kind, NonSuccessKind::Failure | NonSuccessKind::Error) && message.is_some()
+        }
+        _ => true,
+    };
+    let mut cases = junit.test_suites.iter().flat_map(|s| &s.test_cases);
+    assert!(cases.all(|case| said_why(&case.status)));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_results() {
+    let (_, first) = whole_suite();
+    assert_eq!(report_of(0, &[]), normalised(first.clone()));
+}
+
+/// A unit broken at random makes the comparison worth something: here the seed matters.
+#[test]
+fn the_same_seed_gives_the_same_faults_and_another_seed_others() {
+    let first = report_of(1, &["--inject", RANDOM_FAULT, "--seed", "7"]);
+    let again = report_of(1, &["--inject", RANDOM_FAULT, "--seed", "7"]);
+    assert!(!list(&first["faults"]).is_empty());
+    assert_eq!(first, again);
+    let other = report_of(1, &["--inject", RANDOM_FAULT, "--seed", "8"]);
+    assert_ne!(first["steps"], other["steps"]);
+}
+
+#[test]
+fn side_by_side_gives_the_same_results_as_one_after_the_other() {
+    let one = report_of(1, &["--inject", RANDOM_FAULT, "--jobs", "1"]);
+    let two = report_of(1, &["--inject", RANDOM_FAULT, "--jobs", "2"]);
+    assert_eq!(one, two);
+}
+
+#[test]
+fn other_seeds_pass_too() {
+    for seed in ["2", "20261121", "18446744073709551615"] {
+        let report = report_of(0, &["--seed", seed]);
+        assert!(list(&report["faults"]).is_empty());
+    }
+}
+
+#[test]
+fn steps_can_be_chosen_and_repeated() {
+    let place = Place::new();
+    let (said, report) = place.run(&[
+        "atp/limit_speed",
+        "--step",
+        "code ?5 gives*",
+        "--repeat",
+        "3",
+    ]);
+    said.exits(0);
+    let names: Vec<_> = list(&report["steps"])
+        .iter()
+        .map(|step| text(&step["name"]))
+        .collect();
+    assert_eq!(names.len(), 6 * 3, "{names:?}");
+    assert!(
+        names.iter().all(|name| name.contains("5 gives")),
+        "{names:?}"
+    );
+}
+
+/// Goal: which failure is the first is a matter of the order of the procedures, not of who is done first.
+#[test]
+fn a_run_can_end_with_the_first_failure() {
+    let ends_early = |jobs| {
+        report_of(
+            1,
+            &[
+                "--inject",
+                "eb_relay.slow",
+                "--stop-on-fail",
+                "--jobs",
+                jobs,
+            ],
+        )
+    };
+    let report = ends_early("1");
+    let failed: Vec<_> = list(&report["steps"])
+        .iter()
+        .filter(|step| step["verdict"] == "failed")
+        .collect();
+    assert_eq!(failed.len(), 1, "{failed:?}");
+    let last = list(&report["steps"]).last().expect("a step");
+    assert_eq!(last["procedure"], failed[0]["procedure"]);
+    assert_eq!(ends_early("3"), report);
+}
+
+/// Goal: what is run again and in another order is neither of them a finding. Method: everything twice, in two
+/// orders; what is listed is what is run.
+#[test]
+fn a_good_unit_passes_everything_repeated_and_in_any_order() {
+    let place = Place::new();
+    let order = |steps: &Value| {
+        let mut names: Vec<_> = list(steps)
+            .iter()
+            .map(|s| text(&s["procedure"]).to_owned())
+            .collect();
+        names.dedup();
+        names
+    };
+    let usual = order(&whole_suite().1["steps"]);
+    let mut orders = Vec::new();
+    for seed in ["1", "2"] {
+        let asked = ["--repeat", "2", "--shuffle", "--seed", seed];
+        let (said, report) = place.run(&asked);
+        said.exits(0);
+        assert!(list(&report["faults"]).is_empty());
+        let ran = order(&report["steps"]);
+        let listed = place.json(&[&["run", "--list", "--json"], &asked[..]].concat());
+        assert_eq!(ran, order(&listed));
+        assert_eq!(
+            list(&report["steps"]).len(),
+            2 * list(&whole_suite().1["steps"]).len()
+        );
+        orders.push(ran);
+    }
+    assert_ne!(orders[0], orders[1]);
+    for mut order in orders {
+        assert_ne!(order, usual);
+        order.sort();
+        assert_eq!(order, usual, "each once");
+    }
+}
+
+/// Another train is another file: as many cars as it has, under any names, or none at all.
+#[test]
+fn procedures_are_read_for_the_train_there_is() {
+    let place = Place::new();
+    let line6 = std::fs::read_to_string(crate::common::scripts().join("trains/line6.toml"));
+    let line6 = line6.expect("the train's file");
+    let mut cars = line6.split("[[cars]]");
+    let head = cars.next().unwrap_or_default().to_owned();
+    let kept = cars.filter(|car| !car.contains("pair = 4"));
+    let three_pairs: String = std::iter::once(head)
+        .chain(kept.map(|car| format!("[[cars]]{car}")))
+        .collect();
+    let renamed = line6
+        .replace("name = \"T", "name = \"A")
+        .replace("name = \"M", "name = \"B");
+    for train in [
+        place.write("three.toml", &three_pairs),
+        place.write("renamed.toml", &renamed),
+    ] {
+        let said = place.ptu(&["run", "--check", "--train", &train]).exits(0);
+        assert!(!said.all().contains("no cars"), "{}", said.all());
+    }
+    let said = place.ptu(&["run", "--check", "--train", "ideal"]).exits(0);
+    assert!(said.err.contains("has no cars") && said.err.contains("tcms/brake_cut"));
+    place
+        .ptu(&["run", "--train", "ideal", "tcms/brake_cut"])
+        .exits(2)
+        .explains(&["ideal", "has no cars"]);
+    // What the unit does, and what TCMS does without cars, is tested with a point mass, too.
+    let said = place
+        .ptu(&["run", "--train", "ideal", "atp", "door", "twc", "tcms"])
+        .exits(0);
+    for procedure in ["door/interlocks", "tcms/holding_brake"] {
+        assert!(said.all().contains(procedure), "{}", said.all());
+    }
+}

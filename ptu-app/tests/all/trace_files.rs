@@ -1,0 +1,557 @@
+//! Traces in other programs' files: written by this one, read by each format's own reader in Python; and
+//! other programs' files read by this one.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::common::{Place, list, number, text};
+use fault_db::{
+    Channel, ChannelKind, Id, IdSource, OpenOptions, RunRecord, RunWriter, Store, TraceData,
+    UnitRecord,
+};
+use serde_json::Value;
+
+/// Where `scripts/test` puts the readers, under the target directory.
+const READERS: &str = "readers";
+/// 2026-03-01 00:00:00 UTC.
+const T0_US: i64 = 1_772_323_200_000_000;
+const PERIOD_US: i64 = 50_000;
+
+/// The Python that has the readers. Without them nothing would be tested, so that fails.
+fn python() -> PathBuf {
+    if let Some(python) = std::env::var_os("PTU_TEST_PYTHON") {
+        return python.into();
+    }
+    // TARGET/debug/deps/this-test
+    let program = std::env::current_exe().expect("a path of its own");
+    let target = program.ancestors().nth(3).expect("a target directory");
+    let python = target.join(READERS).join("bin/python");
+    assert!(
+        python.exists(),
+        "{} is missing: run scripts/test once, it installs the readers, or name a Python that has pyarrow \
+         and mcap in PTU_TEST_PYTHON",
+        python.display()
+    );
+    python
+}
+
+fn run_python(script: &str, arguments: &[&str]) -> String {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/readers")
+        .join(script);
+    let output = Command::new(python())
+        .arg(script)
+        .args(arguments)
+        .output()
+        .expect("Python starts");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn number_channel(name: &str, unit: &str, lsb: f64) -> Channel {
+    Channel {
+        name: name.into(),
+        unit: unit.into(),
+        kind: ChannelKind::Number { lsb },
+    }
+}
+
+/// Every kind of signal, with gaps, over more rows than any writer takes at once (4 096).
+fn trace(rows: usize) -> TraceData {
+    let mode = Channel {
+        name: "mode".into(),
+        unit: String::new(),
+        kind: ChannelKind::Enum {
+            labels: [
+                (0, "off".into()),
+                (1, "자동, ATO".into()),
+                (-2, "\"x\"".into()),
+            ]
+            .into(),
+        },
+    };
+    let bit = Channel {
+        name: "eb".into(),
+        unit: String::new(),
+        kind: ChannelKind::Bit,
+    };
+    let gap = |row: usize, sample: f64| {
+        // One row in eleven, and a long one across the writers' blocks.
+        if row % 11 == 3 || (4_000..4_200).contains(&row) {
+            f64::NAN
+        } else {
+            sample
+        }
+    };
+    let column = |f: &dyn Fn(usize) -> f64| (0..rows).map(|row| gap(row, f(row))).collect();
+    TraceData {
+        t0_bench_us: 12_345_000,
+        t0_us: T0_US,
+        period_us: PERIOD_US,
+        trigger_row: Some(200),
+        partial: false,
+        gaps: true,
+        channels: vec![
+            number_channel("speed", "km/h", 0.1),
+            number_channel("jerk", "m/s³", 0.001),
+            number_channel("effort", "", 1.0),
+            mode,
+            bit,
+            number_channel("empty", "V", 0.1),
+        ],
+        columns: vec![
+            column(&|row| (row % 700) as f64 / 10.0),
+            column(&|row| ((row as f64) * 0.37).sin() / 3.0),
+            column(&|row| (row % 2049) as f64 - 1024.0),
+            // 7 has no word.
+            column(&|row| [0.0, 1.0, -2.0, 7.0][row / 50 % 4]),
+            column(&|row| f64::from(u8::from(row >= 200))),
+            vec![f64::NAN; rows],
+        ],
+    }
+}
+
+/// A history with one trace; gives its id.
+fn kept(place: &Place, trace: &TraceData) -> Id {
+    let mut next = 0u8;
+    let ids = IdSource::new(move || {
+        next += 1;
+        (T0_US as u64 / 1000, [next; 10])
+    });
+    let store = Store::open(&place.path("history.db"), OpenOptions::new(ids)).expect("opened");
+    let run = RunRecord {
+        unit: UnitRecord {
+            serial: "BTU-7".into(),
+            kind: "ATC".into(),
+            config_name: "default".into(),
+            sw_versions: BTreeMap::new(),
+        },
+        line: "line6".into(),
+        train: String::new(),
+        seed: 1,
+        operator: "Kim".into(),
+        source: "sim".into(),
+        started_at_us: T0_US,
+        app_version: String::new(),
+        scripts_sha256: String::new(),
+        unit_config_sha256: String::new(),
+        injected: None,
+        owner: String::new(),
+        scripts: Vec::new(),
+    };
+    let mut writer = RunWriter::begin(&store, &run).expect("begun");
+    let id = writer.trace(&[], trace).expect("stored");
+    drop(writer);
+    store.close().expect("closed");
+    id
+}
+
+/// Goal: what a reader of each format's makers finds is what was recorded: samples, gaps, units, times and
+/// whose it is.
+#[test]
+fn each_formats_own_reader_finds_what_was_recorded() {
+    let place = Place::new();
+    let trace = trace(9_000);
+    let id = kept(&place, &trace);
+    for file in ["t.csv", "t.parquet", "t.mcap"] {
+        let said = place
+            .ptu(&["trace", "export", "latest", "--to", file])
+            .exits(0);
+        assert!(said.out.contains("9000 rows of 6 signals"), "{}", said.out);
+        let found = run_python("read_trace.py", &[&place.text_path(file)]);
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        let about = &found["about"];
+        assert_eq!(text(&about["trace_id"]), id.to_string());
+        assert_eq!(text(&about["unit_serial"]), "BTU-7");
+        assert_eq!(text(&about["t0"]), "2026-03-01T00:00:00.000Z");
+        assert_eq!(about["t0_us"], T0_US);
+        assert_eq!(about["t0_bench_us"], 12_345_000);
+        assert_eq!(about["period_us"], PERIOD_US);
+        assert_eq!(about["trigger_row"], 200);
+        assert_eq!(about["gaps"], true);
+        let channels: Vec<Channel> =
+            serde_json::from_value(about["channels"].clone()).expect("channels");
+        assert_eq!(channels, trace.channels, "{file}");
+        let run = place.json(&["runs", "show", "latest", "--json"]);
+        assert_eq!(about["run_id"], run["run"]["id"]);
+
+        for (row, time_s) in list(&found["times_s"]).iter().enumerate() {
+            let expected = (row as f64 - 200.0) * 0.05;
+            assert!(
+                (number(time_s) - expected).abs() < 1e-9,
+                "{file} row {row}: {time_s}"
+            );
+        }
+        assert_eq!(list(&found["times_s"]).len(), 9_000);
+        if let Some(utc) = found["utc_us"].as_array() {
+            for (row, at_us) in utc.iter().enumerate() {
+                assert_eq!(*at_us, T0_US + row as i64 * PERIOD_US, "{file} row {row}");
+            }
+        }
+        for (channel, column) in trace.channels.iter().zip(&trace.columns) {
+            let name = channel.name.as_str();
+            assert_eq!(text(&found["units"][name]), channel.unit, "{file} {name}");
+            let samples = list(&found["columns"][name]);
+            assert_eq!(samples.len(), column.len(), "{file} {name}");
+            for (row, (sample, expected)) in samples.iter().zip(column).enumerate() {
+                // Missing is null, all else the same to the last bit.
+                let expected = (!expected.is_nan()).then_some(*expected);
+                assert_eq!(sample.as_f64(), expected, "{file} {name} row {row}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_has_its_signals_and_its_span() {
+    let place = Place::new();
+    let trace = trace(600);
+    kept(&place, &trace);
+    for file in ["t.csv", "t.parquet", "t.mcap"] {
+        let part = ["--signals", "mode,speed", "--window", "-0.5..1"];
+        let all = [&["trace", "export", "latest", "--to", file][..], &part].concat();
+        place.ptu(&all).exits(0);
+        let found = run_python("read_trace.py", &[&place.text_path(file)]);
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        let times = list(&found["times_s"]);
+        assert_eq!(times.len(), 31, "{file}");
+        assert!((number(&times[0]) + 0.5).abs() < 1e-9 && (number(&times[30]) - 1.0).abs() < 1e-9);
+        assert_eq!(found["about"]["trigger_row"], 10);
+        assert_eq!(found["about"]["t0_us"], T0_US + 190 * PERIOD_US);
+        let samples = list(&found["columns"]["speed"]);
+        assert_eq!(samples[1].as_f64(), Some(trace.columns[0][191]));
+        assert_eq!(found["columns"].as_object().map(|c| c.len()), Some(2));
+        // Laid at the trace again it is the same.
+        if file == "t.parquet" {
+            let said = place.ptu(&["trace", "diff", "latest", file]);
+            said.exits(2).explains(&["t.parquet", ".csv or .mcap"]);
+            continue;
+        }
+        let said = place.ptu(&["trace", "diff", "latest", file]).exits(0);
+        assert!(said.out.contains("no signal differs"), "{}", said.out);
+        assert!(
+            said.out.contains("compared from -0.50 s to 1.00 s"),
+            "{}",
+            said.out
+        );
+    }
+    // A part that does not have the trigger.
+    let late = [
+        "trace", "export", "latest", "--to", "late.csv", "--window", "5..6",
+    ];
+    place.ptu(&late).exits(0);
+    let said = place.ptu(&["trace", "diff", "latest", "late.csv"]).exits(0);
+    assert!(said.out.contains("no signal differs"), "{}", said.out);
+    assert!(
+        said.out.contains("compared from 5.00 s to 6.00 s"),
+        "{}",
+        said.out
+    );
+    let shown = place.ptu(&[
+        "trace",
+        "show",
+        "latest",
+        "--window",
+        "5..6",
+        "--signals",
+        "eb",
+    ]);
+    assert!(shown.exits(0).out.contains("1.1 s, without the trigger"));
+}
+
+#[test]
+fn a_file_that_is_there_stays_unless_force_is_said() {
+    let place = Place::new();
+    kept(&place, &trace(300));
+    for (file, also) in [
+        ("t.csv", None),
+        ("t.parquet", None),
+        ("t.mcap", None),
+        ("u.csv", Some("u.csv-metadata.json")),
+    ] {
+        let there = also.unwrap_or(file);
+        place.write(there, "mine");
+        let export = ["trace", "export", "latest", "--to", file];
+        place
+            .ptu(&export)
+            .exits(2)
+            .explains(&[there, "is there already", "--force"]);
+        assert_eq!(place.read(there), "mine");
+        place.ptu(&[&export[..], &["--force"]].concat()).exits(0);
+        assert_ne!(std::fs::read(place.path(there)).expect("read"), b"mine");
+    }
+    place
+        .ptu(&["trace", "export", "latest", "--to", "none/t.csv"])
+        .exits(2)
+        .explains(&["none/t.csv"]);
+    place
+        .ptu(&[
+            "trace", "export", "latest", "--to", "x.mcap", "--window", "7..9",
+        ])
+        .exits(2)
+        .explains(&["no row in that span", "-10.000 to 4.950 s"]);
+    place
+        .ptu(&[
+            "trace", "export", "latest", "--to", "x.mcap", "--window", "9..7",
+        ])
+        .exits(2)
+        .explains(&["9..7", "ends before it begins"]);
+    let left: Vec<_> = std::fs::read_dir(place.path(""))
+        .expect("listed")
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .into_string()
+                .expect("UTF-8")
+        })
+        .filter(|name| name.ends_with(".part") || name.starts_with("x."))
+        .collect();
+    assert_eq!(left, Vec::<String>::new(), "nothing half-written is left");
+}
+
+/// Goal: a table of another program, sampled by a clock of its own, is compared at the trace's rows. Method:
+/// one each 20 ms of the trace's own speed, but 5 km/h more from 2 s after the trigger.
+#[test]
+fn a_foreign_table_is_laid_at_the_traces_rows() {
+    let place = Place::new();
+    let mut data = trace(600);
+    for (row, sample) in data.columns[0].iter_mut().enumerate() {
+        *sample = row as f64 / 10.0;
+    }
+    kept(&place, &data);
+    let mut table = String::from("Time;speed;Scope 1\n");
+    for n in -100..1000 {
+        let t_s = f64::from(n) * 0.02;
+        let wrong = if t_s >= 2.0 { 5.0 } else { 0.0 };
+        table += &format!("{:.2};{:.3};1\n", t_s + 0.35, 20.0 + t_s * 2.0 + wrong);
+    }
+    place.write("scope.csv", &table);
+    let diff = [
+        "trace",
+        "diff",
+        "latest",
+        "scope.csv",
+        "--shift",
+        "-0.35",
+        "--json",
+    ];
+    let found = place.json(&diff);
+    let deviations = list(&found["deviations"]);
+    assert_eq!(deviations.len(), 1, "{found}");
+    assert_eq!(text(&deviations[0]["signal"]), "speed");
+    let first_s = number(&deviations[0]["at_s"]);
+    assert!((1.9..2.2).contains(&first_s), "{first_s}");
+    assert_eq!(found["from_s"], -2.0);
+    assert_eq!(found["missing_in_a"][0], "Scope 1");
+    let said = place.ptu(&diff[..6]).exits(0);
+    assert!(
+        said.out.contains("speed") && said.out.contains("not in B: effort"),
+        "{}",
+        said.out
+    );
+}
+
+#[test]
+fn messages_of_another_program_are_laid_at_their_time_of_day() {
+    let place = Place::new();
+    let mut data = trace(600);
+    for (row, sample) in data.columns[0].iter_mut().enumerate() {
+        *sample = 60.0 + (row as f64 - 100.0) * 0.05;
+    }
+    data.channels[0].kind = ChannelKind::Number { lsb: 0.01 };
+    kept(&place, &data);
+    // From row 100 on, 5 s before the trigger.
+    let t0 = (T0_US + 100 * PERIOD_US).to_string();
+    run_python("write_mcap.py", &[&place.text_path("m.mcap"), &t0]);
+    let found = place.json(&["trace", "diff", "latest", "m.mcap", "--json"]);
+    assert_eq!(found["from_s"], -5.0);
+    assert_eq!(list(&found["deviations"]), [] as [Value; 0], "{found}");
+    assert_eq!(found["missing_in_a"][0], "door/left.open");
+    let far = place.ptu(&["trace", "diff", "latest", "m.mcap", "--shift", "3600"]);
+    far.exits(2).explains(&["no time in common", "--shift"]);
+}
+
+#[test]
+fn files_that_are_wrong_are_told_with_the_place() {
+    let place = Place::new();
+    kept(&place, &trace(600));
+    place
+        .ptu(&["trace", "export", "latest", "--to", "t.mcap"])
+        .exits(0);
+    let whole = std::fs::read(place.path("t.mcap")).expect("read");
+    let diff = |file: &str| place.ptu(&["trace", "diff", "latest", file]);
+    for (text, told) in [
+        ("", "it is empty"),
+        ("time_s,speed\n", "it has no samples"),
+        (
+            "time_s,speed\n0,1\n1,fast\n",
+            "line 3, column 2 (\"speed\"): \"fast\" is no number",
+        ),
+        ("time_s,speed\n0,1\n1\n", "line 3: 1 fields"),
+        ("time_s,mode\n0,on\n", "\"on\" is none of"),
+        (
+            "time_s,else\n0,1\n1,2\n",
+            "none of its signals is one of the trace's: else",
+        ),
+        ("time_s,speed\n90,1\n91,2\n", "no time in common"),
+    ] {
+        place.write("x.csv", text);
+        diff("x.csv").exits(2).explains(&[told]);
+    }
+    place.write("x.csv-metadata.json", "{");
+    diff("x.csv")
+        .exits(2)
+        .explains(&["x.csv-metadata.json", "line 1"]);
+    diff("none.csv")
+        .exits(2)
+        .explains(&["cannot read", "none.csv"]);
+    diff("none.mcap")
+        .exits(2)
+        .explains(&["cannot read", "none.mcap"]);
+    place.write("x.mcap", "no MCAP file at all, only words");
+    diff("x.mcap")
+        .exits(2)
+        .explains(&["x.mcap", "no MCAP file"]);
+    for length in [0, 7, 100, whole.len() / 2, whole.len() - 1] {
+        std::fs::write(place.path("x.mcap"), &whole[..length]).expect("written");
+        diff("x.mcap").exits(2).explains(&["x.mcap", "before byte"]);
+    }
+    // One byte of the compressed messages.
+    for at in [whole.len() / 3, whole.len() / 2] {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x55;
+        std::fs::write(place.path("x.mcap"), damaged).expect("written");
+        diff("x.mcap").exits(2).explains(&["x.mcap"]);
+    }
+    place
+        .ptu(&["trace", "diff", "latest", "twin", "--shift", "1"])
+        .exits(2)
+        .explains(&["--shift"]);
+}
+
+/// An MCAP file: each message on a topic of its own with so many fields, all of other names.
+fn wide_mcap(messages: usize, fields: usize, name: &str) -> Vec<u8> {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut writer = mcap::WriteOptions::new().create(&mut file).expect("begun");
+    for topic in 0..messages {
+        let field = |n: usize| format!("\"{name}{n}\":{n}");
+        let message = (0..fields).map(field).collect::<Vec<_>>().join(",");
+        let channel = writer.add_channel(0, &format!("t{topic}"), "json", &BTreeMap::new());
+        let header = mcap::records::MessageHeader {
+            channel_id: channel.expect("a channel"),
+            sequence: 0,
+            log_time: T0_US as u64 * 1000,
+            publish_time: 0,
+        };
+        let message = format!("{{{message}}}");
+        writer
+            .write_to_known_channel(&header, message.as_bytes())
+            .expect("written");
+    }
+    writer.finish().expect("finished");
+    drop(writer);
+    file.into_inner()
+}
+
+/// Goal: a small file with very much in it is refused at once by what it has altogether, not by topic.
+#[test]
+fn a_file_of_very_many_signals_is_refused_at_once() {
+    let place = Place::new();
+    kept(&place, &trace(600));
+    let write =
+        |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
+    write("wide.mcap", &wide_mcap(1, 60_000, "f"));
+    write("topics.mcap", &wide_mcap(5_000, 1, "f"));
+    write("long.mcap", &wide_mcap(1, 1, &"f".repeat(300)));
+    let headings: Vec<_> = (0..150_000).map(|n| format!("{n}")).collect();
+    write("wide.csv", format!("{}\n", headings.join(",")).as_bytes());
+    for (file, told) in [
+        ("wide.mcap", "it has more than 4096 signals"),
+        ("topics.mcap", "it has more than 4096 signals"),
+        ("long.mcap", "is longer than 256 bytes"),
+        ("wide.csv", "it has more than 4096 signals"),
+    ] {
+        let began = std::time::Instant::now();
+        let said = place.ptu(&["trace", "diff", "latest", file]);
+        said.exits(2).explains(&[file, told]);
+        assert!(
+            began.elapsed() < std::time::Duration::from_secs(10),
+            "{file}"
+        );
+    }
+    // As many as are allowed are no trouble either.
+    write("some.mcap", &wide_mcap(1, 4_000, "f"));
+    let began = std::time::Instant::now();
+    let said = place.ptu(&["trace", "diff", "latest", "some.mcap"]);
+    said.exits(2)
+        .explains(&["none of its signals", "and 3990 more"]);
+    assert!(began.elapsed() < std::time::Duration::from_secs(10));
+}
+
+/// `ptu` where no file may grow longer than so much, with the shell's words before it.
+fn short_of_disk(place: &Place, before: &str, arguments: &[&str]) -> crate::common::Said {
+    let ptu = place.command(arguments);
+    let mut command = Command::new("sh");
+    // Blocks of 512 bytes; what SQLite keeps beside an open file takes 64 of them.
+    let script = format!("{before} ulimit -f 80; exec \"$0\" \"$@\"");
+    command
+        .arg("-c")
+        .arg(script)
+        .arg(ptu.get_program())
+        .args(ptu.get_args());
+    for (name, value) in ptu.get_envs() {
+        command.env(name, value.unwrap_or_default());
+    }
+    let output = command
+        .current_dir(ptu.get_current_dir().expect("its place"))
+        .output();
+    output.expect("sh starts").into()
+}
+
+/// Goal: what a file held before is there, whole, until the new one is; a program that is killed halfway leaves
+/// only what the next one that writes into the folder takes away. Method: a limit on the length of files, which
+/// kills or fails a write halfway.
+#[test]
+fn a_file_that_breaks_off_leaves_the_one_before_it() {
+    let place = Place::new();
+    kept(&place, &trace(40_000));
+    place
+        .ptu(&["runs", "show", "latest", "--report", "s.html"])
+        .exits(0);
+    let export = |to: &'static str| ["trace", "export", "latest", "--force", "--to", to];
+    let names = |place: &Place| {
+        let entries = std::fs::read_dir(place.path("")).expect("read");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let names: Vec<_> = names
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect();
+        names
+            .into_iter()
+            .filter(|name| name.ends_with(".part"))
+            .count()
+    };
+    for to in ["t.csv", "t.parquet", "t.mcap"] {
+        place.write(to, "old");
+        let said = short_of_disk(&place, "trap '' XFSZ;", &export(to)).exits(3);
+        said.explains(&["cannot write", to]);
+        assert_eq!(
+            (place.read(to), names(&place)),
+            ("old".to_owned(), 0),
+            "{to}"
+        );
+        let killed = short_of_disk(&place, "", &export(to));
+        assert_eq!(killed.code, None, "{}", killed.all());
+        assert_eq!(place.read(to), "old");
+        assert!(names(&place) > 0, "{to}");
+    }
+    place.write("s.csv", "old");
+    let report = ["runs", "show", "latest", "--report", "s.csv"];
+    place.ptu(&report).exits(0);
+    assert_ne!(place.read("s.csv"), "old");
+    assert_eq!(names(&place), 0, "what was killed is cleaned");
+    place.ptu(&export("t.csv")).exits(0);
+    assert_eq!(place.read("t.csv").lines().count(), 40_001);
+}

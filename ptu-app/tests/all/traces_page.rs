@@ -1,0 +1,210 @@
+//! The page of recorded traces, driven by the names of what is shown.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::common::window::Window;
+use crate::common::{Place, scripts};
+use eframe::egui::Key;
+use ptu_app::gui::{Page, Settings};
+use ptu_app::words::Language;
+
+/// A window on the traces of a unit whose EB relay is slow.
+fn window(settings: Settings) -> Window {
+    let place = Place::new();
+    crate::common::record_bad_unit(&place);
+    let settings = Settings {
+        page: Page::Traces,
+        ..settings
+    };
+    Window::with(place, scripts(), settings)
+}
+
+/// Has the view written as CSV, and reads it: heads and rows.
+fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    // Its own name each time: what was said of the last one is still shown.
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = window.place.text_path(&format!("view-{count}"));
+    clear(window, field);
+    window.write(field, &name);
+    window.click(save);
+    let file = PathBuf::from(format!("{name}.csv"));
+    // The file is there before all of it is written; that it is saved is said afterwards.
+    window.wait_for(&format!("saved: {}", file.display()));
+    let text = std::fs::read_to_string(&file).expect("written");
+    std::fs::remove_file(&file).expect("there");
+    let mut lines = text
+        .lines()
+        .map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    (lines.next().expect("heads"), lines.collect())
+}
+
+/// Empties a text field.
+fn clear(window: &mut Window, field: &str) {
+    use eframe::egui::Modifiers;
+    use egui_kittest::kittest::Queryable;
+    window.wait_for(field);
+    let harness = window.harness();
+    harness
+        .get_all_by_label(field)
+        .last()
+        .expect("seen")
+        .focus();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.key_press(Key::Delete);
+    harness.step();
+}
+
+/// The place a head tells, as `A −2.80 s`, in the axis' unit.
+fn told_place(window: &Window, cursor: &str) -> f64 {
+    let heads = window.shown();
+    let head = heads
+        .iter()
+        .find_map(|text| text.strip_prefix(&format!("{cursor} ")))
+        .unwrap_or_else(|| panic!("no place of {cursor}: {heads:#?}"));
+    let number = head.split(' ').next().expect("a number");
+    number.replace('−', "-").parse().expect("a number")
+}
+
+#[test]
+fn the_latest_trace_is_open_and_the_cursor_tells_what_the_table_has() {
+    let mut window = window(Settings::default());
+    window.wait_for_part("unit BAD-1");
+    // What was wrong is marked, and is a way to where it was.
+    window.wait_for_part("9000 check_failed eb_relay");
+    window.wait_for("0.00 s trigger");
+    window.wait_for("speed");
+
+    window.click("Cursor A");
+    let (heads, rows) = csv(&mut window, "Save CSV", "file name, without its ending");
+    let column = |name: &str| {
+        heads
+            .iter()
+            .position(|head| head == name)
+            .expect("a column")
+    };
+    assert_eq!(heads[0], "time_s");
+    let at = told_place(&window, "A");
+    let near = |row: &&Vec<String>| (row[0].parse::<f64>().expect("a time") - at).abs() < 0.006;
+    let row = rows.iter().find(near).expect("the row under the cursor");
+    let speed: f64 = row[column("speed_kmh")].parse().expect("a speed");
+    let speed = (speed * 1000.0).round() / 1000.0;
+    assert!(
+        window.shows(&format!("{speed} km/h")),
+        "{:#?}",
+        window.shown()
+    );
+
+    // Zoomed in there are fewer rows, and all of them again when it fits.
+    for _ in 0..4 {
+        window.click("Zoom in");
+    }
+    let (_, part) = csv(&mut window, "Save CSV", "file name, without its ending");
+    assert!(
+        part.len() < rows.len() / 3,
+        "{} of {}",
+        part.len(),
+        rows.len()
+    );
+    window.click("Fit");
+    let (_, again) = csv(&mut window, "Save CSV", "file name, without its ending");
+    assert_eq!(again.len(), rows.len());
+}
+
+#[test]
+fn over_distance_cursors_keep_their_rows_and_differences_are_told() {
+    let mut window = window(Settings::default());
+    window.wait_for("0.00 s trigger");
+    window.click("Zoom in");
+    window.click("Zoom in");
+    // A click puts A where it is, here in the middle.
+    window.click("lanes");
+    window.key(Key::ArrowRight);
+    window.key(Key::ArrowRight);
+    window.click("Cursor B");
+    let (a, b) = (told_place(&window, "A"), told_place(&window, "B"));
+    assert!(b > a, "{a} {b}");
+    window.click("Statistics");
+    window.wait_for(&format!("between the cursors: {:.2} s", b - a));
+
+    window.click("distance");
+    window.wait_for("0.00 m trigger");
+    window.wait_for_part("between the cursors");
+    assert!(window.shows_part(" m"), "{:#?}", window.shown());
+    let (heads, _) = csv(&mut window, "Save CSV", "file name, without its ending");
+    assert_eq!(heads[..2], ["time_s", "distance_m"]);
+    window.click("Clear");
+    window.wait_for_part("in view: ");
+}
+
+#[test]
+fn the_good_twin_tells_which_signals_deviate() {
+    let mut window = window(Settings::default());
+    window.wait_for("0.00 s trigger");
+    window.click("what to compare with");
+    window.click("good twin");
+    window.wait_for_part("signals deviate, first eb at");
+    window.click("Show them");
+    window.wait_for("≠ deviates");
+    window.click("what to compare with");
+    window.click("nothing");
+    window.until("no comparison", |window| !window.shows("≠ deviates"));
+}
+
+#[test]
+fn a_signal_the_trace_lacks_says_so_and_lanes_are_chosen_by_name() {
+    let lanes = ["eb", "cabin_temperature"].map(str::to_owned).to_vec();
+    let mut window = window(Settings {
+        lanes,
+        ..Settings::default()
+    });
+    window.wait_for("not in this trace");
+    window.click("Signals");
+    window.click("hide: cabin_temperature");
+    window.until("the lane is gone", |window| {
+        !window.shows("not in this trace")
+    });
+    window.write("find a signal", "hcr");
+    window.click("hcr");
+    clear(&mut window, "find a signal");
+    window.click("up: hcr");
+    window.click("Automatic");
+    window.wait_for("down: speed");
+}
+
+#[test]
+fn in_korean_a_trace_is_found_by_its_fault_and_unit() {
+    let mut window = window(Settings {
+        language: Language::Korean,
+        ..Settings::default()
+    });
+    window.wait_for("0.00 s 트리거");
+    let filter = "필터: 유닛, 시험, 날짜, 고장";
+    window.write(filter, "bad-1 atp_cpu");
+    window.until("fewer traces", |window| {
+        let shown = window.shown();
+        let rows = |part: &str| shown.iter().filter(|text| text.contains(part)).count();
+        rows("9000 check_failed atp_cpu") > 0
+    });
+    clear(&mut window, filter);
+    window.write(filter, "GOOD-9");
+    window.wait_for("필터에 맞는 트레이스가 없음");
+    window.click("거리");
+    window.wait_for("0.00 m 트리거");
+}
+
+#[test]
+fn a_database_that_is_none_is_told_and_the_window_stays() {
+    let place = Place::new();
+    place.write("history.db", "this is no database");
+    let settings = Settings {
+        page: Page::Traces,
+        ..Settings::default()
+    };
+    let mut window = Window::with(place, scripts(), settings);
+    window.wait_for_part("The traces cannot be listed");
+    window.click("refresh");
+    window.wait_for_part("The traces cannot be listed");
+}

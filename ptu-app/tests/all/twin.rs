@@ -1,0 +1,371 @@
+//! What was expected beside what came: good twins, first deviations, differences, replays.
+
+use std::path::Path;
+
+use crate::common::{Place, has_shape, list, number, text};
+use fault_db::Store;
+use ptu_app::data::ScriptsDirectory;
+use ptu_app::replay::{Original, explain, good_twin};
+use rusqlite::Connection;
+use serde_json::Value;
+
+/// A good unit that cannot pass: a train is driven by hand, and the limit is one no train can keep.
+const PULLS_AWAY: &str = r#"procedure(title = "Impossible", title_ko = "불가능", suspect = "tcms")
+step("pulls away",
+    do = [cab.acknowledge(), cab.mode("yard"), until(mode, "yard", within = s(2)), until(eb, "released", within = s(2)),
+          train.drive(True), cab.controller(4), wait(s(3)), cab.controller(-7), wait(s(4)), cab.controller(0)],
+    measure = maximum("greatest_speed", train_speed, high = kmh(0.1)),
+)
+"#;
+
+/// Fault mode, the procedure run on a unit with it, and the signals of the faulty part: the first deviation
+/// must be one of them.
+const FIRST_DEVIATIONS: [(&str, &str, &[&str]); 8] = [
+    ("speed_sensor_1.dead", "atp/speed_input", &["speed1"]),
+    ("speed_sensor_2.dead", "atp/speed_input", &["speed2"]),
+    ("eb_relay.slow", "atp/overspeed", &["eb"]),
+    ("fsb_output.dead", "atp/overspeed", &["fsb"]),
+    ("tra.dead", "ato/markers", &["tra_ok", "marker"]),
+    ("marker_antenna.deaf_to_psm4", "ato/markers", &["marker"]),
+    (
+        "rs485_link.receiver_dead",
+        "tcms/link",
+        &["tcms_ok", "rejected_frames"],
+    ),
+    ("door_contact.open", "tcms/train_lines", &["doors"]),
+];
+
+impl Place {
+    fn store(&self) -> Store {
+        Store::open_read_only(&self.path("history.db")).expect("a database")
+    }
+
+    /// The latest trace with where it deviates.
+    fn explained(&self) -> Value {
+        self.json(&["trace", "show", "latest", "--twin", "--json"])
+    }
+}
+
+fn directory() -> ScriptsDirectory {
+    ScriptsDirectory::find(Some(&crate::common::scripts())).expect("scripts")
+}
+
+/// Every trace of the place and its twin, bit by bit; only the sign of a zero is not stored.
+fn twins_are_identical(place: &Place, directory: &ScriptsDirectory) -> usize {
+    let store = place.store();
+    let mut count = 0;
+    for run in place.run_ids() {
+        let run = store.resolve_run(&run).expect("a run");
+        for summary in store.traces(run).expect("traces") {
+            let original = Original::read(&store, summary.id).expect("a recording");
+            let (twin, _) = good_twin(&original, directory).expect("a twin");
+            let bits = |columns: &[Vec<f64>]| -> Vec<Vec<u64>> {
+                let column =
+                    |column: &Vec<f64>| column.iter().map(|v| (v + 0.0).to_bits()).collect();
+                columns.iter().map(column).collect()
+            };
+            let (came, expected) = (bits(&original.trace.columns), bits(&twin.columns));
+            for (channel, (came, expected)) in twin.channels.iter().zip(came.iter().zip(&expected))
+            {
+                assert_eq!(came, expected, "{} of {}", channel.name, original.procedure);
+            }
+            assert_eq!(original.trace.trigger_row, twin.trigger_row);
+            count += 1;
+        }
+    }
+    count
+}
+
+/// Goal: what deviates under a fault deviates because of it. Method: traces of good units that a limit no
+/// unit can keep cut, in nominal and scattered trains, with another configuration, after other procedures.
+#[test]
+fn the_twin_of_a_good_unit_is_its_trace_bit_by_bit() {
+    let place = Place::new();
+    let script = place.write("impossible.star", PULLS_AWAY);
+    for arguments in [
+        &["--seed", "7"][..],
+        &["--seed", "8", "--scatter"],
+        &[
+            "--seed",
+            "9",
+            "--set",
+            "ato.arrived_m=0.4",
+            "--serial-no",
+            "X-9",
+        ],
+        &[
+            "--seed",
+            "10",
+            "--line",
+            "line6",
+            "--train",
+            "ideal",
+            "tcms/link",
+        ],
+    ] {
+        let all = [&["run", &script], arguments].concat();
+        place.ptu(&all).exits(1);
+    }
+    assert_eq!(twins_are_identical(&place, &directory()), 4);
+    let shown = place.explained();
+    assert_eq!(shown["first_deviation"], Value::Null);
+    assert_eq!(list(&shown["deviations"]).len(), 0);
+    let said = place.ptu(&["trace", "show", "latest"]).exits(0);
+    assert!(said.out.contains("as expected"), "{}", said.all());
+}
+
+#[test]
+fn the_first_deviation_is_at_the_faulty_part() {
+    for (mode, procedure, signals) in FIRST_DEVIATIONS {
+        let place = Place::new();
+        place.ptu(&["run", procedure, "--inject", mode]).exits(1);
+        let trace = first_trace(&place);
+        let shown = place.json(&["trace", "show", &trace, "--twin", "--json"]);
+        let first = &shown["first_deviation"];
+        has_shape(
+            first,
+            &[
+                ("signal", "text"),
+                ("at_s", "number"),
+                ("value", "number?"),
+                ("expected", "number?"),
+            ],
+        );
+        assert!(
+            signals.contains(&text(&first["signal"])),
+            "{mode}: {first}\n{}",
+            shown["deviations"]
+        );
+        assert_eq!(first, &list(&shown["deviations"])[0]);
+        let chain = list(&shown["chain"]);
+        assert_eq!(chain[0]["signal"], first["signal"], "{mode}: {chain:?}");
+        assert!(
+            chain.iter().any(|link| link["kind"] == "fault"),
+            "{mode}: {chain:?}"
+        );
+        let times: Vec<_> = chain.iter().map(|link| number(&link["at_s"])).collect();
+        // Within one report of the unit the way through it decides.
+        let ordered = times.windows(2).all(|pair| pair[0] <= pair[1] + 0.101);
+        assert!(ordered, "{mode}: {times:?}");
+    }
+}
+
+/// The first trace of the latest run.
+fn first_trace(place: &Place) -> String {
+    let store = place.store();
+    let run = store.resolve_run("latest").expect("a run");
+    let traces = store.traces(run).expect("traces");
+    traces.first().expect("a trace").id.to_string()
+}
+
+#[test]
+fn a_dead_sensor_leads_through_the_speed_to_the_brake() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/speed_input", "--inject", "speed_sensor_1.dead"])
+        .exits(1);
+    let shown = place.json(&["trace", "show", &first_trace(&place), "--twin", "--json"]);
+    let names: Vec<_> = list(&shown["chain"])
+        .iter()
+        .map(|link| text(link.get("signal").unwrap_or(&link["name"])))
+        .collect();
+    assert_eq!(names.first(), Some(&"speed1"), "{names:?}");
+    for wanted in ["speed", "eb_cause", "eb", "check_failed"] {
+        assert!(names.contains(&wanted), "no {wanted} in {names:?}");
+    }
+    let said = place
+        .ptu(&["trace", "show", &first_trace(&place), "--twin"])
+        .exits(0);
+    for words in [
+        "first deviation from the good twin: speed1",
+        "chain",
+        "expected",
+    ] {
+        assert!(said.out.contains(words), "{words}\n{}", said.all());
+    }
+}
+
+#[test]
+fn a_replay_shows_the_fault_again_with_it_and_not_without() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .exits(1);
+    let trace = first_trace(&place);
+    let replay = |more: &[&str], exit: i32| -> Value {
+        let all = [&["trace", "replay", trace.as_str(), "--json"], more].concat();
+        let said = place.ptu(&all).exits(exit);
+        serde_json::from_str(&said.out).expect("JSON")
+    };
+    let without = replay(&[], 0);
+    assert_eq!(without["result"], "as_good_twin");
+    assert_eq!(list(&without["from_trace"])[0]["signal"], "eb");
+    let with = replay(&["--inject", "eb_relay.slow"], 1);
+    assert_eq!(with["result"], "reproduced");
+    assert_eq!(list(&with["from_trace"]).len(), 0);
+    let other = replay(&["--inject", "fsb_output.dead"], 1);
+    assert_eq!(other["result"], "otherwise");
+    // The replay is a run of its own, and its trace can be had again, too.
+    let run = place.json(&["runs", "show", text(&with["run"]), "--json"]);
+    assert!(
+        text(&run["run"]["source"]).starts_with("replay of"),
+        "{run}"
+    );
+    assert_eq!(list(&run["steps"])[0]["message"], "reproduced");
+    assert_eq!(list(&run["faults"]).len(), 0, "a replay finds nothing new");
+    let again = text(&with["replay_trace"]);
+    let shown = place.json(&["trace", "show", again, "--twin", "--json"]);
+    assert_eq!(shown["first_deviation"]["signal"], "eb");
+    let diff = place.json(&["trace", "diff", &trace, again, "--json"]);
+    assert_eq!(list(&diff["deviations"]).len(), 0);
+    let diff = place.json(&[
+        "trace",
+        "diff",
+        &trace,
+        text(&without["replay_trace"]),
+        "--json",
+    ]);
+    assert_eq!(list(&diff["deviations"])[0]["signal"], "eb");
+    let twin = place.json(&["trace", "diff", &trace, "twin", "--json"]);
+    assert_eq!(list(&twin["deviations"]), list(&diff["deviations"]));
+}
+
+#[test]
+fn diff_keeps_to_the_signals_asked_for_and_names_what_is_missing() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .exits(1);
+    let trace = first_trace(&place);
+    let diff = |signals: &str| {
+        place.json(&[
+            "trace",
+            "diff",
+            &trace,
+            "twin",
+            "--signals",
+            signals,
+            "--json",
+        ])
+    };
+    let signals: Vec<_> = list(&diff("speed,eb")["deviations"])
+        .iter()
+        .map(|deviation| text(&deviation["signal"]).to_owned())
+        .collect();
+    assert_eq!(signals, ["eb"]);
+    place
+        .ptu(&["trace", "diff", &trace, "twin", "--signals", "spede"])
+        .exits(2)
+        .explains(&["spede", "catalog signals"]);
+    let said = place.ptu(&["trace", "diff", &trace, &trace]).exits(0);
+    assert!(said.out.contains("no signal differs"), "{}", said.all());
+}
+
+#[test]
+fn what_cannot_be_had_again_says_why() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .exits(1);
+    let trace = first_trace(&place);
+    // A scripts directory in which the configuration was changed since.
+    let changed = place.path("changed");
+    copy(&crate::common::scripts(), &changed);
+    let config = changed.join("units/sg100.toml");
+    let old = std::fs::read_to_string(&config).expect("read");
+    std::fs::write(&config, format!("{old}\n# another\n")).expect("written");
+    let scripts = changed.display().to_string();
+    for verb in [&["show", "--twin"][..], &["replay"]] {
+        let all = [
+            &["trace", verb[0], trace.as_str(), "--scripts", &scripts],
+            &verb[1..],
+        ]
+        .concat();
+        place.ptu(&all).exits(2).explains(&[
+            "\"sg100\"",
+            "changed since the recording",
+            "--scripts",
+        ]);
+    }
+    std::fs::remove_file(&config).expect("gone");
+    place
+        .ptu(&["trace", "diff", &trace, "twin", "--scripts", &scripts])
+        .exits(2)
+        .explains(&["cannot be had any more", "sg100"]);
+    let said = place
+        .ptu(&["trace", "show", &trace, "--scripts", &scripts])
+        .exits(0);
+    assert!(
+        said.out.contains("what was expected is not known"),
+        "{}",
+        said.all()
+    );
+    place
+        .ptu(&["trace", "replay", &trace, "--inject", "eb_relay.slwo"])
+        .exits(2)
+        .explains(&["eb_relay.slow"]);
+    place
+        .ptu(&["trace", "replay", &trace, "--unit", "tcp:127.0.0.1:1"])
+        .exits(3)
+        .explains(&["127.0.0.1:1"]);
+    let runs = place.run_ids().len();
+    // The trace of an earlier version.
+    let conn = Connection::open(place.path("history.db")).expect("opens");
+    conn.execute("DELETE FROM recording", []).expect("deleted");
+    drop(conn);
+    for verb in [&["show", "--twin"][..], &["replay"]] {
+        let all = [&["trace", verb[0], trace.as_str()], &verb[1..]].concat();
+        place.ptu(&all).exits(2).explains(&["no recording"]);
+    }
+    let said = place.ptu(&["trace", "show", &trace]).exits(0);
+    assert!(said.out.contains("no recording"), "{}", said.all());
+    assert_eq!(
+        place.run_ids().len(),
+        runs,
+        "what cannot begin leaves no run"
+    );
+}
+
+/// Diagnosis asks for explanations by the dozen.
+#[test]
+fn an_explanation_comes_from_the_library_too() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "ato/markers", "--inject", "tra.dead"])
+        .exits(1);
+    let store = place.store();
+    let id = store.resolve_trace(&first_trace(&place)).expect("a trace");
+    let explanation = explain(&store, &directory(), id).expect("explained");
+    assert_eq!(explanation.procedure, "ato/markers");
+    assert!(explanation.first().is_some());
+    assert!(!explanation.chain.is_empty());
+}
+
+/// A good run keeps nothing: a recording without a trace is of no use.
+#[test]
+fn a_good_run_keeps_no_stimuli() {
+    let place = Place::new();
+    place.ptu(&["run", "tcms/link", "atp/overspeed"]).exits(0);
+    let rows = place.json(&[
+        "db",
+        "query",
+        "SELECT count(*) AS n FROM recording",
+        "--json",
+    ]);
+    assert!(
+        rows.to_string().contains('0') && !rows.to_string().contains('1'),
+        "{rows}"
+    );
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("listed").flatten() {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).expect("copied");
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! A unit's own event log, read over its port: faults with freeze frames in the history, each once.
+
+use crate::common::served::{Running, Unit};
+use crate::common::steady::steadily;
+use crate::common::{Place, list, number, text};
+use serde_json::Value;
+
+/// Reads the unit's log into the place's history.
+#[track_caller]
+fn import(place: &Place, unit: &Unit, more: &[&str]) -> Value {
+    let arguments = ["faults", "import", "--unit", &unit.address, "--json"];
+    place.json(&[&arguments[..], more].concat())
+}
+
+fn names(faults: &Value) -> Vec<&str> {
+    list(faults)
+        .iter()
+        .map(|fault| text(&fault["name"]))
+        .collect()
+}
+
+/// Goal: what a unit logged elsewhere becomes faults here, once. Method: it is driven with a dead speed
+/// sensor by one tester, and its log read by another.
+#[test]
+fn what_a_unit_logged_elsewhere_becomes_faults_once() {
+    steadily(|| {
+        let unit = Unit::on_tcp(&["--inject", "speed_sensor_1.dead", "--serial-no", "FLD-1"]);
+        let (workshop, depot) = (Place::new(), Place::new());
+        let arguments = ["atp/overspeed", "--step", "code 25: at the limit*"];
+        Running::start(&workshop, &unit, &arguments)
+            .finish()
+            .exits(1);
+
+        let first = import(&depot, &unit, &["--operator", "Kim"]);
+        assert_eq!(first["unit_serial"], "FLD-1");
+        assert_eq!(first["complete"], true);
+        let dead = list(&first["faults"])
+            .iter()
+            .find(|f| f["name"] == "tacho1_dead");
+        let dead = dead.unwrap_or_else(|| panic!("{first}"));
+        assert_eq!(dead["lru"], "speed_sensor_1");
+        let frozen = |name: &str| {
+            let samples = list(&dead["freeze_frame"]).iter();
+            samples
+                .clone()
+                .find(|sample| sample["name"] == name)
+                .cloned()
+        };
+        let speed = frozen("speed").expect("the speed it froze");
+        assert!(number(&speed["value"]) > 1.0, "{speed}");
+        for name in [
+            "limit",
+            "position",
+            "mode",
+            "eb_cause",
+            "parameter",
+            "log_index",
+        ] {
+            assert!(frozen(name).is_some(), "no {name} in {dead}");
+        }
+        assert!(
+            frozen("carrier_hz").is_none(),
+            "an entry does not tell of it"
+        );
+
+        let runs = depot.json(&["runs", "list", "--json"]);
+        let run = &list(&runs)[0];
+        assert_eq!(run["source"], format!("log of {}", unit.address));
+        assert_eq!(
+            (&run["verdict"], &run["operator"]),
+            (&"failed".into(), &"Kim".into())
+        );
+        assert_eq!(run["step_count"], 0);
+        depot.ptu(&["runs", "show", "latest"]).exits(0);
+
+        let second = import(&depot, &unit, &[]);
+        assert_eq!(number(&second["imported"]), 0.0, "{second}");
+        assert_eq!(second["known"], first["imported"]);
+        assert_eq!(
+            second["entries"], first["entries"],
+            "reading adds nothing to the log"
+        );
+        assert_eq!(depot.run_ids().len(), 1);
+
+        // Who drove it has judged it already.
+        let own = import(&workshop, &unit, &[]);
+        assert!(!names(&own["faults"]).contains(&"tacho1_dead"), "{own}");
+        assert!(number(&own["left_out"]["under_test"]) > 0.0, "{own}");
+
+        let other = [
+            "faults",
+            "import",
+            "--unit",
+            &unit.address,
+            "--serial-no",
+            "FLD-2",
+        ];
+        depot
+            .ptu(&other)
+            .exits(3)
+            .explains(&["FLD-1", "FLD-2", "--serial-no"]);
+        assert_eq!(depot.run_ids().len(), 1);
+    });
+}
+
+#[test]
+fn without_a_unit_nothing_is_stored() {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    // A free port might be taken by another test.
+    place
+        .ptu(&["faults", "import", "--unit", "tcp:127.0.0.1:1"])
+        .exits(3)
+        .explains(&["127.0.0.1:1", "check that the unit is served there"]);
+    place
+        .ptu(&["faults", "import", "--unit", "sim"])
+        .exits(2)
+        .explains(&["embedded unit", "--unit"]);
+    assert_eq!(place.run_ids(), [earlier]);
+}
