@@ -2,6 +2,7 @@
 //! out.
 
 use protocol::Speed;
+use protocol::line::Section;
 use protocol::message::{DoorSide, ModeSwitch, RunningMode};
 use serde::{Deserialize, Serialize};
 
@@ -138,6 +139,38 @@ pub struct StationData {
     pub departure: bool,
     /// Train number.
     pub train_number: u16,
+}
+
+/// Train number of generated station data [default].
+const TRAIN_NUMBER: u16 = 8001;
+
+impl StationData {
+    /// What the loop of a section's departure station sends: no door side, departure held.
+    pub fn at_departure(section: &Section) -> Self {
+        Self {
+            route: section.route,
+            section: section.section,
+            station: section.from_station,
+            next_station: section.to_station,
+            loop_id: section.from_loop,
+            fixed_speed_kmh: None,
+            running_mode: RunningMode::Normal,
+            door_side: DoorSide::None,
+            departure: false,
+            train_number: TRAIN_NUMBER,
+        }
+    }
+
+    /// What the loop of its arrival station sends; `next_station` is the one after it.
+    pub fn at_arrival(section: &Section, next_station: u16) -> Self {
+        Self {
+            station: section.to_station,
+            next_station,
+            loop_id: section.to_loop,
+            door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
+            ..Self::at_departure(section)
+        }
+    }
 }
 
 /// One thing done to the unit, through the bench harness or, for `Ptu…`, through the TEST board.

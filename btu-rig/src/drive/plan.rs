@@ -2,15 +2,11 @@
 
 use protocol::config::UnitConfig;
 use protocol::line::{Line, Section};
-use protocol::message::{DoorSide, RunningMode};
 use thiserror::Error;
 
 use crate::conditions::Conditions;
 use crate::stimulus::{StationData, Stimulus};
 use crate::train::TrainData;
-
-/// Train number the wayside names [default].
-const TRAIN_NUMBER: u16 = 8001;
 
 /// Why a run cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -114,34 +110,17 @@ impl DrivePlan {
         })
     }
 
-    /// What the departure station's loop says: departure given.
+    /// What the departure station's loop sends, departure given.
     pub(super) fn at_departure(&self) -> StationData {
-        let section = &self.section;
         StationData {
-            route: section.route,
-            section: section.section,
-            station: section.from_station,
-            next_station: section.to_station,
-            loop_id: section.from_loop,
-            fixed_speed_kmh: None,
-            running_mode: RunningMode::Normal,
-            door_side: DoorSide::None,
             departure: true,
-            train_number: TRAIN_NUMBER,
+            ..StationData::at_departure(&self.section)
         }
     }
 
-    /// What the arrival station's loop says.
+    /// What the arrival station's loop sends.
     pub(super) fn at_arrival(&self) -> StationData {
-        let section = &self.section;
-        StationData {
-            station: section.to_station,
-            next_station: self.onward_station,
-            loop_id: section.to_loop,
-            door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
-            departure: false,
-            ..self.at_departure()
-        }
+        StationData::at_arrival(&self.section, self.onward_station)
     }
 }
 

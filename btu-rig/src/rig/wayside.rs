@@ -2,7 +2,7 @@
 
 use protocol::line::Section;
 use protocol::link::Link;
-use protocol::message::{DoorSide, RunningMode, TwcWayside};
+use protocol::message::TwcWayside;
 use protocol::{Duration, Instant};
 
 use crate::stimulus::{StationData, WaysideCondition};
@@ -32,7 +32,7 @@ impl Wayside {
     pub fn new(section: &Section, random: Random) -> Self {
         Self {
             condition: WaysideCondition::Good,
-            data: at_departure(section),
+            data: StationData::at_departure(section),
             next_due: Instant::ZERO,
             random,
             frame: Vec::new(),
@@ -43,7 +43,7 @@ impl Wayside {
     /// Good again, at a section's departure station; due times and counts go on.
     pub fn reset(&mut self, section: &Section) {
         self.condition = WaysideCondition::Good;
-        self.data = at_departure(section);
+        self.data = StationData::at_departure(section);
     }
 
     /// Sets what it sends.
@@ -109,26 +109,6 @@ impl Wayside {
         self.answers as u16
     }
 }
-
-/// Station data of a train waiting at a section's start: departure held, no door side until a
-/// script gives one, as the track database has only the arrival's.
-fn at_departure(section: &Section) -> StationData {
-    StationData {
-        route: section.route,
-        section: section.section,
-        station: section.from_station,
-        next_station: section.to_station,
-        loop_id: section.from_loop,
-        fixed_speed_kmh: None,
-        running_mode: RunningMode::Normal,
-        door_side: DoorSide::None,
-        departure: false,
-        train_number: DEFAULT_TRAIN_NUMBER,
-    }
-}
-
-/// Train number until a script gives one [default].
-const DEFAULT_TRAIN_NUMBER: u16 = 8001;
 
 /// Station data as the wire carries them.
 pub fn wire_data(data: &StationData) -> TwcWayside {

@@ -103,24 +103,17 @@ pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, Stri
 }
 
 fn defaults(section: &Section, place: Place, all: &[Section]) -> StationData {
-    let (station, next_station, loop_id) = match place {
-        Place::Departure => (section.from_station, section.to_station, section.from_loop),
+    let data = match place {
+        Place::Departure => StationData::at_departure(section),
         Place::Arrival => {
             let onward = all.iter().find(|s| s.from_station == section.to_station);
             let next = onward.map_or(section.to_station, |s| s.to_station);
-            (section.to_station, next, section.to_loop)
+            StationData::at_arrival(section, next)
         }
     };
     StationData {
-        route: section.route,
-        section: section.section,
-        station,
-        next_station,
-        loop_id,
-        fixed_speed_kmh: None,
-        running_mode: RunningMode::Normal,
         door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
-        departure: false,
         train_number: 1,
+        ..data
     }
 }
