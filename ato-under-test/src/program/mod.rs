@@ -118,7 +118,7 @@ fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
         let another = wire.attend(now, behind, unit.frames_accepted());
         if another.context("attending to the wire")? {
             backlog = Backlog::default();
-            unit.begin_anew();
+            unit.reset_connection();
         }
         let count = wire.read(&mut read).context("reading from the wire")?;
         received.clear();

@@ -125,7 +125,7 @@ impl Unit {
     }
 
     /// Another tester is connected from now on: nothing the last one sent is continued.
-    pub fn begin_anew(&mut self) {
+    pub fn reset_connection(&mut self) {
         self.link.reset_connection();
     }
 

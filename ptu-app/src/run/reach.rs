@@ -51,10 +51,10 @@ impl BenchSetup {
         bench.rig_mut().leave_log_before_contact();
         let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
             .attended_by(self.attendant.clone())
-            .keeping_up(self.bears());
+            .with_max_lag(self.max_lag());
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found);
-        if session.was_held_up() {
+        if session.has_stalled() {
             found.retain(|fault| {
                 Event::from_code(fault.code)
                     .is_some_and(|event| event.about_train() || event == Event::SelfTestFailed)
@@ -76,7 +76,7 @@ impl BenchSetup {
 
     /// How far the bench may be behind: the unit misses its inputs after a silence, of which what it heard
     /// last may be a cycle old already.
-    fn bears(&self) -> Duration {
+    fn max_lag(&self) -> Duration {
         let silence_us = u64::from(self.config.content.link.io_timeout_ms) * 1000;
         Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))
     }

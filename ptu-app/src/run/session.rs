@@ -77,7 +77,7 @@ impl<L: UnitLink> Session<L> {
 
     /// Sets the lag beyond which a unit in real time misses its inputs and brakes, so that nothing it does then
     /// is judged.
-    pub fn keeping_up(mut self, max_lag: Duration) -> Self {
+    pub fn with_max_lag(mut self, max_lag: Duration) -> Self {
         self.max_lag = Some(max_lag);
         self
     }
@@ -124,7 +124,7 @@ impl<L: UnitLink> Session<L> {
     }
 
     /// Whether the bench lagged more than the maximum since the last call.
-    pub fn was_held_up(&mut self) -> bool {
+    pub fn has_stalled(&mut self) -> bool {
         self.stalled.take().is_some()
     }
 
