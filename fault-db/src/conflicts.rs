@@ -25,12 +25,12 @@ pub struct StateConflict {
     /// The state that stands meanwhile: the one that leaves the most work.
     pub stands: FaultState,
     /// The heads of its event graph, by time.
-    pub rivals: Vec<RivalEvent>,
+    pub rivals: Vec<ConflictingEvent>,
 }
 
 /// One head of the event graph.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct RivalEvent {
+pub struct ConflictingEvent {
     /// The event.
     pub id: Id,
     /// Its kind.
@@ -46,7 +46,7 @@ pub struct RivalEvent {
 }
 
 /// The heads of faults that have more than one.
-const RIVALS: &str = concat!(
+const CONFLICTING_EVENTS: &str = concat!(
     "SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.state, e.id, e.kind, e.at_us, e.who, e.body, e.state
      FROM fault f JOIN unit u ON u.seq = f.unit, ",
     heads!("f.seq"),
@@ -59,7 +59,7 @@ impl Store {
         let mut conflicts = Vec::<StateConflict>::new();
         let take = |row: crate::backend::Row<'_>| {
             let fault: Id = row.get(0)?;
-            let rival = RivalEvent {
+            let rival = ConflictingEvent {
                 id: row.get(6)?,
                 kind: row.get(7)?,
                 at_us: row.get(8)?,
@@ -81,7 +81,7 @@ impl Store {
             }
             Ok(())
         };
-        let found = self.backend().each(RIVALS, &[], take);
+        let found = self.backend().each(CONFLICTING_EVENTS, &[], take);
         found.map_err(|error| self.failed("looking for conflicts", error))?;
         Ok(conflicts)
     }

@@ -62,7 +62,7 @@ mod verify;
 mod views;
 
 pub use atomic_file::AtomicFile;
-pub use conflicts::{RivalEvent, StateConflict};
+pub use conflicts::{ConflictingEvent, StateConflict};
 pub use domain::{Refusals, Refused};
 pub use error::{QueryLimit, StoreError};
 pub use fault_state::{FaultAction, FaultState, TransitionError};

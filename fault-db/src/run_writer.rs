@@ -17,7 +17,7 @@ use crate::limits;
 use crate::query::LOG_SOURCE;
 use crate::record::{FaultRecord, RunEnd, RunRecord, StepRecord};
 use crate::seal;
-use crate::seal::run::RunSeal;
+use crate::seal::run::RunDigest;
 use crate::store::Store;
 use crate::trace::TraceData;
 
@@ -43,7 +43,7 @@ pub struct RunWriter<'a> {
     known_events: i64,
     waiting: Vec<StepRecord>,
     /// Computed from the records as they come.
-    pub(crate) seal: RunSeal,
+    pub(crate) seal: RunDigest,
     last_index: Option<u32>,
     /// This file takes the rest of a run whose own file was busy for too long; the run is complete and sealed
     /// where both are merged.
@@ -75,7 +75,7 @@ impl<'a> RunWriter<'a> {
         record.check()?;
         let sw_versions = json(&record.unit.sw_versions);
         let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
-        let seal = RunSeal::begin(id, record, &sw_versions);
+        let seal = RunDigest::begin(id, record, &sw_versions);
         let (run, unit) = store.write(DOING, |conn| {
             insert_run(conn, id, record, &sw_versions).map_err(|error| store.failed(DOING, error))
         })?;

@@ -56,7 +56,7 @@ impl RunPayload {
 }
 
 /// The digest of a run under recording.
-pub(crate) struct RunSeal {
+pub(crate) struct RunDigest {
     run: CanonicalHash,
     scripts: [u8; 32],
     steps: CanonicalHash,
@@ -65,7 +65,7 @@ pub(crate) struct RunSeal {
     payload: RunPayload,
 }
 
-impl RunSeal {
+impl RunDigest {
     /// For a run at its beginning.
     pub fn begin(id: Id, record: &RunRecord, sw_versions: &str) -> Self {
         let RunRecord { unit, .. } = record;

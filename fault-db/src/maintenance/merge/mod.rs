@@ -1,12 +1,12 @@
 //! Merges the history of one file into another. Idempotent: a row whose id is known is not added again.
 
-mod examine;
+mod compare_runs;
 mod faults;
 mod rows;
 mod runs;
-mod same;
 mod seals;
 mod valid_rows;
+mod validate;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -116,7 +116,7 @@ impl Store {
         // One read transaction, so that all tables are seen at the same moment.
         let begin = theirs.execute_batch("BEGIN");
         begin.map_err(|error| other.failed(DOING, error))?;
-        let examined = examine::hide_invalid_rows(theirs, other.backend(), self.backend());
+        let examined = validate::hide_invalid_rows(theirs, other.backend(), self.backend());
         let examined = examined.map_err(|error| self.error_of(other, error));
         let merged = examined.and_then(|refused| {
             let copy = self.copy_of(other)?;
@@ -141,7 +141,7 @@ impl Store {
                 .map_err(|error| self.error_of(other, error))
             })
         });
-        let _ = examine::show_all_rows(theirs);
+        let _ = validate::show_all_rows(theirs);
         let _ = theirs.execute_batch("COMMIT");
         // The cache is reduced again; it would last as long as this store is open.
         let _ = set_cache(-(CACHE_KIB as i32));

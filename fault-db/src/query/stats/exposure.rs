@@ -2,7 +2,7 @@
 
 use super::super::fault_filter::Resolved;
 use super::StatKey;
-use super::counted::Key;
+use super::counts::Key;
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::sql_functions::DAY_US;
@@ -10,12 +10,12 @@ use crate::store::Store;
 
 /// Observed days of each unit.
 pub(crate) struct Exposure {
-    units: Vec<Watched>,
+    units: Vec<ObservedUnit>,
     since_us: i64,
     until_us: i64,
 }
 
-struct Watched {
+struct ObservedUnit {
     unit: i64,
     line: String,
     days: f64,
@@ -56,7 +56,7 @@ impl Exposure {
             }
             let since_us = filter.since_us.map_or(first, |since| since.max(first));
             let days = (until_us - since_us).max(0) as f64 / DAY_US as f64;
-            units.push(Watched { unit, line, days });
+            units.push(ObservedUnit { unit, line, days });
         }
         let since_us = filter
             .since_us
@@ -80,15 +80,15 @@ impl Exposure {
 
     /// Observed days of all units that belong to a key.
     pub fn days(&self, by: StatKey, key: &Key) -> f64 {
-        let is_meant = |watched: &&Watched| match (by, key) {
-            (StatKey::Unit, Key::Number(unit)) => watched.unit == *unit,
-            (StatKey::Line, Key::Text(line)) => watched.line == *line,
+        let is_meant = |observed: &&ObservedUnit| match (by, key) {
+            (StatKey::Unit, Key::Number(unit)) => observed.unit == *unit,
+            (StatKey::Line, Key::Text(line)) => observed.line == *line,
             _ => true,
         };
         self.units
             .iter()
             .filter(is_meant)
-            .map(|watched| watched.days)
+            .map(|observed| observed.days)
             .sum()
     }
 }

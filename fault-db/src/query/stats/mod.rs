@@ -4,16 +4,16 @@
 //! at both ends of the span, and every other filter, are counted row by row. A server always counts row by
 //! row.
 
-mod counted;
+mod by_row;
+mod counts;
 mod exposure;
-mod plain;
+mod from_tally;
 mod repairs;
-mod tallied;
 
 use serde::Serialize;
 
-pub(crate) use counted::Bins;
-use counted::{Counts, Key};
+pub(crate) use counts::Bins;
+use counts::{Counts, Key};
 use exposure::Exposure;
 
 use super::fault_filter::{FaultFilter, FilteredTable, Resolved};
@@ -100,12 +100,12 @@ impl Store {
         let exposure = Exposure::read(self, &resolved, query.now_us)?;
         let bins = Bins::of(exposure.since_us(), exposure.until_us());
         let kept = match self.backend() {
-            Backend::File(_) => tallied::reads(&resolved, query.by),
+            Backend::File(_) => from_tally::part_for(&resolved, query.by),
             Backend::Server(_) => None,
         };
         let counted = match &kept {
-            Some(kept) => tallied::count(self.backend(), kept, &query.filter, &bins),
-            None => plain::count(self.backend(), &resolved, query.by, &bins),
+            Some(kept) => from_tally::count(self.backend(), kept, &query.filter, &bins),
+            None => by_row::count(self.backend(), &resolved, query.by, &bins),
         };
         let mut counted = counted.map_err(failed)?;
         counted.retain(|_, counts| !counts.is_nothing());
@@ -132,7 +132,7 @@ impl Store {
         &self,
         resolved: &Resolved<'_>,
         by: StatKey,
-        counted: &mut counted::Counted,
+        counted: &mut counts::Counted,
     ) -> crate::backend::SqlResult<()> {
         let mut conditions =
             resolved.conditions_at(self.backend(), FilteredTable::Faults, "last_at_us");

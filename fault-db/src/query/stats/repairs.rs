@@ -1,7 +1,7 @@
 //! Repairs: how long they took, and whether the fault came back.
 
 use super::super::fault_filter::{FilteredTable, Resolved};
-use super::counted::{Counted, Key};
+use super::counts::{Counted, Key};
 use super::{HOUR_US, StatQuery};
 use crate::backend::{Backend, SqlResult};
 use crate::sql_functions::DAY_US;

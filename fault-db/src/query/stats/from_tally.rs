@@ -3,7 +3,7 @@
 
 use super::super::fault_filter::{FaultFilter, Resolved};
 use super::StatKey;
-use super::counted::{Bins, Counted, Counts, Key, Tally, Units};
+use super::counts::{Bins, Counted, Counts, Key, Tally, Units};
 use super::repairs::KEPT_DAYS;
 use crate::backend::{Backend, Row, SqlResult, Value, values};
 use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
@@ -13,7 +13,7 @@ const MONTHS: i64 = 0;
 const DAYS: i64 = 1;
 
 /// The part of `tally` that answers a query.
-pub(super) struct Kept {
+pub(super) struct TallyPart {
     dim: i64,
     column: &'static str,
     /// Restricts it to one key.
@@ -22,7 +22,7 @@ pub(super) struct Kept {
     together: bool,
 }
 
-impl Kept {
+impl TallyPart {
     /// Whether the key is the unit.
     fn tells_units_apart(&self) -> bool {
         self.column == "unit" && !self.together
@@ -30,7 +30,7 @@ impl Kept {
 }
 
 /// The part of `tally` that answers this query, if there is one.
-pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
+pub(super) fn part_for(resolved: &Resolved<'_>, by: StatKey) -> Option<TallyPart> {
     let asked = resolved.identity_filters_only()?;
     let (dim, column) = match by {
         StatKey::All => (0, "''"),
@@ -39,7 +39,7 @@ pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
         StatKey::Unit => (3, "unit"),
         StatKey::Line => (4, "line"),
     };
-    let kept = |dim, column, only| Kept {
+    let kept = |dim, column, only| TallyPart {
         dim,
         column,
         only,
@@ -68,7 +68,7 @@ pub(super) fn reads(resolved: &Resolved<'_>, by: StatKey) -> Option<Kept> {
 /// Counts in the filter's span of time.
 pub(super) fn count(
     backend: &Backend,
-    kept: &Kept,
+    kept: &TallyPart,
     filter: &FaultFilter,
     bins: &Bins,
 ) -> SqlResult<Counted> {
@@ -108,7 +108,7 @@ pub(super) fn count(
 
 struct Counting<'a> {
     backend: &'a Backend,
-    kept: &'a Kept,
+    kept: &'a TallyPart,
     bins: &'a Bins,
     counted: Counted,
 }
@@ -209,7 +209,7 @@ impl Counting<'_> {
         if from_us >= to_us {
             return Ok(());
         }
-        let Kept { column, only, .. } = self.kept;
+        let TallyPart { column, only, .. } = self.kept;
         let mut values = values![from_us, to_us].to_vec();
         values.extend(only.clone());
         let only = match only {
@@ -288,7 +288,7 @@ impl Counting<'_> {
     }
 }
 
-impl Kept {
+impl TallyPart {
     fn key(&self, row: Row<'_>) -> SqlResult<Key> {
         Ok(match self.together {
             true => Key::Text(String::new()),

@@ -2,7 +2,7 @@
 
 use super::super::fault_filter::{FilteredTable, Resolved};
 use super::StatKey;
-use super::counted::{Bins, Counted, Key, Units};
+use super::counts::{Bins, Counted, Key, Units};
 use crate::backend::{Backend, SqlResult};
 
 /// Counts the rows that match the filter.
