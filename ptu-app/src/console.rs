@@ -1,4 +1,4 @@
-//! The console: progress while a run goes on, and its verdict table.
+//! The console during a run: progress, and the table of verdicts at its end.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,4 +1,4 @@
-//! What goes wrong at the edge, told to a person, with the exit code that goes with it.
+//! Failures reported to the user, each with its exit code.
 
 use std::fmt;
 
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_serial_number_is_near_unless_it_is_another_one() {
+    fn a_serial_number_is_suggested_only_if_it_is_similar() {
         let known = ["ATC-1001", "ATC-1002", "SG-0142"];
         for (asked, near) in [
             ("atc-1001", " (did you mean \"ATC-1001\"?)"),
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_is_near_in_capitals_or_not() {
+    fn a_name_is_suggested_whatever_its_case() {
         let hint = did_you_mean("EB_RELY", ["tacho_a", "eb_relay"]);
         assert_eq!(hint, " (did you mean \"eb_relay\"?)");
         assert_eq!(did_you_mean("xyz", ["eb_relay"]), "");

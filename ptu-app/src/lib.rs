@@ -1,20 +1,20 @@
-//! The edge of the maintenance test unit: command line, ports, clocks, files and reports.
+//! The application of the maintenance test unit: command line, window, ports, clocks, files and reports.
 //!
-//! * [`cli`]: one file per verb;
-//! * [`run`]: procedures on benches, one stream of events, recording;
-//! * [`replay`]: what was done to a bench done again: good twins, differences of traces, replays;
-//! * [`drive`]: station-to-station automatic runs, one or thousands;
-//! * [`link`]: the embedded unit and units on ports;
-//! * [`limits`]: measured values between their limits, as people read them;
-//! * [`campaign`]: the suite against every fault mode, for the fault dictionary and its worth;
-//! * [`diagnosis`]: from a run to the part to replace;
-//! * [`field`]: a unit's own event log becomes faults in the history;
-//! * [`trace_view`]: recorded signals as lanes of a plot, without anything of a window;
-//! * [`trace_io`]: traces to and from other programs' files;
-//! * [`report`]: what a run came to, as JSON, JUnit XML and a table;
+//! * [`cli`]: the command line, one file per verb;
+//! * [`gui`]: the technician's window, and [`words`], its texts in two languages;
+//! * [`bench_worker`]: one unit under test and its bench thread, for the window;
+//! * [`run`]: runs procedures on benches, and stores and forwards their events;
+//! * [`link`]: links to the embedded unit and to units on ports;
+//! * [`drive`]: automatic runs from station to station, and manual runs;
+//! * [`replay`]: repeats recorded stimuli and compares traces;
+//! * [`field`]: imports a unit's own event log into the fault history;
+//! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
+//! * [`diagnosis`]: finds the part to replace from the results of a run;
+//! * [`report`]: reports of runs as HTML, PDF, JSON, JUnit XML and CSV; [`limits`]: values and limits in them;
+//! * [`trace_view`]: prepares traces for drawing, independent of the window; [`trace_io`]: trace files;
 //! * [`data`]: the scripts directory.
 //!
-//! Only here are clocks read, threads started and files opened.
+//! Only this crate reads clocks, starts threads and opens files other than the database.
 
 pub mod bench_worker;
 pub mod campaign;
@@ -42,6 +42,7 @@ mod sparkline;
 pub mod stop;
 mod table;
 mod tell;
+mod ticks;
 pub mod trace_io;
 pub mod trace_view;
 pub mod words;

@@ -1,4 +1,4 @@
-//! A measured value and its limits as people read them, in figures and as a bar.
+//! Measured values and their limits as text and as the shares of a bar.
 
 /// Share of a bar beyond each limit.
 const BEYOND: f64 = 0.25;
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn the_only_value_allowed_stands_in_the_middle() {
+    fn a_single_allowed_value_is_in_the_middle_of_the_bar() {
         let places = |value| places(Some(value), Some(4.0), Some(4.0)).expect("a bar");
         assert_eq!(places(4.0), (0.5, 0.5, 0.5));
         assert!(places(3.0).0 < 0.5 && places(5.0).0 > 0.5);

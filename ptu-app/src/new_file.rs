@@ -1,4 +1,4 @@
-//! A file that stands in its place only when it is whole.
+//! Writes a file under a temporary name and renames it when it is complete.
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_there_stays_until_the_new_one_is_whole() {
+    fn the_old_file_stays_until_the_new_one_is_complete() {
         let folder = tempfile::tempdir().expect("folder");
         let names = || std::fs::read_dir(folder.path()).expect("read").count();
         let (place, link) = (folder.path().join("a.json"), folder.path().join("b.json"));
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_replaced_is_told_before_anything_is_written() {
+    fn a_file_that_cannot_be_replaced_is_reported_before_writing() {
         let folder = tempfile::tempdir().expect("folder");
         let told = |place: &Path| NewFile::begin(place).expect_err("refused").message;
         assert!(told(folder.path()).ends_with("it is a folder"));
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_written_over_where_a_name_beside_will_do() {
+    fn an_existing_file_is_not_overwritten_if_another_name_is_free() {
         let folder = tempfile::tempdir().expect("folder");
         let wanted = folder.path().join("trace.v2.csv");
         let names: Vec<_> = (0..3)

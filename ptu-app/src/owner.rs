@@ -1,4 +1,4 @@
-//! Names this process so that another can tell whether it still lives.
+//! Identifies this process so that another process can tell whether it still runs.
 
 /// `pid:start` of this process; the start time keeps a reused pid apart.
 pub fn this_process() -> String {

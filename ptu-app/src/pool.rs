@@ -1,4 +1,4 @@
-//! Work shared out among threads, whose result does not depend on how many there are.
+//! Distributes work to threads; the result does not depend on their number.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_are_in_order_however_many_work() {
+    fn results_are_in_order_for_any_number_of_threads() {
         for jobs in [1, 3, 50] {
             let results = run(40, jobs, &Stop::default(), &mut |_| {}, |i| i * i);
             assert_eq!(results, (0..40).map(|i| (i, i * i)).collect::<Vec<_>>());

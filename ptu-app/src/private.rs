@@ -1,4 +1,4 @@
-//! Folders and files that hold history or settings are their owner's alone.
+//! Creates folders and files that only their owner can read: history and settings.
 
 use std::path::Path;
 

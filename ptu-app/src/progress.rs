@@ -1,4 +1,4 @@
-//! Progress of many runs on stderr: a bar on a terminal, a line each tenth elsewhere.
+//! Progress of many runs on stderr: a bar on a terminal, otherwise a line for each tenth.
 
 use indicatif::{ProgressBar, ProgressStyle};
 

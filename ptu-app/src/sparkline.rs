@@ -1,4 +1,4 @@
-//! A course over time in one line of text.
+//! A series of values as one line of text.
 
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 

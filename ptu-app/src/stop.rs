@@ -1,4 +1,4 @@
-//! The operator's stop: Ctrl-C, a polite kill or a terminal that closes, counted.
+//! Stop requests: Ctrl-C, termination, a closed terminal, or the tester itself; presses are counted.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::SyncSender;
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_was_started_to_outlive_its_terminal_does() {
+    fn a_process_started_with_nohup_ignores_a_closed_terminal() {
         let status = |mask| format!("Name:\tptu\nSigBlk:\t0000000000000001\nSigIgn:\t{mask}\n");
         assert!(ignores_hang_up(&status("0000000000001001")));
         assert!(!ignores_hang_up(&status("0000000000001000")));

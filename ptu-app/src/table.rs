@@ -1,4 +1,4 @@
-//! Plain aligned tables, by the columns a terminal gives each letter.
+//! Aligned text tables; widths are counted in terminal columns.
 
 use std::borrow::Cow;
 
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_may_be_as_long_as_it_likes_and_is_cut() {
+    fn a_long_cell_is_cut() {
         let mut table = Table::new(&["FIRST", "LAST"]);
         table.row(["x".repeat(80_000), "한".repeat(80_000)]);
         let line = table.render().lines().last().expect("a row").to_owned();
@@ -128,14 +128,14 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_is_one_line_that_acts_on_no_terminal() {
+    fn a_cell_is_one_line_without_control_characters() {
         let mut table = Table::new(&["A\x1bB", "C"]);
         table.row(["\x1b[31mred".into(), "two\nlines".into()]);
         assert_eq!(table.render(), "A\\x1bB       C\n\\x1b[31mred  two\\nlines");
     }
 
     #[test]
-    fn what_is_cut_is_as_wide_as_asked_for_or_a_half_letter_less() {
+    fn cut_text_has_the_requested_width_or_one_column_less() {
         assert_eq!(cut("abcdef", 6), "abcdef");
         assert_eq!(cut("abcdef", 5), "abcd…");
         assert_eq!(cut("가나다", 6), "가나다");

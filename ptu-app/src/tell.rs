@@ -1,4 +1,4 @@
-//! All that the program tells: answers on standard output, everything else on standard error.
+//! The only writer of standard output and standard error.
 //!
 //! Nobody else writes to either. Text that others wrote acts on no terminal here, and what cannot be told
 //! stops nothing: a run goes on without anybody who listens.
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_told_acts_on_no_terminal_and_ends() {
+    fn printed_text_has_no_control_characters_and_a_limited_width() {
         assert_eq!(readable("a\x1b[2J\nb\u{202e}"), "a\\x1b[2J\nb\\u{202e}");
         let wide = readable(&"\u{ac00}".repeat(100_000));
         assert!(wide.ends_with('…'));

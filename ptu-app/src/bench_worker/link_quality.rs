@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn another_bench_begins_anew() {
+    fn counts_of_another_bench_start_from_zero() {
         let mut link = after(1);
         link.take(Instant::from_ms(50), 3, 0);
         assert_eq!(link.share(), None);

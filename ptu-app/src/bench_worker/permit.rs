@@ -233,7 +233,7 @@ mod tests {
 
     /// Method: every kind of stimulus × connection × phase × armed × key, against what each kind needs.
     #[test]
-    fn a_stimulus_is_given_when_what_it_needs_is_there() {
+    fn a_stimulus_is_permitted_when_its_requirements_are_met() {
         let all = one_of_every_kind();
         let kinds: std::collections::HashSet<_> = all.iter().map(std::mem::discriminant).collect();
         assert_eq!(kinds.len(), 40);
@@ -269,7 +269,7 @@ mod tests {
 
     /// A unit that says nothing is not armed.
     #[test]
-    fn what_is_not_known_is_not_so() {
+    fn an_unknown_signal_counts_as_off() {
         let live = LiveData {
             phase: Phase::Idle,
             ..LiveData::default()

@@ -1,4 +1,4 @@
-//! What a dictionary is worth: every held-out run diagnosed, and the figures over them.
+//! Evaluates a fault dictionary: diagnoses every held-out run with it and computes the figures of the result.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,6 +8,7 @@ use fault_db::diagnosis::{
 
 use super::samples::{Purpose, Sample};
 use super::suite::SuiteRun;
+use crate::drive::monte_carlo::percentile;
 use crate::pool;
 use crate::stop::Stop;
 
@@ -295,9 +296,5 @@ fn ambiguous(assessments: &[Assessment]) -> Vec<Vec<String>> {
 
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
-    }
+    percentile(&values, 50.0).unwrap_or(0.0)
 }

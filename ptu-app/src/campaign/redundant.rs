@@ -1,5 +1,5 @@
-//! Which steps tell fault modes apart by passing and failing alone; measured values and signs are not counted.
-//! Chosen greedily. The rest may still tell something, and be needed to accept a unit.
+//! Finds the steps that tell fault modes apart by their verdict alone; measured values and their signs are not
+//! counted.
 
 use std::collections::BTreeSet;
 

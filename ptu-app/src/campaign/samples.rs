@@ -1,5 +1,5 @@
-//! What is run in a campaign: fault modes at all their levels, setting in at different times, on units
-//! that differ; and good units.
+//! Which runs a campaign makes: fault modes at all their levels, with different onset times, on different
+//! units.
 
 use protocol::injection::{FaultKind, FaultMode};
 

@@ -1,4 +1,4 @@
-//! The whole suite on one embedded unit, in memory: nothing is recorded but what diagnosis reads.
+//! Runs the whole suite on one embedded unit in memory and keeps only what diagnosis reads.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! `--db`: which history, in a file or on a server.
+//! `--db`: selects the history, a file or a server.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `ptu diagnose`: what the results say.
+//! `ptu diagnose`: the parts that the results of a run point to.
 
 use std::path::PathBuf;
 

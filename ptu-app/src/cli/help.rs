@@ -1,4 +1,4 @@
-//! Help as a terminal breaks it.
+//! Wraps help texts to the width of the terminal.
 
 use clap::Command;
 use clap::builder::StyledStr;

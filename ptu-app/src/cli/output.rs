@@ -1,4 +1,4 @@
-//! An answer as a table, as JSON or as CSV: one list of rows for the latter two.
+//! Writes an answer as a table, as JSON or as CSV; the latter two come from one list of rows.
 
 use clap::Args;
 use serde_json::Value;

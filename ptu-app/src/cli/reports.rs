@@ -1,4 +1,4 @@
-//! `--report` and `--lang`: what a run came to, in files.
+//! `--report` and `--lang`: writes the report of a run to files.
 
 use clap::Args;
 use fault_db::{RunDetail, Store};

@@ -1,4 +1,4 @@
-//! `ptu saved`: questions that were given a name, to be asked again.
+//! `ptu saved`: queries saved under a name.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_questions_may_be_anything() {
+    fn a_damaged_file_of_saved_queries_is_reported() {
         let folder = tempfile::tempdir().expect("folder");
         let file = folder.path().join("questions.json");
         let kept = r#"{"worst":["faults","stats","--by=lru","--when","90d"],"a b":[]}"#;

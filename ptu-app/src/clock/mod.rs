@@ -1,4 +1,4 @@
-//! The only clock, and the only chance, of the program: wall-time labels and new identities.
+//! The only reader of the system clock and of the system's random numbers: wall time and new identities.
 
 mod span;
 

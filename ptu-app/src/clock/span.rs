@@ -1,4 +1,4 @@
-//! Spans of time as people write them: `30d`, `2026-03`, `2026-03..2026-05`, `2026-03-21..`.
+//! Time spans as users write them: `30d`, `2026-03`, `2026-03..2026-05`, `2026-03-21..`.
 //!
 //! Dates are those of the local calendar. A year, month or day means all of it, at the end of a span, too.
 
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_month_at_the_end_is_meant_whole() {
+    fn a_month_at_the_end_of_a_span_counts_whole() {
         let spring = span("2026-03..2026-05");
         assert_eq!(
             (spring.since_us, spring.until_us),
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_span_is_named() {
+    fn text_that_is_no_span_is_quoted_in_the_error() {
         for (text, why) in [
             ("2026-13", "is no time"),
             ("2026-3", "is no time"),

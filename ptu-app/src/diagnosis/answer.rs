@@ -1,4 +1,4 @@
-//! A stored run diagnosed.
+//! Diagnoses a stored run.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a fault dictionary is made of, so that a stale one can be told.
+//! The files and settings a fault dictionary was made from, so that an outdated dictionary is recognised.
 
 use std::collections::BTreeMap;
 

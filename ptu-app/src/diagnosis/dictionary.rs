@@ -137,7 +137,7 @@ mod tests {
     /// Goal: a dictionary that was kept can be read here, where another crate makes JSON's numbers texts
     /// of any length, which not every way of reading them survives.
     #[test]
-    fn a_dictionary_that_was_kept_is_read_again() {
+    fn a_saved_dictionary_is_read_back() {
         let mode = ModeName {
             id: "eb_relay.slow".into(),
             lru: "eb_relay".into(),

@@ -1,4 +1,5 @@
-//! What was seen, gathered from a live stream or read from a stored run; both give the same.
+//! Gathers the observations for a diagnosis, from a live stream of events or from a stored run, with the same
+//! result.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What a unit's own history says of its parts before a check is made: priors, and words for them.
+//! Prior probabilities of parts from the history of a unit, with the reasons as text.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_replaced_in_vain_is_lowered_however_often_it_is_named() {
+    fn a_part_replaced_without_effect_is_less_likely_however_often_it_is_named() {
         let (_, _, without) = diagnosed(known(0, None), &[]);
         let (_, diagnosis, with) = diagnosed(known(4, Some(true)), &[]);
         assert!(with < 0.8 * without, "{with} against {without}");
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_run_after_a_repair_shows_by_itself_that_it_was_in_vain() {
+    fn the_first_run_after_a_repair_shows_that_it_had_no_effect() {
         let (same, _, _) = diagnosed(known(0, Some(false)), &[(230, "eb_relay")]);
         assert_eq!(same.factors["eb_relay"], 0.5);
         let (other, _, _) = diagnosed(known(0, Some(false)), &[(221, "speed_sensor_1")]);

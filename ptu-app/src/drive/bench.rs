@@ -1,4 +1,4 @@
-//! One run: a fresh embedded unit on a bench, driven to the end.
+//! Drives one run to its end with a fresh embedded unit.
 
 use ato_under_test::Setup;
 use btu_rig::drive::{Drive, DrivePlan, Ending, Outcome};

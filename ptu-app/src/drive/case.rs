@@ -1,4 +1,4 @@
-//! One section under one controller, and how it is made of what was asked for.
+//! One section under one controller, and how it is built from the command line options.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What commands may name: sections, loads, disturbances, and what is held fixed.
+//! Values of command line options: sections, loads, disturbances, and quantities held fixed.
 
 use std::str::FromStr;
 

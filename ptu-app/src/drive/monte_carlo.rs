@@ -1,4 +1,4 @@
-//! A case driven many times, each with another train and day.
+//! Runs one case many times, each time with another train and other conditions.
 
 use btu_rig::drive::{Ending, Metrics, Scatter, ScatterDraw};
 

@@ -1,4 +1,4 @@
-//! The train of a run: its file, its mass, and what the unit is told of it.
+//! The train of a run: its file, its mass, and the parameters the unit is given for it.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! When the entries of a log were made, as far as the unit's own clock tells.
+//! Dates the entries of a unit's log from the unit's own clock, as far as it is known.
 
 use btu_rig::procedure::UnitEvent;
 use protocol::event::Event;
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_is_as_old_as_the_units_clock_says() {
+    fn an_entry_is_dated_by_the_age_that_the_units_clock_gives() {
         let entries = [(Event::PowerUp, 0), (Event::TachoDead1, 4_000)];
         let seconds = |s: i64| Some(NOW_US - s * 1_000_000);
         assert_eq!(dated(&entries, 10_000), [seconds(10), seconds(6)]);
@@ -72,7 +72,7 @@ mod tests {
 
     /// Goal: no confident wrong date. Method: entries that the present power-up cannot have made.
     #[test]
-    fn what_is_of_another_power_up_has_no_date() {
+    fn an_entry_of_an_earlier_power_up_has_no_date() {
         let restarted = [
             (Event::TachoDead1, 4_000),
             (Event::PowerUp, 5_000),

@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_taken_off_the_bench_is_not_at_fault() {
+    fn disconnecting_the_bench_is_no_fault_of_the_unit() {
         let (found, left_out) = faults(
             &[
                 Event::PowerUp,
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn inputs_or_tcms_gone_alone_are_faults_and_so_is_what_was_gone_before() {
+    fn loss_of_inputs_or_of_tcms_alone_is_a_fault_and_so_is_an_earlier_loss() {
         assert_eq!(faults(&[Event::InputsLost, Event::TwcLost], &[]).0, [0, 1]);
         let gone_before = [
             Event::TcmsLost,
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_tester_did_is_no_fault() {
+    fn the_effects_of_a_tester_are_no_faults() {
         let armed = [
             Event::OverspeedEb,
             Event::Armed,
@@ -260,7 +260,7 @@ mod tests {
     /// Goal: what a bad line did is no fault of modems and boards, and what a bad modem did is one. Method:
     /// frames refused on two channels at once, and on one.
     #[test]
-    fn frames_of_several_partners_refused_at_once_are_the_lines() {
+    fn frames_of_several_partners_rejected_at_once_are_blamed_on_the_line() {
         let refused = |channel: Channel, at_ms: u32| Entry {
             event: UnitEvent {
                 parameter: i32::from(channel.code()),
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_dated_can_be_too_old() {
+    fn only_dated_entries_can_be_too_old() {
         let entry = |at_us| Entry {
             event: event(0, Event::TachoDead1, 0),
             at_us,

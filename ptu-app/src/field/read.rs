@@ -1,4 +1,4 @@
-//! Reads a unit's log to its end, or as far as it goes.
+//! Reads a unit's log to its end, or until the link fails.
 
 use btu_rig::procedure::UnitEvent;
 use btu_rig::rig::{LogSession, UnitLink};

@@ -1,4 +1,4 @@
-//! Faults of a unit's log that the history does not know yet, stored as a run without steps.
+//! Stores faults of a unit's log that are new to the history, as a run without steps.
 
 use std::collections::BTreeMap;
 

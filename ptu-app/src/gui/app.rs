@@ -1,4 +1,4 @@
-//! The window's one object: polls what other threads have for it, then shows frame and page.
+//! The window: takes what other threads have produced, then draws the frame and the page.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! Opening the window on whatever display there is, or saying that there is none.
+//! Opens the window on the available display, or reports that there is none.
 
 use std::sync::Arc;
 use std::sync::mpsc;

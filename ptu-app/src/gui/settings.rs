@@ -1,4 +1,4 @@
-//! What the window keeps between starts.
+//! The settings saved between starts of the window.
 
 use std::path::{Path, PathBuf};
 
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_comes_back_and_a_damaged_file_gives_the_usual() {
+    fn saved_settings_are_read_back_and_a_damaged_file_gives_the_defaults() {
         let folder = tempfile::tempdir().expect("folder");
         let file = folder.path().join("config/window.json");
         let kept = Settings {

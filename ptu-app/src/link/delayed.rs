@@ -1,4 +1,4 @@
-//! A wire on which bytes are on their way for a while.
+//! Delays the bytes between rig and embedded unit as a cable does.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! Paces scans: not at all in virtual time, by absolute deadlines of the monotonic clock otherwise.
+//! Paces scans: without waiting in virtual time, otherwise by absolute deadlines of the monotonic clock.
 
 use protocol::{Duration, SCAN};
 use rustix::thread::ClockId;

@@ -1,4 +1,4 @@
-//! The embedded unit, reached through the same frames as one on a cable.
+//! Links to the embedded unit through the same frames as on a cable.
 
 use ato_under_test::{Setup, Unit};
 use btu_rig::rig::{LinkFailure, UnitLink};

@@ -1,4 +1,4 @@
-//! Doing again what was done, on the embedded unit.
+//! Repeats recorded stimuli on a freshly built embedded unit.
 
 use btu_rig::recorded::StimulusPlayer;
 use btu_rig::rig::UnitLink;

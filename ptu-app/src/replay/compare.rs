@@ -1,4 +1,4 @@
-//! Where two traces part, signal by signal.
+//! Compares two traces signal by signal.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! A trace told: where it first parts from its good twin, and what followed from there to the brake.
+//! Explains a trace: its first deviation from the trace of a good unit, and what followed from there to the brake.
 
 use fault_db::{Id, Store, TraceData};
 
@@ -70,18 +70,7 @@ pub fn explain(
     directory: &ScriptsDirectory,
     id: Id,
 ) -> Result<Explanation, Failure> {
-    explained(store, directory, &Original::read(store, id)?)
-}
-
-/// The same for a trace that is read already.
-///
-/// # Errors
-/// As [`explain`].
-pub fn explained(
-    store: &Store,
-    directory: &ScriptsDirectory,
-    original: &Original,
-) -> Result<Explanation, Failure> {
+    let original = &Original::read(store, id)?;
     let (twin, rule) = good_twin(original, directory)?;
     let comparison = compare(&original.trace, &twin, &rule, &[])?;
     let faults = faults(store, original)?;

@@ -1,4 +1,4 @@
-//! Traces that explain themselves: what was done to a bench is done again.
+//! Repeats recorded stimuli: traces of a good unit for comparison, differences between traces, replays.
 //!
 //! * [`Original`]: a stored trace with the recording it was cut from;
 //! * [`good_twin`]: the same stimuli at the same times, the same seed, on an embedded unit without the
@@ -15,7 +15,7 @@ mod path;
 mod rerun;
 
 pub use compare::{Comparison, Deviation, Difference, Rule, compare};
-pub use explain::{Explanation, Link, explain, explained};
+pub use explain::{Explanation, Link, explain};
 pub use original::{Original, rule_between};
 pub use rerun::{Likeness, Rerun, Rerunning, rerun};
 

@@ -1,4 +1,4 @@
-//! A stored trace and the recording behind it.
+//! Reads a stored trace together with the recording it belongs to.
 
 use fault_db::{Id, Store, TraceData};
 use protocol::Instant;

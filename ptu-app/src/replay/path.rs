@@ -1,4 +1,4 @@
-//! Where a signal stands on the way from what the unit is given to what the train does.
+//! The position of each signal on the path from the unit's inputs to the motion of the train.
 //!
 //! Two signals that part from what is expected within one report of the unit are told in this order,
 //! because each is sent at its own time.
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_signal_of_the_unit_has_its_place_and_none_is_made_up() {
+    fn every_signal_of_the_unit_has_a_position_on_the_path() {
         for name in PATH.iter().chain(&LEFT_OUT).chain(&BESIDE).chain(&BRAKES) {
             assert!(Signal::from_name(name).is_some(), "{name}");
         }

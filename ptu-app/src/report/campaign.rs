@@ -1,4 +1,4 @@
-//! What a campaign comes to, as text and as JSON.
+//! The result of a campaign as text and as JSON.
 
 use std::fmt::Write as _;
 

@@ -112,19 +112,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_would_break_a_line_is_quoted() {
+    fn text_with_separators_or_line_breaks_is_quoted() {
         assert_eq!(quoted("plain"), "plain");
         assert_eq!(quoted("a, \"b\"\nc"), "\"a, \"\"b\"\"\nc\"");
     }
 
     #[test]
-    fn a_text_acts_on_no_terminal_that_shows_the_file() {
+    fn text_in_a_csv_file_has_no_control_characters() {
         let written = Cell::Text("\x1b[2J\u{9b}31m\u{202e}\tone\ntwo".into()).written();
         assert_eq!(written, "\"\\x1b[2J\\x9b31m\\u{202e}\tone\ntwo\"");
     }
 
     #[test]
-    fn a_text_that_begins_like_a_formula_is_marked_and_a_number_is_not() {
+    fn text_that_begins_like_a_formula_is_escaped_and_numbers_are_not() {
         let text = |text: &str| Cell::Text(text.into()).written();
         assert_eq!(text("=1+1"), "'=1+1");
         assert_eq!(text("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");

@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_in_a_document_acts_and_every_letter_comes_back() {
+    fn control_characters_in_a_document_are_escaped_reversibly() {
         let text = "\x1b]0;x\x07 \x7f \u{9b}31m \u{202e} \u{e0041} \u{feff} 한 é \"\\ \n";
         let written = json_text(&json!({ text: [text] })).expect("JSON");
         let acts = |letter: char| shown::is_unseen(letter) && letter != '\n';

@@ -1,4 +1,4 @@
-//! JUnit XML, for whoever reads test results of many tools.
+//! JUnit XML, for tools that collect test results.
 
 use fault_db::{RunDetail, StepDetail, Verdict};
 use protocol::shown;

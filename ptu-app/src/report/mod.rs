@@ -18,7 +18,6 @@ use maud::Markup;
 use protocol::shown;
 
 pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
-pub(crate) use plot::round_step;
 
 use crate::data::{self, ScriptsDirectory};
 use crate::failure::Failure;

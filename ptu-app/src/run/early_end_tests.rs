@@ -191,7 +191,7 @@ fn a_run_stopped_between_two_procedures_is_aborted_whatever_came_before() {
 /// What nothing was left out of has its own verdict and exit code, and so has a run that was to end there by
 /// itself.
 #[test]
-fn a_stop_that_comes_too_late_changes_no_verdict() {
+fn a_stop_after_the_last_procedure_changes_no_verdict() {
     let plan = plan_of(&[PASSES, PASSES]);
     let (outcome, stored) = stopped_after(1, &plan);
     assert_eq!(stored, fault_db::Verdict::Passed);
@@ -385,7 +385,7 @@ fn a_procedure_stopped_between_two_repetitions_is_aborted() {
 /// Goal: what fails in one repetition ends a run that is to end with its first failure; else the others have
 /// their turn.
 #[test]
-fn a_repetition_that_fails_ends_what_is_to_end_with_the_first_failure() {
+fn a_failed_repetition_ends_a_run_that_stops_on_fail() {
     for (ends, turns) in [(false, 3), (true, 1)] {
         let mut plan = plan_of(&[FAILS]);
         plan.stop_on_fail = ends;

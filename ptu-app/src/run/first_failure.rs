@@ -1,4 +1,4 @@
-//! Where a run ends that is to end with its first failure.
+//! Decides at which procedure a run with `--stop-on-fail` ends.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::SyncSender;

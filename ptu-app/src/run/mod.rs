@@ -1,11 +1,11 @@
-//! One run: procedures on benches, their one stream of events, and all who read it.
+//! Runs procedures on benches, and stores and forwards the events of the run.
 //!
 //! ```text
 //! bench (rig + unit) → Session → SessionEvent → Collector → store thread → fault-db
 //!                                                        ↘ console
 //! ```
-//! Workers drive benches; the collector takes their streams in the order of the procedures, so the
-//! record does not depend on how many work side by side.
+//! Workers run procedures side by side, each with a stream of events. The collector reads the streams in the order
+//! of the procedures, so that the record does not depend on the number of workers.
 
 pub(crate) mod adaptive;
 pub(crate) mod bench_setup;

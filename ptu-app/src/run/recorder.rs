@@ -1,4 +1,4 @@
-//! The ring of sample rows, and the windows cut from it around a fault.
+//! A ring of sample rows, and the traces cut from it around faults.
 
 use std::collections::VecDeque;
 
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_short_says_so() {
+    fn an_incomplete_trace_is_marked_partial() {
         let mut recorder = Recorder::default();
         run(&mut recorder, 0, 5_000);
         recorder.trigger(Instant::from_ms(5_000), Instant::ZERO, 0);

@@ -1,4 +1,4 @@
-//! A unit between power-up and its first procedure, and between one procedure and the next.
+//! Waits for a unit to settle: after power-up, and between procedures.
 
 use btu_rig::procedure::UnitEvent;
 use btu_rig::rig::{Bench, UnitLink};

@@ -1,4 +1,4 @@
-//! What a unit says of itself in text fields: shown so that two units that differ in one byte stay two.
+//! Text fields of the unit's identity, written so that different bytes never give the same text.
 
 use protocol::message::Identity;
 

@@ -208,7 +208,7 @@ fn on_a_good_line_a_good_unit_passes() {
 }
 
 #[test]
-fn a_log_that_falls_silent_is_an_error_and_nobodys_fault() {
+fn a_log_that_stops_answering_is_an_error_and_no_fault() {
     let bed = Bed::new();
     for id in JUDGE {
         let came_to = bed.run(id, Wrong::NoLog, 1);

@@ -1,4 +1,4 @@
-//! What a trace is, as it is kept beside its samples in every format.
+//! The description of a trace that every file format keeps beside the samples.
 
 use fault_db::{Channel, TraceHead};
 use serde::{Deserialize, Serialize};

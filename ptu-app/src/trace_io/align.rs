@@ -1,4 +1,4 @@
-//! Signals of a file laid at the times of a stored trace's rows.
+//! Resamples signals of a file at the times of a stored trace's rows.
 
 use std::collections::BTreeSet;
 
@@ -216,7 +216,7 @@ mod tests {
 
     /// Rows are at -100, -50, 0, 50, 100 and 150 ms.
     #[test]
-    fn the_last_sample_until_a_row_stands_there() {
+    fn a_row_has_the_last_sample_before_it() {
         let slow = file(&[-50_000, 50_000], &[3.0, 4.0], false);
         let (ours, theirs) = laid(&slow, 0);
         assert_eq!(theirs, [-1.0, 3.0, 3.0, 4.0, 4.0, -1.0]);
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn times_of_day_are_laid_at_the_traces_own() {
+    fn times_of_day_are_aligned_with_those_of_the_trace() {
         let rows: Vec<i64> = (0..6).map(|row| 1_000_000 + row * 50_000).collect();
         let import = file(&rows, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true);
         let laid = lay(import.clone(), trace(&[1.0; 6]), 0).expect("laid");
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_in_common_is_told_with_both_spans() {
+    fn files_without_common_time_are_reported_with_both_spans() {
         let import = file(&[9_000_000, 9_050_000], &[1.0, 2.0], false);
         let told = lay(import, trace(&[1.0; 6]), 0).expect_err("apart").message;
         for word in ["9.000 to 9.050 s", "-0.100 to 0.150 s", "--shift"] {

@@ -1,4 +1,4 @@
-//! Traces as comma-separated values, and what they are in a file beside.
+//! Exports traces as comma-separated values, with a description in a file beside.
 //!
 //! A line a row: the time in seconds from the trigger, then a column a signal, headed by its name and its
 //! unit; words and bits are numbers, an unknown sample is empty. `FILE-metadata.json` beside it says what

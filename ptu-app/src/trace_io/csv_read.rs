@@ -1,4 +1,4 @@
-//! Comma-separated values as signals: our own exports, and any table with times in its first column.
+//! Imports comma-separated values: our own exports, or any table with times in its first column.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read};
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_are_reported_with_line_and_column() {
         for (text, told) in [
             ("", "x.csv: it is empty"),
             ("only", "x.csv: line 1: headings are missing"),

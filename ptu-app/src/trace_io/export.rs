@@ -1,4 +1,4 @@
-//! A stored trace, or a part of it, into a file.
+//! Exports a stored trace, or a part of it, to a file.
 
 use std::io::Write;
 use std::ops::Range;
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_span_that_is_none_is_told_from_one_outside() {
+    fn an_invalid_span_and_a_span_outside_the_trace_give_different_errors() {
         for wrong in ["", "3", "a..b", "1..nan", "1..inf"] {
             let told = rows(wrong).expect_err("no span");
             assert!(told.contains("-2..5"), "{told}");

@@ -1,4 +1,4 @@
-//! MCAP files as signals: our own exports, and any messages in JSON.
+//! Imports MCAP files: our own exports, or any messages in JSON.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;

@@ -1,4 +1,4 @@
-//! The axis that lanes share: time from the trigger, or the way run from there.
+//! The common axis of all lanes: time from the trigger, or distance from there.
 
 use fault_db::TraceData;
 
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_a_train_that_moves_back_lie_at_the_farthest_point() {
+    fn rows_of_a_train_that_rolls_back_are_at_the_farthest_point() {
         let way = [0.0, 1.0, 3.0, 2.0, 1.5, f64::NAN, 3.5, 5.0];
         let axis = Axis::distance(&trace(&[("train_position", &way)]), 1).expect("distance");
         let Axis::Distance {
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_train_that_runs_backwards_all_the_way_runs_a_way_too() {
+    fn a_train_that_runs_backwards_covers_a_distance_too() {
         let axis = Axis::distance(&trace(&[("position", &[5.0, 3.0, 0.0])]), 0);
         let axis = axis.expect("distance");
         assert_eq!([axis.at(0), axis.at(1), axis.at(2)], [0.0, 2.0, 5.0]);

@@ -1,4 +1,4 @@
-//! Which part of the axis is in view.
+//! The part of the axis that is in view.
 
 use super::Window;
 
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_under_the_pointer_stays_there() {
+    fn zooming_keeps_the_point_under_the_pointer() {
         let mut camera = camera();
         let under = camera.window().at(0.25);
         camera.zoom(0.25, 0.5);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_view_ends_at_the_ends_and_at_the_least() {
+    fn the_view_is_limited_to_the_trace_and_to_the_smallest_window() {
         let mut camera = camera();
         camera.zoom(0.0, 1e-9);
         assert!((camera.window().length() - 1.0).abs() < 1e-9);

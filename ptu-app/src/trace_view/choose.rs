@@ -1,4 +1,4 @@
-//! Which signals to show first.
+//! Chooses the signals that are shown first.
 
 use super::view::{Summary, TraceView};
 
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_changed_around_the_trigger_comes_first_and_what_is_not_recorded_not_at_all() {
+    fn signals_that_changed_near_the_trigger_come_first_and_missing_ones_are_left_out() {
         let step: Vec<f64> = (0..200)
             .map(|row| f64::from(u8::from(row >= 100)))
             .collect();

@@ -1,4 +1,4 @@
-//! Quantities per column of pixels: no sample is lost however many fall into one column.
+//! Reduces a quantity to one interval per column of pixels, so that no extreme sample is lost.
 
 use super::Window;
 
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_stays_empty() {
+    fn unknown_values_are_empty_cells() {
         let samples = [
             (0.0, 1.0),
             (1.0, f64::NAN),

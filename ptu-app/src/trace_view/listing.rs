@@ -1,4 +1,4 @@
-//! Which traces there are, and one of them with what happened in it.
+//! Lists the recorded traces, and opens one with the events in it.
 
 use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
 

@@ -3,7 +3,6 @@
 //!
 //! * [`columns`]: quantities, least and greatest value per column of pixels;
 //! * [`spans`]: choices and bits, as stretches of one value;
-//! * [`ticks`]: round values along an axis;
 //! * [`TraceView`]: a trace with every signal summarised once ([`Pyramid`], [`Runs`]);
 //! * [`Axis`]: time or distance; [`Camera`]: the part of it in view;
 //! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;
@@ -24,7 +23,6 @@ mod runs;
 mod scene;
 pub mod spans;
 pub mod statistics;
-pub mod ticks;
 pub mod value;
 mod view;
 

@@ -1,4 +1,4 @@
-//! Another trace, or the good twin, behind a trace, and where they part.
+//! Another trace, or that of a good unit, behind a trace, and where the two first differ.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn where_it_parts_follows_the_shift_and_what_cannot_be_compared_says_why() {
+    fn the_first_difference_follows_the_shift_and_incomparable_traces_give_a_reason() {
         let other = |columns: &[(&str, &[f64])]| Overlay {
             against: Against::Twin,
             view: TraceView::new(trace(columns)),

@@ -1,4 +1,4 @@
-//! Least and greatest value of any stretch of a quantity's rows, in steps that depend on its logarithm.
+//! Minimum and maximum of any range of rows, in a time logarithmic in the length of the range.
 
 use super::axis::Edges;
 use super::columns::Column;

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_a_stretch_as_long_as_it_holds_and_unknown_is_none() {
+    fn a_state_is_one_interval_while_it_holds_and_unknown_is_none() {
         let found = spans(&SAMPLES, Window { from: 0.0, to: 0.5 });
         let expected = [
             (0.0, 20.0, Shown::Value(0.0)),
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn many_changes_are_few_stretches_and_what_follows_is_right() {
+    fn many_changes_are_merged_and_later_intervals_stay_correct() {
         let mut samples: Vec<f64> = (0..60_000).map(|i| f64::from(i % 2)).collect();
         samples.extend([1.0; 40_000]);
         let found = spans(

@@ -1,4 +1,4 @@
-//! A trace as it is looked at: lanes, the part in view, cursors, and what is laid behind.
+//! The view of a trace: lanes, the part in view, cursors, and the trace behind.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,7 +7,8 @@ use super::listing::Opened;
 use super::overlay::{Against, Overlay, Parting};
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
-use super::{Axis, Camera, Kind, choose, ticks};
+use super::{Axis, Camera, Kind, choose};
+use crate::ticks;
 
 /// Fewest rows in view.
 const FEWEST_ROWS: f64 = 8.0;

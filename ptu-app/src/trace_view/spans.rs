@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_samples_are_one_stretch_and_unknown_ones_none() {
+    fn equal_samples_are_one_interval_and_unknown_ones_none() {
         let found = shown(&[
             (-1.0, 0.0),
             (2.0, 0.0),
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_pulse_is_seen_and_many_are_one_busy_stretch() {
+    fn a_short_pulse_is_visible_and_many_are_one_busy_interval() {
         let pulse = shown(&[(0.0, 0.0), (5.0, 1.0), (5.05, 0.0), (10.0, 0.0)]);
         assert_eq!(pulse.len(), 3);
         assert_eq!(pulse[1], (50.0, 51.0, Shown::Busy));

@@ -1,4 +1,4 @@
-//! What a signal did over a stretch of rows.
+//! Statistics of a signal over a range of rows.
 
 use std::ops::Range;
 
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_quantities_and_states() {
+    fn quantities_and_states_have_their_statistics() {
         let mut data = trace(&[
             ("speed", &[2.0, 4.0, f64::NAN, 6.0, 100.0]),
             ("eb", &[0.0, 1.0, 1.0, 1.0, 0.0]),

@@ -1,4 +1,4 @@
-//! Values of signals as people read them.
+//! Values of signals as text in a given language.
 
 use btu_rig::procedure::describe::bit_names;
 use fault_db::{Channel, ChannelKind};
@@ -40,7 +40,7 @@ mod tests {
     use crate::words::Language;
 
     #[test]
-    fn values_are_words_sets_or_numbers_with_units() {
+    fn values_are_labels_bit_names_or_numbers_with_units() {
         let words = &Language::English.words().traces;
         let of = |name: &str, unit: &str, kind, value| {
             let channel = Channel {

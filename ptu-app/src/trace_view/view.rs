@@ -1,4 +1,4 @@
-//! A trace made ready to be drawn: what every signal is, and a summary of its samples that is made once.
+//! A trace prepared for drawing: the kind of each signal, and a summary of its samples computed once.
 
 use std::ops::Range;
 
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn signals_are_what_their_channels_say_and_sets_of_bits_are_words() {
+    fn the_kind_of_a_signal_follows_its_channel() {
         let mut data = trace(&[
             ("speed", &[1.0, 3.0]),
             ("lamps", &[0.0, 2.0]),

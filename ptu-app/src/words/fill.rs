@@ -1,4 +1,4 @@
-//! Wordings with places to fill in.
+//! Texts with placeholders.
 
 use std::fmt::Display;
 
@@ -16,7 +16,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_place_is_filled_in_wherever_it_stands() {
+    fn every_placeholder_is_filled_in() {
         let text = fill("{n} of {of}, {n}", &[("n", &2), ("of", &"three")]);
         assert_eq!(text, "2 of three, 2");
     }

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn both_languages_have_the_same_places_to_fill_in() {
+    fn both_languages_have_the_same_placeholders() {
         for (key, english, korean) in all() {
             assert_eq!(places(english), places(korean), "{key}");
         }
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn korean_is_not_english_left_over() {
+    fn korean_texts_are_not_english() {
         let left: Vec<_> = all()
             .into_iter()
             .filter(|(_, english, korean)| english == korean)

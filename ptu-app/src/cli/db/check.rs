@@ -1,4 +1,4 @@
-//! `ptu db check`: is the file whole, and does it say what was recorded?
+//! `ptu db check`: checks that the file is intact and that its content is what was recorded.
 
 use fault_db::{CheckReport, SealHead};
 

@@ -1,4 +1,4 @@
-//! `ptu db query`: a question in SQL.
+//! `ptu db query`: runs one SQL query.
 
 use std::time::Duration;
 

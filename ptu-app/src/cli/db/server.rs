@@ -1,4 +1,4 @@
-//! `ptu db server`: a server that many laptops bring their history to.
+//! `ptu db server`: sets up and checks a server that collects the history of many laptops.
 
 use clap::{Args, Subcommand};
 use fault_db::{Address, ServerSetup, Store};

@@ -1,4 +1,4 @@
-//! `ptu db sync`: this laptop's history and a server's.
+//! `ptu db sync`: exchanges this laptop's history with a server.
 
 use std::time::Instant;
 
@@ -265,7 +265,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_clock_that_is_off_is_told_in_words() {
+    fn a_clock_difference_is_given_as_text() {
         let off_by = |clock_offset_us| {
             let outcome = SyncOutcome {
                 clock_offset_us,

@@ -1,4 +1,4 @@
-//! How long a question to the database may take, and how much temporary disk.
+//! Limits the time and the temporary disk space that a query may use.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What people do to a fault: `ptu faults state`, `repair` and `note`.
+//! Changes to a fault that people make: `ptu faults state`, `repair` and `note`.
 
 use clap::Args;
 use fault_db::{FaultState, RepairRecord, Store};

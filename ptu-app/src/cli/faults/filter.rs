@@ -1,4 +1,4 @@
-//! Which faults are meant, as options.
+//! The options that select faults.
 
 use clap::Args;
 use fault_db::{FaultFilter, FaultState, Store, code_number};

@@ -1,4 +1,4 @@
-//! `ptu faults show`: one fault with all that belongs to it.
+//! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
 use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
 use protocol::shown::line;

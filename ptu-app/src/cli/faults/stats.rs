@@ -1,4 +1,4 @@
-//! `ptu faults stats`: how many faults of each kind, and what repairs were worth.
+//! `ptu faults stats`: counts of faults by kind, and how effective repairs were.
 
 use clap::{Args, ValueEnum};
 use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};

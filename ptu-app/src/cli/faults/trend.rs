@@ -1,4 +1,4 @@
-//! `ptu faults trend`: a measurement over time, and what it is coming to.
+//! `ptu faults trend`: a measurement over time, and when it will reach its limit.
 
 use std::path::PathBuf;
 

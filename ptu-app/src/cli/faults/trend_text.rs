@@ -1,4 +1,4 @@
-//! A trend as text: the last values or months, what they say together, and units that stand out.
+//! A trend as text: the last values or months, the tests on them, and the units that stand out.
 
 use fault_db::process::{Process, Sign};
 use fault_db::{TrendDay, TrendPoint, TrendUnit};

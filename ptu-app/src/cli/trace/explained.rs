@@ -1,4 +1,4 @@
-//! Deviations and chains in words and as JSON.
+//! Deviations of a trace, and the chain of events that followed, as text and as JSON.
 
 use std::fmt::Write as _;
 

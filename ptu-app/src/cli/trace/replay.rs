@@ -1,4 +1,4 @@
-//! `ptu trace replay`: the situation of a trace set up again.
+//! `ptu trace replay`: repeats the recorded stimuli of a trace on a unit.
 
 use std::fmt::Write as _;
 

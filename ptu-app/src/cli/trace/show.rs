@@ -1,4 +1,4 @@
-//! `ptu trace show`: a trace, and what was expected beside it.
+//! `ptu trace show`: a trace beside the trace of a good unit.
 
 use clap::Args;
 use fault_db::{Channel, Id, Store, TraceData};

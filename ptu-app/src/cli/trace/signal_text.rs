@@ -1,4 +1,4 @@
-//! Values of signals as people read them.
+//! Values of signals as English text.
 
 use fault_db::Channel;
 

@@ -1,4 +1,4 @@
-//! Driving by keys, in real time.
+//! Manual driving by keys in real time.
 
 use btu_rig::drive::manual::{Ending, Outcome, Player, Row};
 use btu_rig::lever::Lever;

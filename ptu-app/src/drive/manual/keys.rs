@@ -1,4 +1,4 @@
-//! What the keys of a terminal mean to a driver.
+//! Maps the keys of a terminal to the actions of a driver.
 
 use btu_rig::drive::manual::Action;
 use btu_rig::lever::Lever;

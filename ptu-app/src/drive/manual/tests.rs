@@ -1,4 +1,4 @@
-//! The player with the embedded unit in the loop.
+//! Recorded driving sequences played with the embedded unit in the loop.
 
 use btu_rig::drive::manual::{Action, AtpBrake, Row};
 use btu_rig::lever::Lever;
@@ -92,7 +92,7 @@ fn a_run_by_hand_can_be_repeated_from_what_was_saved() {
 
 /// ATP supervises who drives: nobody brakes at the code's limit, so it does.
 #[test]
-fn a_brake_of_atp_ends_the_sequence_with_its_cause() {
+fn a_brake_by_atp_ends_the_sequence_and_its_cause_is_given() {
     let mut slow = case("title = \"x\"\n[[steps]]\nafter_s = 0\nlever = \"P1\"\n");
     let code = "25";
     slow.plan.sequence.code = Some(code.into());
@@ -160,7 +160,7 @@ fn standstill_means_after_having_moved() {
 }
 
 #[test]
-fn a_command_goes_before_the_file() {
+fn an_option_overrides_the_file() {
     let asked = Request {
         load: Some(LoadChoice::Empty),
         code: Some("65".into()),

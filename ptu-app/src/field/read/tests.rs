@@ -222,7 +222,7 @@ impl UnitLink for Told {
 }
 
 #[test]
-fn entries_that_fell_off_are_counted_and_unknown_codes_are_kept() {
+fn lost_entries_are_counted_and_unknown_codes_are_kept() {
     let mut unit = Told::new((40..90).map(|index| (index, 999, index * 1000)));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     assert_eq!(log.overwritten, 40);
@@ -232,7 +232,7 @@ fn entries_that_fell_off_are_counted_and_unknown_codes_are_kept() {
 }
 
 #[test]
-fn what_was_read_before_the_cable_came_off_is_kept() {
+fn entries_read_before_the_cable_was_unplugged_are_kept() {
     let mut unit = Told::new((0..90).map(|index| (index, 221, index * 1000)));
     unit.happens = Some((2_000, Happening::CableOff));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
@@ -263,7 +263,7 @@ fn a_unit_that_starts_again_while_it_is_read_has_two_clocks() {
 /// Goal: what is kept of a log is bounded, whatever the unit sends, and the rest is counted. Method: units
 /// that log and send one entry a scan, and a hundred.
 #[test]
-fn a_log_without_end_is_kept_up_to_what_a_unit_can_hold_and_send() {
+fn an_endless_log_is_kept_up_to_the_capacity_of_a_unit() {
     for endless in [1, 100] {
         let mut unit = Told::new([(0, 100, 0)]);
         unit.endless = endless;
@@ -285,7 +285,7 @@ fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
 }
 
 #[test]
-fn nobody_there_says_why() {
+fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
     struct Nobody;
     impl UnitLink for Nobody {
         fn exchange(&mut self, _: Instant, _: &[u8], _: &mut Vec<u8>) -> Result<(), LinkFailure> {

@@ -1,4 +1,4 @@
-//! The latest trouble until it was taken note of, the latest message, and all of them on demand.
+//! Shows the latest trouble until it is acknowledged, the latest message, and all messages on demand.
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 

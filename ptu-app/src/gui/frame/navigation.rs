@@ -1,4 +1,4 @@
-//! Pages, language, light and size.
+//! Selects the page, the language, light or dark, and the zoom.
 
 use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! Where the unit is and what is around it.
+//! The form of the bench choice: endpoint, line, unit configuration, train and injected faults.
 
 use eframe::egui::{
     ComboBox, DragValue, Grid, Id, Key, Label, PopupCloseBehavior, Pos2, RichText, ScrollArea,

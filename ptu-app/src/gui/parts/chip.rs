@@ -1,4 +1,4 @@
-//! A word on a coloured ground.
+//! A word on a coloured background.
 
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Frame, Margin, Response, RichText, Ui};

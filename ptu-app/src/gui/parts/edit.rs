@@ -1,4 +1,4 @@
-//! Fields for what is kept: no more can be typed than the store takes.
+//! Text fields that accept no more than the database stores.
 
 use eframe::egui::TextEdit;
 use fault_db::limits::{MOST_NAME, MOST_TEXT};

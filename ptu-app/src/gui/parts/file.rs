@@ -1,4 +1,4 @@
-//! Files a person asks for: where they usually go.
+//! The folder in which files are saved by default.
 
 use std::path::{Path, PathBuf};
 

@@ -7,7 +7,7 @@ use eframe::egui::{
 };
 
 use crate::gui::Palette;
-use crate::trace_view::ticks::Ticks;
+use crate::ticks::Ticks;
 use crate::trace_view::{Column, Shown, Span, Window};
 
 /// Size of the text beside an axis and in boxes.

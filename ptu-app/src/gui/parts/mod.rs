@@ -1,4 +1,4 @@
-//! What several pages use: small widgets, and files a person asks for.
+//! Widgets that several pages use.
 
 mod chip;
 mod edit;

@@ -1,4 +1,4 @@
-//! Names for widgets that show none.
+//! Accessible names for widgets without a label.
 
 use eframe::egui::{Response, Role, WidgetInfo};
 

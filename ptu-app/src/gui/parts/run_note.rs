@@ -1,4 +1,4 @@
-//! A note on a run, written by the one who tests.
+//! A form for a note on a run.
 
 use eframe::egui::{Button, Ui};
 use fault_db::Id;

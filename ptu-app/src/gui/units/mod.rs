@@ -1,4 +1,4 @@
-//! Units that are tested from this window, side by side.
+//! The units under test in this window, side by side.
 
 mod unit;
 

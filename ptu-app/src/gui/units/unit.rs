@@ -1,4 +1,4 @@
-//! One unit: its bench, what is heard from it, what its run came to.
+//! One unit under test: its bench, its log and its current or last run.
 
 use std::collections::VecDeque;
 

@@ -56,7 +56,7 @@ fn two_rows_of_a_clock_are_no_deviation_and_three_are() {
 }
 
 #[test]
-fn rows_that_differ_are_stretches_and_a_shifted_trace_is_laid_later() {
+fn differing_rows_form_intervals_and_a_shift_moves_the_second_trace() {
     let bit = |column| trace("eb", ChannelKind::Bit, "", column);
     let found = |came, expected, rule: Rule| {
         let found = compare(&bit(came), &bit(expected), &rule, &[]).expect("compared");
@@ -111,7 +111,7 @@ fn counters_of_a_unit_that_ran_before_count_from_the_begin() {
 }
 
 #[test]
-fn within_one_report_the_way_through_the_unit_decides() {
+fn within_one_report_the_order_along_the_signal_path_decides() {
     let two = |first: &str, second: &str, columns: [&[f64]; 2]| {
         let mut both = trace(first, ChannelKind::Bit, "", columns[0]);
         let other = trace(second, ChannelKind::Bit, "", columns[1]);

@@ -1,4 +1,4 @@
-//! The figures of a run under the names and in the units all reports use.
+//! The figures of a run, with the names and units that all reports use.
 
 use btu_rig::conditions::{Conditions, Disturbance};
 use btu_rig::drive::{Metrics, Outcome};

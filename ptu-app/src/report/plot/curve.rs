@@ -1,4 +1,4 @@
-//! Curves: what can be seen of their points, as few as show the same.
+//! Reduces curves to the points that can be seen.
 
 use super::mark::{Mark, Role};
 use super::scale::Scale;
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn corners_stay_and_points_on_a_line_go() {
+    fn corners_of_a_curve_stay_and_points_on_a_line_are_removed() {
         let up = (0..=100).map(|i| (f64::from(i), f64::from(i)));
         let flat = (101..=200).map(|i| (f64::from(i), 100.0));
         let points: Vec<_> = up.chain(flat).collect();

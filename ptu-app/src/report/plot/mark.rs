@@ -1,4 +1,4 @@
-//! What a plot is drawn with, whatever it is drawn on.
+//! The marks a plot consists of, for every output medium.
 
 /// What a mark is there for; how it looks follows from that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,6 @@ mod svg;
 use maud::Markup;
 
 pub use mark::{Anchor, Mark, Role};
-pub use scale::round_step;
 
 use mark::room;
 use scale::Scale;

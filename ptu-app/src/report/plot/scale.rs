@@ -1,4 +1,6 @@
-//! An axis: values to coordinates, and the round values at which it is marked.
+//! Maps values to coordinates and chooses round values for ticks.
+
+use crate::ticks::{Ticks, round_step};
 
 /// Marks an axis has at least, about.
 const MARKS: f64 = 6.0;
@@ -53,25 +55,10 @@ impl Scale {
 
     /// Values at which it is marked, and how they are written.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let decimals = (-self.step.log10().floor()).max(0.0) as usize;
-        let first = (self.low / self.step - 1e-9).ceil() as i64;
-        let last = (self.high / self.step + 1e-9).floor() as i64;
-        let tick = |i: i64| {
-            let value = i as f64 * self.step;
-            (value, format!("{value:.decimals$}").replace('-', "−"))
-        };
-        (first..=last).map(tick).collect()
+        let ticks = Ticks::with_step(self.step, (self.low, self.high));
+        let written = ticks.values().map(|value| (value, ticks.written(value)));
+        written.collect()
     }
-}
-
-/// The least of 1, 2 and 5 times a power of ten that is not below `step`.
-pub fn round_step(step: f64) -> f64 {
-    let power = 10f64.powf(step.log10().floor());
-    let mantissa = step / power;
-    let round = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|round| mantissa <= round + 1e-9);
-    round.unwrap_or(10.0) * power
 }
 
 #[cfg(test)]

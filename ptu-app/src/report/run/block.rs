@@ -1,4 +1,4 @@
-//! What a test sheet is made of, before it is a page or paper.
+//! The blocks of a test sheet, which page and PDF are made from.
 
 use crate::limits::places;
 use crate::report::plot::Plot;

@@ -1,4 +1,4 @@
-//! What a test sheet says, read from the store.
+//! Reads the content of a test sheet from the database.
 
 use std::collections::BTreeMap;
 

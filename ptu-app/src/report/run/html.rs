@@ -1,4 +1,4 @@
-//! A test sheet as a page with nothing outside it, for the screen and for paper.
+//! A test sheet as one HTML file without external parts, for screen and print.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trace_of_nothing_is_no_plot() {
+    fn an_empty_trace_gives_no_plot() {
         let mut trace = trace();
         trace.columns.iter_mut().for_each(Vec::clear);
         assert!(plots(&drawn_channels(trace), &Language::Korean.words().report).is_empty());

@@ -1,4 +1,4 @@
-//! Steps with what they measured, as tables.
+//! Steps and their measurements as tables.
 
 use fault_db::{MeasurementRecord, StepDetail, Verdict};
 

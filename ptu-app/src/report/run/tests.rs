@@ -1,4 +1,4 @@
-//! The sheet of runs that were never driven: whatever is in the store gives a sheet.
+//! Test sheets of stored runs without a trace, with incomplete or unusual content.
 
 use fault_db::{
     Channel, ChannelKind, FaultRecord, Id, IdSource, MeasurementRecord, OpenOptions, RunEnd,
@@ -176,7 +176,7 @@ fn words_of(page: &[PageItem]) -> String {
 }
 
 #[test]
-fn what_is_hostile_in_the_store_is_words_in_the_page() {
+fn hostile_text_in_the_database_is_plain_text_on_the_page() {
     let (store, id) = stored(4, true);
     let page = html(&sheet(&store, id), Language::English.words());
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
@@ -196,7 +196,7 @@ fn what_is_hostile_in_the_store_is_words_in_the_page() {
 }
 
 #[test]
-fn korean_sheets_are_korean_and_no_name_of_a_wording_is_left_open() {
+fn korean_sheets_are_korean_and_all_placeholders_are_filled() {
     let (store, id) = stored(4, true);
     let page = html(&sheet(&store, id), Language::Korean.words());
     for word in ["시험 성적서", "불합격", "홍길동", "하한", "lang=\"ko\""] {

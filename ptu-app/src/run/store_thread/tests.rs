@@ -145,7 +145,7 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
 
 /// Goal: what a file that stays busy did not take is kept beside it, and an import brings the run together.
 #[test]
-fn what_a_busy_database_does_not_take_comes_with_an_import() {
+fn records_that_a_busy_database_refuses_can_be_imported_later() {
     let folder = tempfile::tempdir().expect("a folder");
     let patience = Patience {
         stops_ms: 10,

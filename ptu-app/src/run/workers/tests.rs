@@ -112,7 +112,7 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
 
 /// Goal: a run of thousands of procedures keeps room for the events of a few. Method: nobody takes any.
 #[test]
-fn procedures_are_begun_only_so_far_ahead_of_who_takes_them() {
+fn workers_start_only_a_limited_number_of_procedures_ahead() {
     const JOBS: usize = 3;
     let (directory, setup) = line6_bench();
     let procedures = loaded(&directory, &setup);
@@ -146,7 +146,7 @@ fn procedures_are_begun_only_so_far_ahead_of_who_takes_them() {
 
 /// A controller that breaks while no procedure runs is found all the same.
 #[test]
-fn what_breaks_between_procedures_is_kept() {
+fn a_fault_between_two_procedures_is_recorded() {
     let (directory, mut setup) = line6_bench();
     let faults = directory.faults().expect("faults");
     let controller = faults.fault("master_controller.pot_low").expect("mode");

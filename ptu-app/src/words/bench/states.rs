@@ -154,7 +154,7 @@ mod tests {
     /// Goal: no state and no bit is without its word. Method: counts against the catalogue of signals and
     /// of TCMS's causes, in both languages.
     #[test]
-    fn every_state_and_every_bit_has_a_word() {
+    fn every_state_and_every_bit_has_a_text() {
         for words in [&Bench::ENGLISH, &Bench::KOREAN] {
             for &signal in Signal::ALL {
                 if let Kind::Enum(labels) = signal.definition().kind {

@@ -1,4 +1,4 @@
-//! The bench: the unit live as in its cab, every stimulus by hand, and a rolling plot.
+//! The bench page: the unit live as in its cab, manual stimuli, and a rolling plot.
 //!
 //! What is shown is copied once per frame ([`seen`]), what is filled in becomes stimuli in [`forms`];
 //! both know nothing of widgets.

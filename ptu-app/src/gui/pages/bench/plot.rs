@@ -13,7 +13,8 @@ use super::text;
 use crate::bench_worker::BenchWorker;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::trace_view::{Column, Span, Window, columns, spans, ticks};
+use crate::ticks;
+use crate::trace_view::{Column, Span, Window, columns, spans};
 use crate::words::{Bench, fill};
 
 /// Left of the curves: names with values, and the scale's numbers.

@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_dial_ends_above_the_highest_limit_and_holds_what_is_beyond() {
+    fn the_dial_ends_above_the_highest_limit_and_stops_at_its_end() {
         for (highest, full) in [(75.0, 100.0), (80.0, 100.0), (90.0, 120.0), (0.0, 20.0)] {
             assert_eq!(Dial::up_to(highest).full_kmh, full);
         }

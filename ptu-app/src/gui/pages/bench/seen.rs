@@ -1,4 +1,4 @@
-//! What the page shows of a bench in one frame: a copy, so that the bench is held for a moment only.
+//! A copy of the live data for one frame, so that the bench thread is blocked for a moment only.
 
 use protocol::signal::{Sample, Signal};
 

@@ -1,4 +1,4 @@
-//! Signals as people read them.
+//! Values of signals as text in the language of the window.
 
 use protocol::signal::{Kind, Signal};
 
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_are_named_and_one_without_a_name_is_told_by_its_place() {
+    fn bits_are_named_and_one_without_a_name_is_given_by_its_number() {
         let words = &Language::English.words().bench;
         let signal = Signal::EbSources;
         assert_eq!(bits(words, signal, &Seen::default()), UNKNOWN);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lever_is_told_by_its_notch() {
+    fn the_lever_position_is_given_as_its_notch() {
         for (notch, name) in [(-8.0, "EB"), (-3.0, "B3"), (0.0, "N"), (4.0, "P4")] {
             assert_eq!(controller(&seen(Signal::Controller, notch)), name);
         }

@@ -1,4 +1,4 @@
-//! The section on the track strip: what lies where, as shares of its length.
+//! Positions of markers, stop point and train as fractions of the section, for the track strip.
 
 use btu_rig::stimulus::StationData;
 use protocol::line::{Line, Section};
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn the_strip_shows_the_section_laid_and_the_train_before_its_stop_point() {
+    fn the_strip_shows_the_chosen_section_and_the_train_before_its_stop_point() {
         let line = Line::from_toml(LINE8).expect("line");
         let strip = Strip::of(&line, Some(61), &seen(&[(Signal::ToStop, 546.0)])).expect("strip");
         assert_eq!(strip.section, 61);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn without_one_laid_by_hand_the_wayside_tells_the_section() {
+    fn without_a_chosen_section_the_wayside_data_give_it() {
         let line = Line::from_toml(LINE8).expect("line");
         let section = line.section(58).expect("section 58");
         let wayside = [

@@ -1,4 +1,4 @@
-//! Parts and modes, ranked, with the reasons.
+//! The ranked parts and fault modes, with the reasons.
 
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 use fault_db::diagnosis::Candidate;

@@ -1,4 +1,4 @@
-//! What a person does to a fault: states, repairs, notes.
+//! Changes to a fault: state, repairs and notes.
 
 use eframe::egui::{Button, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};

@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn the_most_frequent_come_first_and_the_rest_is_one_sum() {
+    fn the_most_frequent_bars_come_first_and_the_rest_are_summed() {
         let units: Vec<String> = (0..9).map(|unit| format!("U{unit}")).collect();
         let counts: Vec<_> = units
             .iter()

@@ -1,4 +1,4 @@
-//! One fault: what was done about it, each time it was seen, and every signal at that moment.
+//! One fault: its repairs and notes, its occurrences, and the freeze frame of each.
 
 use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
 use fault_db::{FaultDetail, FaultEvent, FreezeSample};

@@ -1,4 +1,4 @@
-//! Filters, and the faults they leave.
+//! The filters, and the list of faults that match.
 
 use eframe::egui::{ComboBox, Label, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui};
 use fault_db::{FaultState, FaultSummary, Id};

@@ -1,4 +1,4 @@
-//! Procedures: choose, run, look on.
+//! The procedures page: select steps, run them, follow the run.
 
 mod controls;
 mod overview;

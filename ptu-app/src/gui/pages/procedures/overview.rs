@@ -1,4 +1,4 @@
-//! Several units side by side: where each one's run is.
+//! The progress of several units side by side.
 
 use eframe::egui::{Grid, ProgressBar, Ui};
 

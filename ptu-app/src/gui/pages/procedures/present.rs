@@ -1,4 +1,4 @@
-//! The step under way: what it waits for, what it asks, its script line, what it measures.
+//! The current step: what it waits for, its prompt, its script line and its measurements.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! What the steps came to, and the details of the chosen one.
+//! Results of the steps, and details of the selected one.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Which procedures and steps are to be run.
+//! The selected procedures and steps.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_laptop_runs_what_needs_no_bench() {
+    fn a_laptop_runs_the_procedures_that_need_no_bench() {
         let procedures = procedures();
         let usual = Selection::usual(&procedures, Connection::Ptu);
         let tasks = usual.tasks(&procedures, 1, false);

@@ -1,4 +1,4 @@
-//! Above the sheet: ways on from the run, the sheet's language, files, and a note.
+//! The bar above the sheet: links to trace and diagnosis, language, files, and a note.
 
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 use fault_db::Id;

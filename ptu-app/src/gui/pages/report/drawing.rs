@@ -1,4 +1,4 @@
-//! A plot in the window, from the same marks as on a page and on paper.
+//! Draws a plot in the window from the same marks as on the HTML page and in the PDF.
 
 use eframe::egui::epaint::TextShape;
 use eframe::egui::{

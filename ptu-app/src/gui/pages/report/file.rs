@@ -1,4 +1,4 @@
-//! Which file a report is written to, and writing it.
+//! Chooses the file of a report and writes it.
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_run_s_sheet_lies_beside_the_last() {
+    fn the_sheet_of_the_next_run_is_saved_in_the_folder_of_the_last() {
         let run: Id = "0198c0de-0000-7000-8000-00000000cafe"
             .parse()
             .expect("an id");

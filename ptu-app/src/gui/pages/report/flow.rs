@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_follow_each_other_and_only_those_in_view_are_handed_out() {
+    fn pieces_follow_each_other_and_only_those_in_view_are_drawn() {
         let flow = Flow::new(&sheet(200), 600.0, &mut measure);
         let all = flow.within(0.0, flow.height);
         assert_eq!(all.len(), 1 + 201 + 3);
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_sheet_is_longer_and_an_empty_one_nothing() {
+    fn a_narrow_sheet_is_longer_and_an_empty_one_has_no_length() {
         let blocks = sheet(100);
         let wide = Flow::new(&blocks, 900.0, &mut measure);
         assert!(Flow::new(&blocks, 300.0, &mut measure).height > wide.height);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_stand_in_their_columns_and_details_further_right() {
+    fn cells_are_in_their_columns_and_details_are_indented() {
         let columns = [
             Column::new("step", 0.6, Align::Left),
             Column::new("value", 0.4, Align::Right),

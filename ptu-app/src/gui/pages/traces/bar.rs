@@ -1,4 +1,4 @@
-//! Axis, zoom, cursors, and what else is to be shown.
+//! The tool bar: axis, zoom, cursors and the trace shown behind.
 
 use eframe::egui::{RichText, Role, Ui, WidgetInfo};
 

@@ -1,4 +1,4 @@
-//! What the trace is laid against: the good twin, or another trace with an offset.
+//! Chooses the trace shown behind: that of a good unit, or another trace with an offset.
 
 use std::sync::Arc;
 

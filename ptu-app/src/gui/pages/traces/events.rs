@@ -1,4 +1,4 @@
-//! The trigger and the faults found in the trace's window: as links, and as flags above the lanes.
+//! Trigger and faults in the trace's window, as links and as flags above the lanes.
 
 use eframe::egui::{Align2, FontId, Painter, Rect, RichText, Stroke, Ui, pos2};
 

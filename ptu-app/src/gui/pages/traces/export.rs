@@ -1,4 +1,4 @@
-//! The view as a picture or a table.
+//! Exports the view as a picture or as a table.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -142,14 +142,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_ending_that_was_typed_is_not_doubled() {
+    fn a_typed_file_extension_is_not_added_twice() {
         for (typed, made) in [("a", "a.csv"), (" b.csv ", "b.csv"), ("c.v2", "c.v2.csv")] {
             assert_eq!(with_ending(typed, "csv"), PathBuf::from(made));
         }
     }
 
     #[test]
-    fn a_picture_comes_back_as_it_was() {
+    fn a_written_picture_is_read_back_unchanged() {
         let image = ColorImage::filled([3, 2], eframe::egui::Color32::from_rgb(1, 2, 3));
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("picture.png");

@@ -1,4 +1,4 @@
-//! Pointer and keys over the lanes.
+//! Pointer and keyboard input over the lanes.
 
 use eframe::egui::{Event, EventFilter, Key, Rect, Response, Ui};
 

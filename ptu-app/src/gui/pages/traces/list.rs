@@ -1,4 +1,4 @@
-//! The traces there are, by run, the latest first.
+//! The list of recorded traces by run, latest first.
 
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::Id;

@@ -1,4 +1,4 @@
-//! Traces: stacked lanes that share an axis, cursors, and what was expected behind what came.
+//! The traces page: lanes on one axis, cursors, and the trace of a good unit behind.
 
 mod bar;
 mod behind;

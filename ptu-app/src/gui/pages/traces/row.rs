@@ -1,4 +1,4 @@
-//! One lane with its name, its values under the cursors, and what is laid behind it.
+//! Draws one lane with its name, its values at the cursors, and the trace behind.
 
 use eframe::egui::{
     Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,

@@ -1,4 +1,4 @@
-//! Which signals are shown, in which order, how tall.
+//! Selects the shown signals, their order and their heights.
 
 use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 

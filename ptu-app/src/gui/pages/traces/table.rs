@@ -1,4 +1,4 @@
-//! What the signals did between the cursors, or in view.
+//! Statistics of the signals between the cursors or in view.
 
 use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 

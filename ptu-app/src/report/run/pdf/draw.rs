@@ -1,4 +1,4 @@
-//! Pages with ink on them.
+//! Writes the items of a page to the PDF.
 
 use krilla::Document;
 use krilla::color::rgb::Color;

@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tables_heading_is_on_every_page_and_nothing_is_off_a_page_or_lost() {
+    fn a_table_repeats_its_heading_and_every_item_is_on_a_page() {
         let heading = Piece {
             repeated: true,
             with_next: true,
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_heading_goes_with_what_it_heads() {
+    fn a_heading_stays_with_the_text_after_it() {
         let heading = Piece {
             with_next: true,
             ..piece("heading", 30.0)

@@ -1,4 +1,4 @@
-//! The widths of letters, and lines of words that fit.
+//! Widths of letters, and line breaking by them.
 
 use krilla::text::{GlyphId, KrillaGlyph};
 use protocol::shown;

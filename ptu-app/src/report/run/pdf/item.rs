@@ -1,4 +1,4 @@
-//! What stands on a page of paper, and where. Points (1/72 inch) from its upper left corner.
+//! Items on a PDF page with their positions, in points (1/72 inch) from the upper left corner.
 
 use protocol::shown;
 

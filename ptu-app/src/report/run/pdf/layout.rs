@@ -1,4 +1,4 @@
-//! Blocks as pieces of paper.
+//! Lays blocks out as pieces that are not divided between pages.
 
 use super::font::Letters;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};

@@ -1,4 +1,4 @@
-//! A test sheet as PDF on A4: blocks → pieces → pages → ink. One run gives the same bytes each time.
+//! A test sheet as PDF on A4: blocks → pieces → pages → PDF. The same run gives the same bytes.
 
 mod draw;
 mod flow;

@@ -1,4 +1,4 @@
-//! A plot on paper, from the same marks as on a page.
+//! A plot in the PDF, from the same marks as on the HTML page.
 
 use protocol::shown;
 

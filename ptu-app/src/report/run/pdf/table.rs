@@ -1,4 +1,4 @@
-//! Tables on paper: each row a piece, its cells in as many lines as they need.
+//! Tables in the PDF: each row is a piece, and its cells wrap.
 
 use super::font::Letters;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_channel_is_made_what_is_chosen_with_the_size_filled_in() {
+    fn a_tachometer_fault_has_the_chosen_kind_and_size() {
         let form = MotionForm {
             noise_per_s: 40.0,
             factor: 0.5,

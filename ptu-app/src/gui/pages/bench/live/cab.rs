@@ -1,4 +1,4 @@
-//! The cab desk and what the unit makes of it.
+//! The controls in the cab, and how the unit reads them.
 
 use eframe::egui::Ui;
 use protocol::signal::Signal;

@@ -1,4 +1,4 @@
-//! Effort as ATO sends it, as TCMS orders it, as the train gives it; and the state of TCMS.
+//! Effort from ATO to TCMS to the train, and the state of TCMS.
 
 use eframe::egui::{Align2, Color32, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use protocol::signal::Signal;

@@ -1,4 +1,4 @@
-//! Lamps: dark when off, unmistakable when on, and dashed while nobody tells.
+//! Lamps: dark when off, lit when on, dashed while the value is unknown.
 
 use eframe::egui::{Align2, Color32, Painter, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
 use eframe::egui::{pos2, vec2};
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lamp_nobody_tells_of_is_neither_on_nor_off() {
+    fn a_lamp_of_unknown_state_is_neither_on_nor_off() {
         assert_eq!(lit(None, true), Lit::Unknown);
         assert_eq!(lit(None, false), Lit::Unknown);
         assert_eq!(lit(Some(true), true), Lit::On);
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_on_a_lit_lamp_can_be_read() {
+    fn the_text_on_a_lit_lamp_is_readable() {
         assert_eq!(ink_on(Color32::from_rgb(214, 40, 40)), Color32::WHITE);
         assert_eq!(ink_on(Color32::from_rgb(245, 184, 65)), Color32::BLACK);
     }

@@ -1,4 +1,4 @@
-//! The live view: what a driver sees in the cab, and what only a technician does.
+//! The live view: the indications in the cab, and those for the technician only.
 
 mod cab;
 mod card;

@@ -1,4 +1,4 @@
-//! What wayside and unit tell each other.
+//! The data that wayside and unit exchange by TWC.
 
 use eframe::egui::Ui;
 use protocol::signal::Signal;

@@ -1,4 +1,4 @@
-//! The hand that gives stimuli: buttons enabled only while they can be given, with the reason why not.
+//! Buttons for manual stimuli: enabled only while the stimulus is permitted, with the reason otherwise.
 
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,4 @@
-//! Train lines and what is turned and pressed in the cab.
+//! Train lines, switches and push buttons of the cab.
 
 use btu_rig::stimulus::{Stimulus, TrainSwitch};
 use eframe::egui::Ui;

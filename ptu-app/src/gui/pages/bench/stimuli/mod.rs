@@ -1,4 +1,4 @@
-//! Every stimulus by hand, in groups.
+//! All manual stimuli, in groups.
 
 mod atp;
 mod controller;

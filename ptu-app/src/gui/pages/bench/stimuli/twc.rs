@@ -1,4 +1,4 @@
-//! What the wayside sends.
+//! The TWC data sent by the wayside.
 
 use btu_rig::stimulus::{Stimulus, WaysideCondition};
 use eframe::egui::Ui;

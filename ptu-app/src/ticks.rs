@@ -1,6 +1,4 @@
-//! Round values along an axis.
-
-use crate::report::round_step;
+//! Round values for the ticks of an axis.
 
 /// Round values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +12,11 @@ impl Ticks {
     /// Of an axis from one value to another, about as many as are asked for and never many more.
     pub fn of((low, high): (f64, f64), about: f64) -> Self {
         let step = round_step((high - low).max(f64::MIN_POSITIVE) / about.max(1.0));
+        Self::with_step(step, (low, high))
+    }
+
+    /// The multiples of a step from one value to another.
+    pub fn with_step(step: f64, (low, high): (f64, f64)) -> Self {
         Self {
             step,
             first: (low / step - 1e-9).ceil() as i64,
@@ -41,6 +44,16 @@ pub fn range((low, high): (f64, f64)) -> (f64, f64) {
     }
     let room = (high - low) * FREE;
     (low - room, high + room)
+}
+
+/// The smallest of 1, 2 and 5 times a power of ten that is not below `step`.
+pub fn round_step(step: f64) -> f64 {
+    let power = 10f64.powf(step.log10().floor());
+    let mantissa = step / power;
+    let round = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|round| mantissa <= round + 1e-9);
+    round.unwrap_or(10.0) * power
 }
 
 #[cfg(test)]
