@@ -27,7 +27,7 @@ const BESIDE_BAR: usize = 100;
 /// neither the bench nor the store waits for whoever reads.
 pub struct Console {
     shown: SyncSender<Shown>,
-    /// Lines that nobody took.
+    /// Lines that were not printed.
     left_out: Arc<AtomicUsize>,
     thread: JoinHandle<()>,
 }
@@ -46,7 +46,7 @@ impl Console {
     /// For a run of this plan.
     ///
     /// # Errors
-    /// There is no thread to be had.
+    /// The system gives no thread.
     pub fn new(plan: &RunPlan) -> Result<Self, Failure> {
         let steps = steps_of(&plan.tasks) as u64;
         let (shown, all) = mpsc::sync_channel(WAITING);
@@ -230,7 +230,7 @@ fn procedures(run: &RunDetail) -> Table {
 }
 
 /// The gravest verdict among steps.
-/// What a procedure came to. One that was broken off is an error, as its run is; in any other run a check
+/// The verdict of a procedure. One that was broken off is an error, as its run is; in any other run a check
 /// that failed is said before one that could not be made.
 fn worst(steps: &[fault_db::StepDetail], run: Option<fault_db::Verdict>) -> &'static str {
     use fault_db::Verdict::{Aborted, Error, Failed, Passed};

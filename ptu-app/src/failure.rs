@@ -62,7 +62,7 @@ impl Failure {
 }
 
 impl Failure {
-    /// Tells it to whoever called the program.
+    /// Prints the failure on stderr.
     pub fn tell(&self) {
         tell::note(&format!("ptu: {self}"));
     }

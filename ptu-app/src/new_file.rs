@@ -41,7 +41,7 @@ impl NewFile {
             Ok(about) if about.is_dir() => return Err(cannot("it is a folder".into())),
             Ok(about) if !about.is_file() => return Err(cannot("it is no regular file".into())),
             Ok(about) => {
-                // Whoever may not write to it may not replace it either.
+                // A file without write permission is not replaced either.
                 let opened = OpenOptions::new().append(true).open(place);
                 opened.map_err(|error| cannot(error.to_string()))?;
                 Some(about.permissions())
@@ -78,7 +78,7 @@ impl NewFile {
         Self::begin(place)
     }
 
-    /// Lets nobody but its owner read or write it.
+    /// Makes the file readable and writable by its owner only.
     ///
     /// # Errors
     /// The disk's.

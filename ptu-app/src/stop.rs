@@ -11,7 +11,7 @@ pub struct Stop(Arc<Presses>);
 #[derive(Debug, Default)]
 struct Presses {
     count: AtomicU32,
-    /// Why the tester itself pressed, and nobody else before it.
+    /// The reason, if the tester itself pressed first.
     because: OnceLock<String>,
 }
 
@@ -36,7 +36,7 @@ impl Stop {
         }
     }
 
-    /// Why the tester itself ended what is under way; none if somebody did.
+    /// Why the tester itself ended the run; `None` if the operator did.
     pub fn reason(&self) -> Option<&str> {
         self.0.because.get().map(String::as_str)
     }

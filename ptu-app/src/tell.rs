@@ -1,7 +1,7 @@
 //! The only writer of standard output and standard error.
 //!
-//! Nobody else writes to either. Text that others wrote acts on no terminal here, and what cannot be told
-//! stops nothing: a run goes on without anybody who listens.
+//! Control characters in printed text are escaped. An output error stops nothing:
+//! a run goes on without a reader.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
@@ -10,7 +10,7 @@ use protocol::shown;
 use crate::failure::Failure;
 use crate::table::cut;
 
-/// Widest line, in columns: nobody reads on.
+/// Longest line, in columns.
 const WIDEST: usize = 10_000;
 
 /// Answers with text for people. A reader that has gone away (`| head`) has read enough.
@@ -35,7 +35,7 @@ pub fn document(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Tells people something beside the answer. Whoever does not listen misses it.
+/// Prints a note on stderr; an output error is ignored.
 pub fn note(text: &str) {
     let _ = writeln!(stderr().lock(), "{}", readable(text));
 }
@@ -45,7 +45,7 @@ pub fn draws() -> bool {
     stderr().is_terminal()
 }
 
-/// Puts a line on the terminal in place of the one before; whoever drives by it looks at it.
+/// Replaces the last line of the terminal.
 pub fn redraw(line: &str) {
     let mut terminal = stderr().lock();
     let _ = write!(terminal, "{CLEAR}{}", shown::line(line)).and_then(|()| terminal.flush());
@@ -54,7 +54,7 @@ pub fn redraw(line: &str) {
 /// What clears the line from its beginning.
 const CLEAR: &str = "\r\x1b[K";
 
-/// The text with nothing in it that acts, no line wider than [`WIDEST`].
+/// The text without control characters, its lines cut to [`WIDEST`].
 fn readable(text: &str) -> String {
     let text = shown::lines(text);
     let lines: Vec<_> = text.split('\n').map(|line| cut(line, WIDEST)).collect();

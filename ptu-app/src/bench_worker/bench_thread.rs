@@ -264,7 +264,7 @@ impl BenchThread {
         });
     }
 
-    /// Once the worker is dropped, nobody receives it.
+    /// Sends an event; after the worker is dropped it is lost.
     fn tell(&self, event: BenchEvent) {
         let _ = self.events.send(event);
         self.live_state.wake();

@@ -1,4 +1,4 @@
-//! How well frames come through, over the last seconds: a cable that begins to fail shows at once.
+//! The share of frames received over the last seconds, so that a failing cable shows at once.
 
 use std::collections::VecDeque;
 

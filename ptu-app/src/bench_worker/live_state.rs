@@ -214,7 +214,7 @@ impl RunControl for LiveState {
             at: now,
             values: *rig.sample().values(),
         });
-        // Somebody reads at this moment: the next cycle will be shown with this one.
+        // The window is reading: the row is published with the next cycle.
         let Ok(mut live) = self.live.try_lock() else {
             return;
         };
@@ -260,7 +260,7 @@ impl RunControl for LiveState {
     }
 }
 
-/// What a lock holds, also after whoever held it panicked: everything in here is whole at any time.
+/// Locks a mutex even if a thread panicked while holding it: the data are consistent at any time.
 fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! What may be done to the unit by hand.
+//! Which manual stimuli are permitted in the present state of the unit.
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
@@ -6,14 +6,14 @@ use protocol::signal::Signal;
 
 use super::{LiveData, Phase};
 
-/// Why something cannot be done now.
+/// Why a stimulus is not permitted now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
     /// No unit is connected.
     NotConnected,
     /// A run has the bench.
     Running,
-    /// It goes through the bench harness, which a laptop on the maintenance port has not.
+    /// It needs the bench harness, and only the maintenance port is connected.
     NeedsBtu,
     /// The unit is not armed.
     NotArmed,

@@ -32,7 +32,7 @@ pub struct Progress {
     pub present: Option<Present>,
     /// Faults found, in order.
     pub faults: Vec<FaultSeen>,
-    /// It is over, and what it came to; none = it could not be begun or recorded.
+    /// The outcome once the run has ended; the inner `None` = it could not be started or recorded.
     pub ended: Option<Option<Outcome>>,
     began: time::Instant,
     /// Worst-case time of all steps, and of those that are over, with the time these took.
@@ -44,13 +44,13 @@ pub struct Progress {
 /// A procedure of a run.
 #[derive(Debug)]
 pub struct ProcedureProgress {
-    /// It.
+    /// The procedure.
     pub procedure: Arc<Procedure>,
     /// Steps chosen of it.
     pub chosen: Vec<usize>,
-    /// What its steps came to, in the order they were run.
+    /// Results of its steps, in the order in which they ran.
     pub results: Vec<StepResult>,
-    /// What it came to.
+    /// Its verdict, once it has ended.
     pub verdict: Option<Verdict>,
     /// What went wrong outside its steps.
     pub message: String,

@@ -41,7 +41,7 @@ pub struct Request {
     pub jobs: usize,
 }
 
-/// What a campaign comes to.
+/// The result of a campaign.
 pub struct Outcome {
     /// The dictionary.
     pub dictionary: Dictionary,

@@ -26,7 +26,7 @@ pub struct Bench<'a> {
     pub train: &'a str,
 }
 
-/// What a run comes to.
+/// The diagnosis of a run.
 pub struct Answer {
     /// The run.
     pub run: RunDetail,

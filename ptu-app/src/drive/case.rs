@@ -66,7 +66,7 @@ pub struct Case {
 pub struct Driven {
     /// What was run.
     pub case: Case,
-    /// What it came to.
+    /// The result.
     pub outcome: Outcome,
 }
 
@@ -186,7 +186,7 @@ impl Case {
 }
 
 impl Driven {
-    /// It came to its stop where doors may open.
+    /// Whether the train stopped within the range in which doors may open.
     pub fn aligned(&self) -> bool {
         let near = |error: f64| error.abs() <= self.case.tolerance_m();
         self.outcome.ending == Ending::Stopped && self.outcome.stop_error_m.is_some_and(near)

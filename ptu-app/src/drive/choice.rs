@@ -68,7 +68,7 @@ impl SectionChoice {
 /// Passengers aboard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadChoice {
-    /// Nobody.
+    /// No passengers.
     Empty,
     /// As many as the train carries.
     Full,

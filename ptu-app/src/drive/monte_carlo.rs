@@ -29,7 +29,7 @@ pub struct Trial {
     pub metrics: Option<Metrics>,
 }
 
-/// What many runs came to.
+/// The results of many runs.
 pub struct MonteCarlo {
     /// What was run, nominally.
     pub case: Case,
@@ -73,7 +73,7 @@ pub fn run(case: Case, count: usize, scatter: &Scatter, jobs: usize, stop: &Stop
 }
 
 impl Trial {
-    /// It came to its stop without an emergency brake.
+    /// Whether the train stopped without an emergency brake.
     pub fn stopped(&self) -> bool {
         self.ending == Ending::Stopped
     }

@@ -124,7 +124,7 @@ impl WireLink {
     /// Opens the port or connects.
     ///
     /// # Errors
-    /// It is not there or not to be had; the message says what to do next.
+    /// The port is missing or in use; the message says what to do next.
     pub fn open(endpoint: &Endpoint) -> Result<Self, Failure> {
         let port = match endpoint {
             Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),

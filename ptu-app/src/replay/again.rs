@@ -28,7 +28,7 @@ pub(super) struct Again {
 /// The trace that the recorded stimuli give on an embedded unit without a fault, and how to compare it.
 ///
 /// # Errors
-/// What the bench was made of is no longer to be had.
+/// A file the bench was built from is no longer available.
 pub fn good_twin(
     original: &Original,
     directory: &ScriptsDirectory,

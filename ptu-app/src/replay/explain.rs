@@ -29,7 +29,7 @@ pub struct Explanation {
 /// One link of the chain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Link {
-    /// A signal parts from what is expected.
+    /// A signal begins to deviate.
     Signal(Deviation),
     /// A fault is found.
     Fault {
@@ -64,7 +64,7 @@ impl Explanation {
 /// Explains a stored trace by its good twin.
 ///
 /// # Errors
-/// There is no such trace, it has no recording, or what the bench was made of is no longer to be had.
+/// There is no such trace, it has no recording, or a file the bench was built from is gone.
 pub fn explain(
     store: &Store,
     directory: &ScriptsDirectory,
@@ -117,7 +117,7 @@ fn faults(store: &Store, original: &Original) -> Result<Vec<Link>, Failure> {
         .collect())
 }
 
-/// The first deviation, those on the way that follow until a brake parts from what is expected, and the
+/// The first deviation, those on the way that follow until a brake deviates, and the
 /// faults found until then; without a brake, until the first fault.
 fn chain(comparison: &Comparison, faults: Vec<Link>) -> Vec<Link> {
     let Some(first) = comparison.deviations.first() else {

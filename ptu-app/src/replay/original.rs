@@ -46,7 +46,7 @@ pub struct Original {
 /// A procedure takes minutes. One that is said to take longer than this would be done again for ever.
 const LONGEST_US: i64 = 24 * 3_600_000_000;
 
-/// Holds the times of a trace against the clock of its recording: a file of somebody else may name any.
+/// Checks the times of a trace against the clock of its recording, because an imported file may name any.
 fn check_times(trace: &TraceData, t0_bench_us: i64) -> Option<()> {
     let near = |us: i64| (-LONGEST_US..=LONGEST_US).contains(&us).then_some(us);
     let row_us = |row: usize| {

@@ -70,7 +70,7 @@ impl Likeness {
     }
 }
 
-/// What a replay came to.
+/// The result of a replay.
 #[derive(Debug)]
 pub struct Rerun {
     /// The run it was recorded as.
@@ -98,7 +98,7 @@ pub struct Rerun {
 /// Runs the stimuli of a stored trace again and records what comes.
 ///
 /// # Errors
-/// What the bench was made of is no longer to be had, the unit cannot be reached or is another one, or the
+/// A file the bench was built from is no longer available, the unit cannot be reached or is another one, or the
 /// database fails.
 pub fn rerun(
     store: &Store,

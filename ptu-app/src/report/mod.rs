@@ -1,4 +1,4 @@
-//! What a run came to, written to a file by its ending: a test sheet as `.html` or `.pdf`, or `.csv`,
+//! Writes the report of a run to a file, in the format of its extension: a test sheet as `.html` or `.pdf`, or `.csv`,
 //! `.json`, `.junit.xml`.
 
 pub mod campaign;

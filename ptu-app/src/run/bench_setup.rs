@@ -26,7 +26,7 @@ use crate::stop::Stop;
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
-/// What benches are made of.
+/// The content from which benches are built.
 #[derive(Clone)]
 pub struct BenchSetup {
     /// Where the unit is.
@@ -49,7 +49,7 @@ pub struct BenchSetup {
     pub realtime: bool,
     /// Times the bench is slower than the clock, where it goes by the clock.
     pub slower: u32,
-    /// Who looks on.
+    /// Watches and controls the runs, if set.
     pub attendant: Option<Arc<dyn RunControl>>,
 }
 

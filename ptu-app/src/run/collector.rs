@@ -1,5 +1,5 @@
-//! Takes the streams of the procedures in order: numbers steps and faults through the run, hands
-//! them to the store, tells the listener.
+//! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
+//! them to the store and to the listener, and computes the verdict of the run.
 
 use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
 use fault_db::{FaultRecord, Id, MeasurementRecord, RecordingRecord, StepRecord};
@@ -13,23 +13,23 @@ use super::{FaultSeen, Task};
 use crate::clock;
 use crate::failure::Exit;
 
-/// Someone who looks on while a run goes on.
+/// Receives the events of a run while it goes on.
 pub trait Listener {
-    /// Something happened in `procedure`.
+    /// Called for each event of `procedure`.
     fn hear(&mut self, procedure: &Procedure, event: &SessionEvent);
 
-    /// What is to be said of it once all that was recorded up to then is in the file.
+    /// The line to print once everything recorded before the event is in the file.
     fn line(&self, _procedure: &Procedure, _event: &SessionEvent) -> Option<String> {
         None
     }
 
-    /// Who says it.
+    /// Prints these lines.
     fn speaker(&self) -> Option<Speaker> {
         None
     }
 }
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The run.
@@ -66,7 +66,7 @@ pub struct Collector<'a> {
     dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
-    /// Procedures that came to their end.
+    /// Procedures that ran to their end.
     finished: u32,
     link_lost: bool,
     /// The tester itself could not go on.

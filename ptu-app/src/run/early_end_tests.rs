@@ -1,4 +1,4 @@
-//! What a run comes to that ends early: stopped between its procedures, when none was under way to say so,
+//! The verdict of a run that ends early: stopped between its procedures, when none was under way to say so,
 //! ended by its first failure, or by a database that takes no more.
 
 use std::collections::BTreeMap;
@@ -114,7 +114,7 @@ fn plan_of(texts: &[&str]) -> RunPlan {
     plan(loaded.procedures)
 }
 
-/// Runs it with somebody at the bench; what it came to, and the verdict that is stored.
+/// Runs the plan under a run control; the outcome and the stored run.
 fn run_with(
     presser: &Arc<Presser>,
     plan: &RunPlan,

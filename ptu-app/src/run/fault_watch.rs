@@ -1,4 +1,4 @@
-//! Turns what happens in a run into faults: events of the unit nobody provoked, a brake nobody
+//! Derives faults from the events of a run: unit events that were not provoked, a brake that was not
 //! asked for, a check that failed.
 
 use btu_rig::procedure::describe::meanings;
@@ -12,7 +12,7 @@ use super::recorder::freeze_frame;
 
 /// Code of a fault found by a failed check.
 pub const CHECK_FAILED: u16 = 9000;
-/// Code of an emergency brake nobody asked for.
+/// Code of an emergency brake that was not requested.
 pub const EB_UNREQUESTED: u16 = 9001;
 /// Part named when nothing points at one.
 const UNKNOWN_PART: &str = "unknown";
@@ -38,7 +38,7 @@ pub struct FaultSeen {
     pub freeze: Vec<fault_db::FreezeSample>,
 }
 
-/// Whether an event that nobody provoked is a fault: all above information, and all unknown ones.
+/// Whether an unprovoked event is a fault: all above information, and all unknown ones.
 pub fn is_fault(entry: &UnitEvent) -> bool {
     Event::from_code(entry.code).is_none_or(|event| event.definition().severity > Severity::Info)
 }
@@ -97,7 +97,7 @@ fn parameter(entry: &UnitEvent) -> String {
     car.unwrap_or_else(|| format!("parameter {}", entry.parameter))
 }
 
-/// An emergency brake nobody asked for.
+/// An emergency brake that was not requested.
 pub fn of_brake(at: Instant, sample: &Sample) -> FaultSeen {
     FaultSeen {
         code: EB_UNREQUESTED,

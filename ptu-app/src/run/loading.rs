@@ -74,7 +74,7 @@ static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
 /// From now on scripts are loaded by a process of `program`, which calls [`serve`] when it is started with
 /// [`WORD`]. Until then they are loaded in this one, as is good for scripts that are known.
 pub fn load_apart(program: PathBuf) {
-    // Whoever was first has said the same.
+    // The first caller has set the same.
     let _ = PROGRAM.set(program);
 }
 
@@ -152,7 +152,7 @@ pub fn load(
     })
 }
 
-/// A process that did not come to its end.
+/// A process that broke off.
 struct Broken {
     /// The script it was at.
     at: Option<String>,
@@ -236,7 +236,7 @@ fn last_words(mut words: impl Read) -> String {
     let mut kept = Vec::new();
     // What cannot be read says nothing.
     let _ = (&mut words).take(LAST_WORDS).read_to_end(&mut kept);
-    // Nobody is held up because nobody listens.
+    // The writer must not block on a full pipe.
     let _ = std::io::copy(&mut words, &mut std::io::sink());
     String::from_utf8_lossy(&kept).into_owned()
 }

@@ -1,4 +1,4 @@
-//! The repetitions of a procedure: whoever listens hears one procedure, with the steps of all of them.
+//! Repetitions of a procedure, reported as one procedure with the steps of all repetitions.
 
 use btu_rig::procedure::{RunEvent, Verdict};
 use protocol::Instant;
@@ -6,7 +6,7 @@ use protocol::Instant;
 /// Different messages of repetitions that are kept; what went wrong in thousands is told by the first few.
 const MESSAGES: usize = 8;
 
-/// How many repetitions of a procedure are over, and what they came to.
+/// How many repetitions of a procedure have ended, and their common verdict.
 pub(super) struct Rounds {
     of: u32,
     over: u32,

@@ -69,7 +69,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// From now on somebody looks on.
+    /// Sets the run control.
     pub fn attended_by(mut self, attendant: Option<Arc<dyn RunControl>>) -> Self {
         self.attendant = attendant;
         self
@@ -87,17 +87,17 @@ impl<L: UnitLink> Session<L> {
         self.stop = stop.clone();
     }
 
-    /// From now on scans are paced like this.
+    /// Changes the pace.
     pub fn set_pace(&mut self, pace: Pace) {
         self.pace = pace;
     }
 
-    /// The bench.
+    /// The bench, to be changed between scans.
     pub fn bench(&mut self) -> &mut Bench<L> {
         &mut self.bench
     }
 
-    /// Time on the bench.
+    /// Bench time.
     pub fn now(&self) -> Instant {
         self.bench.now()
     }
@@ -206,7 +206,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// Judges what the unit logged while it was brought up: nobody had provoked anything yet.
+    /// Judges what the unit logged during bring-up: nothing was provoked yet, so each fault event counts.
     pub fn judge_bring_up(
         &mut self,
         at_most: Duration,

@@ -1,5 +1,5 @@
-//! The writer: one thread owns the database and takes what is to be recorded, in order, and what is to be
-//! said of it, which is said when it is in the file.
+//! The writer: one thread owns the database. It stores the records of a run in order, and prints lines about
+//! them once they are in the file.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
@@ -15,7 +15,7 @@ use crate::clock;
 use crate::failure::{Failure, store_message};
 use crate::stop::Stop;
 
-/// Entries that may wait for the disk; a bench that produces more waits for the writer.
+/// Entries that may wait for the disk; beyond that the bench waits for the writer.
 const QUEUE: usize = 4096;
 /// Steps reach the file at least this often.
 const FLUSH: Duration = Duration::from_millis(250);
@@ -24,7 +24,7 @@ const FLUSH: Duration = Duration::from_millis(250);
 /// keeps nobody waiting but the bench.
 #[derive(Clone, Copy)]
 struct Patience {
-    /// After so long the bench is stopped: nobody drives a unit for a run that may not be kept.
+    /// After this time the bench is stopped: a unit is not driven for a run that may be lost.
     stops_ms: u32,
     /// After so long what was measured is kept in another file.
     gives_up: Duration,
@@ -35,7 +35,7 @@ const PATIENCE: Patience = Patience {
     gives_up: Duration::from_secs(180),
 };
 
-/// Something to record.
+/// One message to the writer.
 enum Entry {
     Step(StepRecord),
     /// A fault, numbered from 0 through the run.
@@ -49,10 +49,10 @@ enum Entry {
     Finish(RunEnd),
 }
 
-/// Says a line, without ever waiting for anybody.
+/// Prints a line; must not block.
 pub type Speaker = Box<dyn FnMut(String) + Send>;
 
-/// Lines that wait until what they tell of is in the file.
+/// Lines that are printed once the records they report are in the file.
 #[derive(Default)]
 struct Lines {
     speaker: Option<Speaker>,
@@ -60,7 +60,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// All that was recorded so far is in the file.
+    /// Prints the waiting lines: their records are in the file.
     fn stored(&mut self) {
         for line in self.waiting.drain(..) {
             if let Some(speaker) = &mut self.speaker {
@@ -70,7 +70,7 @@ impl Lines {
     }
 }
 
-/// The sending end.
+/// The sender's side of the writer thread.
 pub struct RunStore {
     entries: SyncSender<Entry>,
     thread: JoinHandle<(Store, Result<(), Failure>)>,
@@ -80,7 +80,7 @@ pub struct RunStore {
 
 impl RunStore {
     /// Begins the run: its row is on the disk when this returns. What is to be said goes to `speaker`. Should
-    /// writing fail later, `stop` is pressed at once: nobody drives a unit for a run that is not kept.
+    /// writing fail later, `stop` is pressed at once: a unit is not driven for a run that is not stored.
     ///
     /// # Errors
     /// The database does not take it.
@@ -194,7 +194,7 @@ fn write(
         }
         _ => None,
     };
-    // What still comes is taken off the queue so that nobody waits.
+    // Empties the queue so that no sender blocks.
     entries.iter().for_each(drop);
     Err(match rest {
         Some(rest) => Failure::bench(format!(

@@ -1,4 +1,4 @@
-//! What a run comes to on a line or with a unit that cannot be trusted: the embedded unit behind a link that
+//! Runs on a bad line or with an untrustworthy unit: the embedded unit behind a link that
 //! harms what passes.
 
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict, loader};
@@ -110,7 +110,7 @@ impl<L: UnitLink> UnitLink for Untrusted<L> {
     }
 }
 
-/// What a procedure came to.
+/// The result of a procedure.
 struct CameTo {
     verdict: Verdict,
     message: String,

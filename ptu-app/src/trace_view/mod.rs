@@ -9,7 +9,7 @@
 //! * [`choose`]: the signals to show first;
 //! * [`listing`]: which traces there are, and one read from the database with what happened in it;
 //! * [`Overlay`]: another trace or the good twin behind it;
-//! * [`Scene`]: all of this as one picture: lanes, view, cursors, what is laid behind.
+//! * [`Scene`]: all of this as one picture: lanes, view, cursors, the trace behind.
 
 mod axis;
 mod camera;

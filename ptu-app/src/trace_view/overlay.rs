@@ -19,7 +19,7 @@ pub enum Against {
     Trace(Id),
 }
 
-/// What is laid behind a trace.
+/// Which trace is shown behind another.
 #[derive(Debug)]
 pub struct Overlay {
     /// What it is.
@@ -29,7 +29,7 @@ pub struct Overlay {
     rule: Rule,
 }
 
-/// Where a trace parts from what is laid behind it, which is shifted by some rows.
+/// The first difference between a trace and the trace behind, which may be shifted by some rows.
 #[derive(Debug)]
 pub struct Parting {
     /// Rows by which the other one is laid later.
@@ -64,7 +64,7 @@ impl Overlay {
         })
     }
 
-    /// Where `came` parts from it.
+    /// The first difference of `came` from it.
     pub fn parting(&self, came: &TraceView, shift_rows: i64) -> Parting {
         let rule = self.rule.shifted(shift_rows);
         let (found, trouble) = match compare(came.data(), self.view.data(), &rule, &[]) {

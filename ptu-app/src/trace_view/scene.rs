@@ -35,7 +35,7 @@ pub struct Lane {
     pub stretch: f32,
 }
 
-/// What is laid behind the trace.
+/// The trace behind.
 #[derive(Debug)]
 pub struct Behind {
     /// Its samples.
@@ -44,7 +44,7 @@ pub struct Behind {
     pub axis: Axis,
     /// Rows by which it is laid later.
     pub shift_rows: i64,
-    /// Where the trace parts from it; `None` until that is known.
+    /// The first difference; `None` until it is computed.
     pub parting: Option<Parting>,
 }
 
@@ -110,7 +110,7 @@ impl Scene {
         &self.lanes
     }
 
-    /// What is laid behind it.
+    /// The trace behind, if one is shown.
     pub fn behind(&self) -> Option<&Behind> {
         self.behind.as_ref()
     }
@@ -169,7 +169,7 @@ impl Scene {
         }
     }
 
-    /// From the least to the greatest value of a lane's quantity, of what is laid behind too, with room:
+    /// From the least to the greatest value of a lane's quantity, of the trace behind too, with room:
     /// over the whole trace, or over what is in view.
     pub fn range(&self, place: usize) -> (f64, f64) {
         let extent = |view: &TraceView, place, axis: &Axis| {
@@ -272,7 +272,7 @@ impl Scene {
         });
     }
 
-    /// Takes away what is laid behind.
+    /// Removes the trace behind.
     pub fn lay_nothing_behind(&mut self) {
         self.behind = None;
     }
@@ -288,7 +288,7 @@ impl Scene {
         }
     }
 
-    /// Where the trace parts from what is laid behind.
+    /// Takes the first difference from the trace behind.
     pub fn told(&mut self, against: Against, parting: Parting) {
         if let Some(behind) = &mut self.behind
             && behind.overlay.against == against
@@ -338,7 +338,7 @@ fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     }
 }
 
-/// The same for what is laid behind; one that tells no distance has none of its rows in view.
+/// The same for the trace behind; one without distance has none of its rows in view.
 fn behind_axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Axis {
     axis(view, kind, shift_rows).unwrap_or_else(|| Axis::Distance {
         at_m: Vec::new(),

@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 
 use crate::words::Traces;
 
-/// A value in its own words: label, lit bits, or number and unit.
+/// A value as text: label, names of the set bits, or number and unit.
 pub fn named(channel: &Channel, value: f64, words: &Traces) -> String {
     if value.is_nan() {
         return words.not_known.to_owned();

@@ -138,7 +138,7 @@ impl Report {
         }
     }
 
-    /// What a diagnosis comes to, with the places for parts still open.
+    /// The finding of a diagnosis, with a placeholder for the parts.
     pub fn finding(&self, finding: Finding) -> &'static str {
         match finding {
             Finding::Found => self.found,

@@ -39,7 +39,7 @@ pub(super) struct PruneArguments {
 impl Database {
     pub(super) fn backup(&self, to: &Path) -> Result<Exit, Failure> {
         self.open_read_only()?.backup(only_file(to)?)?;
-        // Of the copy: somebody may have recorded more into the file meanwhile.
+        // Of the copy: another process may have recorded more into the file meanwhile.
         let head = fault_db::Store::open_read_only(to)?.head()?;
         let head = head.map(|head| format!("\n{}", sealed(&head)));
         print_out(&format!(

@@ -5,7 +5,7 @@ use fault_db::Channel;
 use crate::trace_view::value;
 use crate::words::Language;
 
-/// A value in its own words: label, lit bits, or number and unit.
+/// A value as text: label, names of the set bits, or number and unit.
 pub fn named(channel: &Channel, value: f64) -> String {
     value::named(channel, value, &Language::English.words().traces)
 }

@@ -14,7 +14,7 @@ use crate::tell;
 /// The status line changes every so many scans: 100 ms.
 const SHOWN_EVERY: u64 = 10;
 
-/// Lets somebody drive by keys until they quit or `stop` is pressed.
+/// Drives by keys until the user quits or `stop` is pressed.
 ///
 /// # Errors
 /// There is no terminal.

@@ -48,7 +48,7 @@ pub struct ManualCase {
 pub struct ManualRun {
     /// What was driven.
     pub case: ManualCase,
-    /// What it came to.
+    /// The result.
     pub outcome: Outcome,
 }
 

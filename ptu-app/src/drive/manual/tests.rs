@@ -90,7 +90,7 @@ fn a_run_by_hand_can_be_repeated_from_what_was_saved() {
     assert!(repeated.rows.len() > 250 && repeated.figures.peak_speed_kmh > 10.0);
 }
 
-/// ATP supervises who drives: nobody brakes at the code's limit, so it does.
+/// ATP brakes a train whose driver exceeds the limit of the speed code.
 #[test]
 fn a_brake_by_atp_ends_the_sequence_and_its_cause_is_given() {
     let mut slow = case("title = \"x\"\n[[steps]]\nafter_s = 0\nlever = \"P1\"\n");

@@ -148,7 +148,7 @@ impl Unit {
                 self.log.clear();
                 self.lost = false;
                 self.not_safe = false;
-                // What another unit's run came to is not this one's.
+                // The run shown belongs to another unit.
                 if self.run.as_ref().is_some_and(|run| run.unit != serial) {
                     self.run = None;
                 }
@@ -257,7 +257,7 @@ mod tests {
         ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts")
     }
 
-    /// Whoever looks on holds up the bench's thread, once it shows an idle unit, until it is let go.
+    /// Blocks the bench thread, once it shows an idle unit, until it is released.
     #[derive(Default)]
     struct HeldUp(OnceLock<Arc<LiveState>>, OnceLock<()>);
 

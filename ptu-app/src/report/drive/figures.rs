@@ -103,7 +103,7 @@ pub fn off(metres: f64) -> String {
     }
 }
 
-/// Where a run of many came to stand, and why if it was not at its stop.
+/// Where a run stopped, and why if it was not at its stop point.
 pub fn stop(trial: &Trial) -> String {
     match trial.stop_error_m {
         Some(error) if trial.stopped() => off(error),

@@ -1,4 +1,4 @@
-//! What runs came to: text for people, JSON, CSV, and HTML with plots. Station-to-station runs here,
+//! Reports of drive runs: plain text, JSON, CSV, and HTML with plots. Station-to-station runs here,
 //! runs by hand in [`manual`].
 
 mod csv;
@@ -27,7 +27,7 @@ use crate::report::json_text;
 
 /// What was driven, and how JSON tells it.
 pub struct Results {
-    /// What it came to.
+    /// The result.
     pub outcomes: Outcomes,
     /// Several were asked for, so that there is a list even of one.
     pub list: bool,

@@ -289,7 +289,7 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
     ]
 }
 
-/// What the run is sealed as: whoever holds the paper can tell whether the database still says so.
+/// The seal of the run, by which a printed sheet can be checked against the database.
 fn seal(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let Some(seal) = &sheet.run.seal else {

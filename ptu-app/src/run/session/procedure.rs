@@ -14,7 +14,7 @@ use crate::run::fault_watch::{self, FaultSeen};
 use crate::run::rounds::Rounds;
 use crate::run::settle::between_procedures;
 
-/// What one procedure has come to so far.
+/// The state of one procedure's run.
 struct Progress<'a> {
     procedure: &'a Procedure,
     step: Option<usize>,
@@ -149,7 +149,8 @@ impl<L: UnitLink> Session<L> {
         !stopped
     }
 
-    /// Lets an open window run out on a quiet bench. What is logged meanwhile waits for whoever idles next.
+    /// Records an open trace window to its end while nothing is done. Events logged meanwhile are read by the next
+    /// [`Session::idle`].
     fn finish_window(&mut self, sink: &mut dyn FnMut(SessionEvent)) {
         while self.recorder.is_open() && self.stop.presses() == 0 && self.link_error().is_none() {
             self.scan(&mut |cut| sink(SessionEvent::Trace(Box::new(cut))));

@@ -26,7 +26,7 @@ impl Seen {
         }
     }
 
-    /// A signal's value; none while nobody tells it.
+    /// `None` while the value is unknown.
     pub fn value(&self, signal: Signal) -> Option<f64> {
         self.sample.get(signal)
     }

@@ -5,7 +5,7 @@ use protocol::signal::{Kind, Signal};
 use super::seen::Seen;
 use crate::words::{Bench, fill};
 
-/// What stands for a value that nobody tells.
+/// Shown in place of an unknown value.
 pub const UNKNOWN: &str = "—";
 
 /// A signal's value: a word, or a number with its unit.

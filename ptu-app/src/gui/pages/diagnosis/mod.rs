@@ -63,7 +63,7 @@ impl DiagnosisPage {
         });
     }
 
-    /// Shows what this run comes to.
+    /// Shows the diagnosis of this run.
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.run = Some(run);
         self.answer = Request::Pending(context.queries.run(move |paths| {

@@ -40,7 +40,7 @@ pub struct ProceduresPage {
     /// A step to run as soon as the suite is there: procedure, step, unit by its own number.
     wanted: Option<(String, String, u64)>,
     shown: Shown,
-    /// What the last run comes to, by run.
+    /// The conclusion of the diagnosis of the last run.
     conclusion: Request<String>,
     concluded: Option<fault_db::Id>,
     note: RunNoteForm,
@@ -256,7 +256,7 @@ impl ProceduresPage {
         }
     }
 
-    /// Asks what a run that did not pass comes to.
+    /// Requests the diagnosis of a run that failed.
     fn conclude(&mut self, context: &PageContext<'_>) {
         self.conclusion.poll();
         let run = context.units.chosen().run.as_ref();

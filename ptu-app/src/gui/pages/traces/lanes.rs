@@ -155,7 +155,7 @@ impl Painted {
     }
 }
 
-/// What is shown, and in grey what is laid behind it: for a picture that is kept without the window.
+/// What is shown, and in grey the trace behind it: for a picture that is kept without the window.
 fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     let opened = sheet.scene.opened();
     let line = |row: f32, text: String, colour| {

@@ -137,7 +137,7 @@ impl Sheet<'_> {
         self.values(ui, place, rect);
     }
 
-    /// The same signal of what is laid behind.
+    /// The same signal of the trace behind.
     fn other(&self, signal: &str) -> Option<Source<'_>> {
         let behind = self.scene.behind()?;
         let view = &behind.overlay.view;
@@ -179,7 +179,7 @@ impl Sheet<'_> {
         curve(own, edges, colour);
     }
 
-    /// What is laid behind a word would hide it: it lies below.
+    /// The trace behind a state would hide its text, so it is drawn below.
     fn two_states(
         &self,
         ui: &Ui,
@@ -270,7 +270,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Rows in which the signal deviates from what is laid behind: a tint, and a bar along the lower edge.
+    /// Rows in which the signal deviates from the trace behind: a tint, and a bar along the lower edge.
     fn shade(&self, ui: &Ui, behind: &Behind, signal: &str, rect: Rect) {
         let parting = behind.parting.as_ref();
         let Some(stretches) = parting.and_then(|parting| parting.stretches.get(signal)) else {

@@ -1,4 +1,4 @@
-//! What a run by hand came to: text for people, JSON, CSV, and HTML with the plots of S3's figures 5
+//! Reports of a manual run: plain text, JSON, CSV, and HTML with the plots of S3's figures 5
 //! to 7.
 
 mod csv;
