@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::observation::{Result, Sign, StepSeen};
+use super::observation::{CheckResult, Sign, StepSeen};
 
 /// The result of a step with the signs that showed: what can be compared as equal or not.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Signature {
     /// The step's result.
-    pub result: Result,
+    pub result: CheckResult,
     /// The signs that showed.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub signs: BTreeSet<Sign>,
@@ -115,7 +115,7 @@ impl Cell {
     }
 
     /// How often it had this result.
-    pub fn count(&self, result: Result) -> u32 {
+    pub fn count(&self, result: CheckResult) -> u32 {
         let of = self.signatures.iter().filter(|(s, _)| s.result == result);
         of.map(|(_, count)| count).sum()
     }
@@ -133,7 +133,7 @@ impl Cell {
     pub fn not_passed(&self) -> f64 {
         match self.runs() {
             0 => 0.0,
-            runs => 1.0 - f64::from(self.count(Result::Passed)) / f64::from(runs),
+            runs => 1.0 - f64::from(self.count(CheckResult::Passed)) / f64::from(runs),
         }
     }
 

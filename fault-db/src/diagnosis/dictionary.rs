@@ -107,7 +107,7 @@ impl Dictionary {
     /// Compresses it for storage.
     ///
     /// Out of memory.
-    pub fn to_bytes(&self) -> std::result::Result<Vec<u8>, String> {
+    pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
         let json = serde_json::to_vec(self).map_err(|error| error.to_string())?;
         pack(&json, ZSTD_LEVEL).map_err(|error| error.to_string())
     }
@@ -116,7 +116,7 @@ impl Dictionary {
     ///
     /// # Errors
     /// It is no dictionary, or inconsistent.
-    pub fn from_bytes(packed: &[u8]) -> std::result::Result<Self, String> {
+    pub fn from_bytes(packed: &[u8]) -> Result<Self, String> {
         let json = unpack(packed, MAX_BYTES).map_err(|error| error.to_string())?;
         let mut read: Self = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
         read.index();

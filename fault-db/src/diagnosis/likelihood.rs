@@ -5,15 +5,15 @@
 //! of outliers), scaled to the range that the measurement has under all hypotheses.
 
 use super::cell::{Cell, Signature, Values};
-use super::observation::{Result, Sign, StepSeen};
+use super::observation::{CheckResult, Sign, StepSeen};
 
 /// Greatest number of runs that count: more would pretend that all benches are alike.
 const MOST_RUNS: f64 = 50.0;
 /// Probability of each result if nothing is known.
-const NOTHING_KNOWN: [(Result, f64); 3] = [
-    (Result::Passed, 0.50),
-    (Result::Failed, 0.35),
-    (Result::Error, 0.15),
+const NOTHING_KNOWN: [(CheckResult, f64); 3] = [
+    (CheckResult::Passed, 0.50),
+    (CheckResult::Failed, 0.35),
+    (CheckResult::Error, 0.15),
 ];
 /// Probability of a sign if nothing is known.
 const SIGN_UNKNOWN: f64 = 0.05;
@@ -90,7 +90,7 @@ impl Expected<'_> {
     }
 
     /// Probability of a result.
-    pub fn result(&self, result: Result) -> f64 {
+    pub fn result(&self, result: CheckResult) -> f64 {
         let nothing_known = NOTHING_KNOWN.iter().find(|(r, _)| *r == result);
         let nothing_known = nothing_known.map_or(0.0, |(_, p)| *p);
         self.smoothed(self.share(self.cell.count(result)), nothing_known)
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::observation::CheckName;
 
-    fn step(result: Result, value: Option<f64>) -> StepSeen {
+    fn step(result: CheckResult, value: Option<f64>) -> StepSeen {
         StepSeen {
             check: CheckName {
                 procedure: "p".into(),
@@ -211,26 +211,29 @@ mod tests {
     #[test]
     fn results_are_probabilities_and_nothing_is_impossible() {
         let cell = cell(&[
-            step(Result::Passed, Some(1.0)),
-            step(Result::Passed, Some(1.1)),
+            step(CheckResult::Passed, Some(1.0)),
+            step(CheckResult::Passed, Some(1.1)),
         ]);
-        let sum: f64 = Result::ALL.iter().map(|r| expected(&cell).result(*r)).sum();
+        let sum: f64 = CheckResult::ALL
+            .iter()
+            .map(|r| expected(&cell).result(*r))
+            .sum();
         assert!((sum - 1.0).abs() < 1e-12);
-        assert!(expected(&cell).result(Result::Failed) > 0.01);
-        assert!(expected(&cell).result(Result::Passed) > 0.85);
+        assert!(expected(&cell).result(CheckResult::Failed) > 0.01);
+        assert!(expected(&cell).result(CheckResult::Passed) > 0.85);
     }
 
     /// A reaction time of 640 ms with a limit of 600 ms is weaker evidence than none at all: under a slow
     /// relay 640 ms is likely, a missing value is not.
     #[test]
     fn a_measured_value_is_stronger_evidence_than_its_verdict() {
-        let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(Result::Passed, Some(v))));
-        let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(Result::Failed, Some(v))));
-        let dead = cell(&[None, None, None].map(|v| step(Result::Failed, v)));
+        let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(CheckResult::Passed, Some(v))));
+        let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(CheckResult::Failed, Some(v))));
+        let dead = cell(&[None, None, None].map(|v| step(CheckResult::Failed, v)));
         let mut scale = Scale::of_healthy(&healthy.values["t"]);
         scale.widen(&slow.values["t"]);
         let ln = |cell: &Cell, value| {
-            let step = step(Result::Failed, value);
+            let step = step(CheckResult::Failed, value);
             likelihood(expected(cell), &step, |_| Some(&scale)).ln()
         };
         assert!(ln(&slow, Some(643.0)) > ln(&dead, Some(643.0)) + 3.0);

@@ -27,7 +27,7 @@ pub use cell::{Cell, Signature, Values};
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
-pub use observation::{CheckName, Observation, Result, Sign, StepSeen};
+pub use observation::{CheckName, CheckResult, Observation, Sign, StepSeen};
 pub use settings::Settings;
 pub use strategy::{Effort, Strategy, fixed_order, replayed};
 pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

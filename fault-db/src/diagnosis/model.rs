@@ -250,7 +250,7 @@ fn mixed(one: f64, other: f64, share: f64) -> f64 {
 fn false_alarms(dictionary: &Dictionary) -> f64 {
     let cells = dictionary.healthy.cells.values();
     let (wrong, all) = cells.fold((0, 0), |(wrong, all), cell| {
-        let passed = cell.count(super::Result::Passed);
+        let passed = cell.count(super::CheckResult::Passed);
         (wrong + cell.runs() - passed, all + cell.runs())
     });
     (f64::from(wrong) + 0.5) / (f64::from(all) + 1.0)

@@ -23,7 +23,7 @@ pub struct NextCheck {
     pub cost_s: f64,
 }
 
-fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> std::result::Result<S::Ok, S::Error> {
+fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(check)
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The result of a step. Skipped and aborted steps are not observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Result {
+pub enum CheckResult {
     /// Every expectation held.
     Passed,
     /// An expectation did not hold.
@@ -16,7 +16,7 @@ pub enum Result {
     Error,
 }
 
-impl Result {
+impl CheckResult {
     /// All there are.
     pub const ALL: [Self; 3] = [Self::Passed, Self::Failed, Self::Error];
 
@@ -64,7 +64,7 @@ impl From<Sign> for String {
 impl TryFrom<String> for Sign {
     type Error = String;
 
-    fn try_from(text: String) -> std::result::Result<Self, String> {
+    fn try_from(text: String) -> Result<Self, String> {
         let parts = text.split_once('/');
         let (fault, lru) =
             parts.ok_or_else(|| format!("\"{text}\" is no sign: write fault/part"))?;
@@ -81,7 +81,7 @@ pub struct StepSeen {
     /// Which.
     pub check: CheckName,
     /// Its result.
-    pub result: Result,
+    pub result: CheckResult,
     /// Bench time it took, s.
     pub time_s: f64,
     /// Its measured values by name; `None` where nothing could be measured.
@@ -111,6 +111,6 @@ impl Observation {
             || self
                 .steps
                 .iter()
-                .any(|step| step.result != Result::Passed || !step.signs.is_empty())
+                .any(|step| step.result != CheckResult::Passed || !step.signs.is_empty())
     }
 }

@@ -5,7 +5,7 @@
 
 use super::belief::{Belief, normalised};
 use super::model::{Hypothesis, NO_FAULT};
-use super::observation::{Observation, Result, StepSeen};
+use super::observation::{CheckResult, Observation, StepSeen};
 
 /// Number of best explaining modes that are combined to pairs.
 const MOST_EXPLAINING: usize = 12;
@@ -54,7 +54,7 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, f64) {
 }
 
 fn is_strange(step: &StepSeen) -> bool {
-    step.result != Result::Passed || !step.signs.is_empty()
+    step.result != CheckResult::Passed || !step.signs.is_empty()
 }
 
 /// Permanent modes that explain the failures better than a healthy unit, with their best variety, the best

@@ -2,14 +2,14 @@
 
 use super::belief::Belief;
 use super::model::{Hypothesis, Model, NO_FAULT};
-use super::observation::{Observation, Result, StepSeen};
+use super::observation::{CheckResult, Observation, StepSeen};
 
 /// Most reasons in each direction.
 const MOST: usize = 6;
 /// A step is a reason if its likelihood ratio is at least e.
 const SPEAKS_AT: f64 = 1.0;
 /// Competing modes that a mode is compared with.
-const RIVALS: usize = 5;
+const CONFLICTING_EVENTS: usize = 5;
 
 /// The reasons for and against a mode, the strongest first.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -72,7 +72,7 @@ fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
         lru.is_some() && lru != own
     });
     rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
-    rivals.truncate(RIVALS);
+    rivals.truncate(CONFLICTING_EVENTS);
     rivals.into_iter().map(|(i, _)| i).collect()
 }
 
@@ -108,7 +108,7 @@ fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen
             _ => format!("{} to {}", rounded(v.low), rounded(v.high)),
         };
         let differs = range(of_own) != range(of_healthy);
-        if differs || (step.result != Result::Passed && value.is_none()) {
+        if differs || (step.result != CheckResult::Passed && value.is_none()) {
             let value = value.map_or_else(|| "none".to_owned(), rounded);
             text += &format!(
                 "; {name} = {value} (under this fault {}, healthy {})",

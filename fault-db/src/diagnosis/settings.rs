@@ -49,7 +49,7 @@ impl Settings {
     ///
     /// # Errors
     /// The key, its value and its range.
-    pub fn check(&self) -> std::result::Result<(), String> {
+    pub fn check(&self) -> Result<(), String> {
         let shares = [
             ("no_fault", self.no_fault),
             ("unknown_fault", self.unknown_fault),

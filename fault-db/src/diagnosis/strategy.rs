@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use super::belief::Belief;
 use super::model::Model;
 use super::next_check::NextCheck;
-use super::observation::{CheckName, Observation, Result, StepSeen};
+use super::observation::{CheckName, CheckResult, Observation, StepSeen};
 
 /// Isolates a fault, check by check.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
             self.belief.see(self.seen.steps.len(), step);
             self.seen.steps.push(step.clone());
         }
-        let surprising = new && (step.result != Result::Passed || !step.signs.is_empty());
+        let surprising = new && (step.result != CheckResult::Passed || !step.signs.is_empty());
         let reached = self.target.as_ref().is_none_or(|t| t.check == step.check);
         if surprising || reached {
             self.aim(Some(&step.check.procedure));

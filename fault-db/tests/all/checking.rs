@@ -220,7 +220,7 @@ fn derived_rows_are_checked_and_can_be_rebuilt() {
     }
 }
 
-/// A file full of the same mistake is told of in as many lines as a person reads.
+/// A file with the same error everywhere gives a limited number of findings.
 #[test]
 fn at_most_a_hundred_findings_of_a_kind_are_listed() {
     let dir = tempdir().expect("a directory");
@@ -502,7 +502,7 @@ fn the_seal_covers_the_recorded_values_not_those_changed_by_a_trigger() {
     assert_eq!(found[0].detail, changed);
 }
 
-/// Goal: taken out seals are no beginning of a new history, whatever is done with the file.
+/// Goal: removed seals never let a file begin a new chain, by any command.
 #[test]
 fn no_command_makes_seals_that_were_taken_out() {
     let dir = tempdir().expect("a directory");

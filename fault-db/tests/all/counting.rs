@@ -1,4 +1,4 @@
-//! Counts that are kept, held against counting row by row.
+//! Stored counts, compared with counting row by row.
 
 use crate::common::{Random, T0_US, end, fault, measurement, open, run_record, step};
 use fault_db::{
@@ -176,7 +176,7 @@ fn a_repair_dated_before_its_fault_took_no_time() {
     assert!(store.check().expect("checked").problems.is_empty());
 }
 
-/// What a list asks of an occurrence, one occurrence has to fulfil.
+/// One occurrence has to meet all conditions of a list on occurrences.
 #[test]
 fn all_conditions_on_an_occurrence_apply_to_the_same_one() {
     let dir = tempdir().expect("a directory");

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use fault_db::diagnosis::{
-    Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, Result as Seen,
+    Basis, CheckName, CheckResult, Diagnosis, Dictionary, Finding, ModeName, Model, Observation,
     Settings, Sign, StepSeen, Strategy, fixed_order, replayed,
 };
 
@@ -27,9 +27,9 @@ fn run(fails: &[&str], t: Option<f64>) -> Observation {
         let short = format!("{}.{}", check.procedure, check.step);
         StepSeen {
             result: if fails.contains(&short.as_str()) {
-                Seen::Failed
+                CheckResult::Failed
             } else {
-                Seen::Passed
+                CheckResult::Passed
             },
             time_s: 10.0,
             values: if short == "a.s1" {
@@ -296,7 +296,7 @@ fn repetitions_are_known_by_their_step() {
     assert_eq!(dictionary.place(&name("a", "s1 (left)")), None);
 }
 
-/// The one made of just what is asked for comes first, then the one that knows the most.
+/// The one with the exact provenance is preferred, then the one with the most fault modes.
 #[test]
 fn a_file_returns_the_best_matching_dictionary() {
     let folder = tempfile::tempdir().expect("folder");

@@ -207,7 +207,7 @@ const POISONED: &[(&str, &str, [usize; 4])] = &[
     ),
 ];
 
-/// Goal: each kind of bad row is named and left out with what hangs on it, and nothing else is.
+/// Goal: each kind of invalid row is reported and left out with the rows that depend on it, and no others are.
 #[test]
 fn an_invalid_row_is_reported_and_all_others_are_merged() {
     let dir = tempdir().expect("a directory");

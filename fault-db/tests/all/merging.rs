@@ -280,7 +280,7 @@ fn the_number_of_events_does_not_decide_a_conflict() {
     }
 }
 
-/// What one is at needs no word with those who only saw it once more.
+/// An acknowledgement is not in conflict with a later occurrence.
 #[test]
 fn an_occurrence_conflicts_only_with_a_resolution() {
     let dir = tempdir().expect("a directory");
@@ -376,7 +376,7 @@ fn a_fault_that_occurred_after_its_resolution_is_open_after_a_merge() {
     }
 }
 
-/// Two who did the same are no conflict.
+/// Two concurrent events that lead to the same state are no conflict.
 #[test]
 fn two_concurrent_events_with_the_same_state_are_no_conflict() {
     let dir = tempdir().expect("a directory");
@@ -408,7 +408,7 @@ fn a_merged_fault_is_found_by_either_id() {
     }
     a.add_note(theirs, "kim", "by its other name", T0_US + 20)
         .expect("found");
-    // There nobody knows of the join, and the fault comes to its end.
+    // That file does not know of the merge, and the fault is closed there.
     b.set_state(theirs, FaultState::Closed, "lee", "", T0_US + 30)
         .expect("closed");
     a.merge_from(&b).expect("merged");
@@ -417,7 +417,7 @@ fn a_merged_fault_is_found_by_either_id() {
     whole(&a, "joined");
 }
 
-/// Goal: a laptop that has not heard that a fault was closed does not pull the next one into it.
+/// Goal: a laptop that does not know that a fault was closed does not merge the next one into it.
 #[test]
 fn an_older_copy_does_not_absorb_the_next_fault() {
     let dir = tempdir().expect("a directory");

@@ -122,7 +122,7 @@ fn a_migrated_file_has_the_counts_and_seals_of_a_new_one() {
             merged.refused
         );
         assert_eq!(new.check().expect("checked").problems, []);
-        // Closed by who knew of the repair that did not come: nobody here can tell that it was done.
+        // Closed by somebody who knew a repair that this file does not have.
         let closed = fault_db::FaultFilter {
             states: vec![FaultState::Closed],
             ..Default::default()

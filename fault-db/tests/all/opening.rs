@@ -134,7 +134,7 @@ fn a_file_locked_by_another_is_named_so() {
     writer.finish(&end(Verdict::Passed)).expect("finished");
 }
 
-/// Goal: what is under way may wait longer for another writer than opening did.
+/// Goal: work under way may wait longer for another writer than opening did.
 #[test]
 fn the_busy_timeout_of_an_open_store_can_be_changed() {
     let dir = tempdir().expect("a directory");

@@ -1,4 +1,4 @@
-//! Room again, by age and by rule: what goes, what stays, and that the file still says all it said.
+//! Pruning by age, rule and size: what is deleted, what is kept, and that the file remains consistent.
 
 use std::path::Path;
 

@@ -34,7 +34,7 @@ fn history() -> Laptop {
             &[101 + n, 107],
             true,
         );
-        // What is said about a fault goes by itself, so that runs and notes take turns.
+        // Events are entries of their own, so that runs and notes alternate.
         let fault = store.resolve_fault("latest").expect("a fault");
         for note in 0..190 {
             store

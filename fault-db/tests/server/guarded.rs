@@ -9,7 +9,7 @@ use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
 use crate::laptop::connect;
 use crate::private::{Cluster, NO_HURRY, give_away};
 
-/// A server with a certificate for `localhost`, of an issuer nobody knows, that wants passwords of kim.
+/// A server that has a certificate for `localhost` from an unknown issuer and asks kim for a password.
 struct Guarded {
     cluster: Cluster,
     folder: tempfile::TempDir,
@@ -87,7 +87,7 @@ fn a_server_is_trusted_by_its_issuer_and_its_name() {
         server.address("localhost", &issuer),
         server.address("localhost", &format!("{issuer}&sslmode=require")),
         server.address("localhost", "sslmode=prefer"),
-        // On this machine nobody has to prove anything.
+        // On this machine no certificate is needed.
         server.address("localhost", ""),
     ] {
         connect(&accepted).unwrap_or_else(|error| panic!("{accepted}: {error}"));

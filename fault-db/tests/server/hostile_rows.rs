@@ -1,5 +1,5 @@
 //! Rows that hold what no history holds, in a laptop's file or on a server of before: they stay where they are, are
-//! named, and stand in nobody's way.
+//! reported, and block nothing.
 
 use crate::common::change;
 use crate::laptop::{Laptop, connect, day};
@@ -92,7 +92,8 @@ fn invalid_rows_of_a_laptop_are_not_sent_and_all_others_are() {
     }
 }
 
-/// Goal: what a server of before took from one laptop blocks no other, nor what is said later.
+/// Goal: invalid rows that an early version of the server accepted from one laptop block neither others nor later
+/// events.
 #[test]
 fn invalid_rows_on_the_server_do_not_block_a_sync() {
     let address = shared().database();
@@ -137,7 +138,7 @@ fn invalid_rows_on_the_server_do_not_block_a_sync() {
         );
         laptop.is_whole();
     }
-    // The work goes on: what is done about that fault reaches both, and a repair that did not hold is found.
+    // Later events of that fault reach both laptops, and a repair that did not hold is found.
     let desk = connect(&address).expect("a server");
     let fault = desk.resolve_fault("latest").expect("a fault");
     desk.acknowledge(fault, "lee", "on it", day(2))

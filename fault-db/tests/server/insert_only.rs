@@ -1,4 +1,4 @@
-//! Rows on the server are only ever added, whoever tries otherwise.
+//! Rows on the server can only be added, for any account.
 
 use crate::laptop::{Laptop, day};
 use crate::private::{name_of, shared};

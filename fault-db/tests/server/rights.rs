@@ -92,7 +92,7 @@ fn a_laptops_account_may_insert_and_select_and_nothing_else() {
     assert!(laptop.open().check().expect("a check").problems.is_empty());
 }
 
-/// What no history holds is refused by the server, too, whoever sends it.
+/// Rows outside their domain are refused by the server, too, from any client.
 #[test]
 fn rows_outside_of_the_domain_are_refused() {
     let address = shared().database();
@@ -201,7 +201,7 @@ fn setting_up_again_changes_nothing_and_an_older_server_is_brought_up_to_date() 
     let known = Some(SERVER_SCHEMA_VERSION);
     assert_eq!((again.schema_before, again.made_account), (known, false));
     assert_eq!((&again.owner[..], &again.laptops[..]), ("ptu", LAPTOPS));
-    // What was there before stays, however absurd, and stands in nobody's way.
+    // Earlier rows stay, however absurd, and block nothing.
     let runs: i64 = client
         .query_one("SELECT count(*) FROM run", &[])
         .expect("a count")

@@ -111,7 +111,7 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
         (still.events, still.already_there, still.events_received),
         (0, 0, 0)
     );
-    // What is said at the server reaches both.
+    // Events made on the server reach both.
     let desk = connect(&address).expect("a server");
     desk.set_state(
         only_fault(&desk).fault.id,
@@ -128,7 +128,7 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
     }
 }
 
-/// A fault that a laptop comes to know late brings all that was ever said about it.
+/// A fault that is new to a laptop brings all its events.
 #[test]
 fn a_laptop_receives_events_from_before_it_knew_the_fault() {
     let address = shared().database();

@@ -134,7 +134,7 @@ fn concurrent_server_setups_create_one_set_of_tables() {
     name.parse::<Id>().expect("an id");
 }
 
-/// An account that may only read can ask, and is told so when it wants to say something.
+/// An account that may only read can query, and gets a clear error when it writes.
 #[test]
 fn a_read_only_store_answers_queries_and_refuses_writes() {
     let address = shared().database();

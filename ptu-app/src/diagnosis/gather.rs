@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use btu_rig::procedure::{RunEvent, StepResult, Verdict};
-use fault_db::diagnosis::{CheckName, Observation, Result as Seen, Sign, StepSeen};
+use fault_db::diagnosis::{CheckName, CheckResult, Observation, Sign, StepSeen};
 use fault_db::{RunDetail, RunOccurrence, StepDetail};
 
 use crate::run::{CHECK_FAILED, FaultSeen, SessionEvent};
@@ -41,9 +41,9 @@ impl Gatherer {
 
     fn step(&mut self, result: &StepResult) -> Option<&StepSeen> {
         let seen = match result.verdict {
-            Verdict::Passed => Seen::Passed,
-            Verdict::Failed => Seen::Failed,
-            Verdict::Error => Seen::Error,
+            Verdict::Passed => CheckResult::Passed,
+            Verdict::Failed => CheckResult::Failed,
+            Verdict::Error => CheckResult::Error,
             Verdict::Skipped | Verdict::Aborted => return None,
         };
         let values = result.measurements.iter();
@@ -110,9 +110,9 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
 
 fn of_step(step: &StepDetail) -> Option<StepSeen> {
     let result = match step.verdict {
-        fault_db::Verdict::Passed => Seen::Passed,
-        fault_db::Verdict::Failed => Seen::Failed,
-        fault_db::Verdict::Error => Seen::Error,
+        fault_db::Verdict::Passed => CheckResult::Passed,
+        fault_db::Verdict::Failed => CheckResult::Failed,
+        fault_db::Verdict::Error => CheckResult::Error,
         fault_db::Verdict::Skipped | fault_db::Verdict::Aborted => return None,
     };
     let values = step.measurements.iter();

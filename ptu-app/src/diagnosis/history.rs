@@ -120,7 +120,7 @@ fn repaired(repair: &PartRepair) -> String {
 #[cfg(test)]
 mod tests {
     use fault_db::diagnosis::{
-        Basis, CheckName, Dictionary, ModeName, Model, Observation, Result as Seen, StepSeen,
+        Basis, CheckName, CheckResult, Dictionary, ModeName, Model, Observation, StepSeen,
     };
 
     use super::*;
@@ -159,7 +159,7 @@ mod tests {
             signs: BTreeSet::new(),
         };
         let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], vec![check.clone()]);
-        dictionary.set_healthy(&[came(Seen::Passed), came(Seen::Passed)]);
+        dictionary.set_healthy(&[came(CheckResult::Passed), came(CheckResult::Passed)]);
         for part in ["eb_relay", "io_board"] {
             let mode = ModeName {
                 id: format!("{part}.slow"),
@@ -172,11 +172,11 @@ mod tests {
             dictionary.add(
                 &mode,
                 String::new(),
-                &[came(Seen::Failed), came(Seen::Failed)],
+                &[came(CheckResult::Failed), came(CheckResult::Failed)],
             );
         }
         let model = Model::new(&dictionary, &settings, &history.factors);
-        let mut diagnosis = Diagnosis::of(&model, &came(Seen::Failed));
+        let mut diagnosis = Diagnosis::of(&model, &came(CheckResult::Failed));
         history.explain(&mut diagnosis);
         let relay = diagnosis.lrus.iter().find(|part| part.lru == "eb_relay");
         let probability = relay.expect("the relay").probability;
