@@ -46,7 +46,7 @@ fn setup() -> (ScriptsDirectory, BenchSetup) {
         serial: None,
         realtime: false,
         slower: 1,
-        attendant: None,
+        run_control: None,
     };
     (directory, setup)
 }

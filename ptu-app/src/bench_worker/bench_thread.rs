@@ -85,7 +85,7 @@ impl BenchThread {
         stop: &Stop,
         orders: &Receiver<Order>,
     ) -> ControlFlow<()> {
-        setup.attendant = Some(self.live_state.clone());
+        setup.run_control = Some(self.live_state.clone());
         let mut connected = match setup.connect(stop) {
             Ok(connected) => connected,
             Err(failure) => {

@@ -64,7 +64,7 @@ impl Suite {
                 serial: None,
                 realtime: false,
                 slower: 1,
-                attendant: None,
+                run_control: None,
             },
             tasks: procedures
                 .map(|procedure| Task {

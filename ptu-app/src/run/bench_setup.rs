@@ -50,7 +50,7 @@ pub struct BenchSetup {
     /// Times the bench is slower than the clock, where it goes by the clock.
     pub slower: u32,
     /// Watches and controls the runs, if set.
-    pub attendant: Option<Arc<dyn RunControl>>,
+    pub run_control: Option<Arc<dyn RunControl>>,
 }
 
 /// A unit that has been reached.
@@ -145,7 +145,7 @@ impl BenchSetup {
             Pace::Virtual
         };
         Session::new(Bench::new(rig, wired(link)), pace, stop.clone(), true)
-            .attended_by(self.attendant.clone())
+            .controlled_by(self.run_control.clone())
     }
 }
 

@@ -146,7 +146,7 @@ impl BenchChoice {
             serial,
             realtime: self.realtime,
             slower: self.slower,
-            attendant: None,
+            run_control: None,
         })
     }
 }

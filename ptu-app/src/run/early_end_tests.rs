@@ -130,7 +130,7 @@ fn recorded(
     plan: &RunPlan,
     mut setup: BenchSetup,
 ) -> (Outcome, fault_db::RunDetail) {
-    setup.attendant = Some(presser.clone());
+    setup.run_control = Some(presser.clone());
     let mut connected = setup.connect(&presser.stop).expect("the embedded unit");
     let (_folder, store) = store();
     let (began, stop) = (Began::now(), &presser.stop);
@@ -227,7 +227,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
             let mut connected = setup.connect(&Stop::default()).expect("the embedded unit");
             let begun = Arc::new(Presser::default());
             let setup = BenchSetup {
-                attendant: Some(begun.clone()),
+                run_control: Some(begun.clone()),
                 ..setup.clone()
             };
             if let Connected::Sim(bench) = &mut connected {
@@ -291,7 +291,7 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
     let store = Store::open(&file, options).expect("the database");
     let slowly = Arc::new(Slowly::default());
     let mut setup = setup();
-    setup.attendant = Some(slowly.clone());
+    setup.run_control = Some(slowly.clone());
     let stop = Stop::default();
     let mut busy = Busy {
         until: stop.clone(),

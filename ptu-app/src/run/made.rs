@@ -163,7 +163,7 @@ impl BenchMade {
             serial: Some(self.serial.clone()),
             realtime: false,
             slower: 1,
-            attendant: None,
+            run_control: None,
         })
     }
 

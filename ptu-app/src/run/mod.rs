@@ -55,8 +55,6 @@ pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;
 pub use workers::run_here;
 
-use bench_setup as benches;
-
 use crate::clock;
 use crate::failure::{Exit, Failure};
 use crate::stop::Stop;

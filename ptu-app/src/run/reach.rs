@@ -11,7 +11,7 @@ use protocol::message::Identity;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
-use super::benches::BenchSetup;
+use super::bench_setup::BenchSetup;
 use super::fault_watch::{self, FaultSeen};
 use super::session::Session;
 use super::settle::{READY_WITHIN, started};
@@ -50,7 +50,7 @@ impl BenchSetup {
         let mut bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
         bench.rig_mut().leave_log_before_contact();
         let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
-            .attended_by(self.attendant.clone())
+            .controlled_by(self.run_control.clone())
             .with_max_lag(self.max_lag());
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found);
@@ -74,8 +74,8 @@ impl BenchSetup {
         })
     }
 
-    /// How far the bench may be behind: the unit misses its inputs after a silence, of which what it heard
-    /// last may be a cycle old already.
+    /// How far the bench may lag behind the unit. The unit misses its inputs after a silence of `io_timeout_ms`,
+    /// and the last frame it received may already be a cycle old.
     fn max_lag(&self) -> Duration {
         let silence_us = u64::from(self.config.content.link.io_timeout_ms) * 1000;
         Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))

@@ -34,7 +34,7 @@ pub struct Session<L: UnitLink> {
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
     fresh_unit: bool,
-    attendant: Option<Arc<dyn RunControl>>,
+    run_control: Option<Arc<dyn RunControl>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
     with_person: bool,
 }
@@ -64,14 +64,14 @@ impl<L: UnitLink> Session<L> {
             max_lag: None,
             stalled: None,
             fresh_unit,
-            attendant: None,
+            run_control: None,
             with_person: false,
         }
     }
 
     /// Sets the run control.
-    pub fn attended_by(mut self, attendant: Option<Arc<dyn RunControl>>) -> Self {
-        self.attendant = attendant;
+    pub fn controlled_by(mut self, run_control: Option<Arc<dyn RunControl>>) -> Self {
+        self.run_control = run_control;
         self
     }
 
@@ -198,8 +198,8 @@ impl<L: UnitLink> Session<L> {
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
-        if let Some(attendant) = &self.attendant {
-            attendant.after_cycle(now, self.bench.rig());
+        if let Some(run_control) = &self.run_control {
+            run_control.after_cycle(now, self.bench.rig());
         }
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);

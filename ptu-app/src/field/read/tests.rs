@@ -46,7 +46,7 @@ pub fn bench(faults: &[&str]) -> Session<Delayed<SimLink>> {
         serial: None,
         realtime: false,
         slower: 1,
-        attendant: None,
+        run_control: None,
     };
     let mut session = setup.sim_session("field", &Stop::default());
     session.judge_bring_up(Duration::from_ms(20_000), |_| false);

@@ -87,8 +87,8 @@ impl<L: UnitLink> Session<L> {
                 link_lost = true;
                 sink(SessionEvent::LinkLost(error.clone()));
             }
-            if let Some(attendant) = &self.attendant {
-                attendant.before_scan(&mut runner);
+            if let Some(run_control) = &self.run_control {
+                run_control.before_scan(&mut runner);
             }
             self.wait_with(runner.awaits_operator());
             let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);

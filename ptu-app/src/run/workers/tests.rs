@@ -182,7 +182,7 @@ fn line6_bench() -> (ScriptsDirectory, BenchSetup) {
         serial: None,
         realtime: false,
         slower: 1,
-        attendant: None,
+        run_control: None,
     };
     (directory, setup)
 }
