@@ -199,6 +199,33 @@ fn a_spurious_pulse_while_the_service_brake_works_is_no_emergency() {
     }
 }
 
+/// Goal: a pulse too many does not feign that the service brake works. Method: a train that keeps its speed,
+/// and such a pulse about three times a second, each of which seems to be a deceleration half a second later.
+#[test]
+fn spurious_pulses_do_not_delay_the_emergency_brake_of_a_train_that_does_not_slow() {
+    for period in [30, 33, 40, 60] {
+        let mut bench = Bench::new(&[]);
+        bench.code("55");
+        bench.run(0.6);
+        bench.speed_kmh(60.0);
+        assert!(bench.until(2.0, |b| b.has(Outputs::FSB)).is_some());
+        let speed = bench.speeds[0];
+        let scans = (1..400).find(|scan| {
+            let spurious = if scan % period == 0 { 2.7 } else { 0.0 };
+            bench.speeds = [speed, speed + spurious];
+            bench.scan();
+            bench.braking()
+        });
+        let scans = scans.expect("the emergency brake");
+        assert!(
+            (290..=310).contains(&scans),
+            "every {period} scans: {scans}"
+        );
+        bench.run(0.1);
+        assert_eq!(bench.status.eb_cause, EbCause::ServiceBrakeIneffective);
+    }
+}
+
 #[test]
 fn one_dead_tachometer_brakes_and_is_named() {
     let mut bench = Bench::new(&[]);

@@ -37,7 +37,8 @@ pub struct OverspeedSupervision {
     above_alarm: OnDelay,
     above_service: OnDelay,
     above_emergency: OnDelay,
-    unproved: OnDelay,
+    effect_changes: OnDelay,
+    effective: bool,
     alarm: bool,
     service: bool,
     service_since: Instant,
@@ -57,7 +58,8 @@ impl OverspeedSupervision {
             above_alarm: OnDelay::default(),
             above_service: OnDelay::default(),
             above_emergency: OnDelay::default(),
-            unproved: OnDelay::default(),
+            effect_changes: OnDelay::default(),
+            effective: false,
             alarm: false,
             service: false,
             service_since: Instant::ZERO,
@@ -94,12 +96,15 @@ impl OverspeedSupervision {
         let proof = Duration::from_ms(u64::from(margins.brake_proof_ms));
         let proved = decel_mps2 >= margins.brake_proof_mps2;
         let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
-        // A pulse too many in a tachometer hides a deceleration for as long as its speed window.
-        let unproved = self.unproved.update(now, !proved, delay);
+        // A pulse too many in a tachometer hides a deceleration, or feigns one, for as long as its speed window.
+        let differs = proved != self.effective;
+        if self.effect_changes.update(now, differs, delay) {
+            self.effective = proved;
+        }
         // Close to the limit, and to standstill, a deceleration is no longer to be measured.
         let well_over = speed.kmh() > limit.kmh() + margins.alarm_margin_kmh;
         let ineffective =
-            self.service && unproved && now.since(self.service_since) >= proof && well_over;
+            self.service && !self.effective && now.since(self.service_since) >= proof && well_over;
         let in_grace = self.stepped_down && !ineffective && (proved || now < self.grace_until);
         let beyond = speed.kmh() > limit.kmh() + margins.eb_margin_kmh && !in_grace;
         let emergency = self.above_emergency.update(now, beyond, delay);
