@@ -78,7 +78,8 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
     let scripts = own_scripts(
         &place,
         "procedure(title = \"Alarm\", suspect = \"tra\")\n\
-         step(\"sounds\", expect = [becomes(alarm, True, within = ms(200))])\n",
+         step(\"sounds\", do = [prompt(\"Quiet here?\", within = s(600))],\n\
+         expect = [becomes(alarm, True, within = ms(200))])\n",
     );
     let mut settings = settings(Page::Procedures);
     settings.operator = "Lee".into();
@@ -86,15 +87,18 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
     window.click("Connect");
     window.wait_for("SIM-0001");
     window.click("Run");
+    window.wait_for("Quiet here?");
+    window.click("Yes");
     window.wait_for_part("Run over: failed");
     window.click("Run");
-    window.until("the next run", running);
+    window.wait_for("Quiet here?");
     let (release, held) = std::sync::mpsc::channel();
     let question = move |_: &_| {
         held.recv().expect("let go");
         Ok(())
     };
     let held_up = window.app().queries().run(question);
+    window.click("Yes");
     window.wait_for_part("Run over: failed");
     window.write("note on this run", "relay K3 ");
     assert!(!window.shows_part("cannot tell: "));
