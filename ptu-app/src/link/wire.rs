@@ -257,7 +257,12 @@ fn exchange_scan(
     port.write_all(to_unit).map_err(not_in_step)?;
     port.write_all(&SCAN_END).map_err(not_in_step)?;
     let mut chunk = [0; 4096];
+    let asked = std::time::Instant::now();
     while !from_unit.ends_with(&SCAN_END) {
+        // A unit that goes by the clock never ends a scan, and never falls silent.
+        if asked.elapsed() > STEP {
+            return Err(not_in_step(ErrorKind::TimedOut.into()));
+        }
         let count = port.read(&mut chunk).map_err(not_in_step)?;
         from_unit.extend_from_slice(&chunk[..count]);
     }
