@@ -26,7 +26,7 @@ pub struct GuiArguments {
     /// Page to show first: bench, procedures, traces, faults, diagnosis or report
     #[arg(long, value_name = "PAGE")]
     page: Option<Page>,
-    /// Connect at once: sim, serial:PATH[@BAUD] or tcp:HOST:PORT
+    /// Connect at once: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT")]
     unit: Option<Endpoint>,
     /// Faults to inject into the embedded unit, see `ptu catalog faults`

@@ -43,7 +43,7 @@ pub struct RunArguments {
     /// Procedures: paths, folders or globs
     #[arg(value_name = "PATH|GLOB")]
     procedures: Vec<String>,
-    /// The unit: sim, serial:PATH[@BAUD] or tcp:HOST:PORT
+    /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT", default_value = "sim")]
     unit: Endpoint,
     /// Line, lines/NAME.toml

@@ -23,7 +23,7 @@ use crate::link::Endpoint;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BenchChoice {
-    /// `sim`, `serial:PATH[@BAUD]` or `tcp:HOST:PORT`.
+    /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
     pub endpoint: String,
     /// Only the maintenance port is connected, without the bench harness.
     pub as_ptu: bool,

@@ -57,7 +57,7 @@ fn look_at(processor: usize) {
 }
 
 /// Whether a processor was held up since then.
-pub fn held_up_since(began: Instant) -> bool {
+fn held_up_since(began: Instant) -> bool {
     // What holds a processor up now is known when it goes on.
     sleep(2 * PERIOD);
     last()
@@ -67,7 +67,7 @@ pub fn held_up_since(began: Instant) -> bool {
 }
 
 /// Waits until nothing has been held up for a while.
-pub fn wait_until_steady() {
+fn wait_until_steady() {
     let began = Instant::now();
     while began.elapsed() < PATIENCE && held_up_since(Instant::now() - STEADY) {
         sleep(Duration::from_millis(100));

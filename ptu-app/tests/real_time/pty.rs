@@ -70,7 +70,7 @@ fn steps_of(planned: &[Value]) -> usize {
 /// The suite is shared out among units on ports of their own, each of which is tested in real time beside
 /// the others.
 #[test]
-#[ignore = "takes four minutes of real time on a quiet machine: scripts/test full"]
+#[ignore = "takes four minutes of real time on a quiet machine: --test real_time -- --ignored"]
 fn a_whole_acceptance_suite_over_pseudo_terminals_passes_in_real_time() {
     let place = Place::new();
     let planned = list(&place.json(&["run", "--list", "--json"])).to_vec();

@@ -31,7 +31,7 @@ use crate::table::Table;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ImportArguments {
-    /// The unit: serial:PATH[@BAUD] or tcp:HOST:PORT
+    /// The unit: serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT")]
     unit: Endpoint,
     /// Serial number expected of it

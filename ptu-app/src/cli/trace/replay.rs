@@ -30,7 +30,7 @@ use crate::stop::Stop;
 pub struct ReplayArguments {
     /// The trace
     id: String,
-    /// The unit: sim, serial:PATH[@BAUD] or tcp:HOST:PORT
+    /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT", default_value = "sim")]
     unit: Endpoint,
     /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
