@@ -3,28 +3,33 @@
 use rusqlite::params;
 
 use crate::backend::values;
-use crate::diagnosis::Dictionary;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
+
+/// A fault dictionary as stored. The file does not look into its data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DictionaryRecord {
+    /// When it was made, microseconds since 1970, UTC.
+    pub made_at_us: i64,
+    /// Version of the program that made it.
+    pub app_version: String,
+    /// Its provenance: SHA-256 over everything that it was made of, in hex.
+    pub basis_sha256: String,
+    /// Number of fault modes in it.
+    pub modes: usize,
+    /// The dictionary, encoded and compressed by the diagnosis.
+    pub data: Vec<u8>,
+}
 
 impl Store {
     /// Stores a dictionary.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn put_dictionary(
-        &self,
-        dictionary: &Dictionary,
-        made_at_us: i64,
-    ) -> Result<Id, StoreError> {
+    pub fn put_dictionary(&self, record: &DictionaryRecord) -> Result<Id, StoreError> {
         const DOING: &str = "storing a fault dictionary";
         let id = self.mint()?;
-        let basis = &dictionary.basis;
-        let data = dictionary.to_bytes().map_err(|reason| StoreError::Io {
-            path: self.path().to_path_buf(),
-            reason,
-        })?;
         self.write(DOING, |conn| {
             conn.prepare_cached(
                 "INSERT INTO dictionary(id, made_at_us, app_version, basis_sha256, modes, data)
@@ -33,11 +38,11 @@ impl Store {
             .and_then(|mut insert| {
                 insert.execute(params![
                     id,
-                    made_at_us,
-                    basis.app_version,
-                    basis.sha256,
-                    dictionary.modes.len(),
-                    data
+                    record.made_at_us,
+                    record.app_version,
+                    record.basis_sha256,
+                    record.modes,
+                    record.data
                 ])
             })
             .map_err(|error| self.failed(DOING, error))
@@ -45,28 +50,19 @@ impl Store {
         Ok(id)
     }
 
-    /// The dictionary with exactly this provenance, else any, preferring the one with the most fault modes,
-    /// then the newest; and when it was made.
+    /// The data of the dictionary with exactly this provenance, else of any, preferring the one with the most
+    /// fault modes, then the newest.
     ///
     /// # Errors
-    /// The file cannot be read, or its content is no dictionary.
-    pub fn dictionary(&self, basis_sha256: &str) -> Result<Option<(Dictionary, i64)>, StoreError> {
-        const DOING: &str = "reading a fault dictionary";
-        let found = self.first(
-                DOING,
-                "SELECT made_at_us, data FROM dictionary
-                 ORDER BY CASE WHEN basis_sha256 = ?1 THEN 0 ELSE 1 END, modes DESC, made_at_us DESC, seq DESC
-                 LIMIT 1",
+    /// The file cannot be read.
+    pub fn dictionary(&self, basis_sha256: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        self.first(
+            "reading a fault dictionary",
+            "SELECT data FROM dictionary
+             ORDER BY CASE WHEN basis_sha256 = ?1 THEN 0 ELSE 1 END, modes DESC, made_at_us DESC, seq DESC
+             LIMIT 1",
             &values![basis_sha256],
-            |row| Ok((row.get(0)?, row.get::<Vec<u8>>(1)?)),
-        )?;
-        let Some((made_at_us, data)) = found else {
-            return Ok(None);
-        };
-        let dictionary = Dictionary::from_bytes(&data).map_err(|reason| StoreError::Io {
-            path: self.path().to_path_buf(),
-            reason: format!("a fault dictionary is damaged: {reason}"),
-        })?;
-        Ok(Some((dictionary, made_at_us)))
+            |row| row.get::<Vec<u8>>(0),
+        )
     }
 }

@@ -9,8 +9,6 @@
 //!    the state of faults, `maintenance` checks, backs up, prunes and merges files, `sync` replicates
 //!    between a file and a server.
 //!
-//! Beside them stand [`diagnosis`] and [`process`], which know no database.
-//!
 //! The crate reads no clock, starts no thread, draws no random number and opens no file but the database:
 //! the caller gives times and an [`IdSource`]. Exceptions: [`read_regular_file`] and [`AtomicFile`] read and
 //! replace files for the whole program; connecting to a server reads the password file and certificates
@@ -23,7 +21,6 @@ mod atomic_file;
 mod backend;
 mod compression;
 mod conflicts;
-pub mod diagnosis;
 mod dictionaries;
 mod domain;
 mod error;
@@ -39,7 +36,6 @@ pub mod limits;
 mod lookup;
 mod maintenance;
 mod open_options;
-pub mod process;
 mod query;
 mod record;
 mod recording;
@@ -63,6 +59,7 @@ mod views;
 
 pub use atomic_file::AtomicFile;
 pub use conflicts::{ConflictingEvent, StateConflict};
+pub use dictionaries::DictionaryRecord;
 pub use domain::{Refusals, Refused};
 pub use error::{QueryLimit, StoreError};
 pub use fault_state::{FaultAction, FaultState, TransitionError};

@@ -18,10 +18,10 @@ use std::time::{Duration, Instant};
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Context, RawInput, Rect, pos2, vec2};
 use protocol::{CYCLE, Speed};
-use ptu_app::bench_worker::Phase;
-use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Settings};
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::data::ScriptsDirectory;
 
 /// How long each measurement takes.
 const LASTS: Duration = Duration::from_secs(20);
@@ -65,7 +65,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
         settings: Settings::default(),
         settings_file: None,
         connect: true,
-        interrupted: ptu_app::stop::Stop::default(),
+        interrupted: ptu_bench::stop::Stop::default(),
     };
     let context = Context::default();
     let wake = Arc::new(move || noted.lock().expect("times").push(Instant::now()));

@@ -14,11 +14,11 @@ use btu_rig::train::TrainData;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fault_db::Store;
-use ptu_app::clock;
-use ptu_app::data::ScriptsDirectory;
-use ptu_app::link::Endpoint;
-use ptu_app::run::{self, BenchSetup, Listener, Outcome, RunPlan, SessionEvent, Task};
-use ptu_app::stop::Stop;
+use ptu_bench::clock;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::link::Endpoint;
+use ptu_bench::run::{self, BenchSetup, Listener, Outcome, RunPlan, SessionEvent, Task};
+use ptu_bench::stop::Stop;
 
 const STEPS: usize = 5000;
 

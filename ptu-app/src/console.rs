@@ -11,10 +11,10 @@ use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::shown;
 
-use crate::failure::Failure;
-use crate::run::{Listener, RunPlan, SessionEvent, Speaker, steps_of};
-use crate::table::{Table, cell};
-use crate::tell;
+use ptu_bench::failure::Failure;
+use ptu_bench::run::{Listener, RunPlan, SessionEvent, Speaker, steps_of};
+use ptu_bench::table::{Table, cell};
+use ptu_bench::tell;
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);

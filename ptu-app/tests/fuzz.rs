@@ -11,8 +11,8 @@ use btu_rig::drive::Scatter;
 use btu_rig::drive::manual::Sequence;
 use btu_rig::train::TrainData;
 use common::Place;
-use fault_db::diagnosis::matrix::{Matrix, read_outcomes};
-use fault_db::diagnosis::{Dictionary, Settings as DiagnosisSettings};
+use diagnosis::matrix::{Matrix, read_outcomes};
+use diagnosis::{Dictionary, Settings as DiagnosisSettings};
 use fault_db::trace::{ENCODING, Shape, TraceCodec};
 use fault_db::{
     Address, Channel, ChannelKind, FaultFilter, FaultState, OpenOptions, RunFilter, Store,
@@ -26,13 +26,13 @@ use protocol::line::{self, Line};
 use protocol::link::{End, Link};
 use protocol::message::{Address as Party, CATALOGUE, Channel as WireChannel, Message};
 use protocol::{Backlog, Duration, Instant};
-use ptu_app::clock::{self, Span};
-use ptu_app::drive::{LoadChoice, SectionChoice, Setting};
 use ptu_app::gui::Settings;
-use ptu_app::link::Endpoint;
-use ptu_app::report::Target;
-use ptu_app::run::{BenchMade, Stimuli, loading};
-use ptu_app::trace_io::{Seconds, import};
+use ptu_bench::clock::{self, Span};
+use ptu_bench::drive::{LoadChoice, SectionChoice, Setting};
+use ptu_bench::link::Endpoint;
+use ptu_bench::run::{BenchMade, Stimuli, loading};
+use ptu_report::Target;
+use ptu_report::trace_io::{Seconds, import};
 
 fn fuzz(name: &str, examples: impl IntoIterator<Item = impl Into<Vec<u8>>>) -> Fuzz {
     Fuzz::new(name, env!("CARGO_MANIFEST_DIR"), examples)

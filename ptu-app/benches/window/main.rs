@@ -20,11 +20,11 @@ use btu_rig::stimulus::Stimulus;
 use divan::Bencher;
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput, Rect, pos2, vec2};
 use protocol::Speed;
-use ptu_app::bench_worker::Phase;
-use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Page, Settings};
-use ptu_app::trace_view::TraceView;
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_report::trace_view::TraceView;
 use tempfile::TempDir;
 
 /// Size of the window as it opens, and of one in which all 40 lanes are in view at once, points.
@@ -130,7 +130,7 @@ impl Window {
             settings,
             settings_file: None,
             connect: false,
-            interrupted: ptu_app::stop::Stop::default(),
+            interrupted: ptu_bench::stop::Stop::default(),
         };
         let app = App::new(&context, options, Arc::new(|| {})).expect("a window");
         Self {

@@ -3,18 +3,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use fault_db::DictionaryRecord;
 use glob::Pattern;
 
 use super::{Database, ScriptsOption, print_json, print_out};
-use crate::campaign::{self, Request, Suite, figures, redundancy};
-use crate::clock;
-use crate::diagnosis::settings;
-use crate::failure::{Exit, Failure};
-use crate::pool::cores;
-use crate::progress::Progress;
-use crate::report::campaign::{campaign_json, campaign_text};
-use crate::stop::Stop;
-use crate::tell;
+use ptu_bench::campaign::{self, Request, Suite, figures, redundancy};
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::pool::cores;
+use ptu_bench::progress::Progress;
+use ptu_bench::run_diagnosis::settings;
+use ptu_bench::stop::Stop;
+use ptu_bench::tell;
+use ptu_report::campaign::{campaign_json, campaign_text};
 
 /// Make a fault dictionary: run the suite against every fault mode, and say what the dictionary is worth
 ///
@@ -71,7 +72,7 @@ impl CampaignArguments {
         let modes = campaign::chosen(&suite, &asked)?;
         let count = campaign::samples(&modes, &asked).len();
         if let Some(file) = &self.save {
-            crate::data::check_writable(file)?;
+            ptu_bench::data::check_writable(file)?;
         }
         let store = self.database.open_file()?;
         let stop = Stop::default();
@@ -85,11 +86,18 @@ impl CampaignArguments {
             tell::note("stopped; no dictionary was made");
             return Ok(Exit::Aborted);
         };
-        store.put_dictionary(&outcome.dictionary, clock::now_us())?;
+        let dictionary = &outcome.dictionary;
+        let data = dictionary.to_bytes().map_err(Failure::bench)?;
         if let Some(file) = &self.save {
-            let bytes = outcome.dictionary.to_bytes().map_err(Failure::bench)?;
-            crate::data::write(file, bytes)?;
+            ptu_bench::data::write(file, &data)?;
         }
+        store.put_dictionary(&DictionaryRecord {
+            made_at_us: clock::now_us(),
+            app_version: dictionary.basis.app_version.clone(),
+            basis_sha256: dictionary.basis.sha256.clone(),
+            modes: dictionary.modes.len(),
+            data,
+        })?;
         let figures = figures(&outcome.assessments, &outcome.good);
         let redundancy = redundancy(&outcome.dictionary);
         store.close()?;

@@ -8,8 +8,8 @@ use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
 use super::{ScriptsOption, print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::table::Table;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::table::Table;
 
 /// Show faults, signals, speed codes, lines, parts or a train's cars
 #[derive(Debug, Args)]
@@ -114,7 +114,8 @@ impl CatalogArguments {
 impl CatalogArguments {
     /// S3's table, derived from the train's file.
     fn train(&self) -> Result<Vec<Value>, Failure> {
-        let TrainData::Cars(data) = crate::drive::train::train(&self.scripts.find()?, &self.train)?
+        let TrainData::Cars(data) =
+            ptu_bench::drive::train::train(&self.scripts.find()?, &self.train)?
         else {
             return Err(Failure::usage(format!(
                 "--train {}: a point mass has no cars",

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
-use crate::clock;
-use crate::failure::Failure;
-use crate::{private, tell};
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_bench::{private, tell};
 
 /// Names a history for all commands that are given none.
 const VARIABLE: &str = "PTU_DB";

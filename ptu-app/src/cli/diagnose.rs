@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
 use super::{Database, ScriptsOption, print_json, print_out};
-use crate::diagnosis::diagnose_run;
-use crate::failure::{Exit, Failure};
-use crate::report::diagnosis::{diagnosis_json, diagnosis_text};
-use crate::tell;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::run_diagnosis::diagnose_run;
+use ptu_bench::tell;
+use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 
 /// Find the part that failed, why it is that one, and the next best check
 ///

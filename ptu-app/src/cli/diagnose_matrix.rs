@@ -4,17 +4,17 @@ use std::fmt::Display;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use fault_db::diagnosis::matrix::{
+use diagnosis::matrix::{
     DEFAULT_CONFIDENCE, Leaf, Matrix, MatrixError, Method, Node, Outcome, Plan, PlanOptions,
     Posterior, plan, read_outcomes,
 };
 
 use super::print_out;
-use crate::data::read_within;
-use crate::failure::{Exit, Failure, did_you_mean};
-use crate::report::json_safe;
-use crate::table::Table;
-use crate::tell;
+use ptu_bench::data::read_within;
+use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::table::Table;
+use ptu_bench::tell;
+use ptu_report::json_safe;
 
 /// States a table shows; JSON has all.
 const SHOWN_STATES: usize = 20;

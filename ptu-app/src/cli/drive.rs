@@ -8,16 +8,16 @@ use clap::Args;
 use protocol::config::ControllerKind;
 
 use super::{ScriptsOption, answered, print_json, print_out};
-use crate::data::{ScriptsDirectory, check_writable, read, write};
-use crate::drive::manual::{KEYS, ManualRun, drive_by_hand};
-use crate::drive::{
+use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
+use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
+use ptu_bench::drive::{
     Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
-use crate::failure::{Exit, Failure, did_you_mean};
-use crate::pool::cores;
-use crate::report::drive::{self as report, Outcomes, Report, Results, Target, manual};
-use crate::stop::Stop;
-use crate::tell;
+use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::pool::cores;
+use ptu_bench::stop::Stop;
+use ptu_bench::tell;
+use ptu_report::drive::{self as report, Outcomes, Report, Results, Target, manual};
 
 /// Drive from station to station and measure the stop, or drive by hand
 ///

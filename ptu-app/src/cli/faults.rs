@@ -13,7 +13,7 @@ mod trend_text;
 use clap::{Args, Subcommand};
 
 use super::Database;
-use crate::failure::{Exit, Failure};
+use ptu_bench::failure::{Exit, Failure};
 
 /// Query and keep the fault history
 #[derive(Debug, Args)]

@@ -3,12 +3,12 @@
 use clap::{Args, Parser};
 
 use super::{Database, ScriptsOption};
-use crate::failure::{Exit, Failure};
 use crate::gui::DataPaths;
 use crate::gui::{Options, Page, Settings, open};
-use crate::link::Endpoint;
-use crate::stop::Stop;
-use crate::words::Language;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::link::Endpoint;
+use ptu_bench::stop::Stop;
+use ptu_report::words::Language;
 
 /// Open the technician's window
 ///

@@ -26,12 +26,12 @@ pub use database::Database;
 use fault_db::{Address, Store};
 use serde::Serialize;
 
-use crate::clock;
-use crate::data::ScriptsDirectory;
-use crate::failure::{Exit, Failure, did_you_mean_number};
-use crate::report::json_text;
-use crate::run::loading;
-use crate::tell;
+use ptu_bench::clock;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
+use ptu_bench::run::loading;
+use ptu_bench::tell;
+use ptu_report::json_text;
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///

@@ -4,9 +4,9 @@ use clap::Args;
 use serde_json::Value;
 
 use super::{print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::report::csv::Cell;
-use crate::tell;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::tell;
+use ptu_report::csv::Cell;
 
 /// How an answer is printed.
 #[derive(Clone, Debug, Args)]

@@ -3,8 +3,8 @@
 use clap::Args;
 
 use super::{print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::link::ports::found;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::link::ports::found;
 
 /// List serial ports; a pseudo-terminal is not listed but can be named
 #[derive(Debug, Args)]

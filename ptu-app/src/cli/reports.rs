@@ -3,10 +3,10 @@
 use clap::Args;
 use fault_db::{RunDetail, Store};
 
-use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
-use crate::report::{self, Target};
-use crate::words::Language;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::failure::Failure;
+use ptu_report::words::Language;
+use ptu_report::{self, Target};
 
 /// Which reports to write.
 #[derive(Debug, Args)]
@@ -37,6 +37,6 @@ impl ReportOption {
         directory: Option<&ScriptsDirectory>,
         run: &RunDetail,
     ) -> Result<(), Failure> {
-        report::write(&self.report, store, directory, run, self.lang)
+        ptu_report::write(&self.report, store, directory, run, self.lang)
     }
 }

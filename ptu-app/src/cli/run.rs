@@ -12,17 +12,17 @@ use serde_json::json;
 use super::reports::ReportOption;
 use super::{Database, ScriptsOption, print_json, print_out};
 use crate::console::{Console, verdict_table};
-use crate::data::ScriptsDirectory;
-use crate::diagnosis::{Bench, adaptive, diagnose_run};
-use crate::drive::Setting;
-use crate::failure::{Exit, Failure};
-use crate::link::Endpoint;
-use crate::report::diagnosis::diagnosis_text;
-use crate::run::{
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::drive::Setting;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::link::Endpoint;
+use ptu_bench::run::{
     self, BenchChoice, BenchSetup, Outcome, RunPlan, Suite, Task, check_serial, select,
 };
-use crate::stop::Stop;
-use crate::tell;
+use ptu_bench::run_diagnosis::{Bench, adaptive, diagnose_run};
+use ptu_bench::stop::Stop;
+use ptu_bench::tell;
+use ptu_report::diagnosis::diagnosis_text;
 
 /// Run check procedures; by default all under scripts/ but those on request only
 ///
@@ -296,7 +296,7 @@ impl RunArguments {
         let result = run::run(plan, setup, store, &stop, &mut console);
         console.finish();
         let (store, outcome) = result?;
-        let detail = store.run(outcome.id, &crate::owner::is_alive)?;
+        let detail = store.run(outcome.id, &ptu_bench::owner::is_alive)?;
         // The database and the reports have it: what a terminal does not take changes no verdict.
         let said = print_out(&verdict_table(&detail))
             .and_then(|_| self.say_diagnosis(&store, directory, &outcome));

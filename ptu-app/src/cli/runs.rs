@@ -7,12 +7,12 @@ use super::reports::ReportOption;
 use super::{
     Database, ScriptsOption, at_least_one, print_json, print_out, since_argument, unknown_unit,
 };
-use crate::clock;
 use crate::console::verdict_table;
-use crate::failure::{Exit, Failure};
-use crate::owner;
-use crate::report::{run_json, run_summary_json};
-use crate::table::Table;
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::owner;
+use ptu_bench::table::Table;
+use ptu_report::{run_json, run_summary_json};
 
 /// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]

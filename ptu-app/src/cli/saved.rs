@@ -8,9 +8,9 @@ use clap::{Args, CommandFactory, FromArgMatches};
 use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out};
-use crate::data::{self, LONGEST_FILE};
-use crate::failure::{Exit, Failure, did_you_mean};
-use crate::table::Table;
+use ptu_bench::data::{self, LONGEST_FILE};
+use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::table::Table;
 
 /// Ask a saved question again, or list them all
 ///

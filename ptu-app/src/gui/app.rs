@@ -16,9 +16,9 @@ use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::Units;
 use super::{fonts, theme};
-use crate::bench_worker::Wake;
-use crate::failure::Failure;
-use crate::stop::Stop;
+use ptu_bench::bench_worker::Wake;
+use ptu_bench::failure::Failure;
+use ptu_bench::stop::Stop;
 
 /// How often a window that is being closed looks whether all units are let go.
 const CLOSING: Duration = Duration::from_millis(50);

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use fault_db::{Store, StoreError};
 
-use crate::clock;
-use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
-use crate::private;
+use ptu_bench::clock;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::failure::Failure;
+use ptu_bench::private;
 
 /// The files that pages read and runs are recorded in.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
 
-use crate::fonts::PRETENDARD;
+use ptu_report::fonts::PRETENDARD;
 
 const NAME: &str = "Pretendard";
 

@@ -1,6 +1,6 @@
 //! Messages to the user of the window: trouble and information, with the time of each.
 
-use crate::clock;
+use ptu_bench::clock;
 
 /// The latest messages, oldest first.
 #[derive(Debug, Default)]

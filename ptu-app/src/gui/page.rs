@@ -3,7 +3,7 @@
 use eframe::egui::Key;
 use serde::{Deserialize, Serialize};
 
-use crate::words::Words;
+use ptu_report::words::Words;
 
 /// A page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

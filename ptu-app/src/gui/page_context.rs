@@ -6,7 +6,7 @@ use super::messages::Messages;
 use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::Units;
-use crate::words::Words;
+use ptu_report::words::Words;
 
 /// What a page reads and changes while it is drawn.
 pub struct PageContext<'a> {

@@ -104,7 +104,7 @@ mod tests {
     use std::sync::mpsc::{self, Sender};
 
     use super::*;
-    use crate::failure::Failure;
+    use ptu_bench::failure::Failure;
 
     fn pending() -> (Sender<Result<u32, Failure>>, Pending<u32>) {
         let (sender, receiver) = mpsc::channel();

@@ -6,10 +6,10 @@ use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
 use super::Page;
-use crate::data::LONGEST_FILE;
-use crate::failure::Failure;
-use crate::run::BenchChoice;
-use crate::words::Language;
+use ptu_bench::data::LONGEST_FILE;
+use ptu_bench::failure::Failure;
+use ptu_bench::run::BenchChoice;
+use ptu_report::words::Language;
 
 /// Everything is at least and at most so large.
 pub const SMALLEST_ZOOM: f32 = 0.7;
@@ -78,7 +78,7 @@ impl Settings {
     /// # Errors
     /// The file or its folder cannot be written.
     pub fn save(&self, file: &Path) -> Result<(), Failure> {
-        crate::data::keep(file, self)
+        ptu_bench::data::keep(file, self)
     }
 }
 

@@ -4,7 +4,7 @@
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Context, TextStyle, Theme, Ui};
 
-use crate::run::stored;
+use ptu_bench::run::stored;
 
 /// Colours of meaning.
 #[derive(Clone, Copy, Debug)]

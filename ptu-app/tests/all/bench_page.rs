@@ -5,8 +5,8 @@ use egui_kittest::kittest::Queryable;
 
 use crate::common::{Place, scripts, window::Window};
 use ptu_app::gui::{Page, Settings};
-use ptu_app::run::BenchChoice;
-use ptu_app::words::Language;
+use ptu_bench::run::BenchChoice;
+use ptu_report::words::Language;
 
 /// A bench with a simulated unit connected to it.
 fn connected(settings: Settings) -> Window {

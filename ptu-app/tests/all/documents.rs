@@ -9,7 +9,7 @@ use crate::common::Place;
 use clap::Parser;
 use clap::error::ErrorKind;
 use ptu_app::cli::Cli;
-use ptu_app::words::Language;
+use ptu_report::words::Language;
 
 /// Longest README, lines, and its longest line, characters.
 const README_LINES: usize = 120;
@@ -303,11 +303,9 @@ fn wrong_cargo(arguments: &[String]) -> Option<String> {
         arguments.get(at + 1).map(String::as_str)
     };
     let package = after("-p")?;
-    let folder = root().join(package);
-    if !folder.join("Cargo.toml").is_file() {
+    let Some((folder, manifest)) = find_package(package) else {
         return Some(format!("there is no package {package}"));
-    }
-    let manifest = fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest");
+    };
     for (option, place) in [
         ("--test", "tests"),
         ("--bench", "benches"),
@@ -328,6 +326,21 @@ fn wrong_cargo(arguments: &[String]) -> Option<String> {
         .flatten()?;
     let name = filter.rsplit("::").next()?;
     (!has_test(&folder, name)).then(|| format!("{package} has no test called {filter}"))
+}
+
+/// The folder and manifest of a package; a package lies in the top folder or in another package's.
+fn find_package(name: &str) -> Option<(PathBuf, String)> {
+    let folders = |within: &Path| {
+        let entries = fs::read_dir(within).into_iter().flatten();
+        entries.map(|entry| entry.expect("an entry").path())
+    };
+    let top: Vec<_> = folders(&root()).collect();
+    let nested: Vec<_> = top.iter().flat_map(|folder| folders(folder)).collect();
+    top.into_iter().chain(nested).find_map(|folder| {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).ok()?;
+        let named = manifest.contains(&format!("[package]\nname = \"{name}\""));
+        named.then_some((folder, manifest))
+    })
 }
 
 /// The word that says which tests are run.

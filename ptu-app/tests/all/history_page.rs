@@ -4,9 +4,9 @@
 use crate::common::window::Window;
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
-use ptu_app::bench_worker::Phase;
 use ptu_app::gui::{Page, Settings};
-use ptu_app::words::Language;
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::Language;
 use serde_json::Value;
 
 /// A place whose database has one run with this fault.

@@ -317,7 +317,7 @@ fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
 
 /// The history of a place, to write to.
 fn store(place: &Place) -> Store {
-    let options = ptu_app::clock::open_options();
+    let options = ptu_bench::clock::open_options();
     Store::open(&place.path("history.db"), options).expect("a history")
 }
 

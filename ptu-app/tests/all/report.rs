@@ -2,8 +2,8 @@
 
 use crate::common::Place;
 use fault_db::Store;
-use ptu_app::report::run::{Sheet, html};
-use ptu_app::words::Language;
+use ptu_report::run::{Sheet, html};
+use ptu_report::words::Language;
 
 /// A failed run in all formats at once, and the same from the store: sheets say what failed, and are
 /// the same files again.

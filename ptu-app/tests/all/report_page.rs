@@ -5,7 +5,7 @@ use crate::common::{Place, list, record_bad_unit, scripts};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use ptu_app::gui::{Page, Settings};
-use ptu_app::words::Language;
+use ptu_report::words::Language;
 
 /// A window on the report page over a run that passed, and a later one that failed.
 fn window(language: Language) -> Window {

@@ -7,7 +7,7 @@ use crate::common::window::Window;
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
 use ptu_app::gui::{Page, Settings};
-use ptu_app::words::Language;
+use ptu_report::words::Language;
 
 /// A window on the traces of a unit whose EB relay is slow.
 fn window(settings: Settings) -> Window {

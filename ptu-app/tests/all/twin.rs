@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::common::{Place, has_shape, list, number, text};
 use fault_db::Store;
-use ptu_app::data::ScriptsDirectory;
-use ptu_app::replay::{Original, explain, good_twin};
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::replay::{Original, explain, good_twin};
 use rusqlite::Connection;
 use serde_json::Value;
 

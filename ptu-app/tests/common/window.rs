@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Event, Modifiers, PointerButton, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use ptu_app::data::ScriptsDirectory;
 use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Page, Settings};
+use ptu_bench::data::ScriptsDirectory;
 
 use super::{Place, scripts};
 
@@ -44,7 +44,7 @@ impl Window {
             settings,
             settings_file,
             connect: false,
-            interrupted: ptu_app::stop::Stop::default(),
+            interrupted: ptu_bench::stop::Stop::default(),
         });
         let show = move |ui: &mut eframe::egui::Ui, app: &mut Option<App>| match app {
             Some(app) => app.show(ui),

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::{Place, list};
 use ptu_app::gui::{Page, Settings};
-use ptu_app::run::BenchChoice;
+use ptu_bench::run::BenchChoice;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 

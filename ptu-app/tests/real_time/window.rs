@@ -6,9 +6,9 @@ use crate::common::steady::steadily;
 use crate::common::window::Window;
 use crate::common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
-use ptu_app::bench_worker::Phase;
 use ptu_app::gui::{Page, Settings};
-use ptu_app::words::Language;
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::Language;
 
 fn settings(page: Page) -> Settings {
     Settings {
@@ -297,7 +297,7 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     window.wait_for_part("own/own.star:");
     assert!(!window.enabled("Run"));
     // What would take the whole memory takes a process of its own with it, and the window stays.
-    ptu_app::run::loading::load_apart(env!("CARGO_BIN_EXE_ptu").into());
+    ptu_bench::run::loading::load_apart(env!("CARGO_BIN_EXE_ptu").into());
     std::fs::write(
         folder.join("own/own.star"),
         format!("{good}x = [0] * 1000000000\n"),

@@ -11,9 +11,9 @@ use serde_json::{json, to_value};
 use super::check::sealed;
 use crate::cli::database::only_file;
 use crate::cli::{Database, answered, print_json, print_out, since_argument};
-use crate::clock;
-use crate::failure::{Exit, Failure};
-use crate::tell;
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::tell;
 
 /// Which traces may go; those of faults that are not closed never do.
 #[derive(Debug, Args)]

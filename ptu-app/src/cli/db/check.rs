@@ -3,8 +3,8 @@
 use fault_db::{CheckReport, SealHead};
 
 use crate::cli::{Database, answered, print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::table::Table;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::table::Table;
 
 impl Database {
     pub(super) fn check(&self, json: bool) -> Result<Exit, Failure> {

@@ -4,8 +4,8 @@ use clap::{Args, Subcommand};
 use fault_db::{Address, ServerSetup, Store};
 
 use crate::cli::{print_json, print_out};
-use crate::clock;
-use crate::failure::{Exit, Failure};
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure};
 
 /// The account of the laptops, if none is named.
 const LAPTOPS: &str = "ptu";

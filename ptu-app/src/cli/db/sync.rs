@@ -9,9 +9,9 @@ use serde_json::json;
 
 use super::care::{rivals, told_refused};
 use crate::cli::{Database, answered, print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::stop::Stop;
-use crate::{clock, owner, tell};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::stop::Stop;
+use ptu_bench::{clock, owner, tell};
 
 /// Bring this laptop's history to a server, and what others said about its faults back
 ///

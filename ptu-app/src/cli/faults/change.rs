@@ -4,9 +4,9 @@ use clap::Args;
 use fault_db::{FaultState, RepairRecord, Store};
 
 use crate::cli::print_out;
-use crate::clock::now_us;
-use crate::failure::{Exit, Failure, did_you_mean};
-use crate::tell;
+use ptu_bench::clock::now_us;
+use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::tell;
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed
 #[derive(Debug, Args)]

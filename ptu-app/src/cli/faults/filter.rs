@@ -5,8 +5,8 @@ use fault_db::{FaultFilter, FaultState, Store, code_number};
 use protocol::event::Severity;
 
 use crate::cli::{since_argument, unknown_unit};
-use crate::clock::Span;
-use crate::failure::{Failure, did_you_mean, did_you_mean_number};
+use ptu_bench::clock::Span;
+use ptu_bench::failure::{Failure, did_you_mean, did_you_mean_number};
 
 /// How bad a fault is; what is less is none.
 const SEVERITIES: [Severity; 3] = [Severity::Minor, Severity::Major, Severity::Critical];

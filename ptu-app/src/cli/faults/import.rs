@@ -7,13 +7,13 @@ use protocol::message::Identity;
 use serde_json::{Value, json};
 
 use crate::cli::{ScriptsOption, print_json, print_out, since_argument};
-use crate::clock::{local, now_us, rfc3339};
-use crate::failure::{Exit, Failure};
-use crate::field::{Imported, Judged, LogRead, Source, import, judge, read_log};
-use crate::link::{Endpoint, WireLink};
-use crate::run::unit_text;
-use crate::stop::Stop;
-use crate::table::Table;
+use ptu_bench::clock::{local, now_us, rfc3339};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::field::{Imported, Judged, LogRead, Source, import, judge, read_log};
+use ptu_bench::link::{Endpoint, WireLink};
+use ptu_bench::run::unit_text;
+use ptu_bench::stop::Stop;
+use ptu_bench::table::Table;
 
 /// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
 ///

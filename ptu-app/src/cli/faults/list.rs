@@ -6,11 +6,11 @@ use fault_db::{FaultFilter, FaultSummary, Store};
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
-use crate::clock::local;
-use crate::failure::{Exit, Failure};
-use crate::report::{FAULT_KEYS, fault_json};
-use crate::table::Table;
-use crate::tell;
+use ptu_bench::clock::local;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::table::Table;
+use ptu_bench::tell;
+use ptu_report::{FAULT_KEYS, fault_json};
 
 /// List faults, last seen first
 ///

@@ -5,10 +5,10 @@ use protocol::shown::line;
 use serde_json::{Value, json};
 
 use crate::cli::{print_json, print_out};
-use crate::clock::{local, rfc3339};
-use crate::failure::{Exit, Failure};
-use crate::report::fault_json;
-use crate::table::Table;
+use ptu_bench::clock::{local, rfc3339};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::table::Table;
+use ptu_report::fault_json;
 
 /// Shows the fault an id stands for.
 pub fn show(store: &Store, id: &str, json: bool) -> Result<Exit, Failure> {

@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
-use crate::clock::{self, local_minute, rfc3339};
-use crate::failure::{Exit, Failure};
 use crate::sparkline::sparkline;
-use crate::table::Table;
+use ptu_bench::clock::{self, local_minute, rfc3339};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::table::Table;
 
 /// Keys of a row, in their order.
 const KEYS: [&str; 18] = [

@@ -3,16 +3,16 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fault_db::process::{Process, Sample};
+use diagnosis::process::{Process, Sample};
 use fault_db::{Store, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit};
 use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, unknown_unit};
-use crate::clock::{Span, local_day, rfc3339, utc_day};
-use crate::data;
-use crate::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::clock::{Span, local_day, rfc3339, utc_day};
+use ptu_bench::data;
+use ptu_bench::failure::{Exit, Failure, did_you_mean};
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///

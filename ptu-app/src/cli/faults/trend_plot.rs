@@ -1,14 +1,14 @@
 //! A trend drawn on a page: values, limits, control limits, the line through them.
 
 use super::trend::{Course, Trend};
-use crate::report::plot::{Plot, Series, Style};
+use ptu_report::plot::{Plot, Series, Style};
 
 /// Microseconds of a day.
 const DAY_US: f64 = 86.4e9;
 
 /// The page.
 pub fn page(trend: &Trend) -> String {
-    crate::report::drive::page(&title(trend), &plot(trend).svg())
+    ptu_report::drive::page(&title(trend), &plot(trend).svg())
 }
 
 fn title(trend: &Trend) -> String {

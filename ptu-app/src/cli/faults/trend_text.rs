@@ -1,13 +1,13 @@
 //! A trend as text: the last values or months, the tests on them, and the units that stand out.
 
-use fault_db::process::{Process, Sign};
+use diagnosis::process::{Process, Sign};
 use fault_db::{TrendDay, TrendPoint, TrendUnit};
 
 use super::trend::{Course, Trend};
-use crate::clock::{local, utc_month};
-use crate::limits::short;
 use crate::sparkline::sparkline_of;
-use crate::table::Table;
+use ptu_bench::clock::{local, utc_month};
+use ptu_bench::table::Table;
+use ptu_report::limits::short;
 
 /// Days of a month, for slopes.
 const MONTH_DAYS: f64 = 30.0;

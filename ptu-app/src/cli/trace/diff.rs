@@ -10,9 +10,9 @@ use serde_json::json;
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{ScriptsOption, print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
-use crate::trace_io::{import, is_importable, lay};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
+use ptu_report::trace_io::{import, is_importable, lay};
 
 /// Names that are told of a file that has none of the trace's signals.
 const SHOWN_NAMES: usize = 10;

@@ -7,8 +7,8 @@ use fault_db::Store;
 
 use super::PartArguments;
 use crate::cli::print_out;
-use crate::failure::{Exit, Failure};
-use crate::trace_io::{Chosen, Format, export};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_report::trace_io::{Chosen, Format, export};
 
 /// Write a trace to a .csv, .parquet or .mcap file
 ///

@@ -10,10 +10,10 @@ use serde_json::json;
 use super::explained::{deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
 use crate::cli::{Database, ScriptsOption, answered, print_json, print_out};
-use crate::failure::{Exit, Failure};
-use crate::link::Endpoint;
-use crate::replay::{Likeness, Original, Rerun, Rerunning, rerun};
-use crate::stop::Stop;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::link::Endpoint;
+use ptu_bench::replay::{Likeness, Original, Rerun, Rerunning, rerun};
+use ptu_bench::stop::Stop;
 
 /// Do again what was done in a trace, on the embedded unit or one on a port, and compare what comes
 ///
@@ -75,7 +75,7 @@ impl ReplayArguments {
             operator: self.operator.clone(),
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
-        let detail = store.run(rerun.run_id, &crate::owner::is_alive)?;
+        let detail = store.run(rerun.run_id, &ptu_bench::owner::is_alive)?;
         let told = match self.json {
             true => print_json(&rerun_json(&original, &rerun)),
             false => print_out(&text(&original, &rerun)),

@@ -8,9 +8,9 @@ use super::explained::{explanation_json, explanation_text};
 use super::plot::{lanes, plot};
 use super::{PartArguments, read};
 use crate::cli::{ScriptsOption, print_json, print_out};
-use crate::clock::rfc3339;
-use crate::failure::{Exit, Failure};
-use crate::replay::{Explanation, explain};
+use ptu_bench::clock::rfc3339;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::replay::{Explanation, explain};
 
 #[derive(Debug, Args)]
 pub struct ShowArguments {

@@ -2,8 +2,8 @@
 
 use fault_db::Channel;
 
-use crate::trace_view::value;
-use crate::words::Language;
+use ptu_report::trace_view::value;
+use ptu_report::words::Language;
 
 /// A value as text: label, names of the set bits, or number and unit.
 pub fn named(channel: &Channel, value: f64) -> String {

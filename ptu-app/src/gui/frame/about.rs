@@ -3,8 +3,8 @@
 use eframe::egui::{CollapsingHeader, Grid, Id, Key, RichText, ScrollArea, Ui, Window};
 
 use super::keys::{CONNECT, STOP_ALL};
-use crate::fonts::PRETENDARD_LICENCE;
 use crate::gui::{Page, PageContext, Palette};
+use ptu_report::fonts::PRETENDARD_LICENCE;
 
 /// The window about the program.
 #[derive(Default)]

@@ -6,10 +6,10 @@ use protocol::message::Identity;
 
 use super::keys::STOP_ALL;
 use super::setup::Setup;
-use crate::bench_worker::Phase;
 use crate::gui::parts::chip;
 use crate::gui::{Page, PageContext, Palette};
-use crate::words::{Words, fill};
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::{Words, fill};
 
 /// The bar.
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
@@ -107,7 +107,7 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
         );
     }
     if let Some(identity) = identity {
-        let serial = crate::run::unit_text::serial(&identity);
+        let serial = ptu_bench::run::unit_text::serial(&identity);
         let label = ui.label(RichText::new(serial).strong());
         label.on_hover_text(versions(&identity, words));
         let share = 100.0 * share.unwrap_or(1.0);
@@ -135,7 +135,7 @@ fn versions(identity: &Identity, words: &Words) -> String {
                 "config",
                 &format!(
                     "{} {:08x}",
-                    crate::run::unit_text::config_name(identity),
+                    ptu_bench::run::unit_text::config_name(identity),
                     identity.config_crc
                 ),
             ),

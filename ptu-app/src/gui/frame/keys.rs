@@ -2,8 +2,8 @@
 
 use eframe::egui::{Context, Key, Modifiers};
 
-use crate::bench_worker::Phase;
 use crate::gui::{Page, PageContext};
+use ptu_bench::bench_worker::Phase;
 
 /// Stops everything, whatever has the keyboard.
 pub const STOP_ALL: Key = Key::F12;

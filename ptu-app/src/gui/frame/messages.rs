@@ -2,9 +2,9 @@
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
-use crate::clock;
 use crate::gui::messages::Message;
 use crate::gui::{PageContext, Palette};
+use ptu_bench::clock;
 
 /// The bar.
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {

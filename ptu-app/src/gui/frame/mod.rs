@@ -10,8 +10,8 @@ mod setup;
 use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
 use super::{PageContext, Palette};
-use crate::words::Words;
 use about::About;
+use ptu_report::words::Words;
 use setup::Setup;
 
 /// What the frame keeps while the window is open.

@@ -6,7 +6,7 @@ use super::about::About;
 use crate::gui::parts::named_combo;
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
 use crate::gui::{Page, PageContext};
-use crate::words::Language;
+use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
 

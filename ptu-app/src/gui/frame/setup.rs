@@ -5,13 +5,13 @@ use eframe::egui::{
     TextEdit, Ui, Window,
 };
 
-use crate::bench_worker::Phase;
 use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::link::ports;
-use crate::run::BenchChoice;
-use crate::words::Words;
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::link::ports;
+use ptu_bench::run::BenchChoice;
+use ptu_report::words::Words;
 
 /// Names to choose from.
 struct Names {

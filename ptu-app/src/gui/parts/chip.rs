@@ -4,7 +4,7 @@ use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Frame, Margin, Response, RichText, Ui};
 
 use crate::gui::Palette;
-use crate::words::Words;
+use ptu_report::words::Words;
 
 /// A word on a coloured ground.
 pub fn chip(ui: &mut Ui, text: &str, colour: Color32) -> Response {

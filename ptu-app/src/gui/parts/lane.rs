@@ -1,5 +1,5 @@
 //! One lane of a plot: a quantity, a choice or a bit along an axis that lanes share. Paints columns and
-//! stretches of pixels ([`crate::trace_view`]); samples are none of its business.
+//! stretches of pixels ([`ptu_report::trace_view`]); samples are none of its business.
 
 use eframe::egui::epaint::Vertex;
 use eframe::egui::{
@@ -7,8 +7,8 @@ use eframe::egui::{
 };
 
 use crate::gui::Palette;
-use crate::ticks::Ticks;
-use crate::trace_view::{Column, Shown, Span, Window};
+use ptu_report::ticks::Ticks;
+use ptu_report::trace_view::{Column, Shown, Span, Window};
 
 /// Size of the text beside an axis and in boxes.
 pub const TEXT: f32 = 11.5;

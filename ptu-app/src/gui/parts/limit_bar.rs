@@ -4,7 +4,7 @@ use btu_rig::procedure::{Measurement, Verdict};
 use eframe::egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::gui::Palette;
-use crate::limits::{places, short};
+use ptu_report::limits::{places, short};
 
 /// Size of the bar, points.
 const SIZE: [f32; 2] = [150.0, 14.0];

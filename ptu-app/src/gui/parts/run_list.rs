@@ -4,12 +4,12 @@ use eframe::egui::{RichText, ScrollArea, TextEdit, TextStyle, Ui};
 use fault_db::{Id, RunFilter, RunState, RunSummary};
 
 use super::chip;
-use crate::clock;
 use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::owner;
-use crate::words::Words;
+use ptu_bench::clock;
+use ptu_bench::owner;
+use ptu_report::words::Words;
 
 /// As many runs as are listed.
 const MOST: u32 = 2_000;

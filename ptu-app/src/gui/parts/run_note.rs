@@ -3,12 +3,12 @@
 use eframe::egui::{Button, Ui};
 use fault_db::Id;
 
-use crate::clock::now_us;
 use crate::gui::messages::Messages;
 use crate::gui::parts::note_edit;
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
-use crate::words::Words;
+use ptu_bench::clock::now_us;
+use ptu_report::words::Words;
 
 /// Room for the button, points.
 const BUTTON: f32 = 130.0;

@@ -5,10 +5,10 @@ mod unit;
 pub use unit::Unit;
 
 use super::messages::Messages;
-use crate::bench_worker::{Phase, Wake};
-use crate::failure::Failure;
-use crate::run::BenchChoice;
-use crate::words::Words;
+use ptu_bench::bench_worker::{Phase, Wake};
+use ptu_bench::failure::Failure;
+use ptu_bench::run::BenchChoice;
+use ptu_report::words::Words;
 use unit::Said;
 
 /// All units of the window; there is always one.

@@ -6,13 +6,13 @@ use btu_rig::procedure::UnitEvent;
 use protocol::message::Identity;
 use protocol::signal::Signal;
 
-use crate::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
-use crate::failure::Failure;
 use crate::gui::messages::Messages;
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
-use crate::run::{BenchChoice, BenchSetup, SessionEvent};
-use crate::words::{Words, fill};
+use ptu_bench::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
+use ptu_bench::failure::Failure;
+use ptu_bench::run::{BenchChoice, BenchSetup, SessionEvent};
+use ptu_report::words::{Words, fill};
 
 /// Entries of a unit's log that are shown.
 const LOG: usize = 500;
@@ -81,7 +81,7 @@ impl Unit {
     /// What it is called: its serial number, or where it is.
     pub fn name(&self) -> String {
         match self.identity() {
-            Some(identity) => crate::run::unit_text::serial(&identity),
+            Some(identity) => ptu_bench::run::unit_text::serial(&identity),
             None => self.choice.endpoint.clone(),
         }
     }
@@ -244,10 +244,10 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use super::*;
-    use crate::bench_worker::LiveState;
-    use crate::data::ScriptsDirectory;
-    use crate::run::{RunPlan, Suite, Task};
-    use crate::words::Language;
+    use ptu_bench::bench_worker::LiveState;
+    use ptu_bench::data::ScriptsDirectory;
+    use ptu_bench::run::{RunPlan, Suite, Task};
+    use ptu_report::words::Language;
 
     /// Longest time anything here takes to come about.
     const PATIENCE: Duration = Duration::from_secs(300);
@@ -297,7 +297,7 @@ mod tests {
                 scripts_sha256: suite.sha256,
                 adaptive: None,
             },
-            store: fault_db::Store::open(database, crate::clock::open_options())
+            store: fault_db::Store::open(database, ptu_bench::clock::open_options())
                 .expect("a database"),
             realtime: false,
         }

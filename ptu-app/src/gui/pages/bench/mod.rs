@@ -17,12 +17,12 @@ use std::collections::BTreeMap;
 
 use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
-use crate::bench_worker::Phase;
 use crate::gui::PageContext;
-use crate::run::BenchSetup;
 use forms::Forms;
 use live::{View, view};
 use plot::Plot;
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::run::BenchSetup;
 use rolling::chosen;
 use seen::Seen;
 use stimuli::{Given, Hand, stimuli};

@@ -10,12 +10,12 @@ use protocol::signal::Signal;
 use super::live::{View, framed, heading, put};
 use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
-use crate::bench_worker::BenchWorker;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::ticks;
-use crate::trace_view::{Column, Span, Window, columns, spans};
-use crate::words::{Bench, fill};
+use ptu_bench::bench_worker::BenchWorker;
+use ptu_report::ticks;
+use ptu_report::trace_view::{Column, Span, Window, columns, spans};
+use ptu_report::words::{Bench, fill};
 
 /// Left of the curves: names with values, and the scale's numbers.
 const NAMES: f32 = 168.0;

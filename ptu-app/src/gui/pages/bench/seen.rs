@@ -2,7 +2,7 @@
 
 use protocol::signal::{Sample, Signal};
 
-use crate::bench_worker::{BenchWorker, Phase};
+use ptu_bench::bench_worker::{BenchWorker, Phase};
 
 /// The bench as it was at the beginning of the frame.
 #[derive(Debug, Default)]

@@ -3,7 +3,7 @@
 use protocol::signal::{Kind, Signal};
 
 use super::seen::Seen;
-use crate::words::{Bench, fill};
+use ptu_report::words::{Bench, fill};
 
 /// Shown in place of an unknown value.
 pub const UNKNOWN: &str = "—";
@@ -77,7 +77,7 @@ pub fn since_start(words: &Bench, at_ms: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::Language;
+    use ptu_report::words::Language;
 
     fn seen(signal: Signal, value: f64) -> Seen {
         let mut seen = Seen::default();

@@ -1,13 +1,13 @@
 //! The ranked parts and fault modes, with the reasons.
 
+use diagnosis::Candidate;
 use eframe::egui::{CollapsingHeader, RichText, Ui};
-use fault_db::diagnosis::Candidate;
 
 use super::Named;
-use crate::diagnosis::Answer;
 use crate::gui::parts::share_bar;
 use crate::gui::{Destination, PageContext, Palette};
-use crate::words::fill;
+use ptu_bench::run_diagnosis::Answer;
+use ptu_report::words::fill;
 
 /// Parts of less than this share of the likeliest are not named in the headline.
 const WORTH_NAMING: f64 = 0.1;

@@ -2,17 +2,17 @@
 
 mod candidates;
 
+use diagnosis::Finding;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::Id;
-use fault_db::diagnosis::Finding;
 use protocol::injection::Lru;
 
-use crate::clock;
-use crate::diagnosis::{Answer, diagnose_run};
 use crate::gui::parts::RunList;
 use crate::gui::request::Request;
 use crate::gui::{Destination, PageContext, Palette};
-use crate::words::{Language, Words, fill};
+use ptu_bench::clock;
+use ptu_bench::run_diagnosis::{Answer, diagnose_run};
+use ptu_report::words::{Language, Words, fill};
 
 /// The page.
 #[derive(Default)]

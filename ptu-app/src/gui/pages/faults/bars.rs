@@ -4,9 +4,9 @@ use eframe::egui::{Align2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, v
 use fault_db::DailyCount;
 
 use super::charts::{DAY_US, OverTime, by_name, over_time};
-use crate::clock;
 use crate::gui::Palette;
-use crate::words::{Words, fill};
+use ptu_bench::clock;
+use ptu_report::words::{Words, fill};
 
 const HEIGHT: f32 = 86.0;
 /// Room a name takes in a chart by name.

@@ -3,11 +3,11 @@
 use eframe::egui::{Button, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
-use crate::clock::now_us;
 use crate::gui::parts::{name_edit, note_edit};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::words::Words;
+use ptu_bench::clock::now_us;
+use ptu_report::words::Words;
 
 /// States a person can bring a fault to.
 const TOWARDS: [FaultState; 5] = [

@@ -4,10 +4,10 @@ use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
 use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 
 use super::list::state_chip;
-use crate::clock;
 use crate::gui::{Destination, Palette};
-use crate::limits::short;
-use crate::words::{Words, fill};
+use ptu_bench::clock;
+use ptu_report::limits::short;
+use ptu_report::words::{Words, fill};
 
 /// Occurrences shown at most; the command line shows all.
 const MOST: usize = 50;

@@ -4,10 +4,10 @@ use eframe::egui::{ComboBox, Label, RichText, ScrollArea, Sense, TextEdit, TextS
 use fault_db::{FaultState, FaultSummary, Id};
 
 use super::filter::{Filter, SPANS, names};
-use crate::clock;
 use crate::gui::Palette;
 use crate::gui::parts::{chip, named_combo};
-use crate::words::{Words, fill};
+use ptu_bench::clock;
+use ptu_report::words::{Words, fill};
 
 /// Widths of the columns, points.
 const COLUMNS: [f32; 6] = [156.0, 78.0, 160.0, 110.0, 70.0, 36.0];

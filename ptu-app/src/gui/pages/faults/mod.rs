@@ -10,13 +10,13 @@ mod list;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
-use crate::clock;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use change::Change;
 use filter::Filter;
+use ptu_bench::clock;
 
 /// As many faults as are listed.
 const MOST: u32 = 20_000;

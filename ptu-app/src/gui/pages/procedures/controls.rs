@@ -3,12 +3,12 @@
 use eframe::egui::{Button, DragValue, RichText, Ui};
 
 use super::ProceduresPage;
-use crate::bench_worker::Phase;
 use crate::gui::parts::name_edit;
 use crate::gui::request::Request;
 use crate::gui::units::Unit;
 use crate::gui::{PageContext, Palette};
-use crate::words::Procedures;
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::Procedures;
 
 /// Most repetitions of a run.
 const MOST: u32 = 10_000;

@@ -13,13 +13,13 @@ use std::sync::Arc;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
-use crate::diagnosis::diagnose_run;
 use crate::gui::parts::RunNoteForm;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::run::{BenchChoice, Suite};
-use crate::words::fill;
 use prepare::{How, Prepared, ShownSuite};
+use ptu_bench::run::{BenchChoice, Suite};
+use ptu_bench::run_diagnosis::diagnose_run;
+use ptu_report::words::fill;
 use results::Shown;
 use selection::Selection;
 
@@ -269,10 +269,12 @@ impl ProceduresPage {
         self.concluded = Some(outcome.id);
         let id = outcome.id;
         self.conclusion = match outcome.exit {
-            crate::failure::Exit::Failed => Request::Pending(context.queries.run(move |paths| {
-                let answer = diagnose_run(&paths.read()?, &paths.scripts, id)?;
-                Ok(answer.diagnosis.conclusion)
-            })),
+            ptu_bench::failure::Exit::Failed => {
+                Request::Pending(context.queries.run(move |paths| {
+                    let answer = diagnose_run(&paths.read()?, &paths.scripts, id)?;
+                    Ok(answer.diagnosis.conclusion)
+                }))
+            }
             _ => Request::Idle,
         };
     }

@@ -2,10 +2,10 @@
 
 use eframe::egui::{Grid, ProgressBar, Ui};
 
-use crate::bench_worker::Phase;
 use crate::gui::parts::verdict_chip;
 use crate::gui::{PageContext, Palette};
-use crate::words::fill;
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::fill;
 
 /// A line for each unit when there are several.
 pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::selection::{Selection, possible};
-use crate::bench_worker::RunOrder;
-use crate::diagnosis;
-use crate::failure::Failure;
 use crate::gui::DataPaths;
-use crate::run::{BenchChoice, RunPlan, Suite};
+use ptu_bench::bench_worker::RunOrder;
+use ptu_bench::failure::Failure;
+use ptu_bench::run::{BenchChoice, RunPlan, Suite};
+use ptu_bench::run_diagnosis;
 
 /// How what is chosen is run.
 #[derive(Clone, Debug)]
@@ -84,12 +84,17 @@ pub fn order(
     let store = paths.open()?;
     let adaptive = match how.adaptive {
         true => {
-            let bench = diagnosis::Bench {
+            let bench = run_diagnosis::Bench {
                 unit_config_sha256: &setup.config.sha256,
                 line: &choice.line,
                 train: &choice.train,
             };
-            Some(diagnosis::adaptive(&store, &paths.scripts, serial, &bench)?)
+            Some(run_diagnosis::adaptive(
+                &store,
+                &paths.scripts,
+                serial,
+                &bench,
+            )?)
         }
         false => None,
     };
@@ -114,7 +119,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::data::ScriptsDirectory;
+    use ptu_bench::data::ScriptsDirectory;
 
     /// A scripts directory of one procedure, with the shipped units, lines and trains.
     fn scripts_in(folder: &Path) -> ScriptsDirectory {

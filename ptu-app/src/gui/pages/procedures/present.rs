@@ -7,10 +7,10 @@ use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
 
 use super::results::{measurements, source};
 use super::tree::{minutes, title};
-use crate::bench_worker::{Present, Progress};
 use crate::gui::Palette;
 use crate::gui::parts::verdict_chip;
-use crate::words::{Words, fill};
+use ptu_bench::bench_worker::{Present, Progress};
+use ptu_report::words::{Words, fill};
 
 /// Lines shown before and after the script's present one.
 const AROUND: Range<u32> = 2..5;

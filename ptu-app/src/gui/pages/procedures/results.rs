@@ -6,12 +6,12 @@ use std::ops::Range;
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, ScrollArea, Ui, UiBuilder};
 
-use crate::bench_worker::Progress;
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
-use crate::run::CHECK_FAILED;
-use crate::words::{Words, fill};
+use ptu_bench::bench_worker::Progress;
+use ptu_bench::run::CHECK_FAILED;
+use ptu_report::words::{Words, fill};
 
 /// Lines shown before and after a step's.
 const AROUND: Range<u32> = 1..4;

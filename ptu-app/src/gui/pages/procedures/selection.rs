@@ -7,7 +7,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use protocol::Duration;
 
-use crate::run::Task;
+use ptu_bench::run::Task;
 
 /// How much of something is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,8 +150,8 @@ impl Selection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::ScriptsDirectory;
-    use crate::run::{BenchChoice, Suite};
+    use ptu_bench::data::ScriptsDirectory;
+    use ptu_bench::run::{BenchChoice, Suite};
 
     fn procedures() -> Vec<Arc<Procedure>> {
         let scripts = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");

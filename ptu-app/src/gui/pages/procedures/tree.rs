@@ -9,7 +9,7 @@ use super::ProceduresPage;
 use super::selection::{Selection, Share, possible};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::words::{Language, Words, fill};
+use ptu_report::words::{Language, Words, fill};
 
 impl ProceduresPage {
     pub(super) fn tree(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {

@@ -8,7 +8,7 @@ use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::{name_edit, named_combo};
 use crate::gui::request::Request;
 use crate::gui::{Destination, PageContext};
-use crate::words::{Language, Words, fill};
+use ptu_report::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.
 const BUTTONS: f32 = 190.0;

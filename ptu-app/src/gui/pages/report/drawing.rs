@@ -7,7 +7,7 @@ use eframe::egui::{
 };
 
 use crate::gui::Palette;
-use crate::report::plot::{Anchor, Mark, Role};
+use ptu_report::plot::{Anchor, Mark, Role};
 
 /// Size of words, and radius of a dot, points.
 const SIZE: f32 = 12.0;
@@ -129,7 +129,7 @@ fn thickness(role: Role) -> f32 {
 }
 
 /// What is allowed as a band, the value as a mark: a disc inside, a square outside.
-pub fn gauge(ui: &Ui, rect: Rect, gauge: &crate::report::run::Gauge) {
+pub fn gauge(ui: &Ui, rect: Rect, gauge: &ptu_report::run::Gauge) {
     let palette = Palette::of(ui);
     let painter = ui.painter();
     let room = rect.shrink2(vec2(4.0, 0.0));

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use fault_db::Id;
 
-use crate::failure::Failure;
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::usual_folder;
-use crate::new_file::NewFile;
-use crate::owner;
-use crate::report::{self, Target};
-use crate::words::Language;
+use ptu_bench::failure::Failure;
+use ptu_bench::new_file::NewFile;
+use ptu_bench::owner;
+use ptu_report::words::Language;
+use ptu_report::{self, Target};
 
 /// Endings a typed name may have; the one of the format asked for takes its place.
 const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
@@ -48,7 +48,7 @@ pub fn write(
     let file = NewFile::begin(wanted)?;
     let store = paths.read()?;
     let detail = store.run(run, &owner::is_alive)?;
-    report::write_beside(&target, file, &store, &paths.scripts, &detail, language)
+    ptu_report::write_beside(&target, file, &store, &paths.scripts, &detail, language)
 }
 
 #[cfg(test)]

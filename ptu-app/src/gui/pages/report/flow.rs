@@ -1,7 +1,7 @@
 //! Where each piece of a sheet stands when the sheet is so wide, so that only what is in view needs to
 //! be laid out and drawn. All lengths in points.
 
-use crate::report::run::{Align, Block, Cell, Column, Row, RowKind, Table, Tone};
+use ptu_report::run::{Align, Block, Cell, Column, Row, RowKind, Table, Tone};
 
 /// Sizes of letters.
 pub const TITLE: f32 = 24.0;

@@ -15,9 +15,9 @@ use fault_db::Id;
 use crate::gui::parts::{RunList, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::report::run::{Block, Sheet, blocks};
-use crate::words::{Language, fill};
 use paper::Paper;
+use ptu_report::run::{Block, Sheet, blocks};
+use ptu_report::words::{Language, fill};
 
 /// The page.
 #[derive(Default)]

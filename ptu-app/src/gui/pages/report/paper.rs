@@ -16,8 +16,8 @@ use super::flow::{
 };
 use super::ruler::Ruler;
 use crate::gui::Palette;
-use crate::report::plot::Mark;
-use crate::report::run::{Align, Block, Cell, Row, RowKind, Table, Tone};
+use ptu_report::plot::Mark;
+use ptu_report::run::{Align, Block, Cell, Row, RowKind, Table, Tone};
 
 /// A sheet is so wide at least and at most, points.
 const WIDTH: (f32, f32) = (560.0, 1000.0);

@@ -3,8 +3,8 @@
 use eframe::egui::{RichText, Role, Ui, WidgetInfo};
 
 use crate::gui::{PageContext, Palette};
-use crate::trace_view::{Axis, Cursor, Kind, Scene};
-use crate::words::fill;
+use ptu_report::trace_view::{Axis, Cursor, Kind, Scene};
+use ptu_report::words::fill;
 
 /// How much one press zooms.
 pub const ZOOM: f64 = 0.7;

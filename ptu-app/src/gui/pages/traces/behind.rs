@@ -10,8 +10,8 @@ use crate::gui::parts::named_combo;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::trace_view::{Against, Overlay, Parting, Scene};
-use crate::words::fill;
+use ptu_report::trace_view::{Against, Overlay, Parting, Scene};
+use ptu_report::words::fill;
 
 /// Traces offered to compare with.
 const OFFERED: usize = 100;

@@ -6,9 +6,9 @@ use super::bar;
 use super::row::Sheet;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::trace_view::listing::Event;
-use crate::trace_view::{Cursor, Scene};
-use crate::words::Words;
+use ptu_report::trace_view::listing::Event;
+use ptu_report::trace_view::{Cursor, Scene};
+use ptu_report::words::Words;
 
 /// Height of the strip above the lanes.
 pub const STRIP: f32 = 34.0;

@@ -12,10 +12,10 @@ use super::signals::name_input;
 use crate::gui::PageContext;
 use crate::gui::parts::usual_folder;
 use crate::gui::query_worker::Pending;
-use crate::new_file::{NewFile, cannot_write};
-use crate::trace_view::csv::csv;
-use crate::trace_view::{Kind, Scene};
-use crate::words::fill;
+use ptu_bench::new_file::{NewFile, cannot_write};
+use ptu_report::trace_view::csv::csv;
+use ptu_report::trace_view::{Kind, Scene};
+use ptu_report::words::fill;
 
 /// What is to be written, and what is under way.
 #[derive(Default)]

@@ -4,7 +4,7 @@ use eframe::egui::{Event, EventFilter, Key, Rect, Response, Ui};
 
 use super::bar::ZOOM;
 use crate::gui::parts::lane;
-use crate::trace_view::{Cursor, Scene};
+use ptu_report::trace_view::{Cursor, Scene};
 
 /// How much one point of wheel zooms.
 const WHEEL: f64 = 0.005;

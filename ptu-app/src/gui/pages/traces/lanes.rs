@@ -9,11 +9,11 @@ use super::bar;
 use super::events::{self, STRIP};
 use super::input::{self, Drag};
 use super::row::{self, GAP, Scratch, Sheet};
-use crate::clock;
 use crate::gui::Palette;
 use crate::gui::parts::lane::{self, AXIS_HEIGHT};
-use crate::trace_view::{Against, Cursor, Kind, Scene};
-use crate::words::Words;
+use ptu_bench::clock;
+use ptu_report::trace_view::{Against, Cursor, Kind, Scene};
+use ptu_report::words::Words;
 
 /// Room for names left of the lanes, and for the values beside their axes.
 const NAMES: f32 = 150.0;

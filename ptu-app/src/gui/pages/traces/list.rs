@@ -5,8 +5,8 @@ use fault_db::Id;
 
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use crate::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
-use crate::words::{Words, fill};
+use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
+use ptu_report::words::{Words, fill};
 
 /// The list's own state.
 #[derive(Default)]

@@ -18,13 +18,13 @@ use fault_db::Id;
 
 use crate::gui::query_worker::Pending;
 use crate::gui::{Destination, PageContext, Palette};
-use crate::trace_view::Scene;
-use crate::trace_view::listing::{self, Opened};
-use crate::words::fill;
 use behind::BehindAsked;
 use export::Export;
 use lanes::Painted;
 use list::TraceList;
+use ptu_report::trace_view::Scene;
+use ptu_report::trace_view::listing::{self, Opened};
+use ptu_report::words::fill;
 
 /// Height of a row of controls.
 const ROW: f32 = 24.0;

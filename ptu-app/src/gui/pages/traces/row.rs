@@ -8,9 +8,9 @@ use super::lanes::{Places, TICKS};
 use super::table;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
-use crate::trace_view::value::named;
-use crate::trace_view::{Axis, Behind, Column, Edges, Lane, Scene, Span, Summary, TraceView};
-use crate::words::Words;
+use ptu_report::trace_view::value::named;
+use ptu_report::trace_view::{Axis, Behind, Column, Edges, Lane, Scene, Span, Summary, TraceView};
+use ptu_report::words::Words;
 
 /// Heights of lanes as usual.
 const QUANTITY: f32 = 74.0;

@@ -3,8 +3,8 @@
 use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::gui::{PageContext, Palette};
-use crate::trace_view::{Scene, Summary};
-use crate::words::fill;
+use ptu_report::trace_view::{Scene, Summary};
+use ptu_report::words::fill;
 
 /// How much one press makes a lane taller.
 const TALLER: f32 = 1.25;

@@ -3,10 +3,10 @@
 use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 
 use super::bar;
-use crate::trace_view::statistics::Statistics;
-use crate::trace_view::value::{named, number};
-use crate::trace_view::{Cursor, Scene};
-use crate::words::{Words, fill};
+use ptu_report::trace_view::statistics::Statistics;
+use ptu_report::trace_view::value::{named, number};
+use ptu_report::trace_view::{Cursor, Scene};
+use ptu_report::words::{Words, fill};
 
 /// States told by share; a counter has as many as rows.
 const STATES: usize = 4;

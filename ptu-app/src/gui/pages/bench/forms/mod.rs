@@ -13,7 +13,7 @@ pub use motion::{MotionForm, TachoKind};
 pub use station::StationForm;
 pub use train::TrainForm;
 
-use crate::run::BenchSetup;
+use ptu_bench::run::BenchSetup;
 
 /// The way a stimulus takes to the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use super::card::{Fact, card, facts};
 use crate::gui::Palette;
 use crate::gui::pages::bench::seen::Seen;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// Width of a name with its value.
 const COLUMN: f32 = 240.0;

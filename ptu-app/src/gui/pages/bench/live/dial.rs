@@ -12,7 +12,7 @@ use super::card::{ground, named, put};
 use crate::gui::Palette;
 use crate::gui::pages::bench::scale::Dial;
 use crate::gui::pages::bench::text::UNKNOWN;
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// The dial begins here and goes round so far, clockwise from the right.
 const BEGIN: f32 = 0.81 * PI;

@@ -9,7 +9,7 @@ use crate::gui::Palette;
 use crate::gui::pages::bench::scale::from_middle;
 use crate::gui::pages::bench::seen::Seen;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// Full braking of ATO's and TCMS's value; full power is one less.
 const FULL_VALUE: f64 = 1024.0;

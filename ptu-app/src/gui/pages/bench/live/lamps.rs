@@ -7,7 +7,7 @@ use protocol::signal::Signal;
 use super::card::{named, put};
 use crate::gui::Palette;
 use crate::gui::pages::bench::seen::Seen;
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// Lamps beside each other.
 const COLUMNS: usize = 2;

@@ -8,7 +8,7 @@ use super::View;
 use super::card::{card, named, write};
 use crate::gui::Palette;
 use crate::gui::pages::bench::text::since_start;
-use crate::words::Language;
+use ptu_report::words::Language;
 
 const LINE: f32 = 18.0;
 /// Width of the time.

@@ -22,9 +22,9 @@ use super::scale::Dial;
 use super::seen::Seen;
 use super::track::{Sent, Strip};
 use crate::gui::Palette;
-use crate::run::BenchSetup;
-use crate::words::Words;
 use card::card;
+use ptu_bench::run::BenchSetup;
+use ptu_report::words::Words;
 
 /// What the live view shows.
 pub struct View<'a> {

@@ -8,7 +8,7 @@ use super::card::{ground, named, put};
 use crate::gui::Palette;
 use crate::gui::pages::bench::text;
 use crate::gui::pages::bench::track::Strip;
-use crate::words::{Bench, fill};
+use ptu_report::words::{Bench, fill};
 
 const HEIGHT: f32 = 70.0;
 /// Markers whose places are nearer than this have their names one above the other.

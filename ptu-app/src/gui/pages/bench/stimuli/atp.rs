@@ -7,7 +7,7 @@ use protocol::signal::Signal;
 
 use super::hand::{Hand, named_number, number, row};
 use crate::gui::pages::bench::forms::{CodeForm, NO_DRIFT, Way};
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// What a 16-bit field holds.
 const MAX_HZ: f64 = 65_535.0;

@@ -7,7 +7,7 @@ use protocol::signal::Signal;
 
 use super::hand::{Hand, number, row};
 use crate::gui::pages::bench::forms::TrainForm;
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 const MAX_VOLTS: f64 = 10.0;
 const SLIDER: f32 = 190.0;

@@ -10,10 +10,10 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-use crate::bench_worker::BenchWorker;
 use crate::gui::pages::bench::seen::Seen;
 use crate::gui::{Messages, Palette};
-use crate::words::{Words, fill};
+use ptu_bench::bench_worker::BenchWorker;
+use ptu_report::words::{Words, fill};
 
 /// Width of a row's name.
 const NAME: f32 = 138.0;

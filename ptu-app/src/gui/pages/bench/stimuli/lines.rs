@@ -6,7 +6,7 @@ use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 
 use super::hand::{Hand, row};
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// Switches of the train, with their names.
 fn switches(words: &Bench) -> [(TrainSwitch, &'static str); 11] {

@@ -16,8 +16,8 @@ use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 pub use hand::{Given, Hand};
 
 use super::forms::Forms;
-use crate::run::BenchSetup;
-use crate::words::Bench;
+use ptu_bench::run::BenchSetup;
+use ptu_report::words::Bench;
 
 /// A group of stimuli.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 
 use super::hand::{Hand, named_number, number, row};
 use crate::gui::pages::bench::forms::{MotionForm, TachoKind};
-use crate::words::fill;
+use ptu_report::words::fill;
 
 /// Fastest the generators turn, km/h.
 pub const MAX_KMH: f64 = 200.0;

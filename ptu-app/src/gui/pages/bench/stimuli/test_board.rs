@@ -10,7 +10,7 @@ use super::hand::{Hand, check, named_number, number, one_of, row};
 use super::{atp, speed, twc};
 use crate::gui::pages::bench::forms::{Forms, MotionForm, Way};
 use crate::gui::pages::bench::text;
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// Greatest acceleration the request carries, km/h/s.
 const MAX_KMHPS: f64 = 235.0;

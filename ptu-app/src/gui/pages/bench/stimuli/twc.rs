@@ -9,7 +9,7 @@ use protocol::signal::Signal;
 use super::hand::{Hand, check, named_number, number, one_of, row};
 use super::markers::sections;
 use crate::gui::pages::bench::forms::{StationForm, Way};
-use crate::words::Bench;
+use ptu_report::words::Bench;
 
 /// In the order of the labels of the signal `wayside`.
 const CONDITIONS: [WaysideCondition; 3] = [

@@ -1,0 +1,268 @@
+//! The fault dictionary: what each fault mode does to each check, counted in a campaign.
+//!
+//! A mode is counted by its varieties (how bad it is); a variety's cells that are like those of a
+//! healthy unit are left out, so that the dictionary holds what differs.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Read as _};
+
+use serde::{Deserialize, Serialize};
+
+use super::cell::Cell;
+use super::observation::{CheckName, Observation, Sign};
+
+/// Compression level: read often, written seldom.
+const ZSTD_LEVEL: i32 = 15;
+/// A dictionary unpacks to at most this many bytes.
+const MAX_BYTES: u64 = 64 << 20;
+
+/// Provenance of a dictionary. With any other it may be wrong.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Basis {
+    /// SHA-256 over everything below and all other inputs, in hex.
+    pub sha256: String,
+    /// SHA-256 of the unit configuration.
+    pub unit_config_sha256: String,
+    /// SHA-256 of each procedure's script.
+    pub procedures: BTreeMap<String, String>,
+    /// Line.
+    pub line: String,
+    /// Train.
+    pub train: String,
+    /// Version of the program.
+    pub app_version: String,
+}
+
+/// A fault mode of the catalogue.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModeName {
+    /// `part.mode`.
+    pub id: String,
+    /// Part to replace.
+    pub lru: String,
+    /// Description for users.
+    pub text: String,
+    /// `permanent`, `intermittent` or `degraded`.
+    pub kind: String,
+    /// Whether it can leave the train less protected.
+    #[serde(rename = "unsafe")]
+    pub unsafe_: bool,
+    /// Relative prior weight.
+    pub weight: f64,
+}
+
+/// Counts of one variety.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// Severity of the fault: `nominal`, or the number of the effect.
+    pub level: String,
+    /// Number of runs of the suite.
+    pub runs: u32,
+    /// Counts by the index of the check; those equal to a healthy unit's are left out.
+    pub cells: BTreeMap<usize, Cell>,
+    /// In how many runs each sign showed anywhere.
+    pub signs: Vec<(Sign, u32)>,
+}
+
+/// A fault mode with its varieties.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mode {
+    /// Which.
+    pub name: ModeName,
+    /// Its varieties.
+    pub columns: Vec<Column>,
+}
+
+/// A fault dictionary.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Dictionary {
+    /// Its provenance.
+    pub basis: Basis,
+    /// Seeds of the campaign's runs.
+    pub seeds: Vec<u64>,
+    /// Checks in the order of the suite.
+    pub checks: Vec<CheckName>,
+    /// Counts of a healthy unit.
+    pub healthy: Column,
+    /// Fault modes.
+    pub modes: Vec<Mode>,
+    /// Indexes of the checks by name.
+    #[serde(skip)]
+    places: BTreeMap<CheckName, usize>,
+}
+
+impl Dictionary {
+    /// An empty dictionary of these checks.
+    pub fn new(basis: Basis, seeds: Vec<u64>, checks: Vec<CheckName>) -> Self {
+        let mut dictionary = Self {
+            basis,
+            seeds,
+            checks,
+            ..Self::default()
+        };
+        dictionary.index();
+        dictionary
+    }
+
+    /// Compresses it for storage.
+    ///
+    /// Out of memory.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
+        let json = serde_json::to_vec(self).map_err(|error| error.to_string())?;
+        pack(&json).map_err(|error| error.to_string())
+    }
+
+    /// Decompresses and validates a dictionary.
+    ///
+    /// # Errors
+    /// It is no dictionary, or inconsistent.
+    pub fn from_bytes(packed: &[u8]) -> Result<Self, String> {
+        let json = unpack(packed).map_err(|error| error.to_string())?;
+        let mut read: Self = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
+        read.index();
+        match read.unsound() {
+            Some(what) => Err(what),
+            None => Ok(read),
+        }
+    }
+
+    /// The first inconsistency, if any.
+    fn unsound(&self) -> Option<String> {
+        let columns = self.modes.iter().flat_map(|mode| &mode.columns);
+        let mut places = columns
+            .chain([&self.healthy])
+            .flat_map(|column| column.cells.keys());
+        if let Some(place) = places.find(|place| **place >= self.checks.len()) {
+            return Some(format!("it has no check number {place}"));
+        }
+        let mut names = self.modes.iter().map(|mode| &mode.name);
+        let weightless = names.find(|name| !(name.weight.is_finite() && name.weight > 0.0))?;
+        let (id, weight) = (&weightless.id, weightless.weight);
+        Some(format!("fault mode {id} has the weight {weight}"))
+    }
+
+    fn index(&mut self) {
+        let names = self.checks.iter().cloned().zip(0..);
+        self.places = names.collect();
+    }
+
+    /// Index of a check. A repetition, `name (2/3)`, counts as the check `name` if the dictionary does not
+    /// have that repetition.
+    pub fn place(&self, check: &CheckName) -> Option<usize> {
+        self.places.get(check).copied().or_else(|| {
+            let (step, turn) = check.step.rsplit_once(" (")?;
+            turn.strip_suffix(')')?.split_once('/')?;
+            let plain = CheckName {
+                procedure: check.procedure.clone(),
+                step: step.to_owned(),
+            };
+            self.places.get(&plain).copied()
+        })
+    }
+
+    /// Adds runs of a healthy unit. Must come before any mode.
+    pub fn set_healthy(&mut self, runs: &[Observation]) {
+        self.healthy = self.count("nominal".into(), runs);
+    }
+
+    /// Adds runs of one variety of a mode.
+    pub fn add(&mut self, mode: &ModeName, level: String, runs: &[Observation]) {
+        let mut column = self.count(level, runs);
+        let healthy = &self.healthy.cells;
+        column.cells.retain(|place, cell| {
+            let Some(healthy) = healthy.get(place) else {
+                return true;
+            };
+            cell.take_values_from(healthy);
+            !cell.is_like(healthy)
+        });
+        match self.modes.iter_mut().find(|known| known.name.id == mode.id) {
+            Some(known) => known.columns.push(column),
+            None => self.modes.push(Mode {
+                name: mode.clone(),
+                columns: vec![column],
+            }),
+        }
+    }
+
+    fn count(&self, level: String, runs: &[Observation]) -> Column {
+        let mut cells: BTreeMap<usize, Cell> = BTreeMap::new();
+        let mut signs: BTreeMap<Sign, u32> = BTreeMap::new();
+        for run in runs {
+            let mut shown: BTreeSet<&Sign> = run.signs.iter().collect();
+            for step in &run.steps {
+                if let Some(place) = self.place(&step.check) {
+                    cells.entry(place).or_default().add(step);
+                }
+                shown.extend(&step.signs);
+            }
+            for sign in shown {
+                *signs.entry(sign.clone()).or_default() += 1;
+            }
+        }
+        Column {
+            level,
+            runs: runs.len() as u32,
+            cells,
+            signs: signs.into_iter().collect(),
+        }
+    }
+
+    /// The parts of its modes, each once, in order.
+    pub fn lrus(&self) -> Vec<&str> {
+        let all: BTreeSet<_> = self
+            .modes
+            .iter()
+            .map(|mode| mode.name.lru.as_str())
+            .collect();
+        all.into_iter().collect()
+    }
+}
+
+/// Compresses, with a checksum by which damage is found.
+fn pack(json: &[u8]) -> io::Result<Vec<u8>> {
+    let mut compressor = zstd::bulk::Compressor::new(ZSTD_LEVEL)?;
+    compressor.include_checksum(true)?;
+    compressor.compress(json)
+}
+
+/// Decompresses to at most [`MAX_BYTES`].
+fn unpack(packed: &[u8]) -> io::Result<Vec<u8>> {
+    let mut json = Vec::new();
+    let decoder = zstd::stream::read::Decoder::new(packed)?;
+    if decoder.take(MAX_BYTES + 1).read_to_end(&mut json)? as u64 > MAX_BYTES {
+        return Err(io::Error::other(format!(
+            "it unpacks to more than {MAX_BYTES} bytes"
+        )));
+    }
+    Ok(json)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Content that decompresses well may still be anything.
+    #[test]
+    fn any_bytes_can_be_decompressed_or_are_refused() {
+        let mode = ModeName {
+            id: "eb_relay.slow".into(),
+            lru: "eb_relay".into(),
+            text: "drops late".into(),
+            kind: "degraded".into(),
+            unsafe_: true,
+            weight: 0.75,
+        };
+        let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], Vec::new());
+        dictionary.add(&mode, "0.4".into(), &[Observation::default()]);
+        let json = serde_json::to_vec(&dictionary).expect("JSON");
+        let fuzz = fuzzing::Fuzz::new("dictionary", env!("CARGO_MANIFEST_DIR"), [json]);
+        fuzz.run(20_000, |json| {
+            let packed = pack(json).expect("packed");
+            if let Ok(read) = Dictionary::from_bytes(&packed) {
+                let again = read.to_bytes().expect("packed");
+                assert_eq!(Dictionary::from_bytes(&again), Ok(read));
+            }
+        });
+    }
+}

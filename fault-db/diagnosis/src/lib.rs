@@ -1,0 +1,36 @@
+//! Diagnosis: from test results to the replaceable part (LRU) that failed.
+//!
+//! [`matrix`] works on any dependency matrix of states and tests and builds the cheapest decision tree. The
+//! other modules compare one run with a dictionary that holds the effect of each fault mode on each check,
+//! in this order: [`Observation`] (what the run showed) → [`Dictionary`] (counts from campaigns, one `cell`
+//! for each mode and check) → `likelihood` → [`Model`] (hypotheses and priors) → [`Belief`] (Bayes' rule,
+//! step by step) → [`NextCheck`] and [`Diagnosis`].
+//!
+//! [`process`] is statistical process control of measured values over time, and forecasts.
+//!
+//! The crate knows no database and no bench. No function here is given the faults that were injected.
+
+mod belief;
+mod cell;
+mod dictionary;
+mod likelihood;
+pub mod matrix;
+mod model;
+mod next_check;
+mod observation;
+mod pairs;
+pub mod process;
+mod reasons;
+mod settings;
+mod strategy;
+mod verdict;
+
+pub use belief::Belief;
+pub use cell::{Cell, Signature, Values};
+pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
+pub use model::{Hypothesis, Model};
+pub use next_check::NextCheck;
+pub use observation::{CheckName, CheckResult, Observation, Sign, StepSeen};
+pub use settings::Settings;
+pub use strategy::{Effort, Strategy, fixed_order, replayed};
+pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

@@ -1,0 +1,245 @@
+//! The likelihood of a check's result and measured values under the counts of one cell.
+//!
+//! Counts of a few runs are smoothed with `doubt` pseudo-runs, so that no result is impossible and one
+//! surprise refutes no hypothesis for good. Values follow Student's t (four degrees of freedom, tolerant
+//! of outliers), scaled to the range that the measurement has under all hypotheses.
+
+use super::cell::{Cell, Signature, Values};
+use super::observation::{CheckResult, Sign, StepSeen};
+
+/// Greatest number of runs that count: more would pretend that all benches are alike.
+const MOST_RUNS: f64 = 50.0;
+/// Probability of each result if nothing is known.
+const NOTHING_KNOWN: [(CheckResult, f64); 3] = [
+    (CheckResult::Passed, 0.50),
+    (CheckResult::Failed, 0.35),
+    (CheckResult::Error, 0.15),
+];
+/// Probability of a sign if nothing is known.
+const SIGN_UNKNOWN: f64 = 0.05;
+/// Probability of a missing value if nothing is known.
+const MISSING_UNKNOWN: f64 = 0.1;
+/// Share of values that are uniformly distributed.
+const ANYWHERE: f64 = 0.1;
+/// Smallest standard deviation of a value, as a share of the range under all hypotheses.
+const LEAST_SPREAD: f64 = 0.01;
+
+/// The range of a measurement's values under all hypotheses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    low: f64,
+    high: f64,
+    /// Standard deviation of healthy units.
+    spread: f64,
+}
+
+impl Scale {
+    /// Of a healthy unit's values.
+    pub fn of_healthy(values: &Values) -> Self {
+        Self {
+            low: values.low,
+            high: values.high,
+            spread: values.sd(),
+        }
+    }
+
+    /// Widened by another hypothesis.
+    pub fn widen(&mut self, values: &Values) {
+        if values.n > 0 {
+            self.low = self.low.min(values.low);
+            self.high = self.high.max(values.high);
+        }
+    }
+
+    fn least_sd(&self) -> f64 {
+        let range = self.high - self.low;
+        let size = self.low.abs().max(self.high.abs());
+        self.spread
+            .max(LEAST_SPREAD * range)
+            .max(1e-6 * size)
+            .max(1e-9)
+    }
+}
+
+/// The counts expected of a check, and how many runs they represent.
+#[derive(Clone, Copy, Debug)]
+pub struct Expected<'a> {
+    /// Counts.
+    pub cell: &'a Cell,
+    /// Runs of the hypothesis: fewer than the cell's if a healthy unit's counts stand in.
+    pub runs: u32,
+    /// See [`super::Settings::doubt_runs`].
+    pub doubt: f64,
+}
+
+impl Expected<'_> {
+    fn runs(&self) -> f64 {
+        f64::from(self.runs.min(self.cell.runs())).min(MOST_RUNS)
+    }
+
+    fn smoothed(&self, share: f64, nothing_known: f64) -> f64 {
+        let n = self.runs();
+        (n * share + self.doubt * nothing_known) / (n + self.doubt)
+    }
+
+    fn share(&self, count: u32) -> f64 {
+        match self.cell.runs() {
+            0 => 0.0,
+            runs => f64::from(count) / f64::from(runs),
+        }
+    }
+
+    /// Probability of a result.
+    pub fn result(&self, result: CheckResult) -> f64 {
+        let nothing_known = NOTHING_KNOWN.iter().find(|(r, _)| *r == result);
+        let nothing_known = nothing_known.map_or(0.0, |(_, p)| *p);
+        self.smoothed(self.share(self.cell.count(result)), nothing_known)
+    }
+
+    /// Probability of a sign.
+    pub fn sign(&self, sign: &Sign) -> f64 {
+        self.smoothed(self.share(self.cell.count_sign(sign)), SIGN_UNKNOWN)
+    }
+
+    /// Probability of a signature: as counted, or, if never seen, the product of its parts.
+    pub fn signature(&self, signature: &Signature) -> f64 {
+        let counted = self.cell.signatures.iter().find(|(s, _)| s == signature);
+        let share = self.share(counted.map_or(0, |(_, count)| *count));
+        self.smoothed(share, self.of_parts(signature))
+    }
+
+    fn of_parts(&self, signature: &Signature) -> f64 {
+        let absent = self
+            .cell
+            .signatures
+            .iter()
+            .flat_map(|(s, _)| &s.signs)
+            .filter(|sign| !signature.signs.contains(*sign));
+        let absent: std::collections::BTreeSet<_> = absent.collect();
+        let showing: f64 = signature.signs.iter().map(|sign| self.sign(sign)).product();
+        let silent: f64 = absent.iter().map(|sign| 1.0 - self.sign(sign)).product();
+        self.result(signature.result) * showing * silent
+    }
+
+    /// Probability density of a measured value, relative to the uniform one, with a share [`ANYWHERE`] of
+    /// uniform values.
+    pub fn value(&self, name: &str, value: Option<f64>, scale: &Scale) -> f64 {
+        let Some(values) = self.cell.values.get(name) else {
+            return ANYWHERE;
+        };
+        let seen = f64::from(values.n + values.missing);
+        let missing =
+            (f64::from(values.missing) + self.doubt * MISSING_UNKNOWN) / (seen + self.doubt);
+        let Some(value) = value.filter(|value| value.is_finite()) else {
+            return missing;
+        };
+        if values.n == 0 {
+            return (1.0 - missing) * ANYWHERE;
+        }
+        let least = scale.least_sd();
+        let sd = values.sd().hypot(least) * (1.0 + 1.0 / f64::from(values.n)).sqrt();
+        let range = (scale.high - scale.low) + 6.0 * least;
+        let near = range * student4((value - values.mean) / sd) / sd;
+        (1.0 - missing) * (ANYWHERE + (1.0 - ANYWHERE) * near)
+    }
+}
+
+/// Density of Student's t with four degrees of freedom.
+fn student4(t: f64) -> f64 {
+    0.375 * (1.0 + t * t / 4.0).powf(-2.5)
+}
+
+/// Likelihood of a step under `expected` counts; `scale` gives the range of a measurement's values.
+pub fn likelihood<'s>(
+    expected: Expected<'_>,
+    step: &StepSeen,
+    scale: impl Fn(&str) -> Option<&'s Scale>,
+) -> f64 {
+    let values = step.values.iter();
+    let of_values: f64 = values
+        .filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?)))
+        .product();
+    expected.signature(&Signature::of(step)) * of_values
+}
+
+/// The same if nothing is known.
+pub fn likelihood_of_anything<'s>(
+    step: &StepSeen,
+    scale: impl Fn(&str) -> Option<&'s Scale>,
+) -> f64 {
+    let of_result = NOTHING_KNOWN.iter().find(|(r, _)| *r == step.result);
+    let result = of_result.map_or(0.0, |(_, p)| *p);
+    let signs = SIGN_UNKNOWN.powi(step.signs.len() as i32);
+    let measured = step.values.iter().filter(|(name, _)| scale(name).is_some());
+    result * signs * ANYWHERE.powi(measured.count() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::observation::CheckName;
+
+    fn step(result: CheckResult, value: Option<f64>) -> StepSeen {
+        StepSeen {
+            check: CheckName {
+                procedure: "p".into(),
+                step: "s".into(),
+            },
+            result,
+            time_s: 1.0,
+            values: vec![("t".into(), value)],
+            signs: BTreeSet::new(),
+        }
+    }
+
+    fn cell(of: &[StepSeen]) -> Cell {
+        let mut cell = Cell::default();
+        of.iter().for_each(|step| cell.add(step));
+        cell
+    }
+
+    fn expected(cell: &Cell) -> Expected<'_> {
+        Expected {
+            cell,
+            runs: cell.runs(),
+            doubt: 0.5,
+        }
+    }
+
+    #[test]
+    fn results_are_probabilities_and_nothing_is_impossible() {
+        let cell = cell(&[
+            step(CheckResult::Passed, Some(1.0)),
+            step(CheckResult::Passed, Some(1.1)),
+        ]);
+        let sum: f64 = CheckResult::ALL
+            .iter()
+            .map(|r| expected(&cell).result(*r))
+            .sum();
+        assert!((sum - 1.0).abs() < 1e-12);
+        assert!(expected(&cell).result(CheckResult::Failed) > 0.01);
+        assert!(expected(&cell).result(CheckResult::Passed) > 0.85);
+    }
+
+    /// A reaction time of 640 ms with a limit of 600 ms is weaker evidence than none at all: under a slow
+    /// relay 640 ms is likely, a missing value is not.
+    #[test]
+    fn a_measured_value_is_stronger_evidence_than_its_verdict() {
+        let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(CheckResult::Passed, Some(v))));
+        let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(CheckResult::Failed, Some(v))));
+        let dead = cell(&[None, None, None].map(|v| step(CheckResult::Failed, v)));
+        let mut scale = Scale::of_healthy(&healthy.values["t"]);
+        scale.widen(&slow.values["t"]);
+        let ln = |cell: &Cell, value| {
+            let step = step(CheckResult::Failed, value);
+            likelihood(expected(cell), &step, |_| Some(&scale)).ln()
+        };
+        assert!(ln(&slow, Some(643.0)) > ln(&dead, Some(643.0)) + 3.0);
+        assert!(ln(&dead, None) > ln(&slow, None) + 2.0);
+        // Between both, neither is certain.
+        let apart = ln(&slow, Some(440.0)) - ln(&dead, Some(440.0));
+        assert!(apart.abs() < 3.0, "{apart}");
+    }
+}

@@ -1,0 +1,297 @@
+//! What diagnosis promises: it finds the part when the evidence does, asks for the check that tells the
+//! most, and says "cannot tell" rather than something wrong.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use diagnosis::{
+    Basis, CheckName, CheckResult, Diagnosis, Dictionary, Finding, ModeName, Model, Observation,
+    Settings, Sign, StepSeen, Strategy, fixed_order, replayed,
+};
+
+/// Procedures `a`, `b` and `c` with three steps each; `t` is measured in the first of each.
+fn checks() -> Vec<CheckName> {
+    let steps = |procedure: &'static str| (1..=3).map(move |n| name(procedure, &format!("s{n}")));
+    ["a", "b", "c"].into_iter().flat_map(steps).collect()
+}
+
+fn name(procedure: &str, step: &str) -> CheckName {
+    CheckName {
+        procedure: procedure.into(),
+        step: step.into(),
+    }
+}
+
+/// A run of everything: `fails` names steps such as `a.s1`; `t` is the value measured in `a.s1`.
+fn run(fails: &[&str], t: Option<f64>) -> Observation {
+    let step = |check: CheckName| {
+        let short = format!("{}.{}", check.procedure, check.step);
+        StepSeen {
+            result: if fails.contains(&short.as_str()) {
+                CheckResult::Failed
+            } else {
+                CheckResult::Passed
+            },
+            time_s: 10.0,
+            values: if short == "a.s1" {
+                vec![("t".into(), t)]
+            } else {
+                Vec::new()
+            },
+            signs: BTreeSet::new(),
+            check,
+        }
+    };
+    Observation {
+        steps: checks().into_iter().map(step).collect(),
+        signs: BTreeSet::new(),
+    }
+}
+
+fn mode(id: &str, weight: f64) -> ModeName {
+    ModeName {
+        id: id.into(),
+        lru: id.split('.').next().unwrap_or_default().into(),
+        text: id.into(),
+        kind: "permanent".into(),
+        unsafe_: false,
+        weight,
+    }
+}
+
+/// Parts: `relay` fails a.s1 slowly or altogether, `sensor` a.s2 and b.s1, `antenna` b.s1 and c.s1,
+/// `cable` just as `antenna`.
+fn dictionary() -> Dictionary {
+    let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2, 3], checks());
+    let jitter = |around: f64| [-4.0, 0.0, 5.0, 2.0, -3.0].map(|off| Some(around + off));
+    let runs = |fails: &[&str], t: [Option<f64>; 5]| -> Vec<_> {
+        let five = t.map(|t| run(fails, t));
+        (0..4).flat_map(|_| five.clone()).collect()
+    };
+    dictionary.set_healthy(&runs(&[], jitter(240.0)));
+    type Known<'a> = (&'a str, &'a [&'a str], [Option<f64>; 5]);
+    let modes: [Known<'_>; 5] = [
+        ("relay.slow", &["a.s1"], jitter(640.0)),
+        ("relay.dead", &["a.s1", "a.s2", "a.s3"], [None; 5]),
+        ("sensor.dead", &["a.s2", "b.s1"], jitter(240.0)),
+        ("antenna.dead", &["b.s1", "c.s1"], jitter(240.0)),
+        ("cable.open", &["b.s1", "c.s1"], jitter(240.0)),
+    ];
+    for (id, fails, t) in modes {
+        dictionary.add(&mode(id, 1.0), "nominal".into(), &runs(fails, t));
+    }
+    dictionary
+}
+
+/// Nine checks that are independent of each other, where a suite has hundreds that are not: each weighs
+/// more, and they cannot rule out a fault that nobody knows as far.
+fn settings() -> Settings {
+    Settings {
+        healthy_at: 0.95,
+        weight_of_step: 0.99,
+        second_fault: 0.02,
+        ..Settings::default()
+    }
+}
+
+fn diagnosed(dictionary: &Dictionary, seen: &Observation) -> Diagnosis {
+    let settings = settings();
+    let model = Model::new(dictionary, &settings, &BTreeMap::new());
+    Diagnosis::of(&model, seen)
+}
+
+fn top(diagnosis: &Diagnosis) -> &str {
+    &diagnosis.candidates[0].fault
+}
+
+#[test]
+fn each_fault_of_the_dictionary_is_found() {
+    let dictionary = dictionary();
+    for (fails, t, fault) in [
+        (vec!["a.s1"], Some(643.0), "relay.slow"),
+        (vec!["a.s1", "a.s2", "a.s3"], None, "relay.dead"),
+        (vec!["a.s2", "b.s1"], Some(241.0), "sensor.dead"),
+    ] {
+        let found = diagnosed(&dictionary, &run(&fails, t));
+        assert_eq!(
+            found.finding,
+            Finding::Found,
+            "{fault}: {}",
+            found.conclusion
+        );
+        assert_eq!(top(&found), fault);
+        assert!(!found.candidates[0].for_it.is_empty());
+        assert_eq!(found.next_check, None);
+    }
+}
+
+/// The same step fails with the same verdict; how late it was tells slow from dead.
+#[test]
+fn a_measured_value_decides_between_two_modes_of_one_step() {
+    let dictionary = dictionary();
+    let settings = settings();
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+    let only = |t| Observation {
+        steps: run(&["a.s1"], t).steps[..1].to_vec(),
+        signs: BTreeSet::new(),
+    };
+    let slow = Diagnosis::of(&model, &only(Some(640.0)));
+    let dead = Diagnosis::of(&model, &only(None));
+    assert_eq!((top(&slow), top(&dead)), ("relay.slow", "relay.dead"));
+}
+
+#[test]
+fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
+    let found = diagnosed(&dictionary(), &run(&["b.s1", "c.s1"], Some(240.0)));
+    assert_eq!(found.finding, Finding::CannotTell);
+    assert!(
+        found.conclusion.starts_with("cannot tell"),
+        "{}",
+        found.conclusion
+    );
+    let parts: BTreeSet<_> = found.credible_parts(0.9).into_iter().collect();
+    assert_eq!(parts, BTreeSet::from(["antenna", "cable"]));
+    assert_eq!(found.next_check, None, "nothing tells them apart");
+}
+
+#[test]
+fn two_faults_at_once_are_both_named() {
+    let found = diagnosed(&dictionary(), &run(&["a.s1", "a.s2", "b.s1"], Some(641.0)));
+    assert_eq!(found.finding, Finding::TwoFound, "{}", found.conclusion);
+    let parts: BTreeSet<_> = found.lrus[..2].iter().map(|p| p.lru.as_str()).collect();
+    assert_eq!(parts, BTreeSet::from(["relay", "sensor"]));
+}
+
+#[test]
+fn a_result_that_no_mode_explains_blames_no_part() {
+    let found = diagnosed(&dictionary(), &run(&["c.s2", "c.s3", "b.s3"], Some(240.0)));
+    assert_eq!(found.finding, Finding::UnknownFault, "{}", found.conclusion);
+    assert!(found.lrus[0].probability < 0.5);
+}
+
+#[test]
+fn a_healthy_run_finds_nothing_and_a_short_one_is_not_enough() {
+    let dictionary = dictionary();
+    let all = diagnosed(&dictionary, &run(&[], Some(240.0)));
+    assert_eq!(all.finding, Finding::NoFault, "{}", all.conclusion);
+    let mut short = run(&[], Some(240.0));
+    short.steps.truncate(2);
+    let short = diagnosed(&dictionary, &short);
+    assert_eq!(short.finding, Finding::NotEnough, "{}", short.conclusion);
+    let next = short.next_check.expect("something is left to test");
+    assert_eq!(
+        next.check,
+        name("b", "s1"),
+        "it divides the parts that are left"
+    );
+}
+
+/// A unit that fails a check once and passes it on being asked again: something is not as it was.
+#[test]
+fn contradicting_evidence_gives_no_certain_answer() {
+    let mut seen = run(&["a.s2", "b.s1"], Some(240.0));
+    let again = run(&[], Some(240.0)).steps;
+    seen.steps.extend(again.iter().cloned());
+    seen.steps.extend(again);
+    let found = diagnosed(&dictionary(), &seen);
+    assert_ne!(found.finding, Finding::NoFault, "{}", found.conclusion);
+    assert!(found.lrus[0].probability < 0.95, "{}", found.conclusion);
+}
+
+#[test]
+fn a_unit_s_own_log_points_at_a_part_without_any_step() {
+    let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks());
+    let sign = |fault: &str, lru: &str| Sign {
+        fault: fault.into(),
+        lru: lru.into(),
+    };
+    let logged = |signs: &[Sign]| {
+        let mut run = run(&[], Some(240.0));
+        run.steps[4].signs.extend(signs.iter().cloned());
+        vec![run; 5]
+    };
+    dictionary.set_healthy(&logged(&[]));
+    let dead = sign("tacho_dead_1", "sensor");
+    let weak = sign("code_lost", "antenna");
+    dictionary.add(
+        &mode("sensor.dead", 1.0),
+        "nominal".into(),
+        &logged(std::slice::from_ref(&dead)),
+    );
+    dictionary.add(
+        &mode("antenna.weak", 1.0),
+        "nominal".into(),
+        &logged(&[weak]),
+    );
+    let seen = Observation {
+        steps: Vec::new(),
+        signs: BTreeSet::from([dead]),
+    };
+    let found = diagnosed(&dictionary, &seen);
+    assert_eq!(top(&found), "sensor.dead", "{}", found.conclusion);
+}
+
+#[test]
+fn the_strategy_needs_fewer_steps_than_the_fixed_order() {
+    let dictionary = dictionary();
+    let settings = settings();
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+    let mut sums = [0.0; 2];
+    for (fails, t, part) in [
+        (vec!["a.s1"], Some(643.0), "relay"),
+        (vec!["a.s2", "b.s1"], Some(240.0), "sensor"),
+        (vec!["b.s1", "c.s1"], Some(240.0), "antenna"),
+    ] {
+        let full = run(&fails, t);
+        let fixed = fixed_order(&model, &full);
+        let (adaptive, seen) = replayed(&model, &full);
+        assert_eq!(adaptive.settled, fixed.settled, "{part}");
+        let found = Diagnosis::of(&model, &seen);
+        assert!(found.credible_parts(0.9).contains(&part), "{part}");
+        sums[0] += adaptive.time_s;
+        sums[1] += fixed.time_s;
+    }
+    assert!(sums[0] < 0.8 * sums[1], "{sums:?}");
+}
+
+/// A procedure that ends before the check asked for must not be begun for ever.
+#[test]
+fn a_procedure_that_stops_early_ends_the_search() {
+    let dictionary = dictionary();
+    let settings = settings();
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+    let mut strategy = Strategy::new(&model, None);
+    let mut begun = 0;
+    while let Some(next) = strategy.begin() {
+        begun += 1;
+        assert!(begun <= 3, "asked again for {}", next.check);
+        strategy.ended(&next.check.procedure);
+    }
+}
+
+#[test]
+fn a_dictionary_survives_packing_and_a_damaged_one_is_refused() {
+    let dictionary = dictionary();
+    let packed = dictionary.to_bytes().expect("packs");
+    let read = Dictionary::from_bytes(&packed).expect("unpacks");
+    assert_eq!(read.modes, dictionary.modes);
+    let found = diagnosed(&read, &run(&["a.s1"], Some(643.0)));
+    assert_eq!(top(&found), "relay.slow");
+    for at in [0, packed.len() / 2, packed.len() - 1] {
+        let mut damaged = packed.clone();
+        damaged[at] ^= 0x55;
+        assert!(Dictionary::from_bytes(&damaged).is_err(), "byte {at}");
+    }
+    assert!(Dictionary::from_bytes(&packed[..packed.len() / 2]).is_err());
+}
+
+/// A repetition, `s1 (2/3)`, is the check `s1` again.
+#[test]
+fn repetitions_are_known_by_their_step() {
+    let dictionary = dictionary();
+    assert_eq!(
+        dictionary.place(&name("a", "s1 (2/3)")),
+        dictionary.place(&name("a", "s1"))
+    );
+    assert_eq!(dictionary.place(&name("a", "s9")), None);
+    assert_eq!(dictionary.place(&name("a", "s1 (left)")), None);
+}

@@ -1,0 +1,5 @@
+//! What the crate promises.
+
+mod diagnosis;
+mod matrix;
+mod matrix_reading;

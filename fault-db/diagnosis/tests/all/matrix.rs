@@ -1,0 +1,355 @@
+//! Decision trees against exhaustive search and against a walk of every state through them.
+
+use diagnosis::matrix::{
+    Matrix, Method, Node, Outcome, Plan, PlanOptions, Posterior, State, Test, Tree, plan,
+};
+
+const CONFIDENCE: f64 = 0.95;
+
+/// A small generator (SplitMix64), so that a failing matrix can be made again from its seed.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
+    /// In 0..1.
+    fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A matrix whose cells the dice choose; `noisy_in_ten` of ten cells are neither 0 nor 1.
+fn random(dice: &mut Dice, states: usize, tests: usize, noisy_in_ten: u64) -> Matrix {
+    let weights: Vec<f64> = (0..states).map(|_| 0.02 + dice.share()).collect();
+    let total: f64 = weights.iter().sum();
+    let states: Vec<_> = weights
+        .iter()
+        .enumerate()
+        .map(|(i, weight)| State {
+            id: format!("s{i}"),
+            probability: weight / total,
+        })
+        .collect();
+    let tests: Vec<_> = (0..tests)
+        .map(|i| Test {
+            id: format!("t{i}"),
+            cost: 0.5 + 4.0 * dice.share(),
+        })
+        .collect();
+    let cells = (0..states.len() * tests.len())
+        .map(|_| match dice.below(10) < noisy_in_ten {
+            true => 0.02 + 0.96 * dice.share(),
+            false => dice.below(2) as f64,
+        })
+        .collect();
+    Matrix::new(states, tests, cells).expect("a valid matrix")
+}
+
+fn planned(matrix: &Matrix, method: Method) -> Plan {
+    let options = PlanOptions {
+        method: Some(method),
+        confidence: CONFIDENCE,
+    };
+    plan(matrix, &Posterior::prior(matrix), options).expect("a plan")
+}
+
+/// Least cost of telling states apart by certain tests: every order of every test tried.
+fn exhaustive_crisp(matrix: &Matrix, states: &[usize]) -> f64 {
+    let mass: f64 = states.iter().map(|s| matrix.states()[*s].probability).sum();
+    let mut best = f64::INFINITY;
+    for (test, it) in matrix.tests().iter().enumerate() {
+        let (fail, pass): (Vec<usize>, Vec<usize>) =
+            states.iter().partition(|s| matrix.row(**s)[test] == 1.0);
+        if !fail.is_empty() && !pass.is_empty() {
+            let cost =
+                mass * it.cost + exhaustive_crisp(matrix, &fail) + exhaustive_crisp(matrix, &pass);
+            best = best.min(cost);
+        }
+    }
+    if best.is_finite() { best } else { 0.0 }
+}
+
+fn bits(p: f64) -> f64 {
+    match p > 0.0 && p < 1.0 {
+        true => -p * p.log2() - (1.0 - p) * (1.0 - p).log2(),
+        false => 0.0,
+    }
+}
+
+/// The same where tests may err: `weights` are joint probabilities of all states.
+fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<bool>) -> f64 {
+    let total: f64 = weights.iter().sum();
+    let alike = |a: usize, b: usize| {
+        (0..used.len()).all(|t| used[t] || matrix.row(a)[t] == matrix.row(b)[t])
+    };
+    let possible: Vec<usize> = (0..weights.len()).filter(|s| weights[*s] > 0.0).collect();
+    for &a in &possible {
+        let class: f64 = possible
+            .iter()
+            .filter(|b| alike(a, **b))
+            .map(|b| weights[*b])
+            .sum();
+        if class >= total * (CONFIDENCE - 1e-12) {
+            return 0.0;
+        }
+    }
+    let mut best = f64::INFINITY;
+    for test in 0..used.len() {
+        let cell = |state: usize| matrix.row(state)[test];
+        let failing: f64 = possible.iter().map(|s| weights[*s] * cell(*s)).sum();
+        let noise: f64 = possible.iter().map(|s| weights[*s] * bits(cell(*s))).sum();
+        if used[test] || bits(failing / total) - noise / total <= 1e-6 {
+            continue;
+        }
+        used[test] = true;
+        let fail: Vec<f64> = (0..weights.len()).map(|s| weights[s] * cell(s)).collect();
+        let pass: Vec<f64> = (0..weights.len())
+            .map(|s| weights[s] * (1.0 - cell(s)))
+            .collect();
+        let cost = total * matrix.tests()[test].cost
+            + exhaustive_noisy(matrix, &fail, used)
+            + exhaustive_noisy(matrix, &pass, used);
+        used[test] = false;
+        best = best.min(cost);
+    }
+    if best.is_finite() { best } else { 0.0 }
+}
+
+/// Sends every state down the tree with its probability; checks the ends and gives the cost.
+fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
+    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
+    let mut open = vec![(0, prior, Vec::new())];
+    let mut cost = 0.0;
+    while let Some((place, weights, way)) = open.pop() {
+        let mass: f64 = weights.iter().sum();
+        match &tree.nodes()[place] {
+            Node::Test {
+                test,
+                reached,
+                pass,
+                fail,
+            } => {
+                assert!(!way.contains(test), "a test is done once on a way");
+                assert!((reached - mass).abs() < 1e-9);
+                cost += mass * matrix.tests()[*test].cost;
+                let way = [&way[..], &[*test]].concat();
+                let cells: Vec<f64> = (0..weights.len()).map(|s| matrix.row(s)[*test]).collect();
+                let weigh = |cell: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                    (0..weights.len()).map(|s| weights[s] * cell(s)).collect()
+                };
+                open.push((*fail, weigh(&|s| cells[s]), way.clone()));
+                open.push((*pass, weigh(&|s| 1.0 - cells[s]), way));
+            }
+            Node::Leaf(leaf) => {
+                let named: f64 = leaf.states.iter().map(|s| weights[*s]).sum();
+                assert!((leaf.reached - mass).abs() < 1e-9);
+                assert!((leaf.p - named / mass).abs() < 1e-9, "{leaf:?}");
+                if matrix.is_crisp() {
+                    assert!(
+                        (named - mass).abs() < 1e-12,
+                        "every state ends where it is named"
+                    );
+                    let rows = |s: &usize| matrix.row(*s).to_vec();
+                    let first = rows(&leaf.states[0]);
+                    assert!(leaf.states.iter().all(|s| rows(s) == first));
+                } else if !leaf.cut {
+                    assert!(leaf.p >= CONFIDENCE - 1e-9, "{leaf:?}");
+                }
+            }
+        }
+    }
+    cost
+}
+
+#[track_caller]
+fn near(found: f64, wanted: f64, seed: u64) {
+    assert!(
+        (found - wanted).abs() <= 1e-9 * (1.0 + wanted),
+        "seed {seed}: {found} instead of {wanted}"
+    );
+}
+
+/// Goal: the optimal tree is optimal, its printed cost is its own, and greedy stays near it.
+/// Method: 200 matrices, half of them crisp, each against a search that tries everything.
+#[test]
+fn optimum_of_200_random_matrices_is_the_exhaustive_one() {
+    let mut ratios = Vec::new();
+    for seed in 0..200_u64 {
+        let mut dice = Dice(seed);
+        let crisp = seed % 2 == 0;
+        let (states, tests) = match crisp {
+            true => (2 + dice.below(5) as usize, 1 + dice.below(6) as usize),
+            false => (2 + dice.below(4) as usize, 1 + dice.below(4) as usize),
+        };
+        let noisy_in_ten = if crisp { 0 } else { 1 + dice.below(10) };
+        let matrix = random(&mut dice, states, tests, noisy_in_ten);
+        let all: Vec<usize> = (0..states).collect();
+        let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
+        let wanted = match matrix.is_crisp() {
+            true => exhaustive_crisp(&matrix, &all),
+            false => exhaustive_noisy(&matrix, &prior, &mut vec![false; tests]),
+        };
+        let best = planned(&matrix, Method::Optimal);
+        assert!(best.optimal, "seed {seed}");
+        near(best.expected_cost, wanted, seed);
+        near(walked(&matrix, &best.tree), wanted, seed);
+        let greedy = planned(&matrix, Method::Greedy);
+        near(walked(&matrix, &greedy.tree), greedy.expected_cost, seed);
+        assert!(greedy.expected_cost >= wanted - 1e-9, "seed {seed}");
+        if wanted > 0.0 {
+            ratios.push(greedy.expected_cost / wanted);
+        }
+    }
+    let worst = ratios.iter().copied().fold(0.0, f64::max);
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    assert!(
+        ratios.len() > 150,
+        "most matrices have something to tell apart"
+    );
+    assert!(worst < 1.35 && mean < 1.01, "worst {worst}, mean {mean}");
+}
+
+/// What one test tells apart is done by hand: the cheap test first would cost more in all.
+#[test]
+fn an_expensive_test_that_halves_the_states_beats_cheap_ones_that_remove_one_each() {
+    let state = |id: &str| State {
+        id: id.into(),
+        probability: 0.25,
+    };
+    let test = |id: &str, cost: f64| Test {
+        id: id.into(),
+        cost,
+    };
+    let matrix = Matrix::new(
+        ["a", "b", "c", "d"].map(state).to_vec(),
+        vec![test("half", 1.1), test("odd", 1.0), test("a_only", 0.9)],
+        [
+            [1.0, 1.0, 1.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0],
+        ]
+        .concat(),
+    )
+    .expect("a valid matrix");
+    // "odd" (1) always, then "a_only" (0.9) if it failed, "half" (1.1) if it passed: 1 + 0.45 + 0.55.
+    let best = planned(&matrix, Method::Optimal);
+    near(best.expected_cost, 2.0, 0);
+    assert_eq!(best.tree.first_test(), Some(1));
+}
+
+#[test]
+fn outcomes_leave_the_tree_that_is_left() {
+    let mut dice = Dice(7);
+    for _ in 0..50 {
+        let matrix = random(&mut dice, 7, 7, 3);
+        let whole = planned(&matrix, Method::Optimal);
+        let Some(Node::Test { test, fail, .. }) = whole.tree.nodes().first() else {
+            continue;
+        };
+        let found = [(matrix.tests()[*test].id.clone(), Outcome::Fail)];
+        let known = Posterior::given(&matrix, &found).expect("it can fail");
+        let options = PlanOptions {
+            method: Some(Method::Optimal),
+            confidence: CONFIDENCE,
+        };
+        let rest = plan(&matrix, &known, options).expect("a plan");
+        let next = match &whole.tree.nodes()[*fail] {
+            Node::Test { test, .. } => Some(*test),
+            Node::Leaf(_) => None,
+        };
+        assert_eq!(rest.tree.first_test(), next);
+        assert!(rest.tree.nodes().iter().all(|node| match node {
+            Node::Test { test: used, .. } => used != test,
+            Node::Leaf(_) => true,
+        }));
+    }
+}
+
+#[test]
+fn posterior_is_bayes_rule() {
+    let matrix = Matrix::new(
+        vec![
+            State {
+                id: "sound".into(),
+                probability: 0.9,
+            },
+            State {
+                id: "worn".into(),
+                probability: 0.1,
+            },
+        ],
+        vec![Test {
+            id: "noise".into(),
+            cost: 1.0,
+        }],
+        vec![0.05, 0.8],
+    )
+    .expect("a valid matrix");
+    let found = [("noise".to_owned(), Outcome::Fail)];
+    let known = Posterior::given(&matrix, &found).expect("explained");
+    // 0.1·0.8 / (0.1·0.8 + 0.9·0.05) = 0.08 / 0.125
+    assert!((known.probability(1) - 0.64).abs() < 1e-12);
+}
+
+/// Goal: nothing recurses with the depth of a tree. Method: halving probabilities and one test for
+/// each state make a chain.
+#[test]
+fn a_tree_of_a_thousand_levels_is_made_and_written() {
+    let count = 1_000_usize;
+    // A ratio near 1 keeps the smallest probability a normal number, and each test still peels one.
+    let weights: Vec<f64> = (0..count).map(|i| 0.7_f64.powi(i as i32)).collect();
+    let total: f64 = weights.iter().sum();
+    let states = weights.iter().enumerate().map(|(i, weight)| State {
+        id: format!("s{i}"),
+        probability: weight / total,
+    });
+    let tests = (0..count).map(|i| Test {
+        id: format!("t{i}"),
+        cost: 1.0,
+    });
+    let mut cells = vec![0.0; count * count];
+    for i in 0..count {
+        cells[i * count + i] = 1.0;
+    }
+    let matrix = Matrix::new(states.collect(), tests.collect(), cells).expect("a valid matrix");
+    let made = planned(&matrix, Method::Greedy);
+    assert_eq!(made.tree.nodes().len(), 2 * count - 1);
+    // 1 − 0.7 of what is left ends at each test: 1/0.3 tests in the mean.
+    assert!((made.expected_cost - 1.0 / 0.3).abs() < 1e-6);
+    let text = made.tree.to_json(&matrix, 0);
+    assert_eq!(text.matches("\"test\"").count(), count - 1);
+    assert!(text.len() < 1_000_000, "{} bytes", text.len());
+}
+
+/// Goal: where the work runs out, the answer says so instead of passing for a whole tree.
+#[test]
+fn a_tree_that_is_too_large_is_cut_and_says_so() {
+    let matrix = random(&mut Dice(3), 20, 20, 10);
+    let made = planned(&matrix, Method::Greedy);
+    let cut = made.tree.cut_probability();
+    assert!(!made.optimal);
+    assert!(
+        cut > 0.0,
+        "20 tests that err need more nodes than are allowed"
+    );
+    assert!(made.warnings.iter().any(|warning| warning.contains("cut")));
+    assert!((walked(&matrix, &made.tree) - made.expected_cost).abs() < 1e-9);
+    let written: serde_json::Value = serde_json::from_str(
+        &made
+            .to_json(&matrix, &Posterior::prior(&matrix))
+            .expect("JSON"),
+    )
+    .expect("JSON");
+    assert_eq!(written["cut_probability"].as_f64(), Some(cut));
+}

@@ -1,0 +1,298 @@
+//! Evaluates a fault dictionary: diagnoses every held-out run with it and computes the figures of the result.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use diagnosis::{Diagnosis, Dictionary, Effort, Finding, Model, Settings, fixed_order, replayed};
+
+use super::samples::{Purpose, Sample};
+use super::suite::SuiteRun;
+use crate::drive::monte_carlo::percentile;
+use crate::pool;
+use crate::stop::Stop;
+
+/// One of the parts a diagnosis names has failed with this probability.
+const SURE: f64 = 0.95;
+/// Beyond this many parts nothing is isolated.
+const MOST_PARTS: usize = 3;
+
+/// A held-out run with a fault, and what diagnosis makes of it.
+#[derive(Clone, Debug)]
+pub struct Assessment {
+    /// Fault mode.
+    pub fault: String,
+    /// Its part.
+    pub lru: String,
+    /// `permanent`, `intermittent` or `degraded`.
+    pub kind: &'static str,
+    /// It can leave the train less protected.
+    pub unsafe_: bool,
+    /// Which of its levels.
+    pub level: usize,
+    /// Seed.
+    pub seed: u64,
+    /// A step did not pass, or a fault was found.
+    pub detected: bool,
+    /// Parts that diagnosis is sure are the one, the likeliest first.
+    pub parts: Vec<String>,
+    /// What diagnosis says.
+    pub finding: Finding,
+    /// In words.
+    pub conclusion: String,
+    /// Steps and time of the suite in its fixed order until the part is found.
+    pub fixed: Effort,
+    /// The same, step after step as diagnosis asks for them.
+    pub adaptive: Effort,
+    /// Part the adaptive run finds.
+    pub adaptive_part: Option<String>,
+}
+
+impl Assessment {
+    /// Whether it is isolated to at most `parts` parts, the right one among them.
+    pub fn isolated(&self, parts: usize) -> bool {
+        self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
+    }
+}
+
+/// Diagnoses all held-out runs with a fault; and tells what good runs did not pass.
+pub fn assess(
+    dictionary: &Dictionary,
+    settings: &Settings,
+    samples: &[Sample],
+    runs: &[SuiteRun],
+    jobs: usize,
+) -> (Vec<Assessment>, Vec<Vec<String>>) {
+    let held_out = samples
+        .iter()
+        .zip(runs)
+        .filter(|(s, _)| s.purpose == Purpose::Assessment);
+    let (faulty, good): (Vec<_>, Vec<_>) = held_out.partition(|(sample, _)| sample.fault.is_some());
+    let model = Model::new(dictionary, settings, &BTreeMap::new());
+    let one = |i: usize| {
+        let (sample, run) = faulty[i];
+        assess_one(&model, sample, run)
+    };
+    let assessed = pool::run(faulty.len(), jobs, &Stop::default(), &mut |_| {}, one);
+    let assessed = assessed
+        .into_iter()
+        .filter_map(|(_, assessment)| assessment);
+    let good = good.into_iter().map(|(_, run)| match run.passed {
+        true => Vec::new(),
+        false => run.not_passed.clone(),
+    });
+    (assessed.collect(), good.collect())
+}
+
+fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
+    let mode = sample.fault.as_ref()?;
+    let diagnosis = Diagnosis::of(model, &run.seen);
+    let (adaptive, seen) = replayed(model, &run.seen);
+    let after = Diagnosis::of(model, &seen);
+    let parts: Vec<_> = match diagnosis.finding {
+        Finding::TwoFound => {
+            let found = diagnosis.lrus.iter();
+            let found = found.filter(|part| part.probability >= model.settings.found_at);
+            found.map(|part| part.lru.as_str()).collect()
+        }
+        _ => diagnosis.credible_parts(SURE),
+    };
+    Some(Assessment {
+        fault: mode.id.clone(),
+        lru: mode.lru.clone(),
+        kind: mode.kind().word(),
+        unsafe_: mode.unsafe_,
+        level: sample.level,
+        seed: sample.seed,
+        detected: !run.passed,
+        parts: parts.into_iter().map(str::to_owned).collect(),
+        fixed: fixed_order(model, &run.seen),
+        adaptive,
+        adaptive_part: (after.finding == Finding::Found)
+            .then(|| after.lrus.first().map(|part| part.lru.clone()))
+            .flatten(),
+        finding: diagnosis.finding,
+        conclusion: diagnosis.conclusion,
+    })
+}
+
+/// Share of runs, and how many there were.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Share {
+    /// Runs with the property.
+    pub of: usize,
+    /// All runs.
+    pub all: usize,
+}
+
+impl Share {
+    fn over<'a>(
+        runs: impl Iterator<Item = &'a Assessment>,
+        has: impl Fn(&Assessment) -> bool,
+    ) -> Self {
+        runs.fold(Self::default(), |sum, run| Self {
+            of: sum.of + usize::from(has(run)),
+            all: sum.all + 1,
+        })
+    }
+
+    /// As a number; there is none of none.
+    pub fn value(self) -> Option<f64> {
+        (self.all > 0).then(|| self.of as f64 / self.all as f64)
+    }
+}
+
+/// A fault mode that was missed or not isolated in some run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shortfall {
+    /// The mode.
+    pub fault: String,
+    /// Runs that were good in this respect, of how many.
+    pub share: Share,
+    /// Parts it was taken for, or what diagnosis said, the most frequent first.
+    pub taken_for: Vec<String>,
+}
+
+/// The figures.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Fault modes.
+    pub modes: usize,
+    /// Those detected in every held-out run.
+    pub detected_modes: usize,
+    /// Those isolated to at most 1, 2, 3 parts in every held-out run.
+    pub isolated_modes: [usize; MOST_PARTS],
+    /// Runs detected, by kind.
+    pub detected: BTreeMap<&'static str, Share>,
+    /// Runs of unsafe modes detected.
+    pub unsafe_detected: Share,
+    /// Runs isolated to at most 1, 2, 3 parts.
+    pub isolated: [Share; MOST_PARTS],
+    /// Runs in which diagnosis names one part for certain, and it is the wrong one.
+    pub wrong: Share,
+    /// Modes that were not detected in some run.
+    pub undetected: Vec<Shortfall>,
+    /// Modes that were not isolated to one part in some run.
+    pub not_isolated: Vec<Shortfall>,
+    /// Groups of parts that were not told apart in some run.
+    pub ambiguous: Vec<Vec<String>>,
+    /// Good runs, and those that did not pass.
+    pub good_runs: usize,
+    /// Good runs that did not pass.
+    pub false_alarms: usize,
+    /// Median steps and time of the fixed order, over runs in which both orders isolate the part.
+    pub fixed: (f64, f64),
+    /// Median steps and time of the adaptive order.
+    pub adaptive: (f64, f64),
+    /// Adaptive runs that find the right part.
+    pub adaptive_right: Share,
+}
+
+/// The figures over all held-out runs.
+pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
+    let mut by_mode: BTreeMap<&str, Vec<&Assessment>> = BTreeMap::new();
+    for one in assessments {
+        by_mode.entry(&one.fault).or_default().push(one);
+    }
+    let kinds: BTreeSet<_> = assessments.iter().map(|one| one.kind).collect();
+    let all = || assessments.iter();
+    let median_of = |of: &dyn Fn(&Assessment) -> Effort| {
+        let isolating = assessments.iter().filter(|run| {
+            run.fixed.settled && run.isolated(1) && run.adaptive_part.as_ref() == Some(&run.lru)
+        });
+        let efforts: Vec<_> = isolating.map(of).collect();
+        (
+            median(efforts.iter().map(|e| f64::from(e.steps)).collect()),
+            median(efforts.iter().map(|e| e.time_s).collect()),
+        )
+    };
+    let every = |has: &dyn Fn(&Assessment) -> bool| {
+        by_mode
+            .values()
+            .filter(|runs| runs.iter().all(|run| has(run)))
+            .count()
+    };
+    let lacking = |has: &dyn Fn(&Assessment) -> bool| {
+        let shortfalls = by_mode
+            .iter()
+            .map(|(fault, runs)| shortfall(fault, runs, has));
+        shortfalls
+            .filter(|s| s.share.of < s.share.all)
+            .collect::<Vec<_>>()
+    };
+    Figures {
+        modes: by_mode.len(),
+        detected_modes: every(&|run| run.detected),
+        isolated_modes: [1, 2, 3].map(|parts| every(&|run| run.isolated(parts))),
+        detected: kinds
+            .into_iter()
+            .map(|kind| {
+                (
+                    kind,
+                    Share::over(all().filter(|r| r.kind == kind), |r| r.detected),
+                )
+            })
+            .collect(),
+        unsafe_detected: Share::over(all().filter(|run| run.unsafe_), |run| run.detected),
+        isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
+        wrong: Share::over(all(), |run| {
+            let certain = matches!(run.finding, Finding::Found | Finding::TwoFound);
+            certain && run.parts != [run.lru.as_str()]
+        }),
+        undetected: lacking(&|run| run.detected),
+        not_isolated: lacking(&|run| run.isolated(1)),
+        ambiguous: ambiguous(assessments),
+        good_runs: good.len(),
+        false_alarms: good.iter().filter(|said| !said.is_empty()).count(),
+        fixed: median_of(&|run| run.fixed),
+        adaptive: median_of(&|run| run.adaptive),
+        adaptive_right: Share::over(all(), |run| run.adaptive_part.as_ref() == Some(&run.lru)),
+    }
+}
+
+fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> bool) -> Shortfall {
+    let mut taken_for: BTreeMap<String, usize> = BTreeMap::new();
+    for run in runs.iter().filter(|run| !has(run)) {
+        let what = match run.finding {
+            Finding::Found | Finding::TwoFound | Finding::CannotTell => run.parts.join(" or "),
+            _ => run
+                .conclusion
+                .split(';')
+                .next()
+                .unwrap_or_default()
+                .to_owned(),
+        };
+        *taken_for.entry(what).or_default() += 1;
+    }
+    let mut taken_for: Vec<_> = taken_for.into_iter().collect();
+    taken_for.sort_by_key(|(_, runs)| std::cmp::Reverse(*runs));
+    Shortfall {
+        fault: fault.to_owned(),
+        share: Share::over(runs.iter().copied(), has),
+        taken_for: taken_for.into_iter().map(|(what, _)| what).collect(),
+    }
+}
+
+/// Parts that stand together in an answer of several, joined as far as answers overlap.
+fn ambiguous(assessments: &[Assessment]) -> Vec<Vec<String>> {
+    let mut groups: Vec<BTreeSet<String>> = Vec::new();
+    let open = assessments
+        .iter()
+        .filter(|run| run.detected && run.parts.len() > 1);
+    for run in open.filter(|run| run.parts.len() <= MOST_PARTS) {
+        let mut group: BTreeSet<String> = run.parts.iter().cloned().collect();
+        let (touching, apart): (Vec<_>, Vec<_>) = groups
+            .into_iter()
+            .partition(|known| !known.is_disjoint(&group));
+        group.extend(touching.into_iter().flatten());
+        groups = apart;
+        groups.push(group);
+    }
+    groups
+        .into_iter()
+        .map(|group| group.into_iter().collect())
+        .collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    percentile(&values, 50.0).unwrap_or(0.0)
+}

@@ -1,0 +1,142 @@
+//! Runs the whole suite on one embedded unit in memory and keeps only what diagnosis reads.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
+use diagnosis::{CheckName, Observation};
+use protocol::injection::FaultCatalogue;
+
+use super::samples::Sample;
+use crate::data::ScriptsDirectory;
+use crate::drive::train::train;
+use crate::failure::Failure;
+use crate::link::Endpoint;
+use crate::run::Gatherer;
+use crate::run::{BenchSetup, SessionEvent, Task, loading, run_here};
+use crate::run_diagnosis::{LINE, TRAIN, UNIT_CONFIG};
+use crate::stop::Stop;
+
+/// All procedures of the default suite, and the bench they run on.
+pub struct Suite {
+    setup: BenchSetup,
+    tasks: Vec<Task>,
+    /// Parts and fault modes.
+    pub catalogue: FaultCatalogue,
+}
+
+/// A run of the suite.
+#[derive(Clone, Debug, Default)]
+pub struct SuiteRun {
+    /// What was seen.
+    pub seen: Observation,
+    /// All procedures passed and no fault was found.
+    pub passed: bool,
+    /// What did not pass, for people.
+    pub not_passed: Vec<String>,
+}
+
+impl Suite {
+    /// Loads all procedures that are not on request.
+    ///
+    /// # Errors
+    /// A file is missing or wrong.
+    pub fn load(directory: &ScriptsDirectory) -> Result<Self, Failure> {
+        let config = directory.unit_config(UNIT_CONFIG)?;
+        let line = directory.line(LINE)?;
+        let train = train(directory, TRAIN)?;
+        let texts = directory.procedures()?;
+        let loaded = loading::load(&texts, &config.content, &line.content, &train)?;
+        if let Some(error) = loaded.errors.first() {
+            return Err(Failure::usage(format!(
+                "{error}; `ptu run --check` shows all errors"
+            )));
+        }
+        let scatter = directory.bench_scatter(None)?;
+        let procedures = loaded.procedures.into_iter().filter(|p| !p.on_request);
+        Ok(Self {
+            setup: BenchSetup {
+                endpoint: Endpoint::Sim,
+                config,
+                line,
+                train,
+                faults: Vec::new(),
+                seed: 0,
+                scatter: Some(Arc::new(scatter)),
+                serial: None,
+                realtime: false,
+                slower: 1,
+                run_control: None,
+            },
+            tasks: procedures
+                .map(|procedure| Task {
+                    procedure,
+                    options: RunOptions::default(),
+                })
+                .collect(),
+            catalogue: directory.faults()?,
+        })
+    }
+
+    /// All checks in order.
+    pub fn checks(&self) -> Vec<CheckName> {
+        let of_task = |task: &Task| {
+            let procedure = task.procedure.clone();
+            let names = procedure.steps.iter().flat_map(|step| match step.repeat {
+                1 => vec![step.name.clone()],
+                n => (1..=n)
+                    .map(|turn| format!("{} ({turn}/{n})", step.name))
+                    .collect(),
+            });
+            let names: Vec<_> = names.collect();
+            names.into_iter().map(move |step| CheckName {
+                procedure: procedure.id.clone(),
+                step,
+            })
+        };
+        self.tasks.iter().flat_map(of_task).collect()
+    }
+
+    /// Runs it on units of one kind, each procedure on one that is powered up for it. A stop leaves the
+    /// run short.
+    pub fn run(&self, sample: &Sample, stop: &Stop) -> SuiteRun {
+        let mut setup = BenchSetup {
+            faults: sample.fault.iter().cloned().collect(),
+            seed: sample.seed,
+            ..self.setup.clone()
+        };
+        let own_onset: Vec<_> = setup.faults.iter().map(|fault| fault.onset_s).collect();
+        for fault in &mut setup.faults {
+            fault.onset_s += sample.sets_in_s;
+        }
+        let mut run = SuiteRun {
+            passed: true,
+            ..SuiteRun::default()
+        };
+        for task in self.tasks.iter().take_while(|_| stop.may_begin()) {
+            let mut gatherer = Gatherer::new(&task.procedure.id);
+            run_here(&setup, task, stop, &mut |event| {
+                gatherer.take(&event);
+                match event {
+                    SessionEvent::Fault(fault) => {
+                        run.passed = false;
+                        run.not_passed
+                            .push(format!("{}: {}", task.procedure.id, fault.message));
+                    }
+                    SessionEvent::Run(RunEvent::ProcedureFinished {
+                        verdict, message, ..
+                    }) if !matches!(verdict, Verdict::Passed | Verdict::Skipped) => {
+                        run.passed = false;
+                        run.not_passed
+                            .push(format!("{}: {verdict} {message}", task.procedure.id));
+                    }
+                    _ => {}
+                }
+            });
+            run.seen.steps.extend(gatherer.finish());
+            for (fault, onset_s) in setup.faults.iter_mut().zip(&own_onset) {
+                fault.onset_s = *onset_s;
+            }
+        }
+        run
+    }
+}

@@ -1,0 +1,32 @@
+//! Runs procedures on units under test. Nothing here draws, and nothing writes a report.
+//!
+//! * [`link`]: links to the embedded unit and to units on ports;
+//! * [`run`]: runs procedures on benches, and stores and forwards their events;
+//! * [`bench_worker`]: one unit under test and its bench thread, for the window;
+//! * [`drive`]: automatic runs from station to station, and manual runs;
+//! * [`replay`]: repeats recorded stimuli and compares traces;
+//! * [`field`]: imports a unit's own event log into the fault history;
+//! * [`run_diagnosis`]: finds the part to replace from the results of a run;
+//! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
+//! * [`data`]: the scripts directory; [`clock`]: the computer's time; [`failure`]: what a person is told;
+//!   [`stop`]: interruption by a signal.
+
+pub mod bench_worker;
+pub mod campaign;
+pub mod clock;
+pub mod data;
+pub mod drive;
+pub mod failure;
+pub mod field;
+pub mod link;
+pub mod new_file;
+pub mod owner;
+pub mod pool;
+pub mod private;
+pub mod progress;
+pub mod replay;
+pub mod run;
+pub mod run_diagnosis;
+pub mod stop;
+pub mod table;
+pub mod tell;

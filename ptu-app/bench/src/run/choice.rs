@@ -1,0 +1,207 @@
+//! What a tester chooses by name: the unit, its configuration, the line, the train and the injected faults.
+//!
+//! Command line and window fill in the same [`BenchChoice`]; [`BenchChoice::setup`] reads the named files and
+//! checks that they fit together.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use btu_rig::procedure::plan::Connection;
+use btu_rig::rig::check_places;
+use protocol::message::Identity;
+use serde::{Deserialize, Serialize};
+
+use super::BenchSetup;
+use crate::data::ScriptsDirectory;
+use crate::drive::train::train;
+use crate::drive::{Setting, unit_config};
+use crate::failure::Failure;
+use crate::link::Endpoint;
+
+/// A unit and the bench around it, by name. Its JSON form is part of the window's settings file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BenchChoice {
+    /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
+    pub endpoint: String,
+    /// Only the maintenance port is connected, without the bench harness.
+    pub as_ptu: bool,
+    /// Line, `lines/NAME.toml`.
+    pub line: String,
+    /// Unit configuration, `units/NAME.toml`.
+    pub unit_config: String,
+    /// Train, `trains/NAME.toml` or a file.
+    pub train: String,
+    /// Serial number given to the embedded unit or expected of a real one; empty = any.
+    pub serial: String,
+    /// The train that the unit belongs to, as the depot names it; empty = not stated.
+    pub train_no: String,
+    /// Injected faults, by id; not saved, so that no later test starts with a forgotten one.
+    #[serde(skip)]
+    pub faults: Vec<String>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Whether units, trains and benches differ as good ones do.
+    pub scatter: bool,
+    /// Whether the embedded unit runs at the pace of the wall clock.
+    pub realtime: bool,
+    /// Changed keys of the unit configuration.
+    #[serde(skip)]
+    pub settings: Vec<Setting>,
+    /// File of the scatter; none = `bench_scatter.toml` of the scripts directory.
+    #[serde(skip)]
+    pub scatter_file: Option<PathBuf>,
+    /// Times slower than the wall clock.
+    #[serde(skip)]
+    pub slower: u32,
+}
+
+impl Default for BenchChoice {
+    fn default() -> Self {
+        Self {
+            endpoint: "sim".into(),
+            as_ptu: false,
+            line: "line8".into(),
+            unit_config: "sg100".into(),
+            train: "line6".into(),
+            serial: String::new(),
+            train_no: String::new(),
+            faults: Vec::new(),
+            seed: 1,
+            scatter: false,
+            realtime: false,
+            settings: Vec::new(),
+            scatter_file: None,
+            slower: 1,
+        }
+    }
+}
+
+impl BenchChoice {
+    /// Whether the unit is the embedded one.
+    pub fn is_simulated(&self) -> bool {
+        self.endpoint == "sim"
+    }
+
+    /// Whether the bench harness is connected.
+    pub fn connection(&self) -> Connection {
+        if self.as_ptu {
+            Connection::Ptu
+        } else {
+            Connection::Btu
+        }
+    }
+
+    /// The same without faults if the unit is on a port: the window offers faults for the embedded unit only, and
+    /// those chosen before a port was entered do not apply.
+    pub fn with_offered_faults(mut self) -> Self {
+        if !self.is_simulated() {
+            self.faults.clear();
+        }
+        self
+    }
+
+    /// Whether procedures are evaluated from the same unit configuration, line and train.
+    pub fn same_files(&self, other: &Self) -> bool {
+        let names =
+            |choice: &Self| [&choice.unit_config, &choice.line, &choice.train].map(Clone::clone);
+        names(self) == names(other)
+    }
+
+    /// Reads and checks all named files.
+    ///
+    /// # Errors
+    /// A name is wrong, a file is missing or wrong, or the files do not fit together.
+    pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
+        let endpoint = Endpoint::from_str(&self.endpoint).map_err(Failure::usage)?;
+        let faults = directory.chosen_faults(&self.faults)?;
+        if endpoint != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
+            return Err(Failure::usage(
+                "--inject puts faults of a unit into the embedded one only; inject into a served one with `ato-under-test --inject`",
+            ));
+        }
+        let serial = Some(self.serial.clone()).filter(|serial| !serial.is_empty());
+        if let Some(serial) = &serial {
+            check_serial(serial)?;
+        }
+        let config = unit_config(directory, &self.unit_config, &self.settings)?;
+        let line = directory.line(&self.line)?;
+        let train = train(directory, &self.train)?;
+        check_places(&faults, &train).map_err(|wrong| Failure::usage(wrong.to_string()))?;
+        let scatter = match self.scatter {
+            true => Some(Arc::new(
+                directory.bench_scatter(self.scatter_file.as_deref())?,
+            )),
+            false => None,
+        };
+        Ok(BenchSetup {
+            endpoint,
+            config,
+            line,
+            train,
+            faults,
+            seed: self.seed,
+            scatter,
+            serial,
+            realtime: self.realtime,
+            slower: self.slower,
+            run_control: None,
+        })
+    }
+}
+
+/// Checks a serial number that was given.
+///
+/// # Errors
+/// It is empty, too long for the unit's identity, or not ASCII.
+pub fn check_serial(serial: &str) -> Result<(), Failure> {
+    let longest = size_of_val(&Identity::default().serial);
+    if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {
+        return Err(Failure::usage(format!(
+            "--serial-no must be 1 to {longest} ASCII characters"
+        )));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_saved_choice_leaves_out_faults_and_what_only_the_command_line_sets() {
+        let choice = BenchChoice {
+            endpoint: "tcp:bench:4000".into(),
+            faults: vec!["tra.dead".into()],
+            slower: 5,
+            ..BenchChoice::default()
+        };
+        let saved = serde_json::to_value(&choice).expect("JSON");
+        let mut keys: Vec<_> = saved.as_object().expect("an object").keys().collect();
+        keys.sort();
+        assert_eq!(
+            keys,
+            [
+                "as_ptu",
+                "endpoint",
+                "line",
+                "realtime",
+                "scatter",
+                "seed",
+                "serial",
+                "train",
+                "train_no",
+                "unit_config"
+            ]
+        );
+        let read: BenchChoice = serde_json::from_value(saved).expect("a choice");
+        assert_eq!(
+            read,
+            BenchChoice {
+                endpoint: "tcp:bench:4000".into(),
+                ..BenchChoice::default()
+            }
+        );
+    }
+}

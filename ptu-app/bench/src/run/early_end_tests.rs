@@ -1,0 +1,469 @@
+//! The verdict of a run that ends early: stopped between its procedures, when none was under way to say so,
+//! ended by its first failure, or by a database that takes no more.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use btu_rig::procedure::{Procedure, Runner, loader};
+use btu_rig::rig::Rig;
+use fault_db::Store;
+use protocol::Instant;
+
+use super::{
+    Began, BenchChoice, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan,
+    SessionEvent, Suite, Task, run, run_on,
+};
+use crate::clock;
+use crate::data::ScriptsDirectory;
+use crate::failure::Exit;
+use crate::link::Endpoint;
+use crate::run_diagnosis;
+use crate::stop::Stop;
+
+const PASSES: &str =
+    "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms(200))])\n";
+const FAILS: &str = "procedure(title = \"Alarm\", suspect = \"-\")\n\
+     step(\"sounds\", expect = [becomes(alarm, True, within = ms(200))])\n";
+
+/// Counts the scans of all procedures, and presses stop before one of them.
+#[derive(Default)]
+struct Presser {
+    count: Mutex<Count>,
+    /// Before this scan, counted from 1.
+    at: Option<usize>,
+    stop: Stop,
+}
+
+#[derive(Default)]
+struct Count {
+    scans: usize,
+    now: Instant,
+    /// Scans before each bench made anew.
+    before: Vec<usize>,
+}
+
+impl RunControl for Presser {
+    fn after_cycle(&self, now: Instant, _: &Rig) {
+        let mut count = self.count.lock().expect("no thread panics with it");
+        if now < count.now {
+            let scans = count.scans;
+            count.before.push(scans);
+        }
+        count.now = now;
+    }
+
+    fn before_scan(&self, _: &mut Runner) {
+        let mut count = self.count.lock().expect("no thread panics with it");
+        count.scans += 1;
+        // The scan has asked for a stop already: this one is heeded by what comes after it.
+        if Some(count.scans) == self.at {
+            self.stop.press();
+        }
+    }
+}
+
+struct Deaf;
+
+impl Listener for Deaf {
+    fn hear(&mut self, _: &Procedure, _: &SessionEvent) {}
+}
+
+fn directory() -> ScriptsDirectory {
+    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
+    ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts")
+}
+
+fn setup() -> BenchSetup {
+    let choice = BenchChoice::default();
+    choice.setup(&directory()).expect("its configuration")
+}
+
+/// A database of its own and the folder that holds it.
+fn store() -> (tempfile::TempDir, Store) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = Store::open(&folder.path().join("history.db"), clock::open_options());
+    (folder, store.expect("a database"))
+}
+
+fn plan(procedures: impl IntoIterator<Item = Arc<Procedure>>) -> RunPlan {
+    let task = |procedure| Task {
+        procedure,
+        options: Default::default(),
+    };
+    RunPlan {
+        tasks: procedures.into_iter().map(task).collect(),
+        jobs: 1,
+        stop_on_fail: false,
+        operator: String::new(),
+        train: String::new(),
+        scripts_sha256: String::new(),
+        adaptive: None,
+    }
+}
+
+/// Procedures of these texts, in their order.
+fn plan_of(texts: &[&str]) -> RunPlan {
+    let setup = setup();
+    let named = |(place, text): (usize, &&str)| (format!("{place}.star"), (*text).to_owned());
+    let texts: BTreeMap<_, _> = texts.iter().enumerate().map(named).collect();
+    let (config, line) = (&setup.config.content, &setup.line.content);
+    let loaded = loader::load(&texts, config, line, &setup.train);
+    assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
+    plan(loaded.procedures)
+}
+
+/// Runs the plan under a run control; the outcome and the stored run.
+fn run_with(
+    presser: &Arc<Presser>,
+    plan: &RunPlan,
+    setup: BenchSetup,
+) -> (Outcome, fault_db::Verdict) {
+    let (outcome, detail) = recorded(presser, plan, setup);
+    (outcome, detail.run.verdict.expect("it is over"))
+}
+
+/// The same with all that is stored.
+fn recorded(
+    presser: &Arc<Presser>,
+    plan: &RunPlan,
+    mut setup: BenchSetup,
+) -> (Outcome, fault_db::RunDetail) {
+    setup.run_control = Some(presser.clone());
+    let mut connected = setup.connect(&presser.stop).expect("the embedded unit");
+    let (_folder, store) = store();
+    let (began, stop) = (Began::now(), &presser.stop);
+    let ran = run_on(&mut connected, &began, plan, &setup, store, stop, &mut Deaf);
+    let (store, outcome) = ran.expect("it is recorded");
+    let detail = store.run(outcome.id, &|_| true).expect("the run");
+    (outcome, detail)
+}
+
+/// The last scan of each procedure, counted in a run that nobody stops; in virtual time they are the same
+/// in every run.
+fn ends(plan: &RunPlan) -> Vec<usize> {
+    let counter = Arc::new(Presser::default());
+    run_with(&counter, plan, setup());
+    let count = counter.count.lock().expect("no thread panics with it");
+    let ends = [&count.before[..], &[count.scans]].concat();
+    // A search may come back to one.
+    assert!(ends.len() >= plan.tasks.len(), "all of them were run");
+    ends
+}
+
+/// Stop pressed in this scan.
+fn stopped_at(scan: usize, plan: &RunPlan) -> (Outcome, fault_db::Verdict) {
+    let presser = Arc::new(Presser {
+        at: Some(scan),
+        ..Presser::default()
+    });
+    let came_to = run_with(&presser, plan, setup());
+    assert_eq!(presser.stop.presses(), 1);
+    came_to
+}
+
+/// Stop pressed in the last scan of the procedure with this place: too late for it, and before the next.
+fn stopped_after(place: usize, plan: &RunPlan) -> (Outcome, fault_db::Verdict) {
+    stopped_at(ends(plan)[place], plan)
+}
+
+#[test]
+fn a_run_stopped_before_its_first_procedure_is_aborted() {
+    let presser = Arc::new(Presser::default());
+    presser.stop.press();
+    let (outcome, stored) = run_with(&presser, &plan_of(&[PASSES]), setup());
+    assert_eq!(stored, fault_db::Verdict::Aborted);
+    assert_eq!(outcome.exit, Exit::Aborted);
+    assert_eq!(presser.count.lock().expect("alone").scans, 0);
+}
+
+#[test]
+fn a_run_stopped_between_two_procedures_is_aborted_whatever_came_before() {
+    for first in [PASSES, FAILS] {
+        let plan = plan_of(&[first, PASSES]);
+        let (outcome, stored) = stopped_after(0, &plan);
+        assert_eq!(stored, fault_db::Verdict::Aborted, "{first}");
+        assert_eq!(outcome.exit, Exit::Aborted, "{first}");
+    }
+}
+
+/// What nothing was left out of has its own verdict and exit code, and so has a run that was to end there by
+/// itself.
+#[test]
+fn a_stop_after_the_last_procedure_changes_no_verdict() {
+    let plan = plan_of(&[PASSES, PASSES]);
+    let (outcome, stored) = stopped_after(1, &plan);
+    assert_eq!(stored, fault_db::Verdict::Passed);
+    assert_eq!(outcome.exit, Exit::Passed);
+    let mut plan = plan_of(&[FAILS, PASSES]);
+    let at = ends(&plan)[0];
+    plan.stop_on_fail = true;
+    let (outcome, stored) = stopped_at(at, &plan);
+    assert_eq!(stored, fault_db::Verdict::Failed);
+    assert_eq!(outcome.exit, Exit::Failed);
+}
+
+/// Goal: where a run ends with its first failure, that is decided before the next procedure begins, and its
+/// record does not depend on who is quicker, nor on how many benches work side by side. Method: many times, on
+/// one bench and on three, with all processors kept busy and somebody slow who looks on.
+#[test]
+fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
+    const TIMES: usize = 100;
+    let mut plan = plan_of(&[PASSES, FAILS, FAILS, PASSES]);
+    plan.stop_on_fail = true;
+    let (_folder, mut store) = store();
+    let (over, setup) = (AtomicBool::new(false), setup());
+    std::thread::scope(|scope| {
+        for _ in 0..crate::pool::cores() {
+            scope.spawn(|| {
+                while !over.load(Ordering::Relaxed) {
+                    std::hint::spin_loop();
+                }
+            });
+        }
+        for turn in 0..2 * TIMES {
+            plan.jobs = [1, 3][turn % 2];
+            let mut connected = setup.connect(&Stop::default()).expect("the embedded unit");
+            let begun = Arc::new(Presser::default());
+            let setup = BenchSetup {
+                run_control: Some(begun.clone()),
+                ..setup.clone()
+            };
+            if let Connected::Sim(bench) = &mut connected {
+                **bench = setup.clone();
+            }
+            let (began, mut slow) = (Began::now(), Slow(turn % 3));
+            let ran = run_on(
+                &mut connected,
+                &began,
+                &plan,
+                &setup,
+                store,
+                &begun.stop,
+                &mut slow,
+            );
+            let (kept, outcome) = ran.expect("it is recorded");
+            let run = kept.run(outcome.id, &|_| true).expect("the run");
+            store = kept;
+            let steps: Vec<_> = run.steps.iter().map(|s| s.procedure.as_str()).collect();
+            assert_eq!(steps, ["0", "1"], "turn {turn}");
+            assert_eq!(run.run.verdict, Some(fault_db::Verdict::Failed));
+            assert_eq!(outcome.exit, Exit::Failed);
+            if plan.jobs == 1 {
+                let benches = 1 + begun.count.lock().expect("alone").before.len();
+                assert_eq!(benches, 2, "no third procedure is begun, turn {turn}");
+            }
+        }
+        over.store(true, Ordering::Relaxed);
+    });
+}
+
+/// Looks on, and is slow about it.
+struct Slow(usize);
+
+impl Listener for Slow {
+    fn hear(&mut self, _: &Procedure, event: &SessionEvent) {
+        if matches!(event, SessionEvent::Ended { .. }) {
+            std::thread::sleep(Duration::from_millis(3 * self.0 as u64));
+        }
+    }
+}
+
+/// Goal: nobody drives a unit for a run that is not kept, however late who looks on hears of it. Method: a disk
+/// with room for the first steps only, then a step that takes ten minutes, on a bench in virtual time that
+/// takes two milliseconds for each scan; who looks on hears nothing until the bench is stopped.
+#[test]
+fn a_full_disk_stops_the_bench_and_is_no_pass() {
+    const LONG: u64 = 60_000;
+    let steps = "procedure(title = \"Long\", suspect = \"-\")\n\
+        for n in range(2000):\n    step(\"%d: a name that takes some room on the disk\" % n)\n\
+        step(\"waits\", do = [wait(s(600))])\n";
+    let plan = plan_of(&[steps]);
+    let (folder, first) = store();
+    first.close().expect("closed");
+    let file = folder.path().join("history.db");
+    let database = rusqlite::Connection::open(&file).expect("the database");
+    let pages: u32 = database
+        .query_row("PRAGMA page_count", [], |row| row.get(0))
+        .expect("a number");
+    let options = clock::open_options().max_pages(pages + 20);
+    let store = Store::open(&file, options).expect("the database");
+    let slowly = Arc::new(Slowly::default());
+    let mut setup = setup();
+    setup.run_control = Some(slowly.clone());
+    let stop = Stop::default();
+    let mut busy = Busy {
+        until: stop.clone(),
+        at_most: slowly.clone(),
+    };
+    let Err(failure) = run(&plan, setup, store, &stop, &mut busy) else {
+        panic!("there is no room for it")
+    };
+    assert_eq!(failure.exit, Exit::Bench, "{}", failure.message);
+    assert!(failure.message.contains("no room"), "{}", failure.message);
+    let scans = slowly.0.load(Ordering::Relaxed);
+    assert!(scans < LONG / 4, "{scans} scans");
+}
+
+/// Takes its time for each scan.
+#[derive(Default)]
+struct Slowly(AtomicU64);
+
+impl RunControl for Slowly {
+    fn after_cycle(&self, _: Instant, _: &Rig) {}
+
+    fn before_scan(&self, _: &mut Runner) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Looks on, and hears nothing more when the last step has begun, until the bench is stopped.
+struct Busy {
+    until: Stop,
+    at_most: Arc<Slowly>,
+}
+
+impl Listener for Busy {
+    fn hear(&mut self, _: &Procedure, event: &SessionEvent) {
+        use btu_rig::procedure::RunEvent::StepStarted;
+        let SessionEvent::Run(StepStarted { name, .. }) = event else {
+            return;
+        };
+        while name == "waits"
+            && self.until.presses() == 0
+            && self.at_most.0.load(Ordering::Relaxed) < 20_000
+        {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+/// Each repetition of a procedure begins with its set-up and ends with its clean-up.
+const LEAVES_THE_KEY_ON: &str = "procedure(title = \"Key\", suspect = \"-\", setup = cab.key(False), cleanup = wait(ms(500)))\n\
+     step(\"off\", do = wait(ms(200)), expect = becomes(maintenance_key, False))\n\
+     step(\"on\", do = [cab.key(True), wait(ms(200))], expect = becomes(maintenance_key, True))\n";
+
+#[test]
+fn a_repetition_is_the_procedure_again_with_its_set_up_and_clean_up() {
+    let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
+    plan.tasks[0].options.repeat = 3;
+    let (outcome, detail) = recorded(&Arc::new(Presser::default()), &plan, setup());
+    assert_eq!(outcome.exit, Exit::Passed, "{:#?}", detail.steps);
+    let names: Vec<_> = detail.steps.iter().map(|step| step.name.as_str()).collect();
+    let rounds = [
+        "off (1/3)",
+        "on (1/3)",
+        "off (2/3)",
+        "on (2/3)",
+        "off (3/3)",
+        "on (3/3)",
+    ];
+    assert_eq!(names[..6], rounds);
+    assert_eq!(names[6..], ["waits"]);
+}
+
+/// Goal: repetitions that were still due make a run that was stopped aborted, when the one under way had
+/// nothing left to be stopped. Method: stopped in the last scan of the second of three.
+#[test]
+fn a_procedure_stopped_between_two_repetitions_is_aborted() {
+    let once = plan_of(&[LEAVES_THE_KEY_ON]);
+    let scans = ends(&once)[0];
+    let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
+    plan.tasks[0].options.repeat = 3;
+    let presser = Arc::new(Presser {
+        at: Some(2 * scans),
+        ..Presser::default()
+    });
+    let (outcome, detail) = recorded(&presser, &plan, setup());
+    assert_eq!(outcome.exit, Exit::Aborted);
+    let verdicts: Vec<_> = detail.steps.iter().map(|step| step.verdict).collect();
+    assert_eq!(verdicts, [fault_db::Verdict::Passed; 4]);
+}
+
+/// Goal: what fails in one repetition ends a run that is to end with its first failure; else the others have
+/// their turn.
+#[test]
+fn a_failed_repetition_ends_a_run_that_stops_on_fail() {
+    for (ends, turns) in [(false, 3), (true, 1)] {
+        let mut plan = plan_of(&[FAILS]);
+        plan.stop_on_fail = ends;
+        plan.tasks[0].options.repeat = 3;
+        plan.tasks[0].options.stop_on_fail = ends;
+        let (outcome, detail) = recorded(&Arc::new(Presser::default()), &plan, setup());
+        assert_eq!(outcome.exit, Exit::Failed);
+        assert_eq!(detail.steps.len(), turns);
+    }
+}
+
+/// A search for a part among these procedures.
+fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
+    let suite = Suite::load(&directory(), procedures, setup).expect("the suite");
+    let mut plan = plan(suite.procedures.into_iter().filter(|p| !p.on_request));
+    let choice = BenchChoice::default();
+    let bench = run_diagnosis::Bench {
+        unit_config_sha256: &setup.config.sha256,
+        line: &choice.line,
+        train: &choice.train,
+    };
+    let serial = setup.expected_serial();
+    let (_folder, store) = store();
+    let adaptive = run_diagnosis::adaptive(&store, &directory(), &serial, &bench);
+    plan.adaptive = Some(adaptive.expect("the shipped dictionary"));
+    plan
+}
+
+/// Goal: a search for a part that was stopped is not taken for one that found nothing more. Method: an
+/// adaptive run on a good unit, which it leaves after the last procedure only, stopped after the first.
+#[test]
+fn a_search_stopped_between_two_procedures_is_aborted() {
+    let two = ["atp/limit_speed", "door/interlocks"].map(str::to_owned);
+    let plan = search(&two, &setup());
+    assert_eq!(plan.tasks.len(), 2);
+    let (outcome, stored) = stopped_after(0, &plan);
+    assert_eq!(stored, fault_db::Verdict::Aborted);
+    assert_eq!(outcome.exit, Exit::Aborted);
+}
+
+/// Goal: a search judges each step before the next begins, whoever ordered it. Method: the part is found by a
+/// step that others follow at once.
+#[test]
+fn a_search_ends_with_the_step_that_found_the_part() {
+    let mut setup = setup();
+    let faults = directory().faults().expect("faults");
+    setup.faults = vec![faults.fault("tra.dead").expect("mode").clone()];
+    let plan = search(&[], &setup);
+    let (_, detail) = recorded(&Arc::new(Presser::default()), &plan, setup);
+    let last = detail.steps.last().expect("a step");
+    assert_eq!(
+        last.verdict,
+        fault_db::Verdict::Failed,
+        "{:#?}",
+        detail.steps
+    );
+}
+
+/// Goal: who gives up reaching a unit has not found an error. Method: a port that is there, nobody on it,
+/// and stop pressed before it is asked.
+#[test]
+fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let address = format!("tcp:{}", listener.local_addr().expect("its address"));
+    let mut setup = setup();
+    setup.endpoint = address.parse::<Endpoint>().expect("an address");
+    let stop = Stop::default();
+    stop.press();
+    let (folder, store) = store();
+    let plan = plan_of(&[PASSES]);
+    let Err(failure) = run(&plan, setup, store, &stop, &mut Deaf) else {
+        panic!("there is no unit")
+    };
+    assert_eq!(failure.exit, Exit::Aborted, "{}", failure.message);
+    let store = Store::open_read_only(&folder.path().join("history.db")).expect("the database");
+    let runs = store
+        .runs(&fault_db::RunFilter::default(), &|_| true)
+        .expect("runs");
+    let verdicts: Vec<_> = runs.iter().map(|run| run.verdict).collect();
+    assert_eq!(verdicts, [Some(fault_db::Verdict::Aborted)]);
+}

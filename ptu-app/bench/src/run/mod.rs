@@ -1,0 +1,256 @@
+//! Runs procedures on benches, and stores and forwards the events of the run.
+//!
+//! ```text
+//! bench (rig + unit) → Session → SessionEvent → Collector → store thread → fault-db
+//!                                                        ↘ console
+//! ```
+//! Workers run procedures side by side, each with a stream of events. The collector reads the streams in the order
+//! of the procedures, so that the record does not depend on the number of workers.
+
+pub(crate) mod adaptive;
+pub(crate) mod bench_setup;
+mod choice;
+mod collector;
+#[cfg(test)]
+mod early_end_tests;
+mod event;
+mod fault_watch;
+mod first_failure;
+pub mod loading;
+mod made;
+mod observe;
+mod reach;
+mod recorder;
+mod rounds;
+mod run_control;
+pub mod select;
+mod session;
+mod settle;
+mod store_thread;
+mod suite;
+pub mod unit_text;
+#[cfg(test)]
+mod untrusted_unit_tests;
+mod workers;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+use btu_rig::procedure::{self, Procedure, RunOptions};
+use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
+
+pub use adaptive::Adaptive;
+pub use bench_setup::{BenchSetup, Connected};
+pub use choice::{BenchChoice, check_serial};
+pub use collector::{Listener, Outcome, steps_of, stored};
+pub use event::{RecordedStimuli, SessionEvent};
+pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
+pub(crate) use fault_watch::{is_fault, of_event};
+pub use made::{BenchMade, Made, Stimuli};
+pub use observe::{Gatherer, of_run};
+pub(crate) use recorder::BEFORE;
+pub use run_control::RunControl;
+pub(crate) use session::{Session, Window};
+
+pub(crate) use settle::{READY_WITHIN, settled};
+pub use suite::Suite;
+pub use workers::run_here;
+
+use crate::clock;
+use crate::failure::{Exit, Failure};
+use crate::stop::Stop;
+use collector::Collector;
+use first_failure::FirstFailure;
+use store_thread::RunStore;
+pub use store_thread::Speaker;
+
+/// Events of one procedure that may wait for the collector.
+const QUEUE: usize = 4096;
+
+/// A procedure and what of it is to be run.
+pub struct Task {
+    /// The procedure.
+    pub procedure: Arc<Procedure>,
+    /// Steps, repetitions, behaviour on failure.
+    pub options: RunOptions,
+}
+
+/// What stays the same for a whole run.
+pub struct RunPlan {
+    /// Procedures in order.
+    pub tasks: Vec<Task>,
+    /// Benches to run side by side; one on a port.
+    pub jobs: usize,
+    /// The run ends with the first procedure, in this order, that does not pass.
+    pub stop_on_fail: bool,
+    /// Who tests.
+    pub operator: String,
+    /// The train the unit is in, as the tester names it; empty if nobody said.
+    pub train: String,
+    /// SHA-256 over all scripts.
+    pub scripts_sha256: String,
+    /// Isolates a fault by itself, instead of running all tasks in order.
+    pub adaptive: Option<Adaptive>,
+}
+
+/// A procedure and the events of its run.
+type ProcedureStream = (Arc<Procedure>, Receiver<SessionEvent>);
+
+/// Runs the plan and records it; the store comes back for the report.
+///
+/// # Errors
+/// The unit cannot be reached or the database fails; what was recorded stays.
+pub fn run(
+    plan: &RunPlan,
+    setup: BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+) -> Result<(Store, Outcome), Failure> {
+    let began = Began::now();
+    run_record(plan, &setup, setup.expected_serial(), began.at_us).check()?;
+    match setup.connect(stop) {
+        Ok(mut connected) => run_on(&mut connected, &began, plan, &setup, store, stop, listener),
+        Err(failure) => {
+            // A run that never started is kept, too.
+            let record = run_record(plan, &setup, setup.expected_serial(), began.at_us);
+            let verdict = match failure.exit {
+                Exit::Aborted => Verdict::Aborted,
+                _ => Verdict::Error,
+            };
+            RunStore::begin(store, record, None, stop)?.finish(began.end(verdict, 0))?;
+            Err(failure)
+        }
+    }
+}
+
+/// Runs the plan on a unit that has been reached and stays so.
+///
+/// # Errors
+/// The database fails; what was recorded stays.
+pub fn run_on(
+    connected: &mut Connected,
+    began: &Began,
+    plan: &RunPlan,
+    setup: &BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+) -> Result<(Store, Outcome), Failure> {
+    connected.set_stop(stop);
+    let record = run_record(plan, setup, connected.serial(), began.at_us);
+    let run_store = RunStore::begin(store, record, listener.speaker(), stop)?;
+    let id = run_store.id;
+    let made = BenchMade::of(setup, connected.serial());
+    let mut collector = Collector::new(run_store, listener, made);
+    let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
+    let worked = catch_unwind(AssertUnwindSafe(|| {
+        std::thread::scope(|scope| match &plan.adaptive {
+            Some(adaptive) => {
+                let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
+                collect(procedures, &mut collector, &first_failure);
+            }
+            None => {
+                let procedures = workers::start(scope, plan, connected, &first_failure, stop);
+                collect(procedures, &mut collector, &first_failure);
+            }
+        });
+    }));
+    let (run_store, outcome) = collector.finish(id, left_out(stop));
+    let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
+    if worked.is_err() {
+        // What was recorded stays, and the run is no pass.
+        run_store.finish(began.end(Verdict::Error, outcome.bench_time.as_us() as i64))?;
+        return Err(Failure::bench(format!(
+            "the program failed in run {}, which is recorded as an error; please report what stands before this",
+            id.short()
+        )));
+    }
+    Ok((run_store.finish(end)?, outcome))
+}
+
+/// The verdict on what was still due when stop was pressed.
+fn left_out(stop: &Stop) -> Option<procedure::Verdict> {
+    let verdict = match stop.reason() {
+        Some(_) => procedure::Verdict::Error,
+        None => procedure::Verdict::Aborted,
+    };
+    (stop.presses() > 0).then_some(verdict)
+}
+
+/// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
+/// what a bench does next.
+fn collect(
+    procedures: impl IntoIterator<Item = ProcedureStream>,
+    collector: &mut Collector<'_>,
+    first_failure: &FirstFailure,
+) {
+    for (place, (procedure, stream)) in procedures.into_iter().enumerate() {
+        if !first_failure.admits(place) {
+            break;
+        }
+        collector.begin(&procedure);
+        stream.into_iter().for_each(|event| collector.take(event));
+    }
+}
+
+/// A stream's two ends.
+fn stream() -> (mpsc::SyncSender<SessionEvent>, Receiver<SessionEvent>) {
+    mpsc::sync_channel(QUEUE)
+}
+
+fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us: i64) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial,
+            kind: "atc".into(),
+            config_name: setup.config.content.name.clone(),
+            sw_versions: std::collections::BTreeMap::new(),
+        },
+        line: setup.line.content.name.clone(),
+        train: plan.train.clone(),
+        seed: setup.seed,
+        operator: plan.operator.clone(),
+        source: setup.endpoint.to_string(),
+        started_at_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        scripts_sha256: plan.scripts_sha256.clone(),
+        unit_config_sha256: setup.config.sha256.clone(),
+        injected: setup.injected(),
+        owner: crate::owner::this_process(),
+        scripts: plan
+            .tasks
+            .iter()
+            .map(|task| fault_db::ScriptRecord {
+                path: task.procedure.path.clone(),
+                sha256: task.procedure.sha256.clone(),
+            })
+            .collect(),
+    }
+}
+
+/// When a run began.
+pub struct Began {
+    at_us: i64,
+    at: std::time::Instant,
+}
+
+impl Began {
+    /// Now.
+    pub fn now() -> Self {
+        Self {
+            at_us: clock::now_us(),
+            at: std::time::Instant::now(),
+        }
+    }
+
+    fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
+        RunEnd {
+            verdict,
+            finished_at_us: clock::now_us(),
+            bench_time_us,
+            wall_time_us: i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Gathers the observations for a diagnosis, from a live stream of events or from a stored run, with the same
+//! result.
+
+use std::collections::BTreeSet;
+
+use btu_rig::procedure::{RunEvent, StepResult, Verdict};
+use diagnosis::{CheckName, CheckResult, Observation, Sign, StepSeen};
+use fault_db::{RunDetail, RunOccurrence, StepDetail};
+
+use super::{CHECK_FAILED, FaultSeen, SessionEvent};
+
+/// Gathers the steps of a procedure, each with the signs that showed since the one before.
+#[derive(Debug)]
+pub struct Gatherer {
+    procedure: String,
+    waiting: BTreeSet<Sign>,
+    steps: Vec<StepSeen>,
+}
+
+impl Gatherer {
+    /// Of the procedure called `procedure`.
+    pub fn new(procedure: &str) -> Self {
+        Self {
+            procedure: procedure.to_owned(),
+            waiting: BTreeSet::new(),
+            steps: Vec::new(),
+        }
+    }
+
+    /// Takes one event; a step that is over comes back.
+    pub fn take(&mut self, event: &SessionEvent) -> Option<&StepSeen> {
+        match event {
+            SessionEvent::Fault(fault) => {
+                self.waiting.extend(sign_of(fault));
+                None
+            }
+            SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(result),
+            _ => None,
+        }
+    }
+
+    fn step(&mut self, result: &StepResult) -> Option<&StepSeen> {
+        let seen = match result.verdict {
+            Verdict::Passed => CheckResult::Passed,
+            Verdict::Failed => CheckResult::Failed,
+            Verdict::Error => CheckResult::Error,
+            Verdict::Skipped | Verdict::Aborted => return None,
+        };
+        let values = result.measurements.iter();
+        self.steps.push(StepSeen {
+            check: CheckName {
+                procedure: self.procedure.clone(),
+                step: result.name.clone(),
+            },
+            result: seen,
+            time_s: result.bench_time.as_secs(),
+            values: values.map(|m| (m.name.clone(), m.value)).collect(),
+            signs: std::mem::take(&mut self.waiting),
+        });
+        self.steps.last()
+    }
+
+    /// All steps; what showed after the last belongs to it.
+    pub fn finish(mut self) -> Vec<StepSeen> {
+        if let Some(last) = self.steps.last_mut() {
+            last.signs.append(&mut self.waiting);
+        }
+        self.steps
+    }
+}
+
+/// A check that failed is no sign beside the step itself.
+fn sign_of(fault: &FaultSeen) -> Option<Sign> {
+    (fault.code != CHECK_FAILED).then(|| Sign {
+        fault: fault.name.clone(),
+        lru: fault.lru.clone(),
+    })
+}
+
+/// What a stored run saw. Signs go with the step they showed in or, before a procedure's first step,
+/// with that; a run without steps, as an imported log is, has nothing but signs.
+pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
+    let mut seen = Observation::default();
+    let steps = run
+        .steps
+        .iter()
+        .filter_map(|step| Some((step, of_step(step)?)));
+    let mut steps: Vec<_> = steps.collect();
+    for occurrence in occurrences {
+        if occurrence.code == i64::from(CHECK_FAILED) {
+            continue;
+        }
+        let sign = Sign {
+            fault: occurrence.code_name.clone(),
+            lru: occurrence.lru.clone(),
+        };
+        let after = |step: &StepDetail| match occurrence.step_index {
+            Some(index) => step.index >= index,
+            None => step.started_bench_us >= occurrence.bench_us,
+        };
+        let place = steps.iter().position(|(step, _)| after(step));
+        match place.or(steps.len().checked_sub(1)) {
+            Some(place) => drop(steps[place].1.signs.insert(sign)),
+            None => drop(seen.signs.insert(sign)),
+        }
+    }
+    seen.steps = steps.into_iter().map(|(_, step)| step).collect();
+    seen
+}
+
+fn of_step(step: &StepDetail) -> Option<StepSeen> {
+    let result = match step.verdict {
+        fault_db::Verdict::Passed => CheckResult::Passed,
+        fault_db::Verdict::Failed => CheckResult::Failed,
+        fault_db::Verdict::Error => CheckResult::Error,
+        fault_db::Verdict::Skipped | fault_db::Verdict::Aborted => return None,
+    };
+    let values = step.measurements.iter();
+    Some(StepSeen {
+        check: CheckName {
+            procedure: step.procedure.clone(),
+            step: step.name.clone(),
+        },
+        result,
+        time_s: step.bench_time_us as f64 / 1e6,
+        values: values.map(|m| (m.name.clone(), m.value)).collect(),
+        signs: BTreeSet::new(),
+    })
+}

@@ -1,0 +1,289 @@
+//! Runs on a bad line or with an untrustworthy unit: the embedded unit behind a link that
+//! harms what passes.
+
+use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict, loader};
+use btu_rig::rig::{LinkFailure, Random, UnitLink};
+use protocol::frame::{self, Decoder};
+use protocol::message::{Channel, Message, SelfTest};
+use protocol::{Duration, Instant};
+use std::sync::Arc;
+
+use super::recorder::BEFORE;
+use super::settle::{READY_WITHIN, settled};
+use super::workers::run_task;
+use super::{BenchChoice, BenchSetup, SessionEvent, Task};
+use crate::data::ScriptsDirectory;
+use crate::stop::Stop;
+
+/// When what is wrong begins: the first procedure is under way.
+const FROM: Duration = Duration::from_ms(13_500);
+
+/// What is wrong between bench and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Wrong {
+    Nothing,
+    /// This share of bytes has a bit flipped, both ways.
+    Flips(f64),
+    /// The unit's answers to a question for its log do not come.
+    NoLog,
+    OtherSerial,
+    OtherDatabase,
+    /// It says that every item of its self-test failed.
+    SelfTest,
+}
+
+struct Untrusted<L> {
+    link: L,
+    wrong: Wrong,
+    random: Random,
+    decoder: Decoder,
+    /// Frames of the tester's channel that were left out: nothing of them shows in the sequence.
+    left_out: u16,
+}
+
+impl<L> Untrusted<L> {
+    fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let Wrong::Flips(share) = self.wrong else {
+            return bytes.to_vec();
+        };
+        let random = &mut self.random;
+        let harmed = bytes.iter().map(|byte| match random.unit() < share {
+            true => byte ^ (1 << random.below(8)),
+            false => *byte,
+        });
+        harmed.collect()
+    }
+
+    /// The unit's frames, those of the tester's channel changed.
+    fn change(&mut self, bytes: &[u8], out: &mut Vec<u8>) {
+        self.decoder.push(bytes);
+        while let Some(Ok((mut header, payload))) = self.decoder.next_frame() {
+            let mut payload = payload.to_vec();
+            if header.channel == Channel::Ptu {
+                header.seq = header.seq.wrapping_sub(self.left_out);
+                match (Message::decode(header.channel, &payload), self.wrong) {
+                    (Ok(Message::LogEntry(_) | Message::LogEnd(_)), Wrong::NoLog) => {
+                        self.left_out += 1;
+                        continue;
+                    }
+                    (Ok(Message::Identity(mut identity)), wrong) => {
+                        match wrong {
+                            Wrong::OtherSerial => identity.serial[0] = b'X',
+                            Wrong::OtherDatabase => identity.tdb_crc ^= 1,
+                            _ => {}
+                        }
+                        payload.clear();
+                        Message::from(identity).encode(&mut payload);
+                    }
+                    (Ok(Message::Status(mut status)), Wrong::SelfTest) => {
+                        status.self_test = SelfTest::from_bits_retain(u16::MAX);
+                        payload.clear();
+                        Message::from(status).encode(&mut payload);
+                    }
+                    _ => {}
+                }
+            }
+            frame::encode(&header, &payload, out);
+        }
+    }
+}
+
+impl<L: UnitLink> UnitLink for Untrusted<L> {
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        if now.since(Instant::ZERO) < FROM || self.wrong == Wrong::Nothing {
+            return self.link.exchange(now, to_unit, from_unit);
+        }
+        let there = self.pass(to_unit);
+        let mut back = Vec::new();
+        self.link.exchange(now, &there, &mut back)?;
+        let back = self.pass(&back);
+        match self.wrong {
+            Wrong::Flips(_) => from_unit.extend(back),
+            _ => self.change(&back, from_unit),
+        }
+        Ok(())
+    }
+}
+
+/// The result of a procedure.
+struct CameTo {
+    verdict: Verdict,
+    message: String,
+    steps: Vec<(Verdict, String)>,
+    faults: Vec<String>,
+}
+
+struct Bed {
+    setup: BenchSetup,
+    procedures: Vec<Arc<Procedure>>,
+}
+
+impl Bed {
+    fn new() -> Self {
+        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
+        let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
+        let choice = BenchChoice::default();
+        let setup = choice.setup(&directory).expect("its configuration");
+        let texts = directory.procedures().expect("procedures");
+        let (config, line) = (&setup.config.content, &setup.line.content);
+        let procedures = loader::load(&texts, config, line, &setup.train).procedures;
+        Self { setup, procedures }
+    }
+
+    fn run(&self, id: &str, wrong: Wrong, seed: u64) -> CameTo {
+        let procedure = self.procedures.iter().find(|p| p.id == id).expect("there");
+        let task = Task {
+            procedure: procedure.clone(),
+            options: RunOptions::default(),
+        };
+        let mut session = self
+            .setup
+            .sim_session_by(id, &Stop::default(), |link| Untrusted {
+                link,
+                wrong,
+                random: Random::new(seed),
+                decoder: Decoder::new(),
+                left_out: 0,
+            });
+        let (ready, found) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+        assert!(ready, "the unit is good so far");
+        let mut came_to = CameTo {
+            verdict: Verdict::Skipped,
+            message: String::new(),
+            steps: Vec::new(),
+            faults: Vec::new(),
+        };
+        let mut sink = |event| match event {
+            SessionEvent::Run(RunEvent::StepFinished(result)) => {
+                came_to.steps.push((result.verdict, result.message));
+            }
+            SessionEvent::Run(RunEvent::ProcedureFinished {
+                verdict, message, ..
+            }) => {
+                (came_to.verdict, came_to.message) = (verdict, message);
+            }
+            SessionEvent::Fault(fault) => {
+                let told = format!("{} {}: {}", fault.name, fault.lru, fault.message);
+                came_to.faults.push(told);
+            }
+            _ => {}
+        };
+        run_task(
+            &mut session,
+            &task,
+            found,
+            Instant::ZERO,
+            &mut sink,
+            &|| true,
+        );
+        came_to
+    }
+}
+
+/// Procedures that judge what a bad line would blame: modem, link, inputs, and the tester's own session.
+const JUDGE: [&str; 4] = [
+    "twc/exchange",
+    "tcms/link",
+    "atp/limit_speed",
+    "twc/ptu_exchange",
+];
+
+#[test]
+fn on_a_good_line_a_good_unit_passes() {
+    let bed = Bed::new();
+    for id in JUDGE {
+        let came_to = bed.run(id, Wrong::Nothing, 1);
+        assert_eq!(
+            came_to.verdict,
+            Verdict::Passed,
+            "{id}: {}",
+            came_to.message
+        );
+    }
+}
+
+#[test]
+fn a_log_that_stops_answering_is_an_error_and_no_fault() {
+    let bed = Bed::new();
+    for id in JUDGE {
+        let came_to = bed.run(id, Wrong::NoLog, 1);
+        assert_eq!(came_to.faults, [""; 0], "{id}");
+        // A procedure in which nothing is logged has nothing to read.
+        if came_to.verdict != Verdict::Passed {
+            assert_eq!(came_to.verdict, Verdict::Error, "{id}: {}", came_to.message);
+            let told = came_to
+                .message
+                .contains("the unit's log could not be read: asked ");
+            assert!(told, "{id}: {}", came_to.message);
+        }
+    }
+    assert_eq!(
+        bed.run("twc/exchange", Wrong::NoLog, 1).verdict,
+        Verdict::Error
+    );
+}
+
+/// Goal: a bad line is never a part's fault, however bad it is. Method: one byte in a hundred to one in a
+/// hundred thousand flipped, some seeds each. Nearly good, it may pass.
+#[test]
+fn a_bad_line_blames_no_part() {
+    let bed = Bed::new();
+    for share in [1e-2, 1e-3, 1e-4, 1e-5] {
+        for seed in 1..=3 {
+            for id in JUDGE {
+                let came_to = bed.run(id, Wrong::Flips(share), seed);
+                let what = format!("{id}, {share}, seed {seed}: {}", came_to.message);
+                assert_eq!(came_to.faults, [""; 0], "{what} {:?}", came_to.steps);
+                assert_ne!(came_to.verdict, Verdict::Failed, "{what}");
+                if share >= 1e-3 {
+                    assert_eq!(came_to.verdict, Verdict::Error, "{what}");
+                    let told = "the line between tester and unit is bad";
+                    assert!(came_to.message.contains(told), "{what}");
+                    assert_eq!(came_to.message.matches(told).count(), 1, "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn another_unit_in_the_middle_of_a_procedure_is_an_error() {
+    let bed = Bed::new();
+    for (wrong, words) in [
+        (
+            Wrong::OtherSerial,
+            "its serial number was \"SIM-0001\" and is \"XIM-0001\"",
+        ),
+        (Wrong::OtherDatabase, "its track database's checksum was "),
+    ] {
+        let came_to = bed.run("twc/exchange", wrong, 1);
+        assert_eq!(came_to.verdict, Verdict::Error, "{}", came_to.message);
+        assert!(came_to.message.contains(words), "{}", came_to.message);
+        assert_eq!(came_to.faults, [""; 0]);
+    }
+}
+
+#[test]
+fn a_unit_that_says_its_self_test_failed_does_not_pass() {
+    let bed = Bed::new();
+    let came_to = bed.run("tcms/link", Wrong::SelfTest, 1);
+    assert_eq!(came_to.verdict, Verdict::Failed);
+    let items = [
+        "Memory pattern test",
+        "TRA did not answer",
+        "TEST board",
+        "bit 15",
+    ];
+    for item in items {
+        assert!(
+            came_to.message.contains(item),
+            "{item}: {}",
+            came_to.message
+        );
+    }
+}

@@ -1,0 +1,188 @@
+//! Good units pass all procedures in any order, and workers keep their limits.
+
+use std::path::Path;
+
+use btu_rig::procedure::loader::load;
+use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
+use btu_rig::rig::Random;
+use btu_rig::train::TrainData;
+use protocol::Duration;
+use protocol::injection::FaultMode;
+
+use super::*;
+use crate::data::ScriptsDirectory;
+use crate::link::Endpoint;
+use crate::run::select;
+
+/// Goal: procedures do not lean on a fresh unit, so that a unit on a port passes them all in a
+/// row. Method: all of them, forward and backward, on one embedded unit in virtual time.
+#[test]
+fn procedures_pass_in_any_order_on_a_unit_that_is_never_powered_off() {
+    let (directory, setup) = line6_bench();
+    let procedures = loaded(&directory, &setup);
+    let backward = procedures.iter().rev();
+    let row = procedures.iter().chain(backward);
+    all_pass(&setup, row.map(|procedure| (procedure.clone(), 1)));
+}
+
+/// Goal: neither does the order of procedures nor repeating them fail a good unit. Method: the default
+/// ones, drawn by a seed and each once or twice, on units, trains and benches as good ones differ.
+#[test]
+fn good_units_pass_procedures_repeated_and_in_random_order() {
+    random_order(&[1, 2], 1);
+}
+
+#[test]
+#[ignore = "takes minutes: the default procedures a hundred times on one unit; run in release mode"]
+fn a_good_unit_passes_procedures_a_hundred_times_in_random_order() {
+    random_order(&[3], 100);
+}
+
+fn random_order(seeds: &[u64], times: usize) {
+    let (directory, mut setup) = line6_bench();
+    let scatter = directory.bench_scatter(None).expect("scatter");
+    setup.scatter = Some(Arc::new(scatter));
+    for seed in seeds {
+        setup.seed = *seed;
+        let mut procedures = loaded(&directory, &setup);
+        procedures.retain(|procedure| !procedure.on_request);
+        let mut random = Random::new(*seed);
+        let order = (0..times).flat_map(|_| {
+            select::shuffle(&mut procedures, random.next_u64());
+            let twice = |procedure: &Arc<Procedure>| (procedure.clone(), 1 + random.below(2));
+            procedures.iter().map(twice).collect::<Vec<_>>()
+        });
+        all_pass(&setup, order);
+    }
+}
+
+fn loaded(directory: &ScriptsDirectory, setup: &BenchSetup) -> Vec<Arc<Procedure>> {
+    let texts = directory.procedures().expect("procedures");
+    let (config, line) = (&setup.config.content, &setup.line.content);
+    load(&texts, config, line, &setup.train).procedures
+}
+
+/// Each procedure so many times, on one unit.
+fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize)>) {
+    let stop = Stop::default();
+    let mut session = setup.sim_session("all in a row", &stop);
+    session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    let mut before = String::from("nothing");
+    let mut not_passed = Vec::new();
+    for (place, (procedure, repeat)) in row.enumerate() {
+        let found = between_procedures(&mut session);
+        let mut said: Vec<_> = found.into_iter().map(|fault| fault.message).collect();
+        let mut verdict = None;
+        let mut sink = |event| match event {
+            SessionEvent::Run(RunEvent::StepFinished(result))
+                if result.verdict != Verdict::Passed =>
+            {
+                said.push(format!("{}: {}", result.name, result.message));
+            }
+            SessionEvent::Run(RunEvent::ProcedureFinished {
+                verdict: v,
+                message,
+                ..
+            }) => {
+                verdict = Some(v);
+                said.extend(Some(message).filter(|message| !message.is_empty()));
+            }
+            SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.message)),
+            _ => {}
+        };
+        let options = RunOptions {
+            repeat: repeat as u32,
+            ..RunOptions::default()
+        };
+        session.run(&procedure, options, Vec::new(), &mut sink, &TO_THE_END);
+        if verdict != Some(Verdict::Passed) || !said.is_empty() {
+            not_passed.push(format!(
+                "{place}: {} × {repeat} after {before}: {said:#?}",
+                procedure.id
+            ));
+        }
+        before.clone_from(&procedure.id);
+    }
+    assert!(
+        not_passed.is_empty(),
+        "seed {}: {not_passed:#?}",
+        setup.seed
+    );
+}
+
+/// Goal: a run of thousands of procedures keeps room for the events of a few. Method: nobody takes any.
+#[test]
+fn workers_start_only_a_limited_number_of_procedures_ahead() {
+    const JOBS: usize = 3;
+    let (directory, setup) = line6_bench();
+    let procedures = loaded(&directory, &setup);
+    let mut named = procedures.iter();
+    let link = named.find(|p| p.id == "tcms/link").expect("it");
+    let task = || Task {
+        procedure: link.clone(),
+        options: RunOptions::default(),
+    };
+    let plan = RunPlan {
+        tasks: (0..5_000).map(|_| task()).collect(),
+        jobs: JOBS,
+        stop_on_fail: false,
+        operator: String::new(),
+        train: String::new(),
+        scripts_sha256: String::new(),
+        adaptive: None,
+    };
+    let stop = Stop::default();
+    let first_failure = FirstFailure::new(false);
+    let mut connected = Connected::Sim(Box::new(setup));
+    let begun = std::thread::scope(|scope| {
+        let procedures = start(scope, &plan, &mut connected, &first_failure, &stop);
+        let first = procedures.recv().expect("the first");
+        assert!(first.1.into_iter().count() > 0, "it is run");
+        stop.press();
+        procedures.into_iter().count()
+    });
+    assert!((1..=STREAMS_AHEAD + 2 * JOBS).contains(&begun), "{begun}");
+}
+
+/// A controller that breaks while no procedure runs is found all the same.
+#[test]
+fn a_fault_between_two_procedures_is_recorded() {
+    let (directory, mut setup) = line6_bench();
+    let faults = directory.faults().expect("faults");
+    let controller = faults.fault("master_controller.pot_low").expect("mode");
+    setup.faults = vec![FaultMode {
+        onset_s: 20.0,
+        ..controller.clone()
+    }];
+    let stop = Stop::default();
+    let mut session = setup.sim_session("between", &stop);
+    session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    session.idle(Duration::from_ms(1_000), |_, _, _| {}, |_| false);
+    assert!(between_procedures(&mut session).is_empty());
+    // Not taken by anybody, as while a window runs out.
+    while session.now() < Instant::ZERO + BEFORE + Duration::from_ms(21_000) {
+        session.bench().tick().expect("bench");
+    }
+    let found = between_procedures(&mut session);
+    let names: Vec<_> = found.iter().map(|fault| fault.name.as_str()).collect();
+    assert_eq!(names, ["controller_failed"]);
+}
+
+fn line6_bench() -> (ScriptsDirectory, BenchSetup) {
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
+    let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
+    let setup = BenchSetup {
+        endpoint: Endpoint::Sim,
+        config: directory.unit_config("sg100").expect("configuration"),
+        line: directory.line("line8").expect("line"),
+        train: TrainData::line6(),
+        faults: Vec::new(),
+        seed: 1,
+        scatter: None,
+        serial: None,
+        realtime: false,
+        slower: 1,
+        run_control: None,
+    };
+    (directory, setup)
+}

@@ -1,0 +1,190 @@
+//! Diagnoses a stored run.
+
+use std::collections::BTreeMap;
+
+use diagnosis::{Diagnosis, Dictionary, Finding, Model, Observation};
+use fault_db::{Id, RunDetail, Store, Verdict};
+
+use super::dictionary::{Chosen, Origin, choose};
+use super::history::OwnHistory;
+use super::{UNIT_CONFIG, settings};
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+use crate::owner;
+use crate::run::{Adaptive, of_run};
+use crate::tell;
+
+/// What decides what a healthy unit measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bench<'a> {
+    /// SHA-256 of the unit configuration.
+    pub unit_config_sha256: &'a str,
+    /// Line.
+    pub line: &'a str,
+    /// Train.
+    pub train: &'a str,
+}
+
+/// The diagnosis of a run.
+pub struct Answer {
+    /// The run.
+    pub run: RunDetail,
+    /// The diagnosis.
+    pub diagnosis: Diagnosis,
+    /// Traces that show a part's faults, by part.
+    pub traces: BTreeMap<String, Vec<Id>>,
+    /// What to bear in mind.
+    pub warnings: Vec<String>,
+    /// Where the dictionary is from.
+    pub dictionary_from: Origin,
+    /// The dictionary was made of what the scripts directory holds now.
+    pub dictionary_current: bool,
+}
+
+/// Diagnoses a stored run.
+///
+/// # Errors
+/// There is no such run, no dictionary, or a file cannot be read.
+pub fn diagnose_run(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    id: Id,
+) -> Result<Answer, Failure> {
+    let run = store.run(id, &owner::is_alive)?;
+    let occurrences = store.run_occurrences(id)?;
+    let settings = settings(directory)?;
+    let Chosen {
+        dictionary,
+        from,
+        mut warnings,
+        current,
+    } = choose(Some(store), directory)?;
+    let seen = of_run(&run, &occurrences);
+    let seen = comparable(&run, seen, &dictionary, &mut warnings);
+    if seen.is_empty() {
+        warnings.push("the run has no step and no fault that could be diagnosed".into());
+    }
+    let history = OwnHistory::before(&run, &occurrences, store, &settings)?;
+    let model = Model::new(&dictionary, &settings, &history.factors);
+    let mut diagnosis = Diagnosis::of(&model, &seen);
+    history.explain(&mut diagnosis);
+    admit_what_was_left_out(&run, &mut diagnosis);
+    let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
+    for occurrence in &occurrences {
+        let of_part = traces.entry(occurrence.lru.clone()).or_default();
+        of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
+    }
+    Ok(Answer {
+        run,
+        diagnosis,
+        traces,
+        warnings,
+        dictionary_from: from,
+        dictionary_current: current,
+    })
+}
+
+/// A run that did not pass is not healthy because what did not pass could not be weighed.
+fn admit_what_was_left_out(run: &RunDetail, diagnosis: &mut Diagnosis) {
+    let passed = matches!(
+        run.run.verdict,
+        Some(Verdict::Passed | Verdict::Skipped) | None
+    );
+    let nothing_wrong = matches!(diagnosis.finding, Finding::NoFault | Finding::NotEnough);
+    if !passed && !run.steps.is_empty() && nothing_wrong {
+        diagnosis.finding = Finding::CannotTell;
+        diagnosis.conclusion =
+            "cannot tell: the run did not pass, and what did not pass was not run to \
+             its end or is not in the dictionary"
+                .into();
+    }
+}
+
+/// What an adaptive run on the unit called `serial` decides by.
+///
+/// # Errors
+/// There is no dictionary, or one of another bench or other scripts only.
+pub fn adaptive(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    serial: &str,
+    bench: &Bench<'_>,
+) -> Result<Adaptive, Failure> {
+    let chosen = choose(Some(store), directory)?;
+    if !chosen.current {
+        // A step that does something else now would mislead it at every turn.
+        return Err(Failure::usage(chosen.warnings.join("; ")));
+    }
+    let basis = &chosen.dictionary.basis;
+    let made_on = Bench {
+        unit_config_sha256: &basis.unit_config_sha256,
+        line: &basis.line,
+        train: &basis.train,
+    };
+    if *bench != made_on {
+        return Err(Failure::usage(format!(
+            "the fault dictionary was made with unit configuration {UNIT_CONFIG}, {} and train {}; an \
+             adaptive run needs the same",
+            basis.line, basis.train
+        )));
+    }
+    for warning in &chosen.warnings {
+        tell::note(warning);
+    }
+    let settings = settings(directory)?;
+    let history = OwnHistory::up_to_now(serial, store, &settings)?;
+    Ok(Adaptive {
+        dictionary: chosen.dictionary,
+        settings,
+        lru_factors: history.factors,
+    })
+}
+
+/// Leaves out what cannot be held against this dictionary, and says so: steps of scripts that were
+/// others then, steps it does not know.
+fn comparable(
+    run: &RunDetail,
+    mut seen: Observation,
+    dictionary: &Dictionary,
+    warnings: &mut Vec<String>,
+) -> Observation {
+    let basis = &dictionary.basis;
+    if run.run.unit_config_sha256 != basis.unit_config_sha256 {
+        warnings.push(format!(
+            "the run's unit configuration, {}, is not the one the dictionary was made with",
+            run.run.unit_config_name
+        ));
+    }
+    if !run.steps.is_empty() && run.run.line != basis.line {
+        warnings.push(format!(
+            "the run is on {}, the dictionary was made on {}",
+            run.run.line, basis.line
+        ));
+    }
+    let others = run.scripts.iter().filter(|script| {
+        let name = script.path.trim_end_matches(".star");
+        let sum = basis.procedures.get(name);
+        sum.is_some_and(|sum| *sum != script.sha256)
+    });
+    let others: Vec<_> = others
+        .map(|script| script.path.trim_end_matches(".star").to_owned())
+        .collect();
+    if !others.is_empty() {
+        warnings.push(format!(
+            "scripts of the run differ from those the dictionary was made with; their steps are left out: {}",
+            others.join(", ")
+        ));
+        seen.steps
+            .retain(|step| !others.contains(&step.check.procedure));
+    }
+    let before = seen.steps.len();
+    seen.steps
+        .retain(|step| dictionary.place(&step.check).is_some());
+    let unknown = before - seen.steps.len();
+    if unknown > 0 {
+        warnings.push(format!(
+            "{unknown} steps are not in the dictionary and say nothing"
+        ));
+    }
+    seen
+}

@@ -1,0 +1,67 @@
+//! The files and settings a fault dictionary was made from, so that an outdated dictionary is recognised.
+
+use std::collections::BTreeMap;
+
+use diagnosis::{Basis, Settings};
+
+use crate::data::{BENCH_SCATTER, ScriptsDirectory, read, sha256};
+use crate::failure::Failure;
+
+/// The bench that dictionaries are made on.
+pub const UNIT_CONFIG: &str = "sg100";
+/// Its line.
+pub const LINE: &str = "line8";
+/// Its train.
+pub const TRAIN: &str = "line6";
+
+/// Files besides procedures that decide what a fault does, under the scripts directory.
+const FILES: [&str; 5] = [
+    "units/sg100.toml",
+    "units/faults.toml",
+    "lines/line8.toml",
+    "trains/line6.toml",
+    BENCH_SCATTER,
+];
+
+/// What a dictionary made now would be made of.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn basis(directory: &ScriptsDirectory) -> Result<Basis, Failure> {
+    let mut all = format!("version {}\n", env!("CARGO_PKG_VERSION"));
+    let mut procedures = BTreeMap::new();
+    for (path, text) in directory.procedures()? {
+        let sum = sha256(&text);
+        all += &format!("{path} {sum}\n");
+        procedures.insert(path.trim_end_matches(".star").to_owned(), sum);
+    }
+    let mut unit_config_sha256 = String::new();
+    for name in FILES {
+        let sum = sha256(&read(&directory.path().join(name))?);
+        all += &format!("{name} {sum}\n");
+        if name.contains(UNIT_CONFIG) {
+            unit_config_sha256 = sum;
+        }
+    }
+    Ok(Basis {
+        sha256: sha256(&all),
+        unit_config_sha256,
+        procedures,
+        line: LINE.into(),
+        train: TRAIN.into(),
+        app_version: env!("CARGO_PKG_VERSION").into(),
+    })
+}
+
+/// Priors and thresholds, `diagnosis.toml` in the scripts directory.
+///
+/// # Errors
+/// It cannot be read, or is wrong.
+pub fn settings(directory: &ScriptsDirectory) -> Result<Settings, Failure> {
+    let file = directory.path().join("diagnosis.toml");
+    let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
+    let settings: Settings =
+        toml::from_str(&read(&file)?).map_err(|error| wrong(error.to_string()))?;
+    settings.check().map_err(wrong)?;
+    Ok(settings)
+}

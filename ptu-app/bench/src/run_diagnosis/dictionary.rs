@@ -1,0 +1,159 @@
+//! Which dictionary a run is held against: one made by a campaign on this machine, or the one that
+//! comes with the scripts.
+
+use diagnosis::{Basis, Dictionary};
+use fault_db::{Store, read_regular_file};
+
+use super::basis;
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+
+/// The dictionary that comes with the scripts, in their directory.
+const SHIPPED: &str = "dictionary.zst";
+/// Longest dictionary, packed, bytes.
+const LONGEST_PACKED: u64 = 64 << 20;
+
+/// Where a dictionary is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// It came with the scripts.
+    Scripts,
+    /// A campaign on this machine.
+    Campaign,
+}
+
+/// A dictionary, and what is to be said of it.
+pub struct Chosen {
+    /// The dictionary.
+    pub dictionary: Dictionary,
+    /// Where it is from.
+    pub from: Origin,
+    /// It was made of what the scripts directory holds now.
+    pub current: bool,
+    /// What it was made of is not what there is now, or it does not know all.
+    pub warnings: Vec<String>,
+}
+
+/// The best dictionary there is: made of what the scripts directory holds now, on this machine or
+/// shipped with it; else a stale one. Of several the one that knows the most, and was made of the most runs.
+///
+/// # Errors
+/// There is none, or a file cannot be read.
+pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Chosen, Failure> {
+    let now = basis(directory)?;
+    let own = match store {
+        Some(store) => store
+            .dictionary(&now.sha256)?
+            .map(|data| Dictionary::from_bytes(&data))
+            .transpose()
+            .map_err(|what| {
+                let file = store.path().display();
+                Failure::bench(format!("{file}: a fault dictionary is damaged: {what}"))
+            })?,
+        None => None,
+    };
+    let modes = |dictionary: &Dictionary| {
+        let current = dictionary.basis.sha256 == now.sha256;
+        (current, dictionary.modes.len(), dictionary.healthy.runs)
+    };
+    let of_file = shipped(directory)?;
+    let candidates = [
+        of_file.map(|dictionary| (dictionary, Origin::Scripts)),
+        own.map(|dictionary| (dictionary, Origin::Campaign)),
+    ];
+    let best = candidates
+        .into_iter()
+        .flatten()
+        .max_by_key(|(dictionary, _)| modes(dictionary));
+    let Some((dictionary, from)) = best else {
+        return Err(Failure::usage(
+            "there is no fault dictionary; `ptu campaign` makes one in a few minutes",
+        ));
+    };
+    let mut warnings = Vec::new();
+    let current = dictionary.basis.sha256 == now.sha256;
+    if !current {
+        warnings.push(format!(
+            "the fault dictionary is stale, {}: make a new one with `ptu campaign`",
+            differences(&dictionary.basis, &now)
+        ));
+    }
+    let known = directory.faults()?.faults.len();
+    if dictionary.modes.len() < known {
+        warnings.push(format!(
+            "the fault dictionary knows {} of {known} fault modes only",
+            dictionary.modes.len()
+        ));
+    }
+    Ok(Chosen {
+        dictionary,
+        from,
+        current,
+        warnings,
+    })
+}
+
+fn shipped(directory: &ScriptsDirectory) -> Result<Option<Dictionary>, Failure> {
+    let file = directory.path().join(SHIPPED);
+    if !file.exists() {
+        return Ok(None);
+    }
+    let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
+    let packed =
+        read_regular_file(&file, LONGEST_PACKED).map_err(|error| wrong(error.to_string()))?;
+    Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
+}
+
+/// What differs, in a few words.
+fn differences(made_of: &Basis, now: &Basis) -> String {
+    let changed = now
+        .procedures
+        .iter()
+        .filter(|(name, sum)| made_of.procedures.get(*name) != Some(sum));
+    let changed: Vec<_> = changed.map(|(name, _)| name.as_str()).collect();
+    let gone = made_of
+        .procedures
+        .keys()
+        .filter(|name| !now.procedures.contains_key(*name))
+        .count();
+    if changed.is_empty() && gone == 0 {
+        return "made of another unit configuration, line, train, scatter or fault catalogue"
+            .into();
+    }
+    let shown = changed
+        .iter()
+        .take(3)
+        .copied()
+        .collect::<Vec<_>>()
+        .join(", ");
+    match changed.len() {
+        0 => format!("made with {gone} scripts that are gone"),
+        n if n > 3 => format!("made before {shown} and {} more scripts changed", n - 3),
+        _ => format!("made before {shown} changed"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use diagnosis::{ModeName, Observation};
+
+    use super::*;
+
+    /// Goal: a dictionary that was kept can be read here, where another crate makes JSON's numbers texts
+    /// of any length, which not every way of reading them survives.
+    #[test]
+    fn a_saved_dictionary_is_read_back() {
+        let mode = ModeName {
+            id: "eb_relay.slow".into(),
+            lru: "eb_relay".into(),
+            text: "drops late".into(),
+            kind: "degraded".into(),
+            unsafe_: true,
+            weight: 0.75,
+        };
+        let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], Vec::new());
+        dictionary.add(&mode, "0.4".into(), &[Observation::default()]);
+        let kept = dictionary.to_bytes().expect("packed");
+        assert_eq!(Dictionary::from_bytes(&kept), Ok(dictionary));
+    }
+}

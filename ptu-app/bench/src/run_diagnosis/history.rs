@@ -1,0 +1,233 @@
+//! Prior probabilities of parts from the history of a unit, with the reasons as text.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use diagnosis::{Diagnosis, Settings};
+use fault_db::{PartHistory, PartRepair, RunDetail, RunOccurrence, Store};
+
+use crate::clock::{local_day, now_us};
+use crate::failure::Failure;
+
+/// More earlier runs than these say no more: a unit may lie on the bench for days with one fault.
+const MOST_RUNS: u32 = 4;
+const DAY_US: i64 = 86_400_000_000;
+
+/// What a unit's history says of its parts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OwnHistory {
+    /// Factor on the prior of a part.
+    pub factors: BTreeMap<String, f64>,
+    for_it: BTreeMap<String, String>,
+    against: BTreeMap<String, String>,
+}
+
+impl OwnHistory {
+    /// The history of the run's unit before the run.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn before(
+        run: &RunDetail,
+        occurrences: &[RunOccurrence],
+        store: &Store,
+        settings: &Settings,
+    ) -> Result<Self, Failure> {
+        let span = span(run.run.started_at_us, settings);
+        let parts = store.part_history(&run.run.unit_serial, span, Some(run.run.id))?;
+        let seen = occurrences.iter().map(|seen| (seen.code, seen.lru.clone()));
+        Ok(Self::of(&parts, &seen.collect(), settings))
+    }
+
+    /// The history of a unit up to now, for a run that is about to begin.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn up_to_now(serial: &str, store: &Store, settings: &Settings) -> Result<Self, Failure> {
+        let parts = store.part_history(serial, span(now_us(), settings), None)?;
+        Ok(Self::of(&parts, &BTreeSet::new(), settings))
+    }
+
+    /// Of the parts' histories and the faults `seen` now, by number and the part they name.
+    fn of(
+        parts: &BTreeMap<String, PartHistory>,
+        seen: &BTreeSet<(i64, String)>,
+        settings: &Settings,
+    ) -> Self {
+        let mut history = Self::default();
+        for (part, known) in parts {
+            let in_vain = known.repair.as_ref().filter(|repair| {
+                repair.came_back || repair.faults.intersection(seen).next().is_some()
+            });
+            let factor = if let Some(repair) = in_vain {
+                // Faults that name a part in vain do not speak for it, however often.
+                let words = format!("{}, and the fault came back", repaired(repair));
+                history.against.insert(part.clone(), words);
+                settings.replaced_in_vain_factor
+            } else if known.runs > 0 {
+                history.for_it.insert(part.clone(), recurred(known));
+                let runs = known.runs.min(MOST_RUNS);
+                settings.recurrence_factor.powi(runs as i32)
+            } else {
+                continue;
+            };
+            history.factors.insert(part.clone(), factor);
+        }
+        history
+    }
+
+    /// Adds the words to the reasons of a diagnosis.
+    pub fn explain(&self, diagnosis: &mut Diagnosis) {
+        for candidate in &mut diagnosis.candidates {
+            candidate
+                .for_it
+                .extend(self.for_it.get(&candidate.lru).cloned());
+            candidate
+                .against
+                .extend(self.against.get(&candidate.lru).cloned());
+        }
+    }
+}
+
+/// How far a history goes back from a time, µs UTC.
+fn span(until_us: i64, settings: &Settings) -> (i64, i64) {
+    (
+        until_us - i64::from(settings.history_days) * DAY_US,
+        until_us,
+    )
+}
+
+fn recurred(known: &PartHistory) -> String {
+    let runs = match known.runs {
+        1 => "1 earlier run".to_owned(),
+        runs => format!("{runs} earlier runs"),
+    };
+    let since = known
+        .repair
+        .as_ref()
+        .map(|repair| format!(" since it was {}", repaired(repair)));
+    format!("named by faults in {runs}{}", since.unwrap_or_default())
+}
+
+fn repaired(repair: &PartRepair) -> String {
+    let what = if repair.replaced {
+        "replaced"
+    } else {
+        "worked on"
+    };
+    format!("{what} on {}", local_day(repair.at_us))
+}
+
+#[cfg(test)]
+mod tests {
+    use diagnosis::{
+        Basis, CheckName, CheckResult, Dictionary, ModeName, Model, Observation, StepSeen,
+    };
+
+    use super::*;
+
+    /// 2026-11-02 12:00:00 UTC.
+    const REPAIRED_US: i64 = 1_793_620_800_000_000;
+
+    fn known(runs: u32, came_back: Option<bool>) -> PartHistory {
+        let repair = came_back.map(|came_back| PartRepair {
+            at_us: REPAIRED_US,
+            replaced: true,
+            faults: BTreeSet::from([(230, "eb_relay".to_owned())]),
+            came_back,
+        });
+        PartHistory { runs, repair }
+    }
+
+    /// Diagnosis of a check that fails alike with either of two parts, the relay's history known.
+    fn diagnosed(relay: PartHistory, seen: &[(i64, &str)]) -> (OwnHistory, Diagnosis, f64) {
+        let settings = Settings::default();
+        let parts = BTreeMap::from([("eb_relay".to_owned(), relay)]);
+        let seen = seen.iter().map(|(code, lru)| (*code, (*lru).to_owned()));
+        let history = OwnHistory::of(&parts, &seen.collect(), &settings);
+        let check = CheckName {
+            procedure: "atp/brake".into(),
+            step: "applied in time".into(),
+        };
+        let came = |result| Observation {
+            steps: vec![StepSeen {
+                check: check.clone(),
+                result,
+                time_s: 1.0,
+                values: Vec::new(),
+                signs: BTreeSet::new(),
+            }],
+            signs: BTreeSet::new(),
+        };
+        let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], vec![check.clone()]);
+        dictionary.set_healthy(&[came(CheckResult::Passed), came(CheckResult::Passed)]);
+        for part in ["eb_relay", "io_board"] {
+            let mode = ModeName {
+                id: format!("{part}.slow"),
+                lru: part.into(),
+                text: String::new(),
+                kind: "permanent".into(),
+                unsafe_: false,
+                weight: 1.0,
+            };
+            dictionary.add(
+                &mode,
+                String::new(),
+                &[came(CheckResult::Failed), came(CheckResult::Failed)],
+            );
+        }
+        let model = Model::new(&dictionary, &settings, &history.factors);
+        let mut diagnosis = Diagnosis::of(&model, &came(CheckResult::Failed));
+        history.explain(&mut diagnosis);
+        let relay = diagnosis.lrus.iter().find(|part| part.lru == "eb_relay");
+        let probability = relay.expect("the relay").probability;
+        (history, diagnosis, probability)
+    }
+
+    fn reasons<'a>(diagnosis: &'a Diagnosis, lru: &str) -> (&'a [String], &'a [String]) {
+        let candidate = diagnosis.candidates.iter().find(|c| c.lru == lru);
+        let candidate = candidate.expect("a candidate");
+        (&candidate.for_it, &candidate.against)
+    }
+
+    #[test]
+    fn a_recurrence_raises_a_part_and_says_so() {
+        let (_, none, without) = diagnosed(known(0, None), &[]);
+        assert!(reasons(&none, "eb_relay").1.is_empty());
+        let (_, diagnosis, with) = diagnosed(known(3, None), &[]);
+        assert!(with > 1.4 * without, "{with} against {without}");
+        let (for_it, _) = reasons(&diagnosis, "eb_relay");
+        assert!(for_it.contains(&"named by faults in 3 earlier runs".to_owned()));
+        let (other, _) = reasons(&diagnosis, "io_board");
+        assert!(other.iter().all(|reason| !reason.contains("earlier")));
+        assert_eq!(
+            diagnosed(known(40, None), &[]).2,
+            diagnosed(known(4, None), &[]).2
+        );
+    }
+
+    #[test]
+    fn a_part_replaced_without_effect_is_less_likely_however_often_it_is_named() {
+        let (_, _, without) = diagnosed(known(0, None), &[]);
+        let (_, diagnosis, with) = diagnosed(known(4, Some(true)), &[]);
+        assert!(with < 0.8 * without, "{with} against {without}");
+        let (_, against) = reasons(&diagnosis, "eb_relay");
+        let words = "replaced on 2026-11-02, and the fault came back";
+        assert!(against.contains(&words.to_owned()), "{against:?}");
+    }
+
+    #[test]
+    fn the_first_run_after_a_repair_shows_that_it_had_no_effect() {
+        let (same, _, _) = diagnosed(known(0, Some(false)), &[(230, "eb_relay")]);
+        assert_eq!(same.factors["eb_relay"], 0.5);
+        let (other, _, _) = diagnosed(known(0, Some(false)), &[(221, "speed_sensor_1")]);
+        assert!(other.factors.is_empty(), "{other:?}");
+        let (since, diagnosis, _) = diagnosed(known(2, Some(false)), &[]);
+        assert_eq!(since.factors["eb_relay"], 1.5 * 1.5);
+        let words = "named by faults in 2 earlier runs since it was replaced on 2026-11-02";
+        assert!(
+            reasons(&diagnosis, "eb_relay")
+                .0
+                .contains(&words.to_owned())
+        );
+    }
+}

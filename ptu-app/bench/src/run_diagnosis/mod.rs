@@ -1,0 +1,11 @@
+//! From a run to the part to replace: what was seen, the dictionary it is held against, the answer.
+
+mod answer;
+mod basis;
+mod dictionary;
+mod history;
+
+pub use answer::{Answer, Bench, adaptive, diagnose_run};
+pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
+pub use dictionary::{Chosen, Origin, choose};
+pub use history::OwnHistory;

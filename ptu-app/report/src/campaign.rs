@@ -1,0 +1,158 @@
+//! The result of a campaign as text and as JSON.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use ptu_bench::campaign::{Figures, Outcome, Redundancy, Share, Shortfall};
+
+/// The contract's keys first; shares and names beside them.
+pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -> Value {
+    let names = |shortfalls: &[Shortfall]| -> Vec<_> {
+        shortfalls.iter().map(|s| s.fault.clone()).collect()
+    };
+    let [one, two, three] = figures.isolated_modes;
+    json!({
+        "modes": figures.modes,
+        "detected": figures.detected_modes,
+        "isolated_1": one,
+        "isolated_2": two,
+        "isolated_3": three,
+        "false_alarms": figures.false_alarms,
+        "good_runs": figures.good_runs,
+        "undetected": names(&figures.undetected),
+        "ambiguous": figures.ambiguous,
+        "runs": outcome.runs,
+        "shares": {
+            "detected": figures.detected.iter().map(|(kind, s)| ((*kind).to_owned(), share(*s))).collect::<serde_json::Map<_, _>>(),
+            "unsafe_detected": share(figures.unsafe_detected),
+            "isolated_1": share(figures.isolated[0]),
+            "isolated_2": share(figures.isolated[1]),
+            "isolated_3": share(figures.isolated[2]),
+            "wrong": share(figures.wrong),
+            "adaptive_right": share(figures.adaptive_right),
+        },
+        "not_isolated": figures.not_isolated.iter().map(shortfall).collect::<Vec<_>>(),
+        "missed": figures.undetected.iter().map(shortfall).collect::<Vec<_>>(),
+        "fixed_order": { "median_steps": figures.fixed.0, "median_time_s": figures.fixed.1 },
+        "adaptive": { "median_steps": figures.adaptive.0, "median_time_s": figures.adaptive.1 },
+        "steps": {
+            "needed": texts(&steps.needed),
+            "redundant": texts(&steps.redundant),
+            "never_failed": texts(&steps.never_failed),
+        },
+        "basis_sha256": outcome.dictionary.basis.sha256,
+    })
+}
+
+fn texts(checks: &[diagnosis::CheckName]) -> Vec<String> {
+    checks.iter().map(ToString::to_string).collect()
+}
+
+fn share(share: Share) -> Value {
+    json!({ "of": share.of, "all": share.all, "share": share.value() })
+}
+
+fn shortfall(short: &Shortfall) -> Value {
+    json!({
+        "fault": short.fault, "of": short.share.of, "all": short.share.all,
+        "taken_for": short.taken_for,
+    })
+}
+
+/// For people.
+pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -> String {
+    let mut text = String::new();
+    let dictionary = &outcome.dictionary;
+    let _ = writeln!(
+        text,
+        "{} suite runs; dictionary of {} fault modes of {} parts over {} checks kept\n",
+        outcome.runs,
+        dictionary.modes.len(),
+        dictionary.lrus().len(),
+        dictionary.checks.len()
+    );
+    let mut line = |what: &str, s: Share| {
+        let _ = writeln!(
+            text,
+            "{what:34} {:>8}  ({} of {} runs)",
+            s.value()
+                .map_or_else(|| "-".into(), |value| format!("{:.2} %", 100.0 * value)),
+            s.of,
+            s.all
+        );
+    };
+    for (kind, s) in &figures.detected {
+        line(&format!("detected, {kind}"), *s);
+    }
+    line("detected, unsafe", figures.unsafe_detected);
+    for (parts, s) in (1..).zip(figures.isolated) {
+        line(
+            &format!(
+                "isolated to at most {parts} part{}",
+                if parts == 1 { "" } else { "s" }
+            ),
+            s,
+        );
+    }
+    line("one part named, the wrong one", figures.wrong);
+    line("found by the adaptive order", figures.adaptive_right);
+    let _ = writeln!(
+        text,
+        "{:34} {} of {} good runs",
+        "false alarms", figures.false_alarms, figures.good_runs
+    );
+    let _ = writeln!(
+        text,
+        "{:34} {:.0} steps, {:.0} s; adaptive {:.0} steps, {:.0} s ({:.0} %, {:.0} %)\n",
+        "median effort, fixed order",
+        figures.fixed.0,
+        figures.fixed.1,
+        figures.adaptive.0,
+        figures.adaptive.1,
+        percent(figures.adaptive.0, figures.fixed.0),
+        percent(figures.adaptive.1, figures.fixed.1),
+    );
+    list(&mut text, "not detected in some run", &figures.undetected);
+    list(
+        &mut text,
+        "not isolated to one part in some run",
+        &figures.not_isolated,
+    );
+    for group in &figures.ambiguous {
+        let _ = writeln!(text, "not told apart in some run: {}", group.join(", "));
+    }
+    for said in outcome.good.iter().filter(|said| !said.is_empty()) {
+        let _ = writeln!(text, "false alarm: {}", said.join("; "));
+    }
+    let _ = writeln!(
+        text,
+        "\nsteps: {} of {} tell apart, by passing or failing alone, all that the suite does; {} more fail under \
+         some fault; {} fail under none",
+        steps.needed.len(),
+        dictionary.checks.len(),
+        steps.redundant.len(),
+        steps.never_failed.len()
+    );
+    text.trim_end().to_owned()
+}
+
+fn percent(part: f64, of: f64) -> f64 {
+    if of > 0.0 { 100.0 * part / of } else { 0.0 }
+}
+
+fn list(text: &mut String, what: &str, shortfalls: &[Shortfall]) {
+    if shortfalls.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "{what}:");
+    for short in shortfalls {
+        let Share { of, all } = short.share;
+        let _ = writeln!(
+            text,
+            "  {:34} {of} of {all}; else {}",
+            short.fault,
+            short.taken_for.join(", ")
+        );
+    }
+}

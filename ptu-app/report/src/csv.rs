@@ -1,0 +1,142 @@
+//! A run as CSV (RFC 4180): a line each measurement, and one for a step that measured nothing.
+
+use std::borrow::Cow;
+use std::fmt::Write;
+
+use fault_db::{MeasurementRecord, RunDetail, StepDetail};
+use protocol::shown;
+
+use ptu_bench::clock::rfc3339;
+
+/// Names of the columns.
+const COLUMNS: [&str; 15] = [
+    "run",
+    "unit_serial",
+    "started_at",
+    "procedure",
+    "step_index",
+    "step",
+    "step_verdict",
+    "bench_time_s",
+    "message",
+    "measurement",
+    "value",
+    "unit",
+    "low",
+    "high",
+    "measurement_verdict",
+];
+
+/// A cell of a table: text must not act, a number must stay one.
+pub enum Cell {
+    /// What people and scripts wrote.
+    Text(String),
+    /// What we counted.
+    Number(String),
+}
+
+/// The table.
+pub fn csv(run: &RunDetail) -> String {
+    let mut text = COLUMNS.join(",") + "\n";
+    for step in &run.steps {
+        let none = step.measurements.is_empty().then_some(None);
+        for measured in step.measurements.iter().map(Some).chain(none) {
+            let cells = cells(run, step, measured);
+            // Writing to a text cannot fail.
+            let _ = writeln!(text, "{}", cells.map(Cell::written).join(","));
+        }
+    }
+    text
+}
+
+fn cells(run: &RunDetail, step: &StepDetail, measured: Option<&MeasurementRecord>) -> [Cell; 15] {
+    let text = |text: &str| Cell::Text(text.to_owned());
+    let number = |value: Option<f64>| {
+        Cell::Number(value.map_or_else(String::new, |value| value.to_string()))
+    };
+    let word = |word: fn(&MeasurementRecord) -> &str| text(measured.map(word).unwrap_or_default());
+    [
+        Cell::Text(run.run.id.to_string()),
+        text(&run.run.unit_serial),
+        Cell::Text(rfc3339(run.run.started_at_us)),
+        text(&step.procedure),
+        Cell::Number(step.index.to_string()),
+        text(&step.name),
+        text(step.verdict.as_str()),
+        number(Some(step.bench_time_us as f64 / 1e6)),
+        text(&step.message),
+        word(|m| &m.name),
+        number(measured.and_then(|m| m.value)),
+        word(|m| &m.unit),
+        number(measured.and_then(|m| m.low)),
+        number(measured.and_then(|m| m.high)),
+        word(|m| m.verdict.as_str()),
+    ]
+}
+
+impl Cell {
+    /// As it stands in the file, where a text acts on nothing: no formula, no control characters but line
+    /// feeds and tabs.
+    pub fn written(self) -> String {
+        match self {
+            Self::Number(number) => number,
+            Self::Text(text) => quoted(&shown::lines(&no_formula(&text))),
+        }
+    }
+}
+
+/// A spreadsheet takes a text that begins like a formula for one; an apostrophe before it says that it is
+/// none.
+pub fn no_formula(text: &str) -> Cow<'_, str> {
+    // Some pass over what has no width.
+    let begins = text.trim_start_matches(|letter| letter == ' ' || shown::is_unseen(letter));
+    match text.starts_with(['\t', '\r', '\n'])
+        || begins.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠'])
+    {
+        true => Cow::Owned(format!("'{text}")),
+        false => Cow::Borrowed(text),
+    }
+}
+
+/// A cell in quotes where its content asks for them.
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_with_separators_or_line_breaks_is_quoted() {
+        assert_eq!(quoted("plain"), "plain");
+        assert_eq!(quoted("a, \"b\"\nc"), "\"a, \"\"b\"\"\nc\"");
+    }
+
+    #[test]
+    fn text_in_a_csv_file_has_no_control_characters() {
+        let written = Cell::Text("\x1b[2J\u{9b}31m\u{202e}\tone\ntwo".into()).written();
+        assert_eq!(written, "\"\\x1b[2J\\x9b31m\\u{202e}\tone\ntwo\"");
+    }
+
+    #[test]
+    fn text_that_begins_like_a_formula_is_escaped_and_numbers_are_not() {
+        let text = |text: &str| Cell::Text(text.into()).written();
+        assert_eq!(text("=1+1"), "'=1+1");
+        assert_eq!(text("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");
+        assert_eq!(text("-"), "'-");
+        assert_eq!(text("eb=1"), "eb=1");
+        assert_eq!(text(" =1+1"), "' =1+1");
+        assert_eq!(
+            text("\u{feff}=cmd|'/C calc'!A0"),
+            "'\\u{feff}=cmd|'/C calc'!A0"
+        );
+        assert_eq!(text("＝1+1"), "'＝1+1");
+        assert_eq!(text("\r=1"), "'\\r=1");
+        assert_eq!(Cell::Number("-0.5".into()).written(), "-0.5");
+    }
+}

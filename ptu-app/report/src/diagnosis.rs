@@ -1,0 +1,94 @@
+//! A diagnosis, as text and as JSON.
+
+use std::fmt::Write as _;
+
+use fault_db::Id;
+use protocol::shown;
+use serde_json::{Value, json};
+
+use crate::words::Language;
+use ptu_bench::run_diagnosis::Answer;
+
+/// The contract's keys first.
+pub fn diagnosis_json(answer: &Answer) -> Value {
+    let d = &answer.diagnosis;
+    let traces = |lru: &str| -> Vec<String> {
+        let of_part = answer.traces.get(lru).into_iter().flatten();
+        of_part.map(Id::to_string).collect()
+    };
+    let candidates: Vec<_> = d
+        .candidates
+        .iter()
+        .map(|c| {
+            json!({
+                "lru": c.lru, "fault": c.fault, "probability": c.probability,
+                "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(&c.lru),
+            })
+        })
+        .collect();
+    json!({
+        "candidates": candidates,
+        "next_check": d.next_check,
+        "conclusion": d.conclusion,
+        "finding": d.finding,
+        "lrus": d.lrus.iter().filter(|part| part.probability >= 0.001).collect::<Vec<_>>(),
+        "two_faults": d.two_faults,
+        "no_fault": d.no_fault,
+        "unknown_fault": d.unknown_fault,
+        "warnings": answer.warnings,
+        "dictionary": Language::English.words().report.origin(answer.dictionary_from),
+        "run": answer.run.run.id.to_string(),
+    })
+}
+
+/// For people.
+pub fn diagnosis_text(answer: &Answer) -> String {
+    let d = &answer.diagnosis;
+    let run = &answer.run.run;
+    let mut text = format!(
+        "run {}  unit {}  {} steps, {} not passed, {} faults\n\n{}\n",
+        run.id.short(),
+        shown::line(&run.unit_serial),
+        run.steps,
+        run.steps_not_passed,
+        run.faults,
+        d.conclusion
+    );
+    for c in &d.candidates {
+        let _ = writeln!(
+            text,
+            "\n{:5.1} %  {}  ({}: {})",
+            100.0 * c.probability,
+            c.lru,
+            c.fault,
+            c.text
+        );
+        for reason in &c.for_it {
+            let _ = writeln!(text, "         + {reason}");
+        }
+        for reason in &c.against {
+            let _ = writeln!(text, "         - {reason}");
+        }
+    }
+    for two in &d.two_faults {
+        let _ = writeln!(
+            text,
+            "\n{:5.1} %  both {}",
+            100.0 * two.probability,
+            two.faults.join(" and ")
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n{:5.1} %  no fault\n{:5.1} %  a fault that is not in the dictionary",
+        100.0 * d.no_fault,
+        100.0 * d.unknown_fault
+    );
+    for (lru, ids) in &answer.traces {
+        let ids: Vec<_> = ids.iter().map(Id::short).collect();
+        if !ids.is_empty() {
+            let _ = writeln!(text, "traces of faults that name {lru}: {}", ids.join(", "));
+        }
+    }
+    text.trim_end().to_owned()
+}

@@ -1,0 +1,177 @@
+//! The JSON shapes of runs and faults.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+
+use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepDetail};
+use protocol::shown;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use ptu_bench::clock::rfc3339;
+use ptu_bench::failure::Failure;
+
+/// A run with its steps, faults, notes and seal.
+pub fn run_json(run: &RunDetail) -> Value {
+    json!({
+        "run": run_summary_json(&run.run),
+        "scripts": run.scripts.iter().map(|script| json!({
+            "path": script.path, "sha256": script.sha256,
+        })).collect::<Vec<_>>(),
+        "steps": run.steps.iter().map(step_json).collect::<Vec<_>>(),
+        "faults": run.faults.iter().map(run_fault_json).collect::<Vec<_>>(),
+        "notes": run.notes.iter().map(|note| json!({
+            "at": rfc3339(note.at_us), "who": note.who, "text": note.text,
+        })).collect::<Vec<_>>(),
+        "seal": run.seal,
+    })
+}
+
+/// A run in a list.
+pub fn run_summary_json(run: &RunSummary) -> Value {
+    json!({
+        "id": run.id.to_string(),
+        "verdict": run.verdict.map(|verdict| verdict.as_str()),
+        "state": run.state.as_str(),
+        "unit_serial": run.unit_serial,
+        "unit_config": run.unit_config_name,
+        "line": run.line,
+        "train": run.train,
+        "seed": run.seed,
+        "source": run.source,
+        "operator": run.operator,
+        "started_at": rfc3339(run.started_at_us),
+        "finished_at": run.finished_at_us.map(rfc3339),
+        "bench_time_s": run.bench_time_us.map(seconds),
+        "wall_time_s": run.wall_time_us.map(seconds),
+        "injected": run.injected,
+        "app_version": run.app_version,
+        "scripts_sha256": run.scripts_sha256,
+        "unit_config_sha256": run.unit_config_sha256,
+        "step_count": run.steps,
+        "steps_not_passed": run.steps_not_passed,
+        "fault_count": run.faults,
+    })
+}
+
+fn step_json(step: &StepDetail) -> Value {
+    json!({
+        "procedure": step.procedure,
+        "name": step.name,
+        "verdict": step.verdict.as_str(),
+        "bench_time_s": seconds(step.bench_time_us),
+        "measurements": step.measurements.iter().map(measurement_json).collect::<Vec<_>>(),
+        "message": step.message,
+        "script_line": step.script_line,
+    })
+}
+
+fn measurement_json(measurement: &MeasurementRecord) -> Value {
+    json!({
+        "name": measurement.name,
+        "value": measurement.value,
+        "unit": measurement.unit,
+        "low": measurement.low,
+        "high": measurement.high,
+        "verdict": measurement.verdict.as_str(),
+    })
+}
+
+fn run_fault_json(fault: &RunFault) -> Value {
+    json!({
+        "id": fault.id.to_string(),
+        "code": fault.code,
+        "name": fault.code_name,
+        "lru": fault.lru,
+        "severity": fault.severity,
+        "first_at": rfc3339(fault.first_at_us),
+        "last_at": rfc3339(fault.last_at_us),
+        "occurrences": fault.occurrences,
+        "state": fault.state.as_str(),
+        "trace_id": fault.trace_id.map(|id| id.to_string()),
+    })
+}
+
+/// Keys of a fault in a list, in their order.
+pub const FAULT_KEYS: [&str; 11] = [
+    "id",
+    "unit_serial",
+    "code",
+    "name",
+    "lru",
+    "severity",
+    "state",
+    "first_at",
+    "last_at",
+    "occurrences",
+    "trace_id",
+];
+
+/// A fault in a list.
+pub fn fault_json(fault: &FaultSummary) -> Value {
+    json!({
+        "id": fault.id.to_string(),
+        "unit_serial": fault.unit_serial,
+        "code": fault.code,
+        "name": fault.code_name,
+        "lru": fault.lru,
+        "severity": fault.severity,
+        "state": fault.state.as_str(),
+        "first_at": rfc3339(fault.first_at_us),
+        "last_at": rfc3339(fault.last_at_us),
+        "occurrences": fault.occurrences,
+        "trace_id": fault.trace_id.map(|id| id.to_string()),
+    })
+}
+
+/// A value as one document, indented.
+///
+/// # Errors
+/// It is none that JSON can say.
+pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+    Ok(json_safe(&text).into_owned())
+}
+
+/// A JSON document in which every letter that acts on a terminal, or hides, is spelled `\u202e`: whoever
+/// reads it has each letter as it was.
+pub fn json_safe(text: &str) -> Cow<'_, str> {
+    // What is below is spelled so already, or stands between values.
+    let is_spelled = |letter: char| letter >= '\u{7f}' && shown::is_unseen(letter);
+    if !text.contains(is_spelled) {
+        return Cow::Borrowed(text);
+    }
+    let mut safe = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        if is_spelled(letter) {
+            for unit in letter.encode_utf16(&mut [0; 2]) {
+                // Writing to a text cannot fail.
+                let _ = write!(safe, "\\u{unit:04x}");
+            }
+        } else {
+            safe.push(letter);
+        }
+    }
+    Cow::Owned(safe)
+}
+
+/// Microseconds as seconds.
+fn seconds(us: i64) -> f64 {
+    us as f64 / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_in_a_document_are_escaped_reversibly() {
+        let text = "\x1b]0;x\x07 \x7f \u{9b}31m \u{202e} \u{e0041} \u{feff} 한 é \"\\ \n";
+        let written = json_text(&json!({ text: [text] })).expect("JSON");
+        let acts = |letter: char| shown::is_unseen(letter) && letter != '\n';
+        assert!(!written.contains(acts), "{written:?}");
+        let read: Value = serde_json::from_str(&written).expect("JSON");
+        assert_eq!(read, json!({ text: [text] }));
+    }
+}

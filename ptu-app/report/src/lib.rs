@@ -1,0 +1,28 @@
+//! Reports and views: what a run, a drive or a trace says, as files and as texts in two languages. Nothing here
+//! moves a bench.
+//!
+//! * [`Target`]: a report of a run as `.html` or `.pdf` (a test sheet), `.csv`, `.json` or `.junit.xml`;
+//!   [`run`]: the test sheet;
+//! * [`drive`], [`campaign`], [`diagnosis`]: reports of those;
+//! * [`trace_view`]: prepares traces for drawing, independent of the window; [`trace_io`]: trace files;
+//! * [`words`]: the texts in two languages; [`fonts`]: the font for them; [`limits`]: values and limits.
+
+pub mod campaign;
+pub mod csv;
+pub mod diagnosis;
+pub mod drive;
+pub mod fonts;
+mod json;
+mod junit;
+pub mod limits;
+pub mod plot;
+pub mod run;
+mod target;
+pub mod ticks;
+pub mod trace_io;
+pub mod trace_view;
+pub mod words;
+
+pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
+use target::page_text;
+pub use target::{Target, write, write_beside};

@@ -1,0 +1,152 @@
+//! The blocks of a test sheet, which page and PDF are made from.
+
+use crate::limits::places;
+use crate::plot::Plot;
+
+/// How good news is. Always beside words: colour alone says nothing on a copy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Neither.
+    Plain,
+    /// Of less weight.
+    Soft,
+    /// Passed.
+    Good,
+    /// Did not pass.
+    Bad,
+}
+
+/// A piece of the sheet.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// Head of the sheet and what stands below it.
+    Title(String, String),
+    /// A section.
+    Heading(String),
+    /// A part of a section, and what stands at its end.
+    Subheading(String, String),
+    /// The verdict, and what stands beside it.
+    Verdict(Tone, String, String),
+    /// Names and values.
+    Facts(Vec<(String, String)>),
+    /// A paragraph.
+    Text(Tone, String),
+    /// A table.
+    Table(Table),
+    /// A drawing.
+    Plot(Box<Plot>),
+    /// Lines to sign on: who, and the word for the date.
+    Signatures(Vec<String>, String),
+}
+
+/// Where cells of a column stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    /// At its left.
+    Left,
+    /// At its right: numbers.
+    Right,
+}
+
+/// A column.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Heading.
+    pub name: String,
+    /// Share of the table's width.
+    pub share: f32,
+    /// Where its cells stand.
+    pub align: Align,
+}
+
+/// A table whose heading is repeated on every page.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    /// Columns.
+    pub columns: Vec<Column>,
+    /// Rows.
+    pub rows: Vec<Row>,
+}
+
+/// What a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowKind {
+    /// Stands for itself or begins a group.
+    Head,
+    /// Belongs to the row above.
+    Detail,
+}
+
+/// A row.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// What it is.
+    pub kind: RowKind,
+    /// Its cells, each with the number of columns it covers.
+    pub cells: Vec<(Cell, usize)>,
+}
+
+/// A cell.
+#[derive(Clone, Debug)]
+pub enum Cell {
+    /// Words or a number.
+    Text(Tone, String),
+    /// A verdict.
+    Verdict(Tone, String),
+    /// A value between its limits.
+    Gauge(Option<Gauge>),
+}
+
+/// A value between its limits, as shares of a bar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gauge {
+    /// What is allowed.
+    pub band: (f64, f64),
+    /// The value.
+    pub value: f64,
+    /// The value is allowed.
+    pub good: bool,
+}
+
+impl Gauge {
+    /// The bar; none without a value or without any limit. Where there is no limit the band has no end.
+    pub fn of(value: Option<f64>, low: Option<f64>, high: Option<f64>, good: bool) -> Option<Self> {
+        let (value, from, to) = places(value, low, high)?;
+        let from = low.map_or(0.0, |_| from);
+        let to = high.map_or(1.0, |_| to);
+        Some(Self {
+            band: (from, to),
+            value,
+            good,
+        })
+    }
+}
+
+impl Column {
+    /// A column.
+    pub fn new(name: &str, share: f32, align: Align) -> Self {
+        Self {
+            name: sentence(name),
+            share,
+            align,
+        }
+    }
+}
+
+/// A wording as it stands by itself: its first letter large.
+pub fn sentence(wording: &str) -> String {
+    let mut letters = wording.chars();
+    let first = letters.next().map(|first| first.to_uppercase());
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+impl Row {
+    /// A row of words, one cell a column.
+    pub fn words(kind: RowKind, cells: impl IntoIterator<Item = String>) -> Self {
+        let cell = |text| (Cell::Text(Tone::Plain, text), 1);
+        Self {
+            kind,
+            cells: cells.into_iter().map(cell).collect(),
+        }
+    }
+}

@@ -1,0 +1,346 @@
+//! What a test sheet says, block after block: verdict, notes and failures first, then all that was run,
+//! with what and by whom.
+
+use fault_db::{FaultState, RunState, RunSummary, StepDetail, Verdict};
+use protocol::event::Event;
+
+use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
+use super::diagnosis::diagnosis;
+use super::plots::plots;
+use super::steps::{self, passed, tone};
+use super::{Sheet, SheetTrace};
+use crate::words::{Language, Words, fill};
+use ptu_bench::clock::{local, local_zoned};
+
+/// The sheet in a language.
+pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let mut blocks = head(sheet, words);
+    blocks.extend(summary(sheet, words));
+    blocks.extend(notes(sheet, words));
+    blocks.extend(failures(sheet, words));
+    blocks.extend(faults(sheet, words));
+    blocks.extend(diagnosis(sheet, words));
+    blocks.extend(the_run(sheet, words));
+    blocks.extend(all_steps(sheet, words));
+    blocks.extend(scripts(sheet, words));
+    let report = &words.report;
+    let signing = [report.tester_signs, report.approver_signs];
+    blocks.push(Block::Heading(report.signatures.into()));
+    blocks.push(Block::Signatures(
+        signing.map(str::to_owned).into(),
+        report.date.into(),
+    ));
+    blocks
+}
+
+/// The verdict in words and how good news it is.
+fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
+    match (run.verdict, run.state) {
+        (Some(verdict), _) => (tone(verdict), words.common.stored_verdict(verdict)),
+        (None, RunState::Running) => (Tone::Soft, words.common.running),
+        (None, _) => (Tone::Bad, words.common.interrupted),
+    }
+}
+
+fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let (run, report) = (&sheet.run.run, &words.report);
+    let steps = &sheet.run.steps;
+    let not_passed = steps.iter().filter(|step| !passed(step.verdict)).count();
+    let of = steps.len();
+    let counted = match (of, not_passed) {
+        (0, _) => report.no_steps.to_owned(),
+        (_, 0) => fill(report.all_passed, &[("of", &of)]),
+        (_, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
+    };
+    let who: [(&str, &dyn std::fmt::Display); 2] =
+        [("serial", &run.unit_serial), ("run", &run.id.short())];
+    let (tone, said) = verdict(run, words);
+    let below = format!(
+        "{}   {}",
+        fill(report.of_unit, &who),
+        local_zoned(run.started_at_us)
+    );
+    let mut blocks = vec![
+        Block::Title(report.sheet.into(), below),
+        Block::Verdict(tone, sentence(said), counted),
+    ];
+    if run.verdict.is_none() {
+        blocks.push(Block::Text(Tone::Bad, report.not_finished.into()));
+    }
+    if let Some(injected) = run.injected.as_ref().filter(|faults| !faults.is_empty()) {
+        blocks.push(Block::Facts(vec![(
+            report.injected.into(),
+            injected.clone(),
+        )]));
+    }
+    blocks
+}
+
+/// Verdicts counted.
+fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let steps = &sheet.run.steps;
+    if steps.is_empty() {
+        return Vec::new();
+    }
+    let all = [
+        Verdict::Passed,
+        Verdict::Failed,
+        Verdict::Error,
+        Verdict::Skipped,
+        Verdict::Aborted,
+    ];
+    let columns = all.map(|verdict| {
+        let name = words.common.stored_verdict(verdict);
+        Column::new(name, 0.2, Align::Left)
+    });
+    let counts = all.map(|verdict| {
+        let count = steps.iter().filter(|step| step.verdict == verdict).count();
+        let tone = if count == 0 {
+            Tone::Soft
+        } else {
+            tone(verdict)
+        };
+        (Cell::Text(tone, count.to_string()), 1)
+    });
+    vec![
+        Block::Heading(words.report.summary.into()),
+        Block::Table(Table {
+            columns: columns.into(),
+            rows: vec![Row {
+                kind: RowKind::Head,
+                cells: counts.into(),
+            }],
+        }),
+    ]
+}
+
+/// Steps that did not pass, each with its trace; a trace of several is drawn with the first.
+fn failures(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    let failed = || sheet.run.steps.iter().filter(|step| !passed(step.verdict));
+    let mut blocks = Vec::new();
+    if failed().next().is_some() {
+        blocks.push(Block::Heading(report.failures.into()));
+    }
+    let mut drawn = Vec::new();
+    for step in failed() {
+        blocks.push(Block::Subheading(step.procedure.clone(), String::new()));
+        let this: &[StepDetail] = std::slice::from_ref(step);
+        blocks.push(Block::Table(steps::table(this, words)));
+        for trace in sheet
+            .traces
+            .iter()
+            .filter(|t| t.steps.contains(&step.index))
+        {
+            if drawn.contains(&trace.id) {
+                let shown = fill(report.trace_shown, &[("id", &trace.id.short())]);
+                blocks.push(Block::Text(Tone::Soft, shown));
+            } else {
+                drawn.push(trace.id);
+                blocks.extend(traced(trace, words));
+            }
+        }
+    }
+    let others: Vec<_> = sheet
+        .traces
+        .iter()
+        .filter(|t| !drawn.contains(&t.id))
+        .collect();
+    if !others.is_empty() {
+        blocks.push(Block::Heading(report.other_traces.into()));
+    }
+    for trace in others {
+        blocks.extend(traced(trace, words));
+    }
+    if sheet.more_traces > 0 {
+        let more = fill(report.more_traces, &[("n", &sheet.more_traces)]);
+        blocks.push(Block::Text(Tone::Soft, more));
+    }
+    blocks
+}
+
+fn traced(trace: &SheetTrace, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    let id = trace.id.short();
+    match &trace.samples {
+        Ok(samples) => {
+            let faults = trace.faults.join(", ");
+            let mut head = fill(report.trace_of, &[("id", &id), ("faults", &faults)]);
+            if samples.partial {
+                head += &format!(" ({})", report.cut_short);
+            }
+            let plots = plots(samples, report).into_iter();
+            std::iter::once(Block::Text(Tone::Soft, head))
+                .chain(plots.map(|plot| Block::Plot(Box::new(plot))))
+                .collect()
+        }
+        Err(why) => {
+            let missing = fill(report.trace_missing, &[("id", &id), ("why", why)]);
+            vec![Block::Text(Tone::Bad, missing)]
+        }
+    }
+}
+
+fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let (common, report) = (&words.common, &words.report);
+    let mut blocks = vec![Block::Heading(report.faults.into())];
+    if sheet.run.faults.is_empty() {
+        blocks.push(Block::Text(Tone::Plain, report.no_faults.into()));
+        return blocks;
+    }
+    let columns = [
+        (common.code, 0.27),
+        (common.part, 0.21),
+        (common.severity, 0.09),
+        (report.seen, 0.06),
+        (report.first_seen, 0.18),
+        (common.state, 0.09),
+        (report.trace, 0.1),
+    ];
+    let rows = sheet.run.faults.iter().map(|fault| {
+        let meaning = u16::try_from(fault.code).ok().and_then(Event::from_code);
+        let text = meaning.map_or("", |event| match words.language {
+            Language::English => event.definition().text,
+            Language::Korean => event.definition().text_ko,
+        });
+        let apart = if text.is_empty() { "" } else { ": " };
+        let state: FaultState = fault.state;
+        let cells = [
+            format!("{} {}{apart}{text}", fault.code, fault.code_name),
+            sheet.part(&fault.lru, words),
+            report.severity(&fault.severity).to_owned(),
+            fault.occurrences.to_string(),
+            local(fault.first_at_us),
+            common.fault_state(state).to_owned(),
+            fault.trace_id.map_or_else(String::new, |id| id.short()),
+        ];
+        Row::words(RowKind::Head, cells)
+    });
+    blocks.push(Block::Table(Table {
+        columns: columns
+            .map(|(name, share)| Column::new(name, share, Align::Left))
+            .into(),
+        rows: rows.collect(),
+    }));
+    blocks
+}
+
+/// What was said about the run.
+fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    if sheet.run.notes.is_empty() {
+        return Vec::new();
+    }
+    let rows = sheet.run.notes.iter().map(|note| {
+        let cells = [local(note.at_us), note.who.clone(), note.text.clone()];
+        Row::words(RowKind::Head, cells)
+    });
+    vec![
+        Block::Heading(report.notes.into()),
+        Block::Table(Table {
+            columns: vec![
+                Column::new(words.common.time, 0.18, Align::Left),
+                Column::new(report.noted_by, 0.16, Align::Left),
+                Column::new(report.noted, 0.66, Align::Left),
+            ],
+            rows: rows.collect(),
+        }),
+    ]
+}
+
+/// Who tested what with what.
+fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let (run, report) = (&sheet.run.run, &words.report);
+    let seconds =
+        |us: Option<i64>| us.map_or("–".into(), |us| format!("{:.1} s", us as f64 / 1e6));
+    let operator = match run.operator.trim() {
+        "" => report.nobody,
+        name => name,
+    };
+    let train = match run.train.trim() {
+        "" => "–",
+        train => train,
+    };
+    let facts = [
+        (report.run_id, run.id.to_string()),
+        (report.unit_serial, run.unit_serial.clone()),
+        (report.unit_kind, run.unit_kind.clone()),
+        (report.unit_config, run.unit_config_name.clone()),
+        ("SHA-256", run.unit_config_sha256.clone()),
+        (words.common.line, run.line.clone()),
+        (words.common.train_no, train.to_owned()),
+        (report.source, run.source.clone()),
+        (report.seed, run.seed.to_string()),
+        (report.tester, operator.to_owned()),
+        (report.started, local_zoned(run.started_at_us)),
+        (
+            report.finished,
+            run.finished_at_us.map_or("–".into(), local_zoned),
+        ),
+        (report.bench_time, seconds(run.bench_time_us)),
+        (report.wall_time, seconds(run.wall_time_us)),
+        (report.program, format!("ptu {}", run.app_version)),
+        (report.scripts_hash, run.scripts_sha256.clone()),
+        (report.seal, seal(sheet, words)),
+    ];
+    vec![
+        Block::Heading(report.the_run.into()),
+        Block::Facts(facts.map(|(name, value)| (sentence(name), value)).into()),
+    ]
+}
+
+/// The seal of the run, by which a printed sheet can be checked against the database.
+fn seal(sheet: &Sheet, words: &Words) -> String {
+    let report = &words.report;
+    let Some(seal) = &sheet.run.seal else {
+        return "–".into();
+    };
+    let (digits, file) = (seal.short(), seal.file.short());
+    let place: [(&str, &dyn std::fmt::Display); 3] =
+        [("digits", &digits), ("n", &seal.entry), ("file", &file)];
+    let said = fill(report.seal_of, &place);
+    match (seal.covers, &seal.found) {
+        (2.., None) => said,
+        (2.., Some(_)) => format!("{said} ({})", report.seal_found),
+        _ => format!("{said} ({})", report.seal_earlier),
+    }
+}
+
+fn all_steps(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    let mut blocks = Vec::new();
+    for mine in sheet.run.steps.chunk_by(|a, b| a.procedure == b.procedure) {
+        let good = mine.iter().filter(|s| s.verdict == Verdict::Passed).count();
+        let counted = fill(
+            report.procedure_passed,
+            &[("passed", &good), ("of", &mine.len())],
+        );
+        blocks.push(Block::Subheading(mine[0].procedure.clone(), counted));
+        blocks.push(Block::Table(steps::table(mine, words)));
+    }
+    if !blocks.is_empty() {
+        blocks.insert(0, Block::Heading(report.procedures.into()));
+    }
+    blocks
+}
+
+fn scripts(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    let scripts = &sheet.run.scripts;
+    if scripts.is_empty() {
+        return Vec::new();
+    }
+    let row = |script: &fault_db::ScriptRecord| {
+        Row::words(RowKind::Head, [script.path.clone(), script.sha256.clone()])
+    };
+    vec![
+        Block::Heading(report.scripts.into()),
+        Block::Table(Table {
+            columns: vec![
+                Column::new(report.script, 0.35, Align::Left),
+                Column::new("SHA-256", 0.65, Align::Left),
+            ],
+            rows: scripts.iter().map(row).collect(),
+        }),
+    ]
+}

@@ -1,0 +1,103 @@
+//! The diagnosis on a test sheet: the conclusion, and the parts and fault modes that are likely.
+
+use super::Sheet;
+use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
+use crate::words::{Language, Words, fill};
+use ptu_bench::run_diagnosis::Answer;
+
+/// Parts and fault modes less likely than this are not named.
+const LEAST_NAMED: f64 = 0.01;
+
+/// The blocks of the diagnosis, or why there is none.
+pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let report = &words.report;
+    let mut blocks = vec![Block::Heading(report.diagnosis.into())];
+    match &sheet.diagnosis {
+        Err(why) => {
+            let none = fill(report.no_diagnosis, &[("why", why)]);
+            blocks.push(Block::Text(Tone::Soft, none));
+        }
+        Ok(answer) => {
+            blocks.push(Block::Facts(concluded(sheet, answer, words)));
+            let table = candidates(sheet, answer, words);
+            if !table.rows.is_empty() {
+                blocks.push(Block::Table(table));
+            }
+        }
+    }
+    blocks
+}
+
+fn concluded(sheet: &Sheet, answer: &Answer, words: &Words) -> Vec<(String, String)> {
+    let (report, diagnosis) = (&words.report, &answer.diagnosis);
+    let likely = diagnosis
+        .lrus
+        .iter()
+        .filter(|p| p.probability >= LEAST_NAMED);
+    let parts: Vec<_> = likely
+        .map(|part| {
+            let percent = 100.0 * part.probability;
+            format!("{} ({percent:.1} %)", sheet.part(&part.lru, words))
+        })
+        .collect();
+    let parts = if parts.is_empty() {
+        report.none_likely.to_owned()
+    } else {
+        parts.join(", ")
+    };
+    let conclusion = fill(report.finding(diagnosis.finding), &[("parts", &parts)]);
+    let age = if answer.dictionary_current {
+        report.current
+    } else {
+        report.stale
+    };
+    let mut facts = vec![(report.conclusion.to_owned(), conclusion)];
+    if let Some(next) = &diagnosis.next_check {
+        let next = format!("{} ({:.0} s)", next.check, next.cost_s);
+        facts.push((report.next_check.to_owned(), next));
+    }
+    let dictionary = format!("{}, {age}", report.origin(answer.dictionary_from));
+    facts.push((report.dictionary.to_owned(), dictionary));
+    let warnings = answer.warnings.iter();
+    facts.extend(warnings.map(|warning| (sentence(words.common.note), warning.clone())));
+    facts
+}
+
+fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
+    let report = &words.report;
+    let all = answer.diagnosis.candidates.iter();
+    let likely = all.filter(|candidate| candidate.probability >= LEAST_NAMED);
+    let rows = likely.map(|candidate| {
+        let cells = [
+            format!("{:.1} %", 100.0 * candidate.probability),
+            sheet.part(&candidate.lru, words),
+            format!("{}: {}", candidate.fault, candidate.text),
+            candidate.for_it.join("\n"),
+        ];
+        Row::words(RowKind::Head, cells)
+    });
+    Table {
+        columns: vec![
+            Column::new(report.probability, 0.1, Align::Right),
+            Column::new(words.common.part, 0.2, Align::Left),
+            Column::new(report.mode, 0.28, Align::Left),
+            Column::new(report.speaks_for, 0.42, Align::Left),
+        ],
+        rows: rows.collect(),
+    }
+}
+
+impl Sheet {
+    /// A part with the name people use for it.
+    pub(super) fn part(&self, lru: &str, words: &Words) -> String {
+        let names = self.parts.get(lru);
+        let name = names.map(|[english, korean]| match words.language {
+            Language::English => english,
+            Language::Korean => korean,
+        });
+        match name {
+            Some(name) if !name.eq_ignore_ascii_case(lru) => format!("{lru} ({name})"),
+            _ => lru.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! The test sheet of a run: one gathering from the store, one sequence of blocks, two ways to
+//! draw them. What a page and a printed sheet say is therefore the same.
+//!
+//! [`Sheet::gather`] → [`blocks`] → `html` or `pdf`
+
+mod block;
+mod content;
+mod diagnosis;
+mod gather;
+mod html;
+mod pdf;
+mod plots;
+mod steps;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+use fault_db::{Id, RunDetail, TraceData};
+
+pub use block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone};
+pub use content::blocks;
+pub use html::html;
+pub use pdf::pdf;
+
+use ptu_bench::run_diagnosis::Answer;
+
+/// All a test sheet says, in no language yet.
+pub struct Sheet {
+    /// The run with its steps and faults.
+    pub run: RunDetail,
+    /// Traces of failures first, then of other faults; at most [`Sheet::MOST_TRACES`].
+    pub traces: Vec<SheetTrace>,
+    /// Traces of the run beyond those.
+    pub more_traces: usize,
+    /// What the run says about the unit's parts, or why nothing.
+    pub diagnosis: Result<Answer, String>,
+    /// Names of parts in English and Korean, by their short name.
+    pub parts: BTreeMap<String, [String; 2]>,
+}
+
+/// A trace on a test sheet.
+pub struct SheetTrace {
+    /// The trace.
+    pub id: Id,
+    /// Steps that were under way, by their place in the run.
+    pub steps: Vec<u32>,
+    /// Names of the faults it shows.
+    pub faults: Vec<String>,
+    /// The samples of what is drawn, or why there are none.
+    pub samples: Result<TraceData, String>,
+}
+
+impl Sheet {
+    /// Traces drawn at most.
+    pub const MOST_TRACES: usize = 12;
+}

@@ -1,0 +1,117 @@
+//! Widths of letters, and line breaking by them.
+
+use krilla::text::{GlyphId, KrillaGlyph};
+use protocol::shown;
+use ttf_parser::Face;
+
+use crate::fonts::PRETENDARD;
+use ptu_bench::failure::Failure;
+
+/// The shipped font, measured.
+pub struct Letters {
+    face: Face<'static>,
+    per_em: f32,
+}
+
+impl Letters {
+    /// Reads the shipped font.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn new() -> Result<Self, Failure> {
+        let face = Face::parse(PRETENDARD, 0)
+            .map_err(|error| Failure::bench(format!("the shipped font cannot be read: {error}")))?;
+        let per_em = f32::from(face.units_per_em());
+        Ok(Self { face, per_em })
+    }
+
+    /// Width of a text, in units of its size.
+    fn em(&self, text: &str) -> f32 {
+        text.chars().map(|letter| self.letter(letter).1).sum()
+    }
+
+    /// Width of a text on one line, pt.
+    pub fn width(&self, text: &str, size: f32) -> f32 {
+        self.em(text) * size
+    }
+
+    /// The text as glyphs side by side; what the font lacks is an empty box, what cannot be seen a space.
+    pub fn glyphs(&self, text: &str) -> Vec<KrillaGlyph> {
+        let glyph = |(at, letter): (usize, char)| {
+            let (id, advance) = self.letter(letter);
+            let range = at..at + letter.len_utf8();
+            KrillaGlyph::new(GlyphId::new(id), advance, 0.0, 0.0, 0.0, range, None)
+        };
+        text.char_indices().map(glyph).collect()
+    }
+
+    /// Number and width of a letter's glyph.
+    fn letter(&self, letter: char) -> (u32, f32) {
+        let letter = if letter.is_control() { ' ' } else { letter };
+        let id = self.face.glyph_index(letter).unwrap_or_default();
+        let advance = self.face.glyph_hor_advance(id).unwrap_or_default();
+        (u32::from(id.0), f32::from(advance) / self.per_em)
+    }
+
+    /// The text in lines no wider than `width`: broken at spaces, and words wider than a line anywhere. What
+    /// cannot be seen is spelled.
+    pub fn lines(&self, text: &str, size: f32, width: f32) -> Vec<String> {
+        let mut lines = Vec::new();
+        for paragraph in shown::lines(text).replace('\t', " ").lines() {
+            let mut line = String::new();
+            for word in paragraph.split_inclusive(' ') {
+                // The space after a word may hang over the edge.
+                if self.width(&format!("{line}{}", word.trim_end()), size) <= width {
+                    line += word;
+                    continue;
+                }
+                if !line.is_empty() {
+                    lines.push(std::mem::take(&mut line));
+                }
+                for letter in word.chars() {
+                    let longer = self.width(&line, size) + self.letter(letter).1 * size;
+                    if !line.is_empty() && letter != ' ' && longer > width {
+                        lines.push(std::mem::take(&mut line));
+                    }
+                    line.push(letter);
+                }
+            }
+            lines.push(line);
+        }
+        if lines.is_empty() {
+            lines.push(String::new());
+        }
+        for line in &mut lines {
+            line.truncate(line.trim_end().len());
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_no_wider_than_asked_for_and_nothing_is_lost() {
+        let letters = Letters::new().expect("the font");
+        let text = "비상제동 계전기가 늦게 떨어진다 and 0123456789abcdef0123456789abcdef0123456789abcdef ends";
+        for width in [30.0, 60.0, 200.0] {
+            let lines = letters.lines(text, 8.0, width);
+            for line in &lines {
+                assert!(letters.width(line, 8.0) <= width, "{line}");
+            }
+            let letters_of = |text: &str| text.replace(' ', "");
+            assert_eq!(letters_of(&lines.concat()), letters_of(text));
+        }
+    }
+
+    #[test]
+    fn every_letter_of_the_catalogue_is_in_the_font() {
+        let letters = Letters::new().expect("the font");
+        let special = "–−…→±×·°²³";
+        for letter in special.chars().chain("가힣한글AZaz09".chars()) {
+            assert_ne!(letters.letter(letter).0, 0, "{letter}");
+        }
+    }
+}

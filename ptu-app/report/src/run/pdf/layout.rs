@@ -1,0 +1,162 @@
+//! Lays blocks out as pieces that are not divided between pages.
+
+use super::font::Letters;
+use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
+use super::{plot, table};
+use crate::run::block::{Block, Tone};
+
+/// Size of running words, and from line to line.
+const SIZE: f32 = 8.2;
+const LINE: f32 = 11.2;
+/// Names of facts take so much.
+const NAMES: f32 = 130.0;
+
+/// All blocks, in order.
+pub fn pieces(blocks: &[Block], letters: &Letters) -> Vec<Piece> {
+    blocks.iter().flat_map(|one| block(one, letters)).collect()
+}
+
+fn block(block: &Block, letters: &Letters) -> Vec<Piece> {
+    match block {
+        Block::Title(title, below) => {
+            let mut all = words(title, 19.0, 24.0, Ink::Black, 2.0, letters);
+            all.extend(words(below, SIZE, LINE, Ink::Soft, 6.0, letters));
+            all
+        }
+        Block::Heading(text) => vec![heading(text)],
+        Block::Subheading(text, end) => vec![subheading(text, end, letters)],
+        Block::Verdict(tone, verdict, beside) => vec![framed(*tone, verdict, beside, letters)],
+        Block::Facts(facts) => {
+            let mut all: Vec<_> = facts.iter().map(|(n, v)| fact(n, v, letters)).collect();
+            if let Some(last) = all.last_mut() {
+                last.height += 6.0;
+            }
+            all
+        }
+        Block::Text(tone, text) => {
+            let mut all = words(text, SIZE, LINE, table::ink(*tone), 4.0, letters);
+            // The line above a plot stays with it.
+            if let Some(last) = all.last_mut() {
+                last.with_next = *tone == Tone::Soft;
+            }
+            all
+        }
+        Block::Table(of) => {
+            let mut all = table::pieces(of, letters);
+            if let Some(last) = all.last_mut() {
+                last.height += 8.0;
+            }
+            all
+        }
+        Block::Plot(of) => vec![plot::piece(of, letters)],
+        Block::Signatures(who, date) => vec![signatures(who, date)],
+    }
+}
+
+/// Lines of running words, each a piece; `below` is free after the last.
+fn words(text: &str, size: f32, line: f32, ink: Ink, below: f32, letters: &Letters) -> Vec<Piece> {
+    let lines = letters.lines(text, size, INSIDE);
+    let mut all: Vec<_> = lines
+        .iter()
+        .map(|words| Piece {
+            items: vec![Item::text(MARGIN, line * 0.78, size, ink, words)],
+            height: line,
+            ..Piece::default()
+        })
+        .collect();
+    if let Some(last) = all.last_mut() {
+        last.height += below;
+    }
+    all
+}
+
+fn heading(text: &str) -> Piece {
+    Piece {
+        items: vec![
+            Item::text(MARGIN, 24.0, 12.5, Ink::Black, text).strong(),
+            Item::rule(MARGIN, 29.0, INSIDE, Ink::Rule),
+        ],
+        height: 34.0,
+        with_next: true,
+        ..Piece::default()
+    }
+}
+
+fn subheading(text: &str, end: &str, letters: &Letters) -> Piece {
+    let size = 9.5;
+    let beside = MARGIN + letters.width(text, size) + 10.0;
+    Piece {
+        items: vec![
+            Item::text(MARGIN, 14.0, size, Ink::Black, text).strong(),
+            Item::text(beside, 14.0, SIZE, Ink::Soft, end),
+        ],
+        height: 19.0,
+        with_next: true,
+        ..Piece::default()
+    }
+}
+
+/// The verdict within a frame.
+fn framed(tone: Tone, verdict: &str, beside: &str, letters: &Letters) -> Piece {
+    let ink = table::ink(tone);
+    let (high, size) = (34.0, 17.0);
+    let after = MARGIN + 24.0 + letters.width(verdict, size);
+    let (left, right) = (MARGIN, MARGIN + INSIDE);
+    Piece {
+        items: vec![
+            Item::Line {
+                points: vec![
+                    (left, 0.0),
+                    (right, 0.0),
+                    (right, high),
+                    (left, high),
+                    (left, 0.0),
+                ],
+                ink,
+                width: 1.2,
+                dashed: false,
+            },
+            Item::text(MARGIN + 10.0, 23.0, size, ink, verdict).strong(),
+            Item::text(after, 23.0, 10.0, Ink::Black, beside),
+        ],
+        height: high + 8.0,
+        ..Piece::default()
+    }
+}
+
+fn fact(name: &str, value: &str, letters: &Letters) -> Piece {
+    let names = letters.lines(name, SIZE, NAMES - 8.0);
+    let values = letters.lines(value, SIZE, INSIDE - NAMES);
+    let lines = names.len().max(values.len());
+    let column = |lines: &[String], x: f32, ink: Ink| -> Vec<Item> {
+        let line = |(number, text): (usize, &String)| {
+            Item::text(x, LINE * (number as f32 + 0.78), SIZE, ink, text)
+        };
+        lines.iter().enumerate().map(line).collect()
+    };
+    let mut items = column(&names, MARGIN, Ink::Soft);
+    items.extend(column(&values, MARGIN + NAMES, Ink::Black));
+    Piece {
+        items,
+        height: lines as f32 * LINE + 1.0,
+        ..Piece::default()
+    }
+}
+
+fn signatures(who: &[String], date: &str) -> Piece {
+    let each = INSIDE / who.len().max(1) as f32;
+    let mut items = Vec::new();
+    for (number, name) in who.iter().enumerate() {
+        let left = MARGIN + number as f32 * each;
+        for (from, share, text) in [(0.0, 0.56, name.as_str()), (0.62, 0.3, date)] {
+            let x = left + from * each;
+            items.push(Item::rule(x, 44.0, share * each, Ink::Black));
+            items.push(Item::text(x, 54.0, SIZE, Ink::Soft, text));
+        }
+    }
+    Piece {
+        items,
+        height: 60.0,
+        ..Piece::default()
+    }
+}

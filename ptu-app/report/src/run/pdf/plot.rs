@@ -1,0 +1,124 @@
+//! A plot in the PDF, from the same marks as on the HTML page.
+
+use protocol::shown;
+
+use super::font::Letters;
+use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
+use crate::plot::{Anchor, Mark, Plot, Role};
+
+/// Width of the drawing in its own units: words in it are as large as those around it.
+const WIDTH: f64 = 800.0;
+/// Size of words in it, in its own units.
+const SIZE: f32 = 11.5;
+/// Radius of a dot there.
+const DOT: f32 = 2.0;
+/// Free below.
+const BELOW: f32 = 6.0;
+
+/// The drawing, which is never cut.
+pub fn piece(plot: &Plot, letters: &Letters) -> Piece {
+    let (width, height) = plot.size(WIDTH);
+    let scale = INSIDE / width as f32;
+    let marks = plot.marks(WIDTH);
+    Piece {
+        items: marks
+            .iter()
+            .flat_map(|mark| items(mark, scale, letters))
+            .collect(),
+        height: height as f32 * scale + BELOW,
+        ..Piece::default()
+    }
+}
+
+fn items(mark: &Mark, scale: f32, letters: &Letters) -> Vec<Item> {
+    let place = |(x, y): (f64, f64)| (MARGIN + x as f32 * scale, y as f32 * scale);
+    match mark {
+        Mark::Text {
+            role,
+            at,
+            anchor,
+            turned,
+            text,
+        } => {
+            let size = SIZE * scale;
+            let back = letters.width(text, size)
+                * match anchor {
+                    Anchor::Start => 0.0,
+                    Anchor::Middle => 0.5,
+                    Anchor::End => 1.0,
+                };
+            let (x, y) = place(*at);
+            let (x, y) = if *turned {
+                (x, y + back)
+            } else {
+                (x - back, y)
+            };
+            vec![Item::Text {
+                x,
+                y,
+                size,
+                ink: ink(*role),
+                strong: *role == Role::Title,
+                turned: *turned,
+                text: shown::line(text).into_owned(),
+            }]
+        }
+        Mark::Line { role, pieces } => {
+            let drawn = pieces.iter().filter(|piece| piece.len() > 1);
+            drawn
+                .map(|piece| Item::Line {
+                    points: piece.iter().copied().map(place).collect(),
+                    ink: ink(*role),
+                    width: thickness(*role),
+                    dashed: matches!(role, Role::Dashed(_) | Role::Place),
+                })
+                .collect()
+        }
+        Mark::Area { role, at, size } => {
+            let (x, y) = place(*at);
+            let (wide, high) = (size.0 as f32 * scale, size.1 as f32 * scale);
+            if *role == Role::Frame {
+                let corners = [
+                    (x, y),
+                    (x + wide, y),
+                    (x + wide, y + high),
+                    (x, y + high),
+                    (x, y),
+                ];
+                return vec![Item::Line {
+                    points: corners.into(),
+                    ink: Ink::Rule,
+                    width: thickness(*role),
+                    dashed: false,
+                }];
+            }
+            vec![Item::Area(x, y, wide, high, ink(*role))]
+        }
+        Mark::Dot { role, at } => {
+            let (x, y) = place(*at);
+            vec![Item::Disc(x, y, DOT * scale, ink(*role))]
+        }
+    }
+}
+
+fn ink(role: Role) -> Ink {
+    match role {
+        Role::Title => Ink::Black,
+        Role::Label | Role::Tick | Role::Legend | Role::Note => Ink::Soft,
+        Role::Place => Ink::Bad,
+        Role::Grid => Ink::Grid,
+        Role::Zero | Role::Frame => Ink::Rule,
+        Role::Shaded => Ink::Shade,
+        Role::Curve(colour) | Role::Dashed(colour) | Role::Dots(colour) | Role::Bars(colour) => {
+            Ink::Curve(colour)
+        }
+    }
+}
+
+fn thickness(role: Role) -> f32 {
+    match role {
+        Role::Curve(_) => 1.0,
+        Role::Dashed(_) => 0.8,
+        _ => 0.5,
+    }
+}

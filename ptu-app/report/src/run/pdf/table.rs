@@ -1,0 +1,126 @@
+//! Tables in the PDF: each row is a piece, and its cells wrap.
+
+use super::font::Letters;
+use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
+use crate::run::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
+
+/// Size of words in tables, and from line to line.
+const SIZE: f32 = 7.6;
+const LINE: f32 = 10.0;
+/// Free above and below a row's words, and between columns.
+const ABOVE: f32 = 2.2;
+const BETWEEN: f32 = 8.0;
+/// Details begin so much further right.
+const INDENT: f32 = 10.0;
+/// Width and height of a bar.
+const BAR: (f32, f32) = (64.0, 5.0);
+/// A cell's lines at most, so that a row never is longer than a page.
+const MOST_LINES: usize = 40;
+
+/// The heading and the rows.
+pub fn pieces(table: &Table, letters: &Letters) -> Vec<Piece> {
+    let names = table.columns.iter();
+    let heading = Row {
+        kind: RowKind::Head,
+        cells: names
+            .map(|column| (Cell::Text(Tone::Soft, column.name.clone()), 1))
+            .collect(),
+    };
+    let mut top = row(&heading, &table.columns, letters);
+    top.items
+        .push(Item::rule(MARGIN, top.height, INSIDE, Ink::Rule));
+    top.repeated = true;
+    top.with_next = true;
+    let mut pieces = vec![top];
+    for (place, one) in table.rows.iter().enumerate() {
+        let mut piece = row(one, &table.columns, letters);
+        if one.kind == RowKind::Head && place > 0 {
+            piece
+                .items
+                .insert(0, Item::rule(MARGIN, 0.0, INSIDE, Ink::Grid));
+        }
+        let next = table.rows.get(place + 1);
+        // A step's name stands with the first of what belongs to it.
+        piece.with_next =
+            one.kind == RowKind::Head && next.is_some_and(|next| next.kind == RowKind::Detail);
+        piece.under_repeated = true;
+        pieces.push(piece);
+    }
+    pieces
+}
+
+fn row(row: &Row, columns: &[Column], letters: &Letters) -> Piece {
+    let mut items = Vec::new();
+    let mut lines = 1;
+    let (mut place, mut x) = (0, MARGIN);
+    for (cell, span) in &row.cells {
+        let covered = columns.iter().skip(place).take(*span);
+        let width: f32 = covered.map(|column| column.share * INSIDE).sum();
+        let first = place == 0 && row.kind == RowKind::Detail;
+        let from = if first { x + INDENT } else { x };
+        let inside = (x + width - from - BETWEEN).max(SIZE);
+        let align = columns
+            .get(place)
+            .map_or(Align::Left, |column| column.align);
+        match cell {
+            Cell::Text(tone, text) | Cell::Verdict(tone, text) => {
+                let mut split = letters.lines(text, SIZE, inside);
+                if split.len() > MOST_LINES {
+                    split.truncate(MOST_LINES);
+                    split.push("…".into());
+                }
+                lines = lines.max(split.len());
+                for (number, line) in split.iter().enumerate() {
+                    let left = match align {
+                        Align::Left => from,
+                        Align::Right => from + inside - letters.width(line, SIZE),
+                    };
+                    let base = ABOVE + LINE * (number as f32 + 0.78);
+                    items.push(Item::text(left, base, SIZE, ink(*tone), line));
+                }
+            }
+            Cell::Gauge(Some(gauge)) => items.extend(bar(gauge, from, inside.min(BAR.0))),
+            Cell::Gauge(None) => {}
+        }
+        place += span;
+        x += width;
+    }
+    Piece {
+        items,
+        height: lines as f32 * LINE + 2.0 * ABOVE,
+        ..Piece::default()
+    }
+}
+
+/// What is allowed as a band, the value as a mark: a disc inside, a square outside.
+fn bar(gauge: &Gauge, x: f32, width: f32) -> Vec<Item> {
+    let at = |share: f64| x + share as f32 * width;
+    let middle = ABOVE + LINE / 2.0;
+    let (from, to) = (at(gauge.band.0), at(gauge.band.1));
+    let value = at(gauge.value);
+    vec![
+        Item::rule(x, middle, width, Ink::Rule),
+        Item::Area(
+            from,
+            middle - BAR.1 / 2.0,
+            (to - from).max(0.7),
+            BAR.1,
+            Ink::Band,
+        ),
+        if gauge.good {
+            Item::Disc(value, middle, 2.0, Ink::Good)
+        } else {
+            Item::Area(value - 1.8, middle - 3.6, 3.6, 7.2, Ink::Bad)
+        },
+    ]
+}
+
+/// What words of this tone are written in.
+pub fn ink(tone: Tone) -> Ink {
+    match tone {
+        Tone::Plain => Ink::Black,
+        Tone::Soft => Ink::Soft,
+        Tone::Good => Ink::Good,
+        Tone::Bad => Ink::Bad,
+    }
+}

@@ -1,0 +1,268 @@
+//! What is drawn of a trace: speeds, and the switched signals that changed nearest to the trigger.
+
+use std::collections::BTreeMap;
+
+use fault_db::{Channel, ChannelKind, TraceData};
+
+use crate::plot::{Note, Place, Plot, Series, Style};
+use crate::words::Report;
+
+/// Speeds, as they are recorded, each with its colour; what is not known all the time is left out.
+const SPEEDS: [(&str, usize, Style); 4] = [
+    ("limit", 1, Style::Dashed),
+    ("target", 2, Style::Dashed),
+    ("train_speed", 4, Style::Line),
+    ("speed", 0, Style::Line),
+];
+/// Switched signals drawn below each other, at most.
+const LANES: usize = 8;
+/// Height of a lane, and of all that is around them, in units of the drawing.
+const LANE: f64 = 26.0;
+const AROUND: f64 = 96.0;
+/// How far a switched signal goes up in its lane.
+const SWING: f64 = 0.62;
+/// Height of words in a lane, as a share of that.
+const WORDS: f64 = 0.24;
+/// Room for names of signals.
+const BESIDE: f64 = 120.0;
+
+/// The trace with the channels that are drawn, and those only.
+pub fn drawn_channels(trace: TraceData) -> TraceData {
+    let trigger = trace.trigger_row.unwrap_or(0) as usize;
+    let pairs = || trace.channels.iter().zip(&trace.columns);
+    let mut switched: Vec<(usize, &str)> = pairs()
+        .filter(|(channel, _)| !matches!(channel.kind, ChannelKind::Number { .. }))
+        .filter_map(|(channel, column)| {
+            Some((nearest_change(column, trigger)?, channel.name.as_str()))
+        })
+        .collect();
+    switched.sort_by_key(|(distance, _)| *distance);
+    let kept: Vec<String> = SPEEDS
+        .iter()
+        .map(|speed| speed.0)
+        .chain(switched.iter().take(LANES).map(|lane| lane.1))
+        .map(str::to_owned)
+        .collect();
+    let (channels, columns) = trace
+        .channels
+        .into_iter()
+        .zip(trace.columns)
+        .filter(|(channel, _)| kept.contains(&channel.name))
+        .unzip();
+    TraceData {
+        channels,
+        columns,
+        ..trace
+    }
+}
+
+/// Rows from the trigger to where the column changes next to it; none if it never does.
+fn nearest_change(column: &[f64], trigger: usize) -> Option<usize> {
+    let changed = |pair: &[f64]| pair[0] != pair[1] && !(pair[0].is_nan() && pair[1].is_nan());
+    let rows = column.windows(2).enumerate();
+    rows.filter(|(_, pair)| changed(pair))
+        .map(|(row, _)| (row + 1).abs_diff(trigger))
+        .min()
+}
+
+/// The trace over time from its trigger.
+pub fn plots(trace: &TraceData, words: &Report) -> Vec<Plot> {
+    let rows = trace.rows();
+    if rows < 2 {
+        return Vec::new();
+    }
+    let trigger = f64::from(trace.trigger_row.unwrap_or(0));
+    let time = |row: usize| (row as f64 - trigger) * trace.period_us as f64 / 1e6;
+    let plot = |title: &str, y_label: &str| Plot {
+        title: title.to_owned(),
+        x_label: words.from_trigger.into(),
+        y_label: y_label.to_owned(),
+        x_range: Some((time(0), time(rows - 1))),
+        places: vec![Place {
+            x: 0.0,
+            name: words.trigger.into(),
+        }],
+        beside: Some(BESIDE),
+        ..Plot::default()
+    };
+    let mut all = Vec::new();
+    let series = speeds(trace, &time);
+    if !series.is_empty() {
+        all.push(Plot {
+            y_reach: Some((0.0, 1.0)),
+            height: Some(230.0),
+            series,
+            ..plot(words.speeds, "km/h")
+        });
+    }
+    let lanes: Vec<_> = trace
+        .channels
+        .iter()
+        .zip(&trace.columns)
+        .filter(|(channel, _)| !matches!(channel.kind, ChannelKind::Number { .. }))
+        .collect();
+    if !lanes.is_empty() {
+        let mut drawing = Plot {
+            y_reach: Some((0.0, lanes.len() as f64)),
+            height: Some(AROUND + LANE * lanes.len() as f64),
+            ..plot(words.changes, "")
+        };
+        for (place, (channel, column)) in lanes.iter().rev().enumerate() {
+            lane(&mut drawing, place, channel, column, &time);
+        }
+        all.push(drawing);
+    }
+    all
+}
+
+fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64) -> Vec<Series> {
+    let known = |name: &str| {
+        let column = trace.column(name)?;
+        column.iter().any(|value| !value.is_nan()).then_some(column)
+    };
+    SPEEDS
+        .iter()
+        .filter_map(|(name, colour, style)| {
+            let steps = steps(known(name)?).into_iter();
+            Some(Series {
+                name: (*name).into(),
+                colour: *colour,
+                style: *style,
+                points: steps.map(|(row, value)| (time(row), value)).collect(),
+            })
+        })
+        .collect()
+}
+
+/// A switched signal in its lane: two states as a line with steps, more of them as a box each, with
+/// words where there is room.
+fn lane(
+    drawing: &mut Plot,
+    place: usize,
+    channel: &Channel,
+    column: &[f64],
+    time: &impl Fn(usize) -> f64,
+) {
+    let base = place as f64 + 0.12;
+    let no_labels = BTreeMap::new();
+    let labels = match &channel.kind {
+        ChannelKind::Enum { labels } => labels,
+        ChannelKind::Bit | ChannelKind::Number { .. } => &no_labels,
+    };
+    let boxes = labels.len() > 2;
+    let mut points = Vec::new();
+    for (first, last, value) in stretches(column) {
+        let (from, to) = (time(first), time((last + 1).min(column.len() - 1)));
+        if value.is_nan() {
+            points.push((from, value));
+            continue;
+        }
+        let high = base
+            + if boxes {
+                SWING
+            } else {
+                value.clamp(0.0, 1.0) * SWING
+            };
+        points.extend([(from, high), (to, high)]);
+        if boxes {
+            points.extend([(to, base), (from, base), (from, high), (from, f64::NAN)]);
+        }
+        if let Some(label) = labels.get(&(value as i64)) {
+            drawing.notes.push(Note {
+                at: (from, base + SWING * WORDS),
+                until: to,
+                text: label.clone(),
+            });
+        }
+    }
+    drawing
+        .names
+        .push((place as f64 + 0.35, channel.name.clone()));
+    drawing.series.push(Series {
+        name: String::new(),
+        colour: place,
+        style: Style::Line,
+        points,
+    });
+}
+
+/// First and last row and value of each stretch over which a column stays the same.
+fn stretches(column: &[f64]) -> Vec<(usize, usize, f64)> {
+    let mut all = Vec::new();
+    let mut row = 0;
+    // By their bits: two values that are not known are no change.
+    for same in column.chunk_by(|a, b| a.to_bits() == b.to_bits()) {
+        all.push((row, row + same.len() - 1, same[0]));
+        row += same.len();
+    }
+    all
+}
+
+/// Rows at which something changes, with the one before each: the same line of fewer points.
+fn steps(column: &[f64]) -> Vec<(usize, f64)> {
+    let same = |a: usize, b: usize| column[a].to_bits() == column[b].to_bits();
+    let kept = |row: &usize| {
+        let (row, last) = (*row, column.len() - 1);
+        row == 0 || row == last || !same(row, row - 1) || !same(row, row + 1)
+    };
+    let rows = (0..column.len()).filter(kept);
+    rows.map(|row| (row, column[row])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::Language;
+
+    fn trace() -> TraceData {
+        let channel = |name: &str, kind| Channel {
+            name: name.into(),
+            unit: String::new(),
+            kind,
+        };
+        let labels = [(0, "off".to_owned()), (1, "manual".to_owned())].into();
+        TraceData {
+            t0_bench_us: 0,
+            t0_us: 0,
+            period_us: 50_000,
+            trigger_row: Some(2),
+            partial: false,
+            gaps: true,
+            channels: vec![
+                channel("speed", ChannelKind::Number { lsb: 0.1 }),
+                channel("tacho", ChannelKind::Number { lsb: 0.1 }),
+                channel("eb", ChannelKind::Bit),
+                channel("alarm", ChannelKind::Bit),
+                channel("mode", ChannelKind::Enum { labels }),
+            ],
+            columns: vec![
+                vec![1.0, 1.0, 1.0, 2.0],
+                vec![1.0; 4],
+                vec![0.0, 0.0, 1.0, 1.0],
+                vec![0.0; 4],
+                vec![f64::NAN, f64::NAN, 0.0, 1.0],
+            ],
+        }
+    }
+
+    #[test]
+    fn speeds_and_what_changed_are_kept_and_drawn() {
+        let trace = drawn_channels(trace());
+        let names: Vec<_> = trace.channels.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["speed", "eb", "mode"]);
+        let plots = plots(&trace, &Language::English.words().report);
+        assert_eq!(plots.len(), 2);
+        assert_eq!(plots[0].x_range, Some((-0.1, 0.05)));
+        let names: Vec<_> = plots[1].names.iter().map(|n| n.1.as_str()).collect();
+        assert_eq!(names, ["mode", "eb"], "the first lane is on top");
+        let notes: Vec<_> = plots[1].notes.iter().map(|n| n.text.as_str()).collect();
+        assert_eq!(notes, ["off", "manual"]);
+    }
+
+    #[test]
+    fn an_empty_trace_gives_no_plot() {
+        let mut trace = trace();
+        trace.columns.iter_mut().for_each(Vec::clear);
+        assert!(plots(&drawn_channels(trace), &Language::Korean.words().report).is_empty());
+    }
+}

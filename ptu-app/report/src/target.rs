@@ -1,0 +1,138 @@
+//! Writes the report of a run to a file, in the format of its extension: a test sheet as `.html` or `.pdf`, or `.csv`,
+//! `.json`, `.junit.xml`.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use fault_db::{RunDetail, Store};
+use maud::Markup;
+use protocol::shown;
+
+use crate::json::{json_text, run_json};
+use crate::run::{self, Sheet};
+use crate::words::Language;
+use crate::{csv, junit};
+use ptu_bench::data::{self, ScriptsDirectory};
+use ptu_bench::failure::Failure;
+use ptu_bench::new_file::{NewFile, cannot_write};
+
+/// A report to write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    path: PathBuf,
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Html,
+    Pdf,
+    Csv,
+    Json,
+    Junit,
+}
+
+impl std::str::FromStr for Target {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let endings = [
+            (".html", Format::Html),
+            (".pdf", Format::Pdf),
+            (".csv", Format::Csv),
+            (".json", Format::Json),
+            (".junit.xml", Format::Junit),
+        ];
+        let format = endings
+            .into_iter()
+            .find_map(|(ending, format)| text.ends_with(ending).then_some(format))
+            .ok_or("a report ends in .html, .pdf, .csv, .json or .junit.xml")?;
+        Ok(Self {
+            path: text.into(),
+            format,
+        })
+    }
+}
+
+impl Target {
+    /// Finds out before the run whether the file can be written after it.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check(&self) -> Result<(), Failure> {
+        data::check_writable(&self.path)
+    }
+
+    /// It is a test sheet, for people.
+    fn is_sheet(&self) -> bool {
+        matches!(self.format, Format::Html | Format::Pdf)
+    }
+}
+
+/// Writes reports of a run. What only test sheets say is gathered when one is asked for; without a
+/// scripts directory they have no diagnosis.
+///
+/// # Errors
+/// A file cannot be written, or the database not be read.
+pub fn write(
+    targets: &[Target],
+    store: &Store,
+    directory: Option<&ScriptsDirectory>,
+    run: &RunDetail,
+    language: Language,
+) -> Result<(), Failure> {
+    let gather = || Sheet::gather(store, directory, run.run.id);
+    let sheet = targets.iter().any(Target::is_sheet).then(gather);
+    let sheet = sheet.transpose()?;
+    for target in targets {
+        data::write(
+            &target.path,
+            &content(target, run, sheet.as_ref(), language)?,
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes one to a file begun for it, under a name beside it where that is taken; which it was.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_beside(
+    target: &Target,
+    mut file: NewFile,
+    store: &Store,
+    directory: &ScriptsDirectory,
+    run: &RunDetail,
+    language: Language,
+) -> Result<PathBuf, Failure> {
+    let gather = || Sheet::gather(store, Some(directory), run.run.id);
+    let sheet = target.is_sheet().then(gather).transpose()?;
+    let content = content(target, run, sheet.as_ref(), language)?;
+    let written = file.write_all(&content);
+    written.map_err(|error| cannot_write(&target.path, &error))?;
+    file.finish_beside()
+}
+
+/// A page as it stands in its file: nothing in it acts on a terminal or turns the order of what is read.
+pub(crate) fn page_text(page: Markup) -> String {
+    shown::lines(&page.into_string()).into_owned()
+}
+
+fn content(
+    target: &Target,
+    run: &RunDetail,
+    sheet: Option<&Sheet>,
+    language: Language,
+) -> Result<Vec<u8>, Failure> {
+    let words = language.words();
+    let text = match (target.format, sheet) {
+        (Format::Html, Some(sheet)) => run::html(sheet, words),
+        (Format::Pdf, Some(sheet)) => return run::pdf(sheet, words),
+        // Whoever asks for a sheet has gathered it.
+        (Format::Html | Format::Pdf, None) => String::new(),
+        (Format::Csv, _) => csv::csv(run),
+        (Format::Json, _) => json_text(&run_json(run))?,
+        (Format::Junit, _) => junit::junit(run)?,
+    };
+    Ok(text.into_bytes())
+}

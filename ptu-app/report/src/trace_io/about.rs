@@ -1,0 +1,71 @@
+//! The description of a trace that every file format keeps beside the samples.
+
+use fault_db::{Channel, TraceHead};
+use serde::{Deserialize, Serialize};
+
+use ptu_bench::clock::rfc3339;
+
+/// The name it is kept under in files that have named metadata.
+pub const NAME: &str = "ptu.trace";
+
+/// Whose trace it is, when it was recorded, and what its signals are; of a part of a trace that part's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct About {
+    /// The trace.
+    pub trace_id: String,
+    /// The run it was recorded in.
+    pub run_id: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// UTC of the first row, for people.
+    pub t0: String,
+    /// UTC of the first row, microseconds since 1970.
+    pub t0_us: i64,
+    /// Bench time of the first row, microseconds.
+    pub t0_bench_us: i64,
+    /// Time from row to row, microseconds.
+    pub period_us: i64,
+    /// Rows.
+    pub rows: usize,
+    /// The row of the trigger, which has the time 0; of a part it may be before or after all rows.
+    pub trigger_row: Option<i64>,
+    /// It ends before its window did.
+    pub partial: bool,
+    /// Some samples are missing.
+    pub gaps: bool,
+    /// Name, unit and kind of each signal; kinds with smallest step or words.
+    pub channels: Vec<Channel>,
+}
+
+impl About {
+    /// Of the rows from `first` on.
+    pub fn part(head: &TraceHead, channels: Vec<Channel>, first: usize, rows: usize) -> Self {
+        let later_us = (first as i64).saturating_mul(head.period_us);
+        let t0_us = head.t0_us.saturating_add(later_us);
+        Self {
+            trace_id: head.id.to_string(),
+            run_id: head.run_id.to_string(),
+            unit_serial: head.unit_serial.clone(),
+            t0: rfc3339(t0_us),
+            t0_us,
+            t0_bench_us: head.t0_bench_us.saturating_add(later_us),
+            period_us: head.period_us,
+            rows,
+            trigger_row: head.trigger_row.map(|row| i64::from(row) - first as i64),
+            partial: head.partial,
+            gaps: head.gaps,
+            channels,
+        }
+    }
+
+    /// Time of a row from the trigger, or from the first row where there is none; microseconds.
+    pub fn time_us(&self, row: usize) -> i64 {
+        (row as i64 - self.trigger_row.unwrap_or(0)).saturating_mul(self.period_us)
+    }
+
+    /// As one line of JSON.
+    pub fn json(&self) -> String {
+        // Texts, whole numbers and finite steps: there is nothing JSON cannot say.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}

@@ -1,0 +1,253 @@
+//! Resamples signals of a file at the times of a stored trace's rows.
+
+use std::collections::BTreeSet;
+
+use fault_db::TraceData;
+
+use super::series::Import;
+use ptu_bench::failure::Failure;
+
+/// How much sooner than a row a sample's time may be rounded, microseconds.
+const ROUNDING_US: i64 = 1;
+
+/// A file's signals at a trace's rows, and the trace with nothing known where the file says nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laid {
+    /// The stored trace.
+    pub trace: TraceData,
+    /// The file's signals, at the same rows.
+    pub imported: TraceData,
+    /// Names of the file's signals that the trace does not have: nothing is laid beside nothing.
+    pub unknown: Vec<String>,
+    /// Seconds from the trigger to the first and last row both have.
+    pub window_s: (f64, f64),
+    /// Whether the file's samples came at the trace's own rows.
+    pub is_row_by_row: bool,
+}
+
+/// Lays a file's signals at the rows of `trace`, `shift_us` later than they say: at each row stands the last
+/// sample that came until then.
+///
+/// # Errors
+/// They have no time in common, or one signal comes twice.
+pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, Failure> {
+    let trigger = i64::from(trace.trigger_row.unwrap_or(0));
+    let period_us = trace.period_us.max(1);
+    // From the file's clock to that of the rows.
+    let zero_us = if import.is_utc {
+        trace
+            .t0_us
+            .saturating_add(trigger.saturating_mul(period_us))
+    } else {
+        0
+    };
+    let later_us = shift_us.saturating_sub(zero_us);
+    let row_us = |row: usize| (row as i64 - trigger).saturating_mul(period_us);
+    let mut imported = TraceData {
+        t0_bench_us: trace.t0_bench_us,
+        t0_us: trace.t0_us,
+        period_us: trace.period_us,
+        trigger_row: trace.trigger_row,
+        partial: false,
+        gaps: true,
+        channels: Vec::new(),
+        columns: Vec::new(),
+    };
+    let rows = trace.rows();
+    let (mut first, mut end, mut is_row_by_row) = (rows, 0, true);
+    let span_us = span_us(&import);
+    let known: BTreeSet<&str> = trace.channels.iter().map(|c| c.name.as_str()).collect();
+    let (mut names, mut unknown) = (BTreeSet::new(), Vec::new());
+    for table in import.tables {
+        let held = Held::new(&table.times_us, later_us, rows, row_us);
+        first = first.min(held.rows.start);
+        end = end.max(held.rows.end);
+        is_row_by_row &= held.is_row_by_row;
+        // Each column goes as soon as it is laid: a large file is in memory once.
+        for (channel, column) in table.channels.into_iter().zip(table.columns) {
+            if !names.insert(channel.name.clone()) {
+                return Err(Failure::usage(format!(
+                    "signal \"{}\" comes twice in the file",
+                    channel.name
+                )));
+            }
+            if known.contains(channel.name.as_str()) {
+                imported.channels.push(channel);
+                imported.columns.push(held.column(&column));
+            } else {
+                unknown.push(channel.name);
+            }
+        }
+    }
+    if first >= end {
+        let own_us = (row_us(0), row_us(rows.saturating_sub(1)));
+        return Err(no_time_in_common(span_us, later_us, own_us));
+    }
+    for column in &mut trace.columns {
+        column[..first].fill(f64::NAN);
+        column[end..].fill(f64::NAN);
+    }
+    let at_s = |row: usize| row_us(row) as f64 / 1e6;
+    Ok(Laid {
+        trace,
+        imported,
+        unknown,
+        window_s: (at_s(first), at_s(end - 1)),
+        is_row_by_row,
+    })
+}
+
+/// Which of a table's rows stands at each row of a trace.
+struct Held {
+    places: Vec<Option<usize>>,
+    /// Rows of the trace from the first to the last that has one.
+    rows: std::ops::Range<usize>,
+    is_row_by_row: bool,
+}
+
+impl Held {
+    fn new(times: &[i64], later_us: i64, rows: usize, row_us: impl Fn(usize) -> i64) -> Self {
+        let at = |place: usize| times[place].saturating_add(later_us);
+        // The last sample stands as long as the one before did.
+        let last_for_us = match *times {
+            [.., before, last] => last.saturating_sub(before),
+            _ => 0,
+        };
+        let mut places = Vec::with_capacity(rows);
+        let mut is_row_by_row = true;
+        let mut next = 0;
+        for row in 0..rows {
+            let now_us = row_us(row).saturating_add(ROUNDING_US);
+            while next < times.len() && at(next) <= now_us {
+                next += 1;
+            }
+            let last = next.checked_sub(1);
+            let is_over = next == times.len()
+                && last.is_some_and(|last| {
+                    at(last).saturating_add(last_for_us) <= now_us
+                        && at(last) < row_us(row) - ROUNDING_US
+                });
+            let place = last.filter(|_| !is_over);
+            if let Some(place) = place {
+                is_row_by_row &= (at(place) - row_us(row)).abs() <= ROUNDING_US;
+            }
+            places.push(place);
+        }
+        let first = places.iter().position(Option::is_some).unwrap_or(rows);
+        let end = places
+            .iter()
+            .rposition(Option::is_some)
+            .map_or(0, |last| last + 1);
+        // Every sample must have found its row, too.
+        is_row_by_row &= end.saturating_sub(first) <= times.len();
+        Self {
+            places,
+            rows: first..end,
+            is_row_by_row,
+        }
+    }
+
+    fn column(&self, samples: &[f64]) -> Vec<f64> {
+        let held = |place: &Option<usize>| place.map_or(f64::NAN, |place| samples[place]);
+        self.places.iter().map(held).collect()
+    }
+}
+
+/// First and last time in the file.
+fn span_us(import: &Import) -> (i64, i64) {
+    let times = || import.tables.iter().flat_map(|table| table.times_us.iter());
+    let (first, last) = (times().min(), times().max());
+    (first.copied().unwrap_or(0), last.copied().unwrap_or(0))
+}
+
+fn no_time_in_common(file_us: (i64, i64), later_us: i64, trace_us: (i64, i64)) -> Failure {
+    let at_s = |time_us: i64| time_us.saturating_add(later_us) as f64 / 1e6;
+    Failure::usage(format!(
+        "the file has no time in common with the trace: from its trigger the file goes from {:.3} to {:.3} s, \
+         the trace from {:.3} to {:.3} s; lay it elsewhere with --shift SECONDS",
+        at_s(file_us.0),
+        at_s(file_us.1),
+        trace_us.0 as f64 / 1e6,
+        trace_us.1 as f64 / 1e6
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::series::{Table, plain};
+    use super::*;
+
+    fn trace(samples: &[f64]) -> TraceData {
+        TraceData {
+            t0_bench_us: 0,
+            t0_us: 1_000_000,
+            period_us: 50_000,
+            trigger_row: Some(2),
+            partial: false,
+            gaps: false,
+            channels: vec![plain("a")],
+            columns: vec![samples.to_vec()],
+        }
+    }
+
+    fn file(times_us: &[i64], samples: &[f64], is_utc: bool) -> Import {
+        Import {
+            tables: vec![Table {
+                times_us: times_us.to_vec(),
+                channels: vec![plain("a")],
+                columns: vec![samples.to_vec()],
+            }],
+            is_utc,
+            about: None,
+        }
+    }
+
+    /// Unknown samples as -1, to be compared.
+    fn laid(import: &Import, shift_us: i64) -> (Vec<f64>, Vec<f64>) {
+        let laid = lay(import.clone(), trace(&[1.0; 6]), shift_us).expect("laid");
+        let told = |columns: &[Vec<f64>]| -> Vec<f64> {
+            columns[0]
+                .iter()
+                .map(|s| if s.is_nan() { -1.0 } else { *s })
+                .collect()
+        };
+        (told(&laid.trace.columns), told(&laid.imported.columns))
+    }
+
+    /// Rows are at -100, -50, 0, 50, 100 and 150 ms.
+    #[test]
+    fn a_row_has_the_last_sample_before_it() {
+        let slow = file(&[-50_000, 50_000], &[3.0, 4.0], false);
+        let (ours, theirs) = laid(&slow, 0);
+        assert_eq!(theirs, [-1.0, 3.0, 3.0, 4.0, 4.0, -1.0]);
+        assert_eq!(ours, [-1.0, 1.0, 1.0, 1.0, 1.0, -1.0]);
+        let fast = file(
+            &[-10_000, 0, 1, 49_999, 60_000],
+            &[1.0, 2.0, 3.0, 4.0, 5.0],
+            false,
+        );
+        let (_, theirs) = laid(&fast, 0);
+        assert_eq!(theirs, [-1.0, -1.0, 3.0, 4.0, -1.0, -1.0]);
+        let (_, theirs) = laid(&slow, 50_000);
+        assert_eq!(theirs, [-1.0, -1.0, 3.0, 3.0, 4.0, 4.0]);
+    }
+
+    #[test]
+    fn times_of_day_are_aligned_with_those_of_the_trace() {
+        let rows: Vec<i64> = (0..6).map(|row| 1_000_000 + row * 50_000).collect();
+        let import = file(&rows, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true);
+        let laid = lay(import.clone(), trace(&[1.0; 6]), 0).expect("laid");
+        assert_eq!(laid.imported.columns, import.tables[0].columns);
+        assert!(laid.is_row_by_row);
+        assert_eq!(laid.window_s, (-0.1, 0.15));
+    }
+
+    #[test]
+    fn files_without_common_time_are_reported_with_both_spans() {
+        let import = file(&[9_000_000, 9_050_000], &[1.0, 2.0], false);
+        let told = lay(import, trace(&[1.0; 6]), 0).expect_err("apart").message;
+        for word in ["9.000 to 9.050 s", "-0.100 to 0.150 s", "--shift"] {
+            assert!(told.contains(word), "{told}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Exports traces as comma-separated values, with a description in a file beside.
+//!
+//! A line a row: the time in seconds from the trigger, then a column a signal, headed by its name and its
+//! unit; words and bits are numbers, an unknown sample is empty. `FILE-metadata.json` beside it says what
+//! the signals are, as the W3C's "CSV on the Web" has it.
+
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+use fault_db::{Channel, ChannelKind};
+use protocol::shown;
+use serde_json::{Value, json};
+
+use super::about::About;
+use crate::csv::no_formula;
+
+/// Heading of the column of times.
+pub const TIME: &str = "time_s";
+
+/// A signal's heading: its name, and its unit behind it.
+pub fn heading(channel: &Channel) -> String {
+    match channel.unit.replace('/', "").as_str() {
+        "" => channel.name.clone(),
+        unit => format!("{}_{unit}", channel.name),
+    }
+}
+
+/// Writes the line of headings.
+///
+/// # Errors
+/// `out` fails.
+pub fn put_headings<'a>(
+    out: &mut impl Write,
+    before: &[&str],
+    channels: impl Iterator<Item = &'a Channel>,
+) -> io::Result<()> {
+    out.write_all(TIME.as_bytes())?;
+    for heading in before {
+        write!(out, ",{heading}")?;
+    }
+    for channel in channels {
+        let heading = heading(channel);
+        write!(out, ",{}", quoted(&shown::line(&no_formula(&heading))))?;
+    }
+    out.write_all(b"\n")
+}
+
+/// Begins a row with its time: microseconds from the trigger, in whole milliseconds where all rows are.
+///
+/// # Errors
+/// `out` fails.
+pub fn put_time(out: &mut impl Write, time_us: i64, period_us: i64) -> io::Result<()> {
+    let digits = if period_us % 1000 == 0 { 3 } else { 6 };
+    write!(out, "{:.digits$}", time_us as f64 / 1e6)
+}
+
+/// Goes on with a sample.
+///
+/// # Errors
+/// `out` fails.
+pub fn put_sample(out: &mut impl Write, sample: f64) -> io::Result<()> {
+    if sample.is_nan() {
+        out.write_all(b",")
+    } else {
+        write!(out, ",{sample}")
+    }
+}
+
+fn quoted(text: &str) -> Cow<'_, str> {
+    if text.contains([',', ';', '\t', '"', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
+/// The document that stands beside a file of the name `file`.
+pub(super) fn description(file: &str, about: &About) -> Value {
+    let column = |channel: &Channel| {
+        let datatype = match channel.kind {
+            ChannelKind::Number { .. } => "double",
+            ChannelKind::Enum { .. } | ChannelKind::Bit => "integer",
+        };
+        json!({
+            "name": channel.name, "titles": heading(channel), "datatype": datatype,
+            "dc:description": format!("{}, {}", channel.name, unit_told(channel)),
+        })
+    };
+    let time = json!({
+        "name": TIME, "titles": TIME, "datatype": "double", "required": true,
+        "dc:description": "seconds from the trigger",
+    });
+    let columns: Vec<_> = std::iter::once(time)
+        .chain(about.channels.iter().map(column))
+        .collect();
+    json!({
+        "@context": "http://www.w3.org/ns/csvw",
+        "url": file,
+        "tableSchema": {"columns": columns},
+        "notes": [about],
+    })
+}
+
+fn unit_told(channel: &Channel) -> String {
+    match &channel.kind {
+        ChannelKind::Number { .. } if channel.unit.is_empty() => "a number".to_owned(),
+        ChannelKind::Number { .. } => format!("in {}", channel.unit),
+        ChannelKind::Bit => "0 or 1".to_owned(),
+        ChannelKind::Enum { labels } => {
+            let words = labels.iter().map(|(n, word)| format!("{n} {word}"));
+            let words: Vec<_> = words.collect();
+            words.join(", ")
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Imports MCAP files: our own exports, or any messages in JSON.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::io::Read;
+use std::path::Path;
+
+use fault_db::{Channel, open_regular_file};
+use mcap::McapError;
+use mcap::records::Record;
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use serde_json::Value;
+
+use super::about::{About, NAME};
+use super::series::{Import, Table, check_size, plain, wrong};
+use ptu_bench::failure::Failure;
+
+/// A longer record, or piece of compressed messages, is refused instead of being held in memory.
+const MAX_RECORD: usize = 32 << 20;
+/// All records together, unpacked: several times what the samples allowed take as text.
+const MAX_BYTES: usize = 512 << 20;
+/// A longer message is none of signals, bytes.
+const MAX_MESSAGE: usize = 1 << 20;
+/// A longer name is none of a topic or a signal, bytes.
+const MAX_NAME: usize = 256;
+/// A longer description is none of ours, bytes.
+const MAX_ABOUT: usize = 4 << 20;
+/// Fields within fields are looked at this deep.
+const MAX_DEPTH: usize = 8;
+
+/// Messages of one topic.
+struct Topic {
+    name: String,
+    table: Table,
+    /// Place of a field's column, by its path.
+    places: BTreeMap<String, usize>,
+    /// So many names of signals are known to be short enough.
+    checked: usize,
+}
+
+fn check_name(file: &Path, name: &str) -> Result<(), Failure> {
+    if name.len() <= MAX_NAME {
+        return Ok(());
+    }
+    let begin: String = name.chars().take(20).collect();
+    let what = format!("the name \"{begin}…\" is longer than {MAX_NAME} bytes");
+    Err(wrong(file, &what))
+}
+
+/// Reads a file. Each number, bit or null in a message is a sample of the signal its field names; what is
+/// not JSON is passed over.
+pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
+    let cannot =
+        |error: std::io::Error| Failure::usage(format!("cannot read {}: {error}", file.display()));
+    let mut input = open_regular_file(file).map_err(cannot)?;
+    let options = LinearReaderOptions::default()
+        .with_record_length_limit(MAX_RECORD)
+        .with_prevalidate_chunk_crcs(true);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut reading = Reading {
+        file,
+        known,
+        topics: BTreeMap::new(),
+        about: None,
+        messages: 0,
+        signals: 0,
+        samples: 0,
+    };
+    let (mut bytes, mut unpacked) = (0, 0);
+    while let Some(event) = reader.next_event() {
+        let damaged = |error: McapError| {
+            let why = told(&error);
+            wrong(
+                file,
+                &format!("damaged, or no MCAP file, before byte {bytes}: {why}"),
+            )
+        };
+        match event.map_err(damaged)? {
+            LinearReadEvent::ReadRequest(need) => {
+                let read = input.read(reader.insert(need)).map_err(cannot)?;
+                reader.notify_read(read);
+                bytes += read;
+            }
+            LinearReadEvent::Record { opcode, data } => {
+                unpacked += data.len();
+                if unpacked > MAX_BYTES {
+                    let what = format!("it unpacks to more than {MAX_BYTES} bytes");
+                    return Err(wrong(file, &what));
+                }
+                reading.take(mcap::parse_record(opcode, data).map_err(damaged)?)?;
+            }
+        }
+    }
+    reading.finish()
+}
+
+/// What is wrong, with the reason of the library's reason.
+fn told(error: &McapError) -> String {
+    match error {
+        McapError::UnsupportedCompression(name) => {
+            format!("it is compressed with {name}, which is not read here; zstd is")
+        }
+        McapError::Parse(inner) => inner.to_string(),
+        other => other.to_string(),
+    }
+}
+
+struct Reading<'a> {
+    file: &'a Path,
+    known: &'a [Channel],
+    /// By the number of the file's channel.
+    topics: BTreeMap<u16, Topic>,
+    about: Option<About>,
+    messages: usize,
+    /// Of all topics.
+    signals: usize,
+    /// Of all topics.
+    samples: usize,
+}
+
+impl Reading<'_> {
+    fn take(&mut self, record: Record<'_>) -> Result<(), Failure> {
+        match record {
+            Record::Channel(channel) if channel.message_encoding == "json" => {
+                check_name(self.file, &channel.topic)?;
+                self.topics.entry(channel.id).or_insert_with(|| Topic {
+                    name: channel.topic.trim_start_matches('/').to_owned(),
+                    table: Table::default(),
+                    places: BTreeMap::new(),
+                    checked: 0,
+                });
+            }
+            Record::Message { header, data } => {
+                self.messages += 1;
+                let Some(topic) = self.topics.get_mut(&header.channel_id) else {
+                    return Ok(());
+                };
+                let (number, name) = (self.messages, &topic.name);
+                let wrong = |what: &dyn Display| {
+                    let what = format!("message {number}, topic \"{name}\": {what}");
+                    wrong(self.file, &what)
+                };
+                if data.len() > MAX_MESSAGE {
+                    return Err(wrong(&format!("it is longer than {MAX_MESSAGE} bytes")));
+                }
+                let message: Value =
+                    serde_json::from_slice(&data).map_err(|error| wrong(&error))?;
+                let at_us = i64::try_from(header.log_time / 1000).unwrap_or(i64::MAX);
+                self.signals -= topic.table.columns.len();
+                self.samples -= topic.table.samples();
+                topic.take(at_us, &message, self.known);
+                self.signals += topic.table.columns.len();
+                self.samples += topic.table.samples();
+                check_size(self.file, self.signals, self.samples)?;
+                topic.check_names(self.file)?;
+            }
+            Record::Metadata(metadata) if metadata.name == NAME => {
+                let about = metadata.metadata.get("about");
+                let about = about.filter(|about| about.len() <= MAX_ABOUT);
+                self.about = about.and_then(|about| serde_json::from_str(about).ok());
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Import, Failure> {
+        let mut tables: Vec<Table> = self.topics.into_values().map(|topic| topic.table).collect();
+        tables.retain(|table| !table.columns.is_empty());
+        if tables.is_empty() {
+            let what = format!(
+                "{} messages, none of them JSON with numbers in it",
+                self.messages
+            );
+            return Err(wrong(self.file, &what));
+        }
+        let mut is_utc = true;
+        let own: BTreeMap<&str, &Channel> = (self.about.iter())
+            .flat_map(|about| &about.channels)
+            .map(|channel| (channel.name.as_str(), channel))
+            .collect();
+        for table in &mut tables {
+            in_order(table);
+            if let Some(about) = &self.about {
+                is_utc = false;
+                let trigger_us = about.t0_us.saturating_sub(about.time_us(0));
+                for time_us in &mut table.times_us {
+                    *time_us = time_us.saturating_sub(trigger_us);
+                }
+                for channel in &mut table.channels {
+                    if let Some(own) = own.get(channel.name.as_str()) {
+                        *channel = (*own).clone();
+                    }
+                }
+            }
+        }
+        Ok(Import {
+            tables,
+            is_utc,
+            about: self.about,
+        })
+    }
+}
+
+impl Topic {
+    fn take(&mut self, at_us: i64, message: &Value, known: &[Channel]) {
+        self.table.times_us.push(at_us);
+        self.fields(&mut String::new(), message, 0, known);
+        let rows = self.table.times_us.len();
+        for column in &mut self.table.columns {
+            column.resize(rows, f64::NAN);
+        }
+    }
+
+    /// Refuses names that are none; called after each message, so that one has brought them.
+    fn check_names(&mut self, file: &Path) -> Result<(), Failure> {
+        while self.checked < self.table.channels.len() {
+            check_name(file, &self.table.channels[self.checked].name)?;
+            self.checked += 1;
+        }
+        Ok(())
+    }
+
+    fn fields(&mut self, path: &mut String, value: &Value, depth: usize, known: &[Channel]) {
+        let sample = match value {
+            Value::Object(fields) if depth < MAX_DEPTH => {
+                for (name, value) in fields {
+                    let length = path.len();
+                    if length > 0 {
+                        path.push('.');
+                    }
+                    path.push_str(name);
+                    self.fields(path, value, depth + 1, known);
+                    path.truncate(length);
+                }
+                return;
+            }
+            Value::Number(number) => number.as_f64().unwrap_or(f64::NAN),
+            Value::Bool(bit) => f64::from(u8::from(*bit)),
+            Value::Null => f64::NAN,
+            _ => return,
+        };
+        let before = self.table.times_us.len() - 1;
+        let place = match self.places.get(path.as_str()) {
+            Some(place) => *place,
+            None => {
+                self.table.channels.push(channel(&self.name, path, known));
+                self.table.columns.push(Vec::new());
+                let place = self.table.columns.len() - 1;
+                self.places.insert(path.clone(), place);
+                place
+            }
+        };
+        let column = &mut self.table.columns[place];
+        column.resize(before, f64::NAN);
+        column.push(sample);
+    }
+}
+
+/// The signal a field stands for: of its own name, or of its topic's where it is just the value there; else
+/// one of the name of both.
+fn channel(topic: &str, path: &str, known: &[Channel]) -> Channel {
+    let named = |name: &str| known.iter().find(|channel| channel.name == name).cloned();
+    let is_value = matches!(path, "" | "value" | "data");
+    let of_topic = if is_value { named(topic) } else { None };
+    named(path).or(of_topic).unwrap_or_else(|| match path {
+        "" => plain(topic),
+        path => plain(&format!("{topic}.{path}")),
+    })
+}
+
+/// Puts rows into the order of their times: messages need not be.
+fn in_order(table: &mut Table) {
+    if table.times_us.is_sorted() {
+        return;
+    }
+    let mut rows: Vec<usize> = (0..table.times_us.len()).collect();
+    rows.sort_by_key(|row| table.times_us[*row]);
+    table.times_us = rows.iter().map(|row| table.times_us[*row]).collect();
+    for column in &mut table.columns {
+        *column = rows.iter().map(|row| column[*row]).collect();
+    }
+}

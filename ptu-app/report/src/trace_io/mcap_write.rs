@@ -1,0 +1,136 @@
+//! Traces as MCAP: one message of JSON a row, under one topic, for Foxglove, PlotJuggler and the like.
+//!
+//! A field a signal, null where a sample is not known; words and bits are numbers, so that they plot. The
+//! schema has each signal's unit and words, the file's metadata [`About`](super::About) under its name.
+
+use std::collections::BTreeMap;
+use std::io::{self, Seek, Write};
+use std::path::Path;
+
+use fault_db::{Channel, ChannelKind};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Compression, McapError, WriteOptions};
+use serde_json::{Map, Value, json};
+
+use super::about::{About, NAME};
+use super::export::Chosen;
+use ptu_bench::failure::Failure;
+use ptu_bench::new_file::cannot_write;
+
+/// The topic of all messages.
+const TOPIC: &str = "trace";
+/// Bytes of messages that are compressed together.
+const CHUNK_BYTES: u64 = 1 << 20;
+
+/// Writes all rows.
+pub(super) fn put(
+    out: &mut (impl Write + Seek),
+    chosen: &Chosen<'_>,
+    to: &Path,
+) -> Result<(), Failure> {
+    let failed = |error: McapError| cannot_write(to, &error);
+    let about = &chosen.about;
+    let options = WriteOptions::new()
+        .library("ptu")
+        .compression(Some(Compression::Zstd))
+        .compression_threads(0)
+        .chunk_size(Some(CHUNK_BYTES));
+    let mut file = options.create(out).map_err(failed)?;
+    let metadata = Metadata {
+        name: NAME.to_owned(),
+        metadata: BTreeMap::from([("about".to_owned(), about.json())]),
+    };
+    file.write_metadata(&metadata).map_err(failed)?;
+    let schema = schema(about).to_string();
+    let schema = file
+        .add_schema(NAME, "jsonschema", schema.as_bytes())
+        .map_err(failed)?;
+    let channel = file
+        .add_channel(schema, TOPIC, "json", &BTreeMap::new())
+        .map_err(failed)?;
+    let keys = keys(about);
+    let mut message = Vec::new();
+    chosen.each_block(|first, columns| {
+        for row in 0..columns.first().map_or(0, Vec::len) {
+            message.clear();
+            put_row(&mut message, &keys, columns, row).map_err(|error| failed(error.into()))?;
+            let number = first + row;
+            let at_us = (number as i64).saturating_mul(about.period_us);
+            // Nothing was recorded before 1970.
+            let at_ns = u64::try_from(about.t0_us.saturating_add(at_us))
+                .unwrap_or(0)
+                .saturating_mul(1000);
+            let header = MessageHeader {
+                channel_id: channel,
+                sequence: number as u32,
+                log_time: at_ns,
+                publish_time: at_ns,
+            };
+            file.write_to_known_channel(&header, &message)
+                .map_err(failed)?;
+        }
+        Ok(())
+    })?;
+    file.finish().map_err(failed)?;
+    Ok(())
+}
+
+/// Each signal's name as JSON has it before a value; the same in every row.
+fn keys(about: &About) -> Vec<String> {
+    let name = |channel: &Channel| Value::from(channel.name.as_str()).to_string();
+    about.channels.iter().map(|c| name(c) + ":").collect()
+}
+
+fn put_row(
+    message: &mut Vec<u8>,
+    keys: &[String],
+    columns: &[Vec<f64>],
+    row: usize,
+) -> io::Result<()> {
+    message.push(b'{');
+    for (place, (key, column)) in keys.iter().zip(columns).enumerate() {
+        let before = if place == 0 { "" } else { "," };
+        write!(message, "{before}{key}{}", number(column[row]))?;
+    }
+    message.push(b'}');
+    Ok(())
+}
+
+/// A whole number without its point, an unknown or endless one as null.
+fn number(sample: f64) -> Value {
+    if sample.fract() == 0.0 && sample.abs() < 1e15 {
+        Value::from(sample as i64)
+    } else {
+        serde_json::Number::from_f64(sample).map_or(Value::Null, Value::Number)
+    }
+}
+
+/// What a message looks like, as JSON Schema.
+fn schema(about: &About) -> Value {
+    let properties: Map<String, Value> = about
+        .channels
+        .iter()
+        .map(|channel| (channel.name.clone(), property(channel)))
+        .collect();
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": NAME,
+        "type": "object",
+        "properties": properties,
+    })
+}
+
+fn property(channel: &Channel) -> Value {
+    match &channel.kind {
+        ChannelKind::Number { .. } => {
+            json!({"type": ["number", "null"], "unit": channel.unit, "description": channel.unit})
+        }
+        ChannelKind::Bit => json!({"type": ["integer", "null"], "minimum": 0, "maximum": 1}),
+        ChannelKind::Enum { labels } => {
+            let word = |(n, word): (&i64, &String)| json!({"const": n, "title": word});
+            let mut words: Vec<Value> = labels.iter().map(word).collect();
+            words.push(json!({"const": null, "title": "not known"}));
+            json!({"oneOf": words})
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Traces as Apache Parquet: a column of times, then a column a signal.
+//!
+//! Numbers are doubles, bits booleans, enums their words; an unknown sample is null. The file's metadata
+//! has [`About`](super::About) under its name.
+
+use std::io::Write;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use fault_db::{Channel, ChannelKind};
+use parquet::basic::{Compression, LogicalType, Repetition, TimeUnit, Type as Physical, ZstdLevel};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::Type;
+
+use super::about::NAME;
+use super::export::Chosen;
+use ptu_bench::failure::Failure;
+use ptu_bench::new_file::cannot_write;
+
+/// Rows of a row group; one column of a group is in memory at once.
+const GROUP_ROWS: usize = 1 << 16;
+/// Heading of the column of seconds from the trigger.
+const TIME: &str = "time_s";
+/// Heading of the column of UTC.
+const UTC: &str = "time_utc";
+
+/// Writes all rows.
+pub(super) fn put(
+    out: &mut (impl Write + Send),
+    chosen: &Chosen<'_>,
+    to: &Path,
+) -> Result<(), Failure> {
+    let failed = |error: ParquetError| cannot_write(to, &error);
+    let about = &chosen.about;
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(ZstdLevel::default()))
+        .set_created_by("ptu".to_owned())
+        .set_key_value_metadata(Some(vec![KeyValue::new(NAME.to_owned(), about.json())]))
+        .build();
+    let schema = schema(&about.channels).map_err(failed)?;
+    let mut file =
+        SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties)).map_err(failed)?;
+    for first in (0..about.rows).step_by(GROUP_ROWS) {
+        let rows = first..about.rows.min(first + GROUP_ROWS);
+        let mut group = file.next_row_group().map_err(failed)?;
+        let mut place = 0;
+        while let Some(mut column) = group.next_column().map_err(failed)? {
+            match place {
+                0 => put_seconds(&mut column, chosen, rows.clone()).map_err(failed)?,
+                1 => put_utc(&mut column, chosen, rows.clone()).map_err(failed)?,
+                place => {
+                    let place = place - 2;
+                    let samples = chosen.column(place, rows.clone())?;
+                    put_samples(&mut column, &about.channels[place], &samples).map_err(failed)?;
+                }
+            }
+            column.close().map_err(failed)?;
+            place += 1;
+        }
+        group.close().map_err(failed)?;
+    }
+    file.close().map_err(failed)?;
+    Ok(())
+}
+
+fn schema(channels: &[Channel]) -> Result<Type, ParquetError> {
+    let time = Type::primitive_type_builder(TIME, Physical::DOUBLE)
+        .with_repetition(Repetition::REQUIRED)
+        .build()?;
+    let utc = Type::primitive_type_builder(UTC, Physical::INT64)
+        .with_repetition(Repetition::REQUIRED)
+        .with_logical_type(Some(LogicalType::timestamp(true, TimeUnit::MICROS)))
+        .build()?;
+    let mut fields = vec![Arc::new(time), Arc::new(utc)];
+    for channel in channels {
+        let (physical, logical) = match channel.kind {
+            ChannelKind::Number { .. } => (Physical::DOUBLE, None),
+            ChannelKind::Bit => (Physical::BOOLEAN, None),
+            ChannelKind::Enum { .. } => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        };
+        let field = Type::primitive_type_builder(&channel.name, physical)
+            .with_repetition(Repetition::OPTIONAL)
+            .with_logical_type(logical)
+            .build()?;
+        fields.push(Arc::new(field));
+    }
+    Type::group_type_builder("trace")
+        .with_fields(fields)
+        .build()
+}
+
+fn put_seconds(
+    column: &mut SerializedColumnWriter<'_>,
+    chosen: &Chosen<'_>,
+    rows: Range<usize>,
+) -> Result<(), ParquetError> {
+    let times: Vec<f64> = rows
+        .map(|row| chosen.about.time_us(row) as f64 / 1e6)
+        .collect();
+    column
+        .typed::<DoubleType>()
+        .write_batch(&times, None, None)?;
+    Ok(())
+}
+
+fn put_utc(
+    column: &mut SerializedColumnWriter<'_>,
+    chosen: &Chosen<'_>,
+    rows: Range<usize>,
+) -> Result<(), ParquetError> {
+    let about = &chosen.about;
+    let times: Vec<i64> = rows
+        .map(|row| {
+            about
+                .t0_us
+                .saturating_add((row as i64).saturating_mul(about.period_us))
+        })
+        .collect();
+    column
+        .typed::<Int64Type>()
+        .write_batch(&times, None, None)?;
+    Ok(())
+}
+
+fn put_samples(
+    column: &mut SerializedColumnWriter<'_>,
+    channel: &Channel,
+    samples: &[f64],
+) -> Result<(), ParquetError> {
+    let known: Vec<i16> = samples.iter().map(|s| i16::from(!s.is_nan())).collect();
+    let present = || samples.iter().copied().filter(|sample| !sample.is_nan());
+    let known = Some(known.as_slice());
+    match &channel.kind {
+        ChannelKind::Number { .. } => {
+            let values: Vec<f64> = present().collect();
+            column
+                .typed::<DoubleType>()
+                .write_batch(&values, known, None)?;
+        }
+        ChannelKind::Bit => {
+            let values: Vec<bool> = present().map(|sample| sample != 0.0).collect();
+            column
+                .typed::<BoolType>()
+                .write_batch(&values, known, None)?;
+        }
+        ChannelKind::Enum { labels } => {
+            // What has no word is a number still.
+            let word = |sample: f64| {
+                let label = labels
+                    .get(&(sample as i64))
+                    .filter(|_| sample.fract() == 0.0);
+                label.map_or_else(|| sample.to_string(), Clone::clone)
+            };
+            let values: Vec<ByteArray> = present()
+                .map(|sample| ByteArray::from(word(sample).into_bytes()))
+                .collect();
+            column
+                .typed::<ByteArrayType>()
+                .write_batch(&values, known, None)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,92 @@
+//! Signals read from a file, each sample with its time.
+
+use std::path::Path;
+
+use fault_db::trace::MAX_SAMPLES;
+use fault_db::{Channel, ChannelKind};
+
+use super::about::About;
+use super::{csv_read, mcap_read};
+use ptu_bench::failure::Failure;
+
+/// A file has at most so many signals; a trace of ours has a few hundred.
+const MOST_SIGNALS: usize = 4096;
+
+/// Signals that were sampled together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Time of each row, microseconds, never falling.
+    pub times_us: Vec<i64>,
+    /// The signals.
+    pub channels: Vec<Channel>,
+    /// Samples by signal, then by row; an unknown one is NaN.
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Import {
+    /// Signals, by what they were sampled with.
+    pub tables: Vec<Table>,
+    /// Times are since 1970, UTC; otherwise from the trigger.
+    pub is_utc: bool,
+    /// What it is, if one of our own exports.
+    pub about: Option<About>,
+}
+
+/// Whether a file of this name can be read.
+pub fn is_importable(file: &Path) -> bool {
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    matches!(ending, Some("csv" | "mcap"))
+}
+
+/// Reads a CSV or MCAP file; signals that are among `known` are of their kind.
+///
+/// # Errors
+/// The file cannot be read, or is not what its ending says: with the place where.
+pub fn import(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
+    let import = match file.extension().and_then(|ending| ending.to_str()) {
+        Some("mcap") => mcap_read::read(file, known)?,
+        _ => csv_read::read(file, known)?,
+    };
+    if import.tables.iter().all(|table| table.times_us.is_empty()) {
+        return Err(wrong(file, "it has no samples"));
+    }
+    Ok(import)
+}
+
+impl Table {
+    /// Samples in it: the times are a column, too.
+    pub(super) fn samples(&self) -> usize {
+        self.times_us.len().saturating_mul(self.columns.len() + 1)
+    }
+}
+
+/// Refuses a file that memory is not meant for, by what it has so far.
+pub(super) fn check_size(file: &Path, signals: usize, samples: usize) -> Result<(), Failure> {
+    let more = if signals > MOST_SIGNALS {
+        format!("{MOST_SIGNALS} signals")
+    } else if samples > MAX_SAMPLES {
+        format!("{MAX_SAMPLES} samples")
+    } else {
+        return Ok(());
+    };
+    Err(wrong(
+        file,
+        &format!("it has more than {more}; export a part of it"),
+    ))
+}
+
+/// A number of unknown kind, as which a signal is taken that no trace has.
+pub(super) fn plain(name: &str) -> Channel {
+    Channel {
+        name: name.to_owned(),
+        unit: String::new(),
+        kind: ChannelKind::Number { lsb: 1e-6 },
+    }
+}
+
+/// The failure of a file that is wrong.
+pub(super) fn wrong(file: &Path, what: &str) -> Failure {
+    Failure::usage(format!("{}: {what}", file.display()))
+}

@@ -1,0 +1,204 @@
+//! Lists the recorded traces, and opens one with the events in it.
+
+use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
+
+use super::TraceView;
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_bench::owner;
+
+/// Runs looked through, the newest.
+pub const RUNS: u32 = 500;
+
+/// Times from row to row that make sense: up to a minute.
+const PERIODS_US: std::ops::RangeInclusive<i64> = 1..=60_000_000;
+
+/// A run with its traces.
+#[derive(Clone, Debug)]
+pub struct ListedRun {
+    /// The run.
+    pub id: Id,
+    /// Serial number of its unit.
+    pub unit: String,
+    /// When it began, local time.
+    pub began: String,
+    /// How it came out; none before its end.
+    pub verdict: Option<Verdict>,
+    /// Faults injected on purpose.
+    pub injected: Option<String>,
+    /// Its traces, in order.
+    pub traces: Vec<ListedTrace>,
+}
+
+/// A trace in the list.
+#[derive(Clone, Debug)]
+pub struct ListedTrace {
+    /// The trace.
+    pub id: Id,
+    /// Its length, s.
+    pub length_s: f64,
+    /// Faults it shows, as `9000 check_failed eb_relay`, each once.
+    pub faults: Vec<String>,
+    /// What a filter looks in, in small letters.
+    text: String,
+}
+
+/// Something that happened in a trace.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// Row at which it happened.
+    pub row: usize,
+    /// What it was; none = the trigger.
+    pub name: Option<String>,
+}
+
+/// A trace that is open.
+#[derive(Debug)]
+pub struct Opened {
+    /// The trace.
+    pub id: Id,
+    /// Its run, as far as it is known.
+    pub run: Option<Id>,
+    /// Its samples.
+    pub view: TraceView,
+    /// The trigger and the faults found in its window, in order.
+    pub events: Vec<Event>,
+}
+
+/// Runs that have traces, newest first.
+///
+/// # Errors
+/// The database fails.
+pub fn list(store: &Store) -> Result<Vec<ListedRun>, Failure> {
+    let newest = RunFilter {
+        limit: Some(RUNS),
+        ..RunFilter::default()
+    };
+    let mut listed = Vec::new();
+    for run in store.runs(&newest, &owner::is_alive)? {
+        let traces = store.traces(run.id)?;
+        if traces.is_empty() {
+            continue;
+        }
+        let occurrences = store.run_occurrences(run.id)?;
+        let began = clock::local(run.started_at_us);
+        let trace = |trace: fault_db::TraceSummary| {
+            let mut faults: Vec<String> = Vec::new();
+            for occurrence in occurrences.iter().filter(|o| o.trace_id == Some(trace.id)) {
+                let name = fault_name(occurrence);
+                if !faults.contains(&name) {
+                    faults.push(name);
+                }
+            }
+            ListedTrace {
+                id: trace.id,
+                length_s: f64::from(trace.rows) * trace.period_us as f64 / 1e6,
+                text: text(&run, &began, trace.id, &faults),
+                faults,
+            }
+        };
+        listed.push(ListedRun {
+            id: run.id,
+            traces: traces.into_iter().map(trace).collect(),
+            unit: run.unit_serial,
+            began,
+            verdict: run.verdict,
+            injected: run.injected,
+        });
+    }
+    Ok(listed)
+}
+
+fn text(run: &RunSummary, began: &str, trace: Id, faults: &[String]) -> String {
+    let injected = run.injected.as_deref().unwrap_or_default();
+    let (run_id, faults) = (run.id.short(), faults.join(" "));
+    format!(
+        "{run_id} {} {began} {injected} {} {faults}",
+        run.unit_serial,
+        trace.short()
+    )
+    .to_lowercase()
+}
+
+impl ListedTrace {
+    /// Every word of the filter is somewhere in it.
+    pub fn fits(&self, filter: &str) -> bool {
+        let filter = filter.to_lowercase();
+        filter
+            .split_whitespace()
+            .all(|word| self.text.contains(word))
+    }
+}
+
+/// Reads a trace of this run; where no run is named, of the one its recording names.
+///
+/// # Errors
+/// It is gone or damaged, or the database fails.
+pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<Opened, Failure> {
+    let data = store.trace(id)?;
+    if !PERIODS_US.contains(&data.period_us) {
+        return Err(Failure::bench(format!(
+            "trace {} has rows of {} µs: it is damaged",
+            id.short(),
+            data.period_us
+        )));
+    }
+    let run = match run {
+        Some(run) => Some(run),
+        None => store.recording(id)?.map(|recording| recording.run_id),
+    };
+    let occurrences = match run {
+        Some(run) => store.run_occurrences(run)?,
+        None => Vec::new(),
+    };
+    let mut events: Vec<Event> = occurrences
+        .iter()
+        .filter_map(|occurrence| {
+            let since_us = occurrence.bench_us.saturating_sub(data.t0_bench_us);
+            let row = usize::try_from(since_us.div_euclid(data.period_us)).ok()?;
+            (row < data.rows()).then(|| Event {
+                row,
+                name: Some(fault_name(occurrence)),
+            })
+        })
+        .collect();
+    events.extend(data.trigger_row.map(|row| Event {
+        row: row as usize,
+        name: None,
+    }));
+    events.sort_by_key(|event| event.row);
+    Ok(Opened {
+        id,
+        run,
+        view: TraceView::new(data),
+        events,
+    })
+}
+
+fn fault_name(occurrence: &RunOccurrence) -> String {
+    let RunOccurrence {
+        code,
+        code_name,
+        lru,
+        ..
+    } = occurrence;
+    format!("{code} {code_name} {lru}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_finds_all_its_words_in_any_order() {
+        let trace = ListedTrace {
+            id: Id::from_bytes([0; 16]),
+            length_s: 1.0,
+            faults: Vec::new(),
+            text: "443485fc bad-1 2026-11-22 9000 check_failed eb_relay".into(),
+        };
+        assert!(trace.fits(""));
+        assert!(trace.fits("relay BAD-1"));
+        assert!(!trace.fits("relay good"));
+    }
+}

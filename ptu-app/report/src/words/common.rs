@@ -1,0 +1,80 @@
+//! Verdicts, states, units and what every page says.
+
+use btu_rig::procedure::Verdict;
+use fault_db::FaultState;
+
+use super::wordings;
+use ptu_bench::run::stored;
+
+wordings! {
+    /// Verdicts, states and what every page says.
+    Common {
+        passed: "passed", "합격";
+        failed: "failed", "불합격";
+        error: "error", "오류";
+        skipped: "skipped", "생략";
+        aborted: "aborted", "중단";
+        running: "running", "진행 중";
+        interrupted: "interrupted", "미완료";
+        open: "open", "미조치";
+        acknowledged: "acknowledged", "확인됨";
+        repaired: "repaired", "수리됨";
+        verified: "verified", "검증됨";
+        closed: "closed", "종결";
+        unit: "unit", "유닛";
+        run: "run", "시험";
+        fault: "fault", "고장";
+        part: "part", "부품";
+        step: "step", "단계";
+        procedure: "procedure", "절차";
+        code: "code", "코드";
+        state: "state", "상태";
+        severity: "severity", "심각도";
+        time: "time", "시각";
+        note: "note", "메모";
+        value: "value", "값";
+        low: "low", "하한";
+        high: "high", "상한";
+        verdict: "verdict", "판정";
+        operator: "operator", "시험자";
+        line: "line", "노선";
+        train_no: "train number", "편성 번호";
+        loading: "loading …", "불러오는 중 …";
+        nothing: "nothing here yet", "아직 아무것도 없음";
+        refresh: "refresh", "새로 고침";
+        save: "save", "저장";
+        cancel: "cancel", "취소";
+        close: "close", "닫기";
+        file: "file", "파일";
+        saved: "saved: {file}", "저장됨: {file}";
+    }
+}
+
+impl Common {
+    /// A verdict.
+    pub fn verdict(&self, verdict: Verdict) -> &'static str {
+        self.stored_verdict(stored(verdict))
+    }
+
+    /// A stored verdict.
+    pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> &'static str {
+        match verdict {
+            fault_db::Verdict::Passed => self.passed,
+            fault_db::Verdict::Failed => self.failed,
+            fault_db::Verdict::Error => self.error,
+            fault_db::Verdict::Skipped => self.skipped,
+            fault_db::Verdict::Aborted => self.aborted,
+        }
+    }
+
+    /// A fault's state.
+    pub fn fault_state(&self, state: FaultState) -> &'static str {
+        match state {
+            FaultState::Open => self.open,
+            FaultState::Acknowledged => self.acknowledged,
+            FaultState::Repaired => self.repaired,
+            FaultState::Verified => self.verified,
+            FaultState::Closed => self.closed,
+        }
+    }
+}

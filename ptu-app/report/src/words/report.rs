@@ -1,0 +1,152 @@
+//! Test sheet.
+
+use diagnosis::Finding;
+
+use super::wordings;
+use ptu_bench::run_diagnosis::Origin;
+
+wordings! {
+    /// Test sheet.
+    Report {
+        title: "Report", "시험 성적서";
+        sheet: "Test sheet", "시험 성적서";
+        of_unit: "Unit {serial}, run {run}", "유닛 {serial}, 시험 {run}";
+        not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
+        all_passed: "{of} steps", "{of}개 단계";
+        no_steps: "No steps were run.", "수행된 단계가 없습니다.";
+        not_finished: "The run has no verdict: it is under way or was broken off. What is here was recorded until then.",
+            "판정이 없는 시험입니다. 진행 중이거나 도중에 끊겼으며, 그때까지 기록된 내용만 실었습니다.";
+        the_run: "Run", "시험 개요";
+        run_id: "Run number", "시험 번호";
+        unit_serial: "Serial number of the unit", "유닛 일련번호";
+        unit_kind: "Kind of unit", "유닛 종류";
+        unit_config: "Unit configuration", "유닛 구성";
+        tester: "Tested by", "시험자";
+        nobody: "not stated", "기재 없음";
+        seed: "Seed", "시드";
+        source: "Connection", "연결";
+        started: "Started", "시작";
+        finished: "Finished", "종료";
+        bench_time: "Time on the bench", "벤치 시간";
+        wall_time: "Time by the clock", "실제 소요 시간";
+        program: "Program version", "프로그램 버전";
+        injected: "Faults injected", "주입한 고장";
+        scripts_hash: "SHA-256 of all scripts", "전체 스크립트 SHA-256";
+        seal: "Seal", "봉인";
+        seal_of: "{digits}, entry {n} of database {file}", "{digits}, 데이터베이스 {file}의 {n}번 항목";
+        seal_earlier: "by an earlier version, which covered less", "이전 버전의 봉인으로 적용 범위가 좁음";
+        seal_found: "as the run was found when it came in", "외부에서 들어온 시점의 기록 그대로 봉인";
+        scripts: "Scripts", "스크립트";
+        script: "Script", "스크립트";
+        summary: "Verdicts", "판정 요약";
+        steps: "Steps", "단계 수";
+        failures: "What did not pass", "미합격 항목";
+        step_or_measurement: "Step, measurement", "단계, 측정 항목";
+        measurement: "Measurement", "측정 항목";
+        unit_of_value: "Unit", "단위";
+        within: "Within limits", "한계 내 위치";
+        seconds: "Time s", "시간 s";
+        no_value: "no value", "값 없음";
+        faults: "Faults", "고장";
+        no_faults: "No faults were seen.", "발생한 고장이 없습니다.";
+        minor: "minor", "경미";
+        major: "major", "중대";
+        critical: "critical", "치명";
+        seen: "Seen", "횟수";
+        first_seen: "First seen", "최초 발생";
+        trace: "Trace", "트레이스";
+        trace_of: "Trace {id}: {faults}", "트레이스 {id}: {faults}";
+        trace_shown: "Trace {id} is shown above.", "트레이스 {id}은(는) 위에 있습니다.";
+        trace_missing: "Trace {id} cannot be shown: {why}", "트레이스 {id}을(를) 표시할 수 없음: {why}";
+        more_traces: "{n} more traces are in the database; `ptu trace show` shows them.",
+            "그 밖의 트레이스 {n}개는 데이터베이스에 있습니다(`ptu trace show`).";
+        cut_short: "cut short", "중간에 끊김";
+        other_traces: "Traces of other faults", "그 밖의 고장 트레이스";
+        from_trigger: "Time from the trigger, s", "트리거 기준 시간, s";
+        trigger: "trigger", "트리거";
+        speeds: "Speeds", "속도";
+        changes: "What changed", "변화한 신호";
+        diagnosis: "Diagnosis", "진단";
+        no_diagnosis: "No diagnosis: {why}", "진단 불가: {why}";
+        conclusion: "Conclusion", "결론";
+        found: "Replace {parts}.", "교체 대상: {parts}.";
+        two_found: "Two faults: replace {parts}.", "복합 고장, 교체 대상: {parts}.";
+        no_fault: "No fault is found.", "고장이 발견되지 않았습니다.";
+        cannot_tell: "The part cannot be told; possible: {parts}.", "부품을 특정할 수 없습니다. 후보: {parts}.";
+        unknown_fault: "A fault that is not in the fault dictionary.", "고장 사전에 없는 고장입니다.";
+        not_enough: "What was run shows nothing wrong, but is not enough to say that nothing is.",
+            "수행한 단계에서는 이상이 없으나, 이상 없음을 판정하기에는 부족합니다.";
+        none_likely: "none", "없음";
+        probability: "Probability", "확률";
+        mode: "Fault mode", "고장 모드";
+        speaks_for: "For it", "근거";
+        next_check: "Next best check", "다음 권장 점검";
+        dictionary: "Fault dictionary", "고장 사전";
+        current: "made of these scripts", "현재 스크립트 기준";
+        stale: "not made of these scripts", "현재 스크립트 기준 아님";
+        procedures: "All steps", "전체 단계";
+        procedure_passed: "{passed} of {of} passed", "{of}개 중 {passed}개 합격";
+        signatures: "Signatures", "서명";
+        tester_signs: "Tester", "시험자";
+        approver_signs: "Approver", "승인자";
+        date: "Date", "일자";
+        notes: "Notes", "메모";
+        noted_by: "Noted by", "작성자";
+        noted: "Note", "메모 내용";
+        note_field: "note on this run", "이 시험의 메모";
+        note_save: "Save note", "메모 저장";
+        note_hint: "State the operator's name, then write what is to be said; it stands on the test sheet",
+            "시험자 이름을 먼저 적으십시오. 저장한 내용은 시험 성적서에 실립니다";
+        note_saved: "Note saved", "메모를 저장했습니다";
+        note_not_saved: "The note was not saved", "메모를 저장하지 못했습니다";
+        from_scripts: "the scripts directory", "스크립트 폴더";
+        from_campaign: "a campaign on this machine", "이 컴퓨터에서 수행한 캠페인";
+        choose_run: "Choose a run on the left.", "왼쪽에서 시험을 고르십시오.";
+        not_read: "The run cannot be read", "시험 기록을 읽을 수 없습니다";
+        language: "language of the sheet", "성적서 언어";
+        file: "file", "파일";
+        write_html: "HTML", "HTML";
+        write_pdf: "PDF", "PDF";
+        write_csv: "CSV", "CSV";
+        write_hint: "Written to the file named beside it, with its own ending; never over one that is there, but beside it as -2, -3 …", "옆에 적은 파일에 해당 확장자로 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
+        written: "Written: {file}", "저장 완료: {file}";
+        not_written: "The report was not written", "성적서를 저장하지 못했습니다";
+        name_file: "name a file", "파일 이름을 적으십시오";
+        to_diagnosis: "Diagnosis", "진단";
+        to_trace: "Trace {id}", "트레이스 {id}";
+        to_traces: "Traces ({n})", "트레이스 ({n})";
+        page: "page {n} of {of}", "{of}쪽 중 {n}쪽";
+    }
+}
+
+impl Report {
+    /// How bad a fault is; a word that is not known stays as it is.
+    pub fn severity<'a>(&self, severity: &'a str) -> &'a str {
+        match severity {
+            "minor" => self.minor,
+            "major" => self.major,
+            "critical" => self.critical,
+            other => other,
+        }
+    }
+
+    /// Where a fault dictionary is from.
+    pub fn origin(&self, origin: Origin) -> &'static str {
+        match origin {
+            Origin::Scripts => self.from_scripts,
+            Origin::Campaign => self.from_campaign,
+        }
+    }
+
+    /// The finding of a diagnosis, with a placeholder for the parts.
+    pub fn finding(&self, finding: Finding) -> &'static str {
+        match finding {
+            Finding::Found => self.found,
+            Finding::TwoFound => self.two_found,
+            Finding::NoFault => self.no_fault,
+            Finding::CannotTell => self.cannot_tell,
+            Finding::UnknownFault => self.unknown_fault,
+            Finding::NotEnough => self.not_enough,
+        }
+    }
+}
