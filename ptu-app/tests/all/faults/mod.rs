@@ -1,0 +1,331 @@
+//! Every injectable fault: the suite fails where it should, and keeps a fault with a trace around it.
+//!
+//! Method: the table says for each fault mode which step must fail, and which modes no stored fault
+//! names the broken part of. A mode that is not in the table fails the test, so that nobody adds one
+//! without saying what finds it. What a fault of the train makes fail suspects the train, and what one
+//! of the unit makes fail does not.
+
+mod runs;
+
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+use crate::common::{Place, has_shape, list, normalised, text};
+use glob::Pattern;
+use protocol::injection::{FaultKind, FaultMode};
+use protocol::signal::Signal;
+use runs::{FaultRun, TestBench, run_program};
+
+/// Trace rows are this far apart.
+const PERIOD_MS: f64 = 50.0;
+/// One row less than what is recorded before a trigger: what fails with power-up has no row at 0 s.
+const BEFORE_S: f64 = 10.0 - PERIOD_MS / 1000.0;
+const AFTER_S: f64 = 5.0;
+/// Suites run side by side.
+const WORKERS: usize = 2;
+
+/// For each fault mode (or glob): procedure, and words in the name of a step that must fail.
+const FOUND_BY: &str = include_str!("found_by.txt");
+/// Modes run through the program itself, command line, printed reports and exit codes included: of the unit,
+/// of the train, of a link, a weak one, one that comes and goes, one that starts the unit again and again.
+const THROUGH_THE_PROGRAM: [&str; 6] = [
+    "eb_relay.slow",
+    "brake_unit.dead",
+    "rs485_link.receiver_errors",
+    "atp_antenna.weak",
+    "door_contact.loose",
+    "power_supply.dips",
+];
+
+/// Modes that diagnosis takes for another part's at the default seed, and why.
+const NOT_DIAGNOSED: &[(&str, &str)] = &[
+    (
+        "atp_receiver.drops_out",
+        "code lost in spells is code lost in spells, in the antenna or behind it",
+    ),
+    (
+        "twc_antenna.loose",
+        "frames lost in spells on both ways, which a CPU that hangs in spells loses, too",
+    ),
+    (
+        "twc_cpu.hangs",
+        "frames lost in spells, which a modem that fades loses, too",
+    ),
+];
+
+/// Parts of the train around the unit.
+const TRAIN_PARTS: [&str; 8] = [
+    "inverter",
+    "brake_unit",
+    "brake_cylinder",
+    "master_controller",
+    "door_contact",
+    "head_control_relay",
+    "tcms",
+    "air_supply",
+];
+
+/// Modes that no stored fault names the part of, and why. Of those that come and go none need be named: a
+/// part that is sound whenever it is looked at is found by what its spells do to others.
+const PART_NOT_NAMED: &[(&str, &str)] = &[
+    (
+        "atp_receiver.stuck",
+        "sets in 20 s after power-up, when the receiver's own check is over; what shows is brakes",
+    ),
+    (
+        "io_board.cab_input_stuck",
+        "the relay that does not drop with the cab is what the step looks at",
+    ),
+    (
+        "twc_antenna.weak",
+        "frames lost in the antenna count as lost in the modem behind it",
+    ),
+    (
+        "test_board.weak_code",
+        "what a weak test signal does not do is looked for in what it tests",
+    ),
+    (
+        "test_board.wrong_speed",
+        "what a wrong test signal does is looked for in what it tests",
+    ),
+];
+
+/// Modes of the unit that make a step fail which suspects the train, and why.
+const TRAIN_SUSPECTED: &[(&str, &str)] = &[
+    (
+        "rs485_link.*_errors",
+        "a link that is lost already is not lost when TCMS falls silent",
+    ),
+    (
+        "atp_cpu.clock_fast",
+        "a unit that no longer hears its inputs brakes a train that is tested",
+    ),
+];
+
+#[test]
+fn every_injectable_fault_is_found_and_kept_with_its_trace() {
+    let bench = TestBench::new();
+    assert!(bench.catalogue.faults.len() >= 12, "fault modes");
+    let waiting = Mutex::new(bench.catalogue.faults.iter());
+    let next = || waiting.lock().expect("modes").next();
+    let found = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..WORKERS {
+            scope.spawn(|| {
+                while let Some(mode) = next() {
+                    let wrong = problems(mode, &bench.run(mode));
+                    found.lock().expect("problems").extend(wrong);
+                }
+            });
+        }
+    });
+    let found = found.into_inner().expect("problems");
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// The program says of a faulty unit what the same run in process gives.
+#[test]
+fn a_fault_is_found_through_the_program_as_in_process() {
+    let bench = TestBench::new();
+    for id in THROUGH_THE_PROGRAM {
+        let mode = bench.catalogue.faults.iter().find(|mode| mode.id == id);
+        let mode = mode.expect("a fault mode of the catalogue");
+        let found = run_program(id);
+        assert_eq!(problems(mode, &found), [""; 0]);
+        let in_process = bench.run(mode);
+        assert_eq!(found.exit, in_process.exit, "{id}");
+        assert_eq!(
+            normalised(found.report),
+            normalised(in_process.report),
+            "{id}"
+        );
+        assert_eq!(found.first_candidate, in_process.first_candidate, "{id}");
+    }
+}
+
+#[test]
+fn the_tables_name_no_fault_that_is_gone() {
+    let catalogue = Place::new().json(&["catalog", "faults", "--json"]);
+    let keys = [
+        ("id", "text"),
+        ("lru", "text"),
+        ("mode", "text"),
+        ("severity", "text"),
+        ("weight", "number"),
+        ("unsafe", "bool"),
+        ("kind", "text"),
+    ];
+    let modes = list(&catalogue);
+    modes.iter().for_each(|mode| has_shape(mode, &keys));
+    let excused = PART_NOT_NAMED
+        .iter()
+        .chain(TRAIN_SUSPECTED)
+        .chain(NOT_DIAGNOSED);
+    let named = found_by().map(|(glob, ..)| glob);
+    for glob in named.chain(excused.map(|(glob, _)| *glob)) {
+        assert!(
+            modes.iter().any(|mode| fits(glob, text(&mode["id"]))),
+            "no fault mode {glob}"
+        );
+    }
+}
+
+#[test]
+fn two_faults_at_once_are_both_seen() {
+    let place = Place::new();
+    let (said, report) = place.run(&["--inject", "tra.dead,rs485_link.transmitter_dead"]);
+    said.exits(1);
+    assert_eq!(
+        report["run"]["injected"],
+        "tra.dead,rs485_link.transmitter_dead"
+    );
+    let parts: BTreeSet<_> = list(&report["faults"])
+        .iter()
+        .map(|fault| text(&fault["lru"]))
+        .collect();
+    assert!(
+        parts.contains("tra") && parts.contains("rs485_link"),
+        "{parts:?}"
+    );
+}
+
+fn fits(glob: &str, id: &str) -> bool {
+    Pattern::new(glob).expect("a glob").matches(id)
+}
+
+/// The table's rows: glob, procedure, words of the step.
+fn found_by() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    FOUND_BY.lines().map(|line| {
+        let (glob, rest) = line.split_once("  ").expect("a row of the table");
+        let (procedure, words) = rest.trim_start().split_once("  ").expect("three columns");
+        (glob, procedure, words.trim_start())
+    })
+}
+
+/// What is wrong with the outcome of a run on a unit with this fault.
+fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
+    let mut problems = Vec::new();
+    // A unit that starts again and again is also lost on the link now and then.
+    let exits: &[u8] = if mode.lru == "power_supply" {
+        &[1, 3]
+    } else {
+        &[1]
+    };
+    if !exits.contains(&run.exit) {
+        problems.push(format!("exit {}", run.exit));
+    }
+    problems.extend(check_steps(mode, run));
+    problems.extend(check_parts(mode, run));
+    problems.extend(check_side(mode, run));
+    problems.extend(check_traces(run));
+    problems.extend(check_diagnosis(mode, run));
+    let named = |problem| format!("{}: {problem}", mode.id);
+    problems.into_iter().map(named).collect()
+}
+
+/// Diagnosis puts the broken part first, whatever the stored faults name.
+fn check_diagnosis(mode: &FaultMode, run: &FaultRun) -> Option<String> {
+    let excused = NOT_DIAGNOSED.iter().find(|(id, _)| *id == mode.id);
+    match (run.first_candidate == mode.lru, excused) {
+        (false, None) => Some(format!("diagnosed as {}", run.first_candidate)),
+        (true, Some((_, reason))) => {
+            Some(format!("diagnosed now; strike out of the table: {reason}"))
+        }
+        _ => None,
+    }
+}
+
+fn check_steps(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
+    let expected: Vec<_> = found_by()
+        .filter(|(glob, ..)| fits(glob, &mode.id))
+        .collect();
+    if expected.is_empty() {
+        return vec!["not in the table: say which step finds it".into()];
+    }
+    let fails = |procedure: &str, words: &str| {
+        list(&run.report["steps"]).iter().any(|step| {
+            step["verdict"] == "failed"
+                && step["procedure"] == procedure
+                && text(&step["name"]).contains(words)
+        })
+    };
+    expected
+        .into_iter()
+        .filter(|(_, procedure, words)| !fails(procedure, words))
+        .map(|(_, procedure, words)| format!("{procedure}: no step \"…{words}…\" failed"))
+        .collect()
+}
+
+fn check_parts(mode: &FaultMode, run: &FaultRun) -> Option<String> {
+    let faults = list(&run.report["faults"]);
+    let named = faults.iter().any(|fault| fault["lru"] == *mode.lru);
+    let excused = PART_NOT_NAMED.iter().find(|(id, _)| *id == mode.id);
+    match (named, excused) {
+        _ if faults.is_empty() => Some("no fault stored".into()),
+        _ if comes_and_goes(mode) => None,
+        (false, None) => Some(format!("no stored fault names {}", mode.lru)),
+        (true, Some((_, reason))) => Some(format!(
+            "names its part now; strike out of the table: {reason}"
+        )),
+        _ => None,
+    }
+}
+
+/// Unit and train are not taken for each other: no part of the other side is suspected, and a broken
+/// train fails nothing but the procedures that test the train. What is sound while it is proved and
+/// lets go later may be taken for anything by one step.
+fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
+    let excused = TRAIN_SUSPECTED.iter().any(|(glob, _)| fits(glob, &mode.id));
+    if comes_and_goes(mode) || excused {
+        return Vec::new();
+    }
+    let of_train = |part: &str| TRAIN_PARTS.contains(&part);
+    let train_is_broken = of_train(&mode.lru);
+    let blamed = list(&run.report["faults"])
+        .iter()
+        .filter(|fault| of_train(text(&fault["lru"])) != train_is_broken)
+        .map(|fault| format!("suspects the other side: {fault}"));
+    let failed = list(&run.report["steps"])
+        .iter()
+        .filter(|step| train_is_broken && step["verdict"] == "failed")
+        .filter(|step| !text(&step["procedure"]).starts_with("tcms/"))
+        .map(|step| format!("fails a test of the unit: {step}"));
+    blamed.chain(failed).collect()
+}
+
+/// Every stored fault has a trace, and at least one trace has its whole window.
+fn check_traces(run: &FaultRun) -> Vec<String> {
+    let signals: BTreeSet<_> = Signal::ALL
+        .iter()
+        .map(|signal| signal.definition().name.to_owned())
+        .collect();
+    let mut problems = Vec::new();
+    let without = list(&run.report["faults"])
+        .iter()
+        .filter(|fault| fault["trace_id"].as_str().is_none());
+    problems.extend(without.map(|fault| format!("a fault without a trace: {fault}")));
+    for trace in &run.traces {
+        let id = &trace.id;
+        if trace.before_s < BEFORE_S {
+            problems.push(format!(
+                "trace {id}: {} s before the trigger",
+                trace.before_s
+            ));
+        }
+        if trace.after_s < AFTER_S && !trace.partial {
+            problems.push(format!("trace {id}: {} s after the trigger", trace.after_s));
+        }
+        if trace.period_ms != PERIOD_MS || trace.complete != signals {
+            problems.push(format!("trace {id}: not all signals every {PERIOD_MS} ms"));
+        }
+    }
+    let whole = |trace: &runs::Window| trace.before_s >= BEFORE_S && trace.after_s >= AFTER_S;
+    if !run.traces.iter().any(whole) {
+        problems.push("no trace with its whole window".into());
+    }
+    problems
+}
+
+fn comes_and_goes(mode: &FaultMode) -> bool {
+    mode.kind() == FaultKind::Intermittent
+}

@@ -1,0 +1,165 @@
+//! The suite on a unit with one fault: in process, on procedures loaded once, or through the program.
+
+use std::collections::BTreeSet;
+
+use crate::common::{Place, list, number, scripts, text};
+use btu_rig::procedure::{Procedure, RunOptions};
+use fault_db::{Store, TraceData};
+use protocol::injection::{FaultCatalogue, FaultMode};
+use ptu_bench::clock;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::owner;
+use ptu_bench::run::{self, BenchChoice, BenchSetup, Listener, RunPlan, SessionEvent, Suite, Task};
+use ptu_bench::run_diagnosis::diagnose_run;
+use ptu_bench::stop::Stop;
+use ptu_report::run_json;
+use serde_json::Value;
+
+/// What a run on a faulty unit came to.
+pub struct FaultRun {
+    /// Exit code.
+    pub exit: u8,
+    /// The report as JSON.
+    pub report: Value,
+    /// The part that diagnosis names first.
+    pub first_candidate: String,
+    /// The trace of each stored fault that has one.
+    pub traces: Vec<Window>,
+}
+
+/// A stored trace around its trigger.
+pub struct Window {
+    pub id: String,
+    pub before_s: f64,
+    pub after_s: f64,
+    pub partial: bool,
+    pub period_ms: f64,
+    /// Signals that are there for all of the time.
+    pub complete: BTreeSet<String>,
+}
+
+/// The default suite, evaluated once.
+pub struct TestBench {
+    directory: ScriptsDirectory,
+    setup: BenchSetup,
+    suite: Suite,
+    pub catalogue: FaultCatalogue,
+}
+
+struct Nobody;
+
+impl Listener for Nobody {
+    fn hear(&mut self, _: &Procedure, _: &SessionEvent) {}
+}
+
+impl TestBench {
+    pub fn new() -> Self {
+        let directory = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
+        let setup = BenchChoice::default().setup(&directory).expect("a bench");
+        let suite = Suite::load(&directory, &[], &setup).expect("procedures");
+        assert_eq!(suite.errors, [""; 0]);
+        Self {
+            catalogue: directory.faults().expect("fault modes"),
+            directory,
+            setup,
+            suite,
+        }
+    }
+
+    /// Runs and records the suite on a unit with this fault.
+    pub fn run(&self, mode: &FaultMode) -> FaultRun {
+        let setup = BenchSetup {
+            faults: vec![mode.clone()],
+            ..self.setup.clone()
+        };
+        let asked_for = self.suite.procedures.iter().filter(|p| !p.on_request);
+        let plan = RunPlan {
+            tasks: asked_for
+                .map(|procedure| Task {
+                    procedure: procedure.clone(),
+                    options: RunOptions::default(),
+                })
+                .collect(),
+            jobs: 1,
+            stop_on_fail: false,
+            operator: String::new(),
+            train: String::new(),
+            scripts_sha256: self.suite.sha256.clone(),
+            adaptive: None,
+        };
+        let place = Place::new();
+        let path = place.path("history.db");
+        let store = Store::open(&path, clock::open_options()).expect("a database");
+        let ran = run::run(&plan, setup, store, &Stop::default(), &mut Nobody);
+        let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
+        let detail = store.run(outcome.id, &owner::is_alive).expect("the run");
+        let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
+        let first = answer.diagnosis.candidates.first();
+        let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
+        FaultRun {
+            exit: outcome.exit.code(),
+            report: run_json(&detail),
+            first_candidate: first.map_or(String::new(), |first| first.lru.clone()),
+            traces: ids
+                .map(|id| Window::of(id.to_string(), &store.trace(id).expect("a trace")))
+                .collect(),
+        }
+    }
+}
+
+/// The same through the program.
+pub fn run_program(id: &str) -> FaultRun {
+    let place = Place::new();
+    let (said, report) = place.run(&["--inject", id]);
+    assert!(!said.err.contains("panicked"), "{}", said.all());
+    let diagnosis = place.json(&["diagnose", "latest", "--json"]);
+    let first = &diagnosis["candidates"][0]["lru"];
+    let ids = list(&report["faults"])
+        .iter()
+        .filter_map(|fault| fault["trace_id"].as_str());
+    let traces = ids.map(|id| Window::of_json(id, &place.json(&["trace", "show", id, "--json"])));
+    FaultRun {
+        exit: said.code.expect("an exit code") as u8,
+        first_candidate: first.as_str().unwrap_or_default().to_owned(),
+        traces: traces.collect(),
+        report,
+    }
+}
+
+impl Window {
+    fn of(id: String, trace: &TraceData) -> Self {
+        let rows = trace.columns.iter().map(Vec::len).max().unwrap_or(0);
+        let seconds = |rows: usize| (rows as i64 * trace.period_us) as f64 / 1e6;
+        let trigger = trace.trigger_row.expect("a trigger") as usize;
+        let channels = trace.channels.iter().zip(&trace.columns);
+        Self {
+            id,
+            before_s: seconds(trigger),
+            after_s: seconds(rows - 1 - trigger),
+            partial: trace.partial,
+            period_ms: trace.period_us as f64 / 1e3,
+            complete: channels
+                .filter(|(_, column)| column.len() == rows)
+                .map(|(channel, _)| channel.name.clone())
+                .collect(),
+        }
+    }
+
+    fn of_json(id: &str, trace: &Value) -> Self {
+        let rows = number(&trace["rows"]);
+        let trigger = number(&trace["trigger_row"]);
+        let period_ms = number(&trace["period_ms"]);
+        let channels = list(&trace["channels"]).iter();
+        Self {
+            id: id.to_owned(),
+            before_s: trigger * period_ms / 1e3,
+            after_s: (rows - 1.0 - trigger) * period_ms / 1e3,
+            partial: trace["partial"] == true,
+            period_ms,
+            complete: channels
+                .filter(|channel| list(&channel["samples"]).len() == rows as usize)
+                .map(|channel| text(&channel["name"]).to_owned())
+                .collect(),
+        }
+    }
+}
