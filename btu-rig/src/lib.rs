@@ -9,6 +9,7 @@
 //! * [`train`]: the train models;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
 //!   the unit only through frames;
+//! * [`recorder`]: the 50 ms row of every signal, the ring of the latest, and windows around triggers;
 //! * [`drive`]: a station-to-station automatic run with its figures;
 //! * [`procedure`]: check procedures built by Starlark at load, checked, and run by a polled state
 //!   machine.
@@ -21,6 +22,7 @@ pub mod drive;
 pub mod lever;
 pub mod procedure;
 pub mod recorded;
+pub mod recorder;
 pub mod rig;
 pub mod stimulus;
 mod stored;

@@ -1,6 +1,7 @@
 //! Landmarks of a run: events with time and position, from its rows and the unit's log.
 
 use protocol::Instant;
+use protocol::signal::Signal;
 
 use super::log_text::described;
 use super::{DrivePlan, Row};
@@ -43,7 +44,7 @@ pub fn of_rows(rows: &[Row], plan: &DrivePlan) -> Vec<Landmark> {
     for (psm, (place, offset)) in (1..).zip(plan.section.markers_m.iter().zip(offsets_m)) {
         found.extend(passing(rows, place + offset, format!("PSM{psm} passed")));
     }
-    let highest = rows.iter().map(|row| row.target_kmh).fold(0.0, f64::max);
+    let highest = rows.iter().map(target_kmh).fold(0.0, f64::max);
     let reached = rows
         .iter()
         .find(|row| highest > 0.0 && row.speed_kmh >= REACHED * highest);
@@ -52,10 +53,15 @@ pub fn of_rows(rows: &[Row], plan: &DrivePlan) -> Vec<Landmark> {
     found
 }
 
+fn target_kmh(row: &Row) -> f64 {
+    row.value(Signal::Target)
+}
+
 fn changes_of_limit(rows: &[Row]) -> impl Iterator<Item = Landmark> {
     rows.windows(2).filter_map(|pair| {
-        let changed = (pair[1].limit_kmh - pair[0].limit_kmh).abs() > DIFFERS_KMH;
-        changed.then(|| Landmark::at(&pair[1], format!("limit {:.0} km/h", pair[1].limit_kmh)))
+        let [before_kmh, limit_kmh] = [&pair[0], &pair[1]].map(|row| row.value(Signal::Limit));
+        let changed = (limit_kmh - before_kmh).abs() > DIFFERS_KMH;
+        changed.then(|| Landmark::at(&pair[1], format!("limit {limit_kmh:.0} km/h")))
     })
 }
 
@@ -74,7 +80,8 @@ fn passing(rows: &[Row], x_m: f64, what: String) -> Option<Landmark> {
 /// is not the stop, nor is a slow-down to a speed that is then held, as to PSM1's; one that goes
 /// over into the stop without being held begins it.
 fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
-    let cruises = |row: &Row| row.target_kmh >= row.limit_kmh - below_limit_kmh - DIFFERS_KMH;
+    let cruises =
+        |row: &Row| target_kmh(row) >= row.value(Signal::Limit) - below_limit_kmh - DIFFERS_KMH;
     // From each row on, the highest target still to come: equal to one a second later where the
     // target holds, and where it only dips before it rises again.
     let mut highest = 0.0;
@@ -82,7 +89,7 @@ fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
         .iter()
         .rev()
         .map(|row| {
-            highest = row.target_kmh.max(highest);
+            highest = target_kmh(row).max(highest);
             highest
         })
         .collect();
@@ -98,14 +105,9 @@ fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
     Some(Landmark::at(row, "stop curve takes over".into()))
 }
 
-/// What unit and TCMS logged from the first row on, each at its own time; `rows` are times since the
-/// run's zero, s, and places, m. The unit's clock is the bench's less the shortest time an entry took
-/// to be read.
-pub(super) fn of_log(
-    log: &[(Instant, UnitEvent)],
-    zero_s: f64,
-    rows: &[(f64, f64)],
-) -> Vec<Landmark> {
+/// What unit and TCMS logged from the first row on, each at its own time since the run's zero, s. The
+/// unit's clock is the bench's less the shortest time an entry took to be read.
+pub(super) fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) -> Vec<Landmark> {
     let own_s = |event: &UnitEvent| f64::from(event.at_ms) / 1000.0;
     let ahead_s = log
         .iter()
@@ -122,14 +124,16 @@ pub(super) fn of_log(
                 EventSource::Tcms => ("TCMS", 0.0),
             };
             let t_s = own_s(event) + clock_s - zero_s;
-            let row = rows[rows.partition_point(|row| row.0 < t_s).min(rows.len() - 1)];
+            let row = &rows[rows
+                .partition_point(|row| row.t_s < t_s)
+                .min(rows.len() - 1)];
             Landmark {
                 t_s,
-                x_m: row.1,
+                x_m: row.x_m,
                 what: format!("{source}: {}", described(event.code, event.parameter)),
             }
         })
-        .filter(|landmark| landmark.t_s >= first.0)
+        .filter(|landmark| landmark.t_s >= first.t_s)
         .collect()
 }
 
@@ -162,11 +166,12 @@ mod tests {
     fn a_rising_limit_and_a_slow_down_that_is_held_are_not_the_stop() {
         let mut rows = triangle();
         for row in &mut rows {
+            let low_kmh = target_kmh(row).min(25.2);
             if row.t_s > 4.0 {
-                row.limit_kmh = 61.0;
+                row.signals.sample.set(Signal::Limit, 61.0);
             }
             if row.t_s > 6.0 {
-                row.target_kmh = row.target_kmh.min(25.2);
+                row.signals.sample.set(Signal::Target, low_kmh);
             }
         }
         let begins = stop_curve(&rows, 5.0).unwrap();

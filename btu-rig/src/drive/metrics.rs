@@ -4,33 +4,36 @@
 //! brake does in the instant of standstill cannot be avoided and comes after the last of these.
 
 use protocol::CYCLE;
+use protocol::signal::Signal;
 
 use super::Row;
+use super::figure::figures;
 
 /// Jerk that passengers notice [S1: 0.8 m/s³].
 pub const COMFORT_JERK_MPS3: f64 = 0.8;
 
-/// Figures of one run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Metrics {
-    /// From the beginning of motion to the last standstill, or to where the run was broken off, s.
-    pub run_time_s: f64,
-    /// Greatest acceleration, mean of 50 ms, km/h/s.
-    pub peak_accel_kmh_s: f64,
-    /// Greatest deceleration, as a positive number, km/h/s.
-    pub peak_decel_kmh_s: f64,
-    /// Greatest size of jerk: change of acceleration in 200 ms, m/s³.
-    pub peak_jerk_m_s3: f64,
-    /// Root mean square of jerk, m/s³.
-    pub rms_jerk_m_s3: f64,
-    /// Share of the time with jerk above 0.8 m/s³ (S1).
-    pub rough_share: f64,
-    /// Root mean square of true speed less ATO's target, km/h.
-    pub rms_speed_error_kmh: f64,
-    /// Greatest speed, km/h.
-    pub peak_speed_kmh: f64,
-    /// Work of traction at the wheels, kWh. Nothing is taken off for what braking gives back.
-    pub energy_kwh: f64,
+figures! {
+    /// Figures of one run.
+    pub struct Metrics {
+        /// From the beginning of motion to the last standstill, or to where the run was broken off, s.
+        run_time_s: f64 = "Run time", "s", 1;
+        /// Greatest speed, km/h.
+        peak_speed_kmh: f64 = "Greatest speed", "km/h", 1;
+        /// Greatest acceleration, mean of 50 ms, km/h/s.
+        peak_accel_kmh_s: f64 = "Greatest acceleration", "km/h/s", 2;
+        /// Greatest deceleration, as a positive number, km/h/s.
+        peak_decel_kmh_s: f64 = "Greatest deceleration", "km/h/s", 2;
+        /// Greatest size of jerk: change of acceleration in 200 ms, m/s³.
+        peak_jerk_m_s3: f64 = "Greatest jerk", "m/s³", 2;
+        /// Root mean square of jerk, m/s³.
+        rms_jerk_m_s3: f64 = "Jerk, rms", "m/s³", 3;
+        /// Share of the time with jerk above 0.8 m/s³ (S1).
+        rough_share: f64 = "Time with jerk above 0.8 m/s³", "%", 2;
+        /// Root mean square of true speed less ATO's target, km/h.
+        rms_speed_error_kmh: f64 = "Speed error, rms", "km/h", 2;
+        /// Work of traction at the wheels, kWh. Nothing is taken off for what braking gives back.
+        energy_kwh: f64 = "Traction energy at the wheels", "kWh", 2;
+    }
 }
 
 impl Metrics {
@@ -42,16 +45,19 @@ impl Metrics {
         let last = rows.iter().rposition(moves)?;
         let moving = &rows[first..=last];
         let most = |of: fn(&Row) -> f64| moving.iter().map(of).fold(0.0, f64::max);
-        let rough = |row: &&Row| row.jerk_mps3.abs() > COMFORT_JERK_MPS3;
+        let jerk = |row: &Row| row.value(Signal::TrainJerk);
+        let rough = |row: &&Row| jerk(row).abs() > COMFORT_JERK_MPS3;
         let work_w = moving.iter().map(|row| row.power_w).sum::<f64>();
         Some(Self {
             run_time_s: run_time_s.unwrap_or(rows[last].t_s),
-            peak_accel_kmh_s: most(|row| row.accel_mps2 * 3.6),
-            peak_decel_kmh_s: most(|row| -row.accel_mps2 * 3.6),
-            peak_jerk_m_s3: most(|row| row.jerk_mps3.abs()),
-            rms_jerk_m_s3: rms(moving.iter().map(|row| row.jerk_mps3)),
+            peak_accel_kmh_s: most(|row| row.value(Signal::TrainAccel) * 3.6),
+            peak_decel_kmh_s: most(|row| -row.value(Signal::TrainAccel) * 3.6),
+            peak_jerk_m_s3: most(|row| row.value(Signal::TrainJerk).abs()),
+            rms_jerk_m_s3: rms(moving.iter().map(jerk)),
             rough_share: moving.iter().filter(rough).count() as f64 / moving.len() as f64,
-            rms_speed_error_kmh: rms(moving.iter().map(|row| row.speed_kmh - row.target_kmh)),
+            rms_speed_error_kmh: rms(moving
+                .iter()
+                .map(|row| row.speed_kmh - row.value(Signal::Target))),
             peak_speed_kmh: most(|row| row.speed_kmh),
             energy_kwh: work_w * CYCLE.as_secs() / 3.6e6,
         })
@@ -70,6 +76,7 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::row::tests::row_at;
     use super::*;
 
     /// A train that speeds up at 1 m/s² for 10 s under a target of 36 km/h, stands after 10 s more
@@ -84,42 +91,32 @@ pub(super) mod tests {
                 let left = (20.0 - t_s).max(0.0);
                 (left, 100.0 - left * left / 2.0)
             };
+            let jerking = (10.0..10.19).contains(&t_s);
+            let signals = [
+                (Signal::Limit, 41.0),
+                (Signal::Target, if up { 36.0 } else { v * 3.6 }),
+                (Signal::TrainAccel, if t_s <= 10.0 { 1.0 } else { -1.0 }),
+                (Signal::TrainJerk, if jerking { -10.0 } else { 0.0 }),
+            ];
             Row {
-                t_s,
                 x_m: x,
-                speed_kmh: v * 3.6,
-                measured_kmh: v * 3.6,
-                limit_kmh: 41.0,
-                target_kmh: if up { 36.0 } else { v * 3.6 },
-                effort: 0.0,
-                accel_mps2: if t_s <= 10.0 { 1.0 } else { -1.0 },
-                jerk_mps3: if (10.0..10.19).contains(&t_s) {
-                    -10.0
-                } else {
-                    0.0
-                },
-                position_m: x,
-                traction_n: 0.0,
-                electric_brake_n: 0.0,
-                air_brake_n: 0.0,
                 power_w: if up { 72_000.0 } else { 0.0 },
-                sliding: false,
+                ..row_at(t_s, v * 3.6, &signals)
             }
         };
         (-20..=420).map(row).map(standing).collect()
     }
 
-    fn standing(row: Row) -> Row {
+    fn standing(mut row: Row) -> Row {
         if (0.0..20.0).contains(&row.t_s) {
             return row;
         }
-        let x_m = if row.t_s < 0.0 { 0.0 } else { 100.0 };
         // The instant of standstill: 1 m/s² end within one cycle.
+        row.signals.sample.set(Signal::TrainAccel, 0.0);
+        row.signals.sample.set(Signal::TrainJerk, 5.0);
         Row {
             speed_kmh: 0.0,
-            x_m,
-            accel_mps2: 0.0,
-            jerk_mps3: 5.0,
+            x_m: if row.t_s < 0.0 { 0.0 } else { 100.0 },
             power_w: 0.0,
             ..row
         }

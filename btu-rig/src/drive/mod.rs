@@ -5,12 +5,14 @@
 //! It knows of the unit what frames say. Truth (position, speed, acceleration) is the rig's own.
 //!
 //! * `plan`: what is run;
-//! * `row`: what is recorded each cycle;
+//! * `row`, `recording`: what is recorded each cycle;
+//! * `figure`: figures with the names and units that reports use;
 //! * `metrics`: figures of a run, from its rows;
 //! * `landmarks`: what happened where, from its rows and the unit's log;
 //! * `scatter`: how trains and days differ, drawn for many runs;
 //! * [`manual`]: the same train driven by hand, by a sequence of notches and switches.
 
+mod figure;
 pub mod landmarks;
 mod log_text;
 pub mod manual;
@@ -29,10 +31,11 @@ use crate::procedure::Refusal;
 use crate::rig::{Rig, Truth};
 use crate::stimulus::Stimulus;
 
+pub use figure::Figure;
 pub use landmarks::Landmark;
 pub use metrics::Metrics;
 pub use plan::{Codes, DrivePlan, PlanError};
-pub use row::Row;
+pub use row::{PAIRS, Row};
 pub use scatter::{Scatter, ScatterDraw};
 
 use recording::Recording;
@@ -160,6 +163,11 @@ pub struct Drive {
     braked: Option<Option<EbCause>>,
     /// ATP took the moving train out of Automatic Run: when, and into which mode.
     left: Option<(Instant, Option<Mode>)>,
+    /// When the train began to move.
+    moves_since: Option<Instant>,
+    /// Since when it stands after having moved.
+    stands_since: Option<Instant>,
+    to_stop_m: Option<f64>,
     recording: Recording,
 }
 
@@ -172,6 +180,9 @@ impl Drive {
             handed_over: false,
             braked: None,
             left: None,
+            moves_since: None,
+            stands_since: None,
+            to_stop_m: None,
             recording: Recording::default(),
         }
     }
@@ -185,6 +196,7 @@ impl Drive {
             self.phase = Phase::Preparing { since: now };
         }
         let truth = rig.truth();
+        self.to_stop_m = truth.to_stop_m;
         self.recording.scan(now, &truth, rig);
         let ending = match self.hand_over(now, &truth, rig) {
             Err(Refusal(text)) => Some(Ending::Refused(text)),
@@ -254,7 +266,7 @@ impl Drive {
                 if let Err(Refusal(text)) = rig.apply(now, &Stimulus::Start) {
                     return Some(Ending::Refused(text));
                 }
-                self.recording.on = true;
+                self.recording.began = Some(now);
                 self.phase = Phase::Starting { since: now };
             }
             Phase::Preparing { since } if late(since, READY_WITHIN) => {
@@ -267,7 +279,7 @@ impl Drive {
                 return Some(Ending::NeverStarted { refusals });
             }
             Phase::Leaving { .. } if moving => {
-                self.recording.moves_since = Some(now);
+                self.moves_since = Some(now);
                 self.phase = Phase::Running {
                     since: now,
                     stands: None,
@@ -306,7 +318,7 @@ impl Drive {
             self.left = Some((now, mode));
         }
         if moving {
-            self.recording.stands_since = None;
+            self.stands_since = None;
             self.phase = Phase::Running {
                 since,
                 stands: None,
@@ -319,7 +331,7 @@ impl Drive {
             };
         }
         let stands = stands.unwrap_or(now);
-        self.recording.stands_since = Some(stands);
+        self.stands_since = Some(stands);
         self.phase = Phase::Running {
             since,
             stands: Some(stands),
@@ -343,9 +355,40 @@ impl Drive {
         Duration::from_us(RUN_BASE.as_us() + at_slowest.as_us())
     }
 
+    /// What it all came to.
     fn end(&mut self, ending: Ending) -> Outcome {
         self.phase = Phase::Over;
-        let recording = std::mem::take(&mut self.recording);
-        recording.outcome(ending, &self.plan)
+        let mut recording = std::mem::take(&mut self.recording);
+        let Some(zero) = self.moves_since else {
+            return Outcome {
+                ending,
+                rows: recording.rows,
+                landmarks: Vec::new(),
+                stop_error_m: None,
+                metrics: None,
+            };
+        };
+        let zero_s = zero.as_secs();
+        for row in &mut recording.rows {
+            row.t_s -= zero_s;
+        }
+        let stop_m = self.plan.section.stop_m;
+        let stop = self.stands_since.zip(self.to_stop_m);
+        let stop = stop.map(|(at, left_m)| Landmark {
+            t_s: at.since(zero).as_secs(),
+            x_m: stop_m - left_m,
+            what: "stop".into(),
+        });
+        let mut landmarks = landmarks::of_rows(&recording.rows, &self.plan);
+        landmarks.extend(recording.logged(zero_s));
+        landmarks.extend(stop.clone());
+        landmarks.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+        Outcome {
+            ending,
+            metrics: Metrics::of(&recording.rows, stop.as_ref().map(|stop| stop.t_s)),
+            rows: recording.rows,
+            landmarks,
+            stop_error_m: stop.map(|stop| stop.x_m - stop_m),
+        }
     }
 }

@@ -56,6 +56,7 @@ use crate::train::{Train, TrainData, TrainInputs, TrainState};
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use log_session::LogSession;
 pub use random::Random;
+pub use tcms::PAIR_DEMANDS;
 pub use train_faults::{Misplaced, check_places};
 pub use truth::{PairEfforts, Truth};
 

@@ -3,6 +3,7 @@
 use protocol::{Duration, SCAN};
 
 use crate::conditions::{Conditions, Sensors};
+use crate::lever::Lever;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
@@ -86,6 +87,11 @@ impl Rig {
             air_trailers_n: trailers.sum(&equipment.air_n),
             air_motors_n: motors.sum(&equipment.air_n),
         })
+    }
+
+    /// Position of the master controller.
+    pub(crate) fn lever(&self) -> Lever {
+        self.desk.lever
     }
 
     /// Turns the wheels through one scan.

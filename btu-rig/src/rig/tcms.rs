@@ -15,15 +15,15 @@ use super::log_reader::MAX_EVENTS;
 /// TCMS's own cycle: two scans [default].
 const TCMS_CYCLE: Duration = Duration::from_us(2 * SCAN.as_us());
 
-/// Signals of an MT pair: inverters, air of trailers, air of motor cars.
-const PAIRS: [[Signal; 3]; 4] = [
+/// Demands of TCMS on each MT pair from the head: inverters, air of trailers, air of motor cars.
+pub const PAIR_DEMANDS: [[Signal; 3]; 4] = [
     [Signal::Motor1, Signal::AirTrailer1, Signal::AirMotor1],
     [Signal::Motor2, Signal::AirTrailer2, Signal::AirMotor2],
     [Signal::Motor3, Signal::AirTrailer3, Signal::AirMotor3],
     [Signal::Motor4, Signal::AirTrailer4, Signal::AirMotor4],
 ];
 
-/// Cars whose demands make up each signal of [`PAIRS`].
+/// Cars whose demands make up each signal of [`PAIR_DEMANDS`].
 pub(super) type PairCars = [(CarSet, CarSet); 4];
 
 /// Motor cars and trailers of the first MT pairs.
@@ -121,7 +121,7 @@ impl Rig {
             return;
         }
         for ([motor, trailer_air, motor_air], (motors, trailers)) in
-            PAIRS.iter().zip(self.pair_cars)
+            PAIR_DEMANDS.iter().zip(self.pair_cars)
         {
             sample.set(*motor, motors.sum(&view.demands.motor_n));
             sample.set(*trailer_air, trailers.sum(&view.demands.air_n));

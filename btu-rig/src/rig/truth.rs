@@ -36,6 +36,13 @@ pub struct PairEfforts {
     pub air_motors_n: f64,
 }
 
+impl PairEfforts {
+    /// All brakes of the pair, N.
+    pub fn brake_n(&self) -> f64 {
+        self.electric_n + self.air_trailers_n + self.air_motors_n
+    }
+}
+
 /// Scans the mean acceleration is taken over: 50 ms.
 const ACCEL_SCANS: usize = 5;
 /// Scans the jerk is taken over: 200 ms.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use btu_rig::conditions::Disturbance;
-use btu_rig::drive::{Ending, Scatter, manual as manual_drive};
+use btu_rig::drive::{Ending, Scatter, manual};
 use clap::Args;
 use protocol::config::ControllerKind;
 
@@ -17,7 +17,7 @@ use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::pool::cores;
 use ptu_bench::stop::Stop;
 use ptu_bench::tell;
-use ptu_report::drive::{self as report, Outcomes, Report, Results, Target, manual};
+use ptu_report::drive::{self as report, Outcomes, Results, Target};
 
 /// Drive from station to station and measure the stop, or drive by hand
 ///
@@ -178,28 +178,24 @@ impl DriveArguments {
             case.play()
         };
         let run = ManualRun { case, outcome };
-        let told = match self.json {
-            true => print_json(&run.json()),
-            false => print_out(&manual::text(&run)),
-        };
-        for target in &self.report {
-            target.write(&run)?;
-        }
-        match &self.save {
-            Some(_) if run.outcome.done.is_empty() => tell::note("nothing was done: nothing saved"),
-            Some(file) => write(file, run.sequence().to_toml())?,
+        let done = !run.outcome.done.is_empty();
+        let save = self
+            .save
+            .as_ref()
+            .map(|file| (file, run.sequence().to_toml()));
+        let answer = self.answer(
+            &Results {
+                outcomes: Outcomes::ByHand(Box::new(run)),
+                list: false,
+            },
+            &stop,
+        );
+        match save {
+            Some((file, sequence)) if done => write(file, sequence)?,
+            Some(_) => tell::note("nothing was done: nothing saved"),
             None => {}
         }
-        if stop.presses() > 0 {
-            return answered(told, Exit::Aborted);
-        }
-        match &run.outcome.ending {
-            ending @ (manual_drive::Ending::LinkLost(_) | manual_drive::Ending::Refused(_)) => {
-                Err(Failure::bench(ending.to_string()))
-            }
-            _ if run.passed() => answered(told, Exit::Passed),
-            _ => answered(told, Exit::Failed),
-        }
+        answer
     }
 
     fn request(&self) -> Result<Request, Failure> {
@@ -240,28 +236,32 @@ impl DriveArguments {
         for target in &self.report {
             target.write(results)?;
         }
-        let exit = match &results.outcomes {
-            _ if stop.presses() > 0 => Exit::Aborted,
-            Outcomes::Many(many) if many.iter().all(|one| one.passed()) => Exit::Passed,
-            Outcomes::Many(_) => Exit::Failed,
-            Outcomes::Single(runs) => verdict(runs)?,
+        let passed = match &results.outcomes {
+            _ if stop.presses() > 0 => return answered(told, Exit::Aborted),
+            Outcomes::Many(many) => many.iter().all(|one| one.passed()),
+            Outcomes::Single(runs) => {
+                let mut endings = runs.iter().map(|run| &run.outcome.ending);
+                let lost =
+                    |ending: &&Ending| matches!(ending, Ending::LinkLost(_) | Ending::Refused(_));
+                no_bench_failure(endings.find(lost))?;
+                runs.iter().all(Driven::aligned)
+            }
+            Outcomes::ByHand(run) => {
+                use manual::Ending::{LinkLost, Refused};
+                let ending = Some(&run.outcome.ending);
+                no_bench_failure(
+                    ending.filter(|ending| matches!(ending, LinkLost(_) | Refused(_))),
+                )?;
+                run.passed()
+            }
         };
-        answered(told, exit)
+        answered(told, if passed { Exit::Passed } else { Exit::Failed })
     }
 }
 
-/// Whether all trains stopped where doors may open.
-fn verdict(runs: &[Driven]) -> Result<Exit, Failure> {
-    for run in runs {
-        if let Ending::LinkLost(_) | Ending::Refused(_) = &run.outcome.ending {
-            return Err(Failure::bench(run.outcome.ending.to_string()));
-        }
-    }
-    Ok(if runs.iter().all(Driven::aligned) {
-        Exit::Passed
-    } else {
-        Exit::Failed
-    })
+/// Fails with an ending that is the bench's doing, if there is one.
+fn no_bench_failure(ending: Option<&impl ToString>) -> Result<(), Failure> {
+    ending.map_or(Ok(()), |ending| Err(Failure::bench(ending.to_string())))
 }
 
 fn scatter(directory: &ScriptsDirectory) -> Result<Scatter, Failure> {

@@ -1,9 +1,12 @@
 //! Figures of a run by hand, from its rows.
 
 use protocol::CYCLE;
+use protocol::signal::Signal;
 
 use super::settle::steady_deviation;
-use super::{Done, Plan, Row};
+use super::{Done, Plan};
+use crate::drive::Row;
+use crate::drive::figure::figures;
 
 /// Full power and full brake as values of TCMS.
 const FULL_POWER: f64 = 1023.0;
@@ -16,46 +19,47 @@ const ACCEL_FROM_KMH: f64 = 5.0;
 const DECEL_FROM_KMH: f64 = 60.0;
 const DECEL_TO_KMH: f64 = 20.0;
 
-/// Figures of one run. What the run does not show is none.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Figures {
-    /// Mean acceleration at full power from rest to 35 km/h, km/h/s: with the jerk-limited start.
-    pub accel_0_35_kmh_s: Option<f64>,
-    /// The same from 5 to 35 km/h.
-    pub accel_5_35_kmh_s: Option<f64>,
-    /// Mean deceleration in full service from 60 to 20 km/h, km/h/s.
-    pub decel_60_20_kmh_s: Option<f64>,
-    /// The same by the brakes alone, without running resistance and gradient.
-    pub brake_60_20_kmh_s: Option<f64>,
-    /// Greatest speed, km/h.
-    pub peak_speed_kmh: f64,
-    /// Greatest size of jerk while the train moves, m/s³.
-    pub peak_jerk_m_s3: f64,
-    /// Greatest traction of the train, N.
-    pub max_te_n: f64,
-    /// Of MT pair 1.
-    pub max_te_pair1_n: f64,
-    /// Greatest braking effort demanded, N.
-    pub max_brake_demand_n: f64,
-    /// Full service of the train as loaded, N (S3 table 1).
-    pub full_service_n: f64,
-    /// Greatest electric brake of MT pair 1, N.
-    pub max_electric_pair1_n: f64,
-    /// Greatest air brake of the trailers of MT pair 1, N.
-    pub max_air_t_pair1_n: f64,
-    /// Greatest air brake of the motor cars of MT pair 1, N.
-    pub max_air_m_pair1_n: f64,
-    /// Electric brake's share of the work of the brakes.
-    pub electric_share: Option<f64>,
-    /// Air brake's.
-    pub air_share: Option<f64>,
-    /// Greatest deviation of the brakes from their demand outside transients, share of it, signed.
-    pub max_deviation: Option<f64>,
-    /// When that was, s.
-    pub max_deviation_t_s: Option<f64>,
-    /// The same where the electric brake is whole. Below, a full train's cars brake by air as much as
-    /// each can in service, so that nothing is left to make up for a brake that is cut out.
-    pub max_deviation_electric: Option<f64>,
+figures! {
+    /// Figures of one run. What the run does not show is none.
+    pub struct Figures {
+        /// Mean acceleration at full power from rest to 35 km/h, km/h/s: with the jerk-limited start.
+        accel_0_35_kmh_s: Option<f64> = "Acceleration at P4, 0 to 35 km/h", "km/h/s", 3;
+        /// The same from 5 to 35 km/h.
+        accel_5_35_kmh_s: Option<f64> = "Acceleration at P4, 5 to 35 km/h", "km/h/s", 3;
+        /// Mean deceleration in full service from 60 to 20 km/h, km/h/s.
+        decel_60_20_kmh_s: Option<f64> = "Deceleration at B7, 60 to 20 km/h", "km/h/s", 3;
+        /// The same by the brakes alone, without running resistance and gradient.
+        brake_60_20_kmh_s: Option<f64> = "Of it by the brakes alone", "km/h/s", 3;
+        /// Greatest speed, km/h.
+        peak_speed_kmh: f64 = "Greatest speed", "km/h", 1;
+        /// Greatest size of jerk while the train moves, m/s³.
+        peak_jerk_m_s3: f64 = "Greatest jerk", "m/s³", 2;
+        /// Greatest traction of the train, N.
+        max_te_n: f64 = "Greatest TE, train", "kN", 2;
+        /// Of MT pair 1.
+        max_te_pair1_n: f64 = "Greatest TE, MT pair 1", "kN", 2;
+        /// Full service of the train as loaded, N (S3 table 1).
+        full_service_n: f64 = "Full service of the car table", "kN", 2;
+        /// Greatest braking effort demanded, N.
+        max_brake_demand_n: f64 = "Greatest brake demand", "kN", 2;
+        /// Greatest electric brake of MT pair 1, N.
+        max_electric_pair1_n: f64 = "Greatest electric brake, MT pair 1", "kN", 2;
+        /// Greatest air brake of the trailers of MT pair 1, N.
+        max_air_t_pair1_n: f64 = "Greatest air on T cars, MT pair 1", "kN", 2;
+        /// Greatest air brake of the motor cars of MT pair 1, N.
+        max_air_m_pair1_n: f64 = "Greatest air on M cars, MT pair 1", "kN", 2;
+        /// Electric brake's share of the work of the brakes.
+        electric_share: Option<f64> = "Brake work by the electric brake", "%", 2;
+        /// Air brake's.
+        air_share: Option<f64> = "Brake work by air", "%", 2;
+        /// Greatest deviation of the brakes from their demand outside transients, share of it, signed.
+        max_deviation_share: Option<f64> = "Brake off its demand, outside transients", "%", 2;
+        /// The same where the electric brake is whole. Below, a full train's cars brake by air as much as
+        /// each can in service, so that nothing is left to make up for a brake that is cut out.
+        max_deviation_electric_share: Option<f64> = "The same before the electric brake fades", "%", 2;
+        /// When the deviation was greatest, s.
+        max_deviation_t_s: Option<f64> = "Greatest of it at", "s", 2;
+    }
 }
 
 impl Figures {
@@ -65,7 +69,8 @@ impl Figures {
         let moving = rows.iter().filter(|row| row.speed_kmh > 0.0);
         let work =
             |of: fn(&Row) -> f64| rows.iter().map(|row| of(row) * row.speed_kmh).sum::<f64>();
-        let (electric, air) = (work(|row| row.electric_n), work(|row| row.air_n));
+        let electric = work(|row| row.value(Signal::ElectricBrake));
+        let air = work(|row| row.value(Signal::AirBrake));
         let share = |part: f64| (electric + air > 0.0).then(|| part / (electric + air));
         let deviation = steady_deviation(rows, done, 0.0);
         let fades_kmh = plan.train.electric_brake.fade_from_kmh;
@@ -78,21 +83,33 @@ impl Figures {
             decel_60_20_kmh_s: decel.map(|band| band.change_kmh_s),
             brake_60_20_kmh_s: decel.map(|band| band.brake_n / plan.inertia_kg() * 3.6),
             peak_speed_kmh: most(|row| row.speed_kmh),
-            peak_jerk_m_s3: moving.map(|row| row.jerk_mps3.abs()).fold(0.0, f64::max),
-            max_te_n: most(|row| row.traction_n),
+            peak_jerk_m_s3: moving
+                .map(|row| row.value(Signal::TrainJerk).abs())
+                .fold(0.0, f64::max),
+            max_te_n: most(|row| row.value(Signal::Traction)),
             max_te_pair1_n: most(|row| row.pairs[0].traction_n),
-            max_brake_demand_n: most(|row| row.brake_demand_n),
             full_service_n: plan.full_service_n(),
+            max_brake_demand_n: most(|row| row.value(Signal::BrakeDemand)),
             max_electric_pair1_n: most(|row| row.pairs[0].electric_n),
-            max_air_t_pair1_n: most(|row| row.pairs[0].air_t_n),
-            max_air_m_pair1_n: most(|row| row.pairs[0].air_m_n),
+            max_air_t_pair1_n: most(|row| row.pairs[0].air_trailers_n),
+            max_air_m_pair1_n: most(|row| row.pairs[0].air_motors_n),
             electric_share: share(electric),
             air_share: share(air),
-            max_deviation: deviation.map(|(off, _)| off),
+            max_deviation_share: deviation.map(|(off, _)| off),
+            max_deviation_electric_share: electric_range.map(|(off, _)| off),
             max_deviation_t_s: deviation.map(|(_, at_s)| at_s),
-            max_deviation_electric: electric_range.map(|(off, _)| off),
         }
     }
+}
+
+/// What TCMS orders.
+fn order(row: &Row) -> f64 {
+    row.value(Signal::TcmsValue)
+}
+
+/// Stretches in which TCMS orders the same.
+fn stretches(rows: &[Row]) -> impl Iterator<Item = &[Row]> {
+    rows.chunk_by(|a, b| order(a) == order(b))
 }
 
 /// Between two speeds.
@@ -115,8 +132,8 @@ fn band(rows: &[Row], value: f64, from_kmh: f64, to_kmh: f64) -> Option<Band> {
             row.speed_kmh <= kmh
         }
     };
-    for stretch in rows.chunk_by(|a, b| a.value == b.value) {
-        let ordered = stretch[0].value == value;
+    for stretch in stretches(rows) {
+        let ordered = order(&stretch[0]) == value;
         if !ordered || beyond(&stretch[0], from_kmh) {
             continue;
         }
@@ -140,8 +157,7 @@ fn band(rows: &[Row], value: f64, from_kmh: f64, to_kmh: f64) -> Option<Band> {
 
 /// Mean acceleration of a start at full power, from the last row at rest.
 fn from_rest(rows: &[Row]) -> Option<f64> {
-    let starts = rows.chunk_by(|a, b| a.value == b.value);
-    let mut starts = starts.filter(|stretch| stretch[0].value == FULL_POWER);
+    let mut starts = stretches(rows).filter(|stretch| order(&stretch[0]) == FULL_POWER);
     starts.find_map(|stretch| {
         let rest = stretch.iter().rposition(|row| row.speed_kmh == 0.0)?;
         let there = stretch[rest..]
@@ -154,30 +170,9 @@ fn from_rest(rows: &[Row]) -> Option<f64> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
-
-    /// A row of a train that rolls.
-    pub fn row_at(t_s: f64, speed_kmh: f64) -> Row {
-        Row {
-            t_s,
-            x_m: 0.0,
-            speed_kmh,
-            limit_kmh: 75.0,
-            accel_mps2: 0.0,
-            jerk_mps3: 0.0,
-            lever: 0.0,
-            value: 0.0,
-            motor_demand_n: 0.0,
-            brake_demand_n: 0.0,
-            traction_n: 0.0,
-            electric_n: 0.0,
-            air_n: 0.0,
-            pairs: Default::default(),
-            other_brakes: false,
-            sliding: false,
-        }
-    }
+    use crate::drive::row::tests::row_at;
 
     /// 3 km/h/s for 25 s from 1 s on, 2 s of coasting, 3.5 km/h/s to standstill.
     fn trapezium() -> Vec<Row> {
@@ -189,13 +184,17 @@ pub(super) mod tests {
                 t if t < 28.0 => (75.0, 0.0),
                 t => ((75.0 - 3.5 * (t - 28.0)).max(0.0), FULL_BRAKE),
             };
-            let mut row = row_at(t, kmh);
-            row.value = value;
-            if value == FULL_BRAKE {
-                row.electric_n = 300e3;
-                row.air_n = 100e3;
-            }
-            row
+            let (electric_n, air_n) = if value == FULL_BRAKE {
+                (300e3, 100e3)
+            } else {
+                (0.0, 0.0)
+            };
+            let signals = [
+                (Signal::TcmsValue, value),
+                (Signal::ElectricBrake, electric_n),
+                (Signal::AirBrake, air_n),
+            ];
+            row_at(t, kmh, &signals)
         };
         (0..1100).map(row).collect()
     }
@@ -218,10 +217,10 @@ pub(super) mod tests {
     #[test]
     fn figures_that_a_run_does_not_show_are_none() {
         let mut rows = trapezium();
-        rows[150].value = 500.0;
+        rows[150].signals.sample.set(Signal::TcmsValue, 500.0);
         assert_eq!(from_rest(&rows), None);
         assert!(band(&rows, FULL_POWER, 5.0, 35.0).is_none());
-        rows.retain(|row| row.value == FULL_BRAKE && row.speed_kmh < 50.0);
+        rows.retain(|row| order(row) == FULL_BRAKE && row.speed_kmh < 50.0);
         assert!(band(&rows, FULL_BRAKE, 60.0, 20.0).is_none());
         assert_eq!(from_rest(&[]), None);
     }

@@ -4,7 +4,6 @@
 //! * `sequence`, `action`, `file`, `wrong`: what is done when, and its file;
 //! * `plan`: on which train, under which code;
 //! * `player`: plays the sequence, scan by scan;
-//! * `row`, `recording`: what is recorded each cycle;
 //! * `settle`, `figures`, `outcome`: what it came to.
 //!
 //! Terms: a *step* waits for its condition and then performs its actions; [`Done`] is a step performed.
@@ -15,19 +14,16 @@ mod file;
 mod outcome;
 mod plan;
 mod player;
-mod recording;
-mod row;
 mod sequence;
 mod settle;
 mod wrong;
 
-pub use action::Action;
+pub use action::words;
 pub use figures::Figures;
 pub use file::{MAX_AFTER_S, MAX_STEPS};
 pub use outcome::{AtpBrake, Done, Ending, Outcome};
 pub use plan::{ManualError, Plan};
 pub use player::Player;
-pub use row::{PAIRS, Pair, Row};
 pub use sequence::{Load, Sequence, Step, When};
 pub use settle::{Settled, WITHIN, settled};
 pub use wrong::{SequenceError, Wrong};

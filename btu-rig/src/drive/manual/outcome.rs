@@ -4,8 +4,9 @@ use protocol::message::{EbCause, FsbCause};
 use thiserror::Error;
 
 use super::player::{LONGEST, REACHED_WITHIN};
-use super::{Action, Figures, Row, Sequence, Step, When};
-use crate::drive::Landmark;
+use super::{Figures, Sequence, Step, When, words};
+use crate::drive::{Landmark, Row};
+use crate::stimulus::Stimulus;
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -92,14 +93,24 @@ pub struct Done {
     /// Speed, km/h, a size.
     pub speed_kmh: f64,
     /// What was done.
-    pub actions: Vec<Action>,
+    pub actions: Vec<Stimulus>,
 }
 
 impl Done {
     /// What was done, in words.
     pub fn what(&self) -> String {
-        let words: Vec<_> = self.actions.iter().map(ToString::to_string).collect();
+        let words: Vec<_> = self.actions.iter().map(words).collect();
         words.join(", ")
+    }
+}
+
+impl From<&Done> for Landmark {
+    fn from(done: &Done) -> Self {
+        Self {
+            t_s: done.t_s,
+            x_m: done.x_m,
+            what: done.what(),
+        }
     }
 }
 

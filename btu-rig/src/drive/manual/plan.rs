@@ -4,7 +4,7 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::line::{Line, Section};
 use thiserror::Error;
 
-use super::{Action, Sequence, SequenceError, Step, When, Wrong};
+use super::{Sequence, SequenceError, Step, When, Wrong};
 use crate::conditions::Conditions;
 use crate::drive::PlanError;
 use crate::drive::plan::fixed_code;
@@ -123,7 +123,7 @@ fn check(step: &Step, train: &CarsData, code: Option<&SpeedCode>) -> Result<(), 
         });
     }
     for action in &step.actions {
-        let Action::CutOut { what, car, .. } = *action else {
+        let Stimulus::CutOut { what, car, .. } = *action else {
             continue;
         };
         let found = usize::from(car).checked_sub(1);

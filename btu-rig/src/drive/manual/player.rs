@@ -5,17 +5,18 @@ use protocol::message::{EbCause, FsbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{CYCLE, Duration, Instant};
 
+use super::action::powers;
+use super::file::MAX_STEPS;
+use super::outcome::told;
+use super::{AtpBrake, Done, Ending, Figures, Outcome, Plan, When};
+use crate::drive::recording::Recording;
+use crate::drive::{Landmark, Row};
 use crate::lever::Lever;
 use crate::procedure::Refusal;
 use crate::rig::{Rig, Truth};
 use crate::stimulus::Stimulus;
 use crate::tcms::TcmsMode;
 use crate::train::TrainData;
-
-use super::file::MAX_STEPS;
-use super::outcome::told;
-use super::recording::Recording;
-use super::{Action, AtpBrake, Ending, Figures, Outcome, Plan, Row, When};
 
 /// Time a unit may take from power-up until it lets the train be driven.
 const READY_WITHIN: Duration = Duration::from_ms(10_000);
@@ -71,8 +72,8 @@ pub struct Player {
     phase: Phase,
     next: usize,
     waiting: Waiting,
-    lever: Lever,
     braked: Option<Braked>,
+    done: Vec<Done>,
     recording: Recording,
 }
 
@@ -89,8 +90,8 @@ impl Player {
                 moved: false,
                 stands_since: None,
             },
-            lever: Lever::Neutral,
             braked: None,
+            done: Vec::new(),
             recording: Recording::default(),
         }
     }
@@ -98,7 +99,7 @@ impl Player {
     /// One scan; the outcome once it is over.
     pub fn step(&mut self, now: Instant, rig: &mut Rig) -> Option<Outcome> {
         let truth = rig.truth();
-        self.recording.scan(now, &truth, self.lever.number(), rig);
+        self.recording.scan(now, &truth, rig);
         match self.advance(now, &truth, rig) {
             Ok(None) => None,
             Ok(Some(ending)) => Some(self.end(ending)),
@@ -110,11 +111,11 @@ impl Player {
     ///
     /// # Errors
     /// What the bench cannot do, and more than a sequence can hold.
-    pub fn act(&mut self, now: Instant, rig: &mut Rig, action: Action) -> Result<(), Refusal> {
+    pub fn act(&mut self, now: Instant, rig: &mut Rig, action: Stimulus) -> Result<(), Refusal> {
         if !matches!(self.phase, Phase::Playing { .. }) {
             return Ok(());
         }
-        if self.recording.done.len() >= MAX_STEPS {
+        if self.done.len() >= MAX_STEPS {
             return Err(Refusal(format!("no more than {MAX_STEPS} actions a run")));
         }
         let truth = rig.truth();
@@ -131,22 +132,27 @@ impl Player {
         self.braked.map(|braked| braked.brake)
     }
 
-    /// Position of the master controller.
-    pub fn lever(&self) -> Lever {
-        self.lever
-    }
-
     /// Ends the run.
     pub fn end(&mut self, ending: Ending) -> Outcome {
         self.phase = Phase::Over;
-        let recording = std::mem::take(&mut self.recording);
-        let landmarks = recording.landmarks();
+        let mut recording = std::mem::take(&mut self.recording);
+        let done = std::mem::take(&mut self.done);
+        let mut landmarks: Vec<_> = done.iter().map(Landmark::from).collect();
+        if let Some(began) = recording.began {
+            for row in &mut recording.rows {
+                row.t_s = row.signals.at.since(began).as_secs();
+                row.speed_kmh = row.speed_kmh.abs();
+            }
+            landmarks.extend(recording.logged(began.as_secs()));
+            landmarks.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+        }
+        let rows = recording.rows;
         Outcome {
             ending,
-            figures: Figures::of(&recording.rows, &recording.done, &self.plan),
+            figures: Figures::of(&rows, &done, &self.plan),
             landmarks,
-            rows: recording.rows,
-            done: recording.done,
+            rows,
+            done,
         }
     }
 
@@ -292,16 +298,20 @@ impl Player {
         truth: &Truth,
         rig: &mut Rig,
         line: usize,
-        actions: Vec<Action>,
+        actions: Vec<Stimulus>,
     ) -> Result<(), Refusal> {
         for action in &actions {
-            rig.apply(now, &action.stimulus())?;
-            if let Action::Lever(lever) = action {
-                self.lever = *lever;
-            }
+            rig.apply(now, action)?;
         }
-        let leaves = truth.speed_mps == 0.0 && actions.iter().any(|action| action.powers());
-        self.recording.note(now, line, truth, actions);
+        let leaves = truth.speed_mps == 0.0 && actions.iter().any(powers);
+        let began = self.recording.began.unwrap_or(now);
+        self.done.push(Done {
+            line,
+            t_s: now.since(began).as_secs(),
+            x_m: truth.position_m,
+            speed_kmh: truth.speed_mps.abs() * 3.6,
+            actions,
+        });
         self.wait(now, truth, leaves);
         Ok(())
     }

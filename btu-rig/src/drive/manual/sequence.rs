@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Write};
 
-use super::Action;
+use super::action::toml;
+use crate::stimulus::Stimulus;
 
 /// Passengers aboard.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,7 +46,7 @@ pub struct Step {
     /// What it waits for.
     pub when: When,
     /// What is done then, in this order.
-    pub actions: Vec<Action>,
+    pub actions: Vec<Stimulus>,
 }
 
 /// A sequence, checked as far as it can be without train and unit.
@@ -101,7 +102,7 @@ impl Sequence {
             };
             let _ = writeln!(text, "\n[[steps]]\n{when}");
             for action in &step.actions {
-                let _ = writeln!(text, "{}", action.toml());
+                let _ = writeln!(text, "{}", toml(action));
             }
         }
         text

@@ -1,6 +1,9 @@
 //! How the brake follows its demand: the transient after each step, and the deviation outside of it.
 
-use super::{Done, Row};
+use protocol::signal::Signal;
+
+use super::Done;
+use crate::drive::Row;
 
 /// Deviation of the brake from its demand that counts as none [2 %: required of blending].
 pub const WITHIN: f64 = 0.02;
@@ -72,10 +75,11 @@ pub fn steady_deviation(rows: &[Row], done: &[Done], above_kmh: f64) -> Option<(
         while let Some(step_s) = steps.next_if(|step_s| *step_s <= row.t_s) {
             moved_s = step_s;
         }
-        if (row.brake_demand_n - before_n).abs() > MOVES * row.brake_demand_n {
+        let demand_n = row.value(Signal::BrakeDemand);
+        if (demand_n - before_n).abs() > MOVES * demand_n {
             moved_s = row.t_s;
         }
-        before_n = row.brake_demand_n;
+        before_n = demand_n;
         let steady = row.t_s > moved_s + TRANSIENT_S && row.speed_kmh > above_kmh;
         if let Some(off) = row.deviation().filter(|_| steady)
             && worst.is_none_or(|(most, _)| off.abs() > most.abs())
@@ -88,24 +92,26 @@ pub fn steady_deviation(rows: &[Row], done: &[Done], above_kmh: f64) -> Option<(
 
 #[cfg(test)]
 mod tests {
-    use super::super::figures::tests::row_at;
     use super::*;
+    use crate::drive::row::tests::row_at;
 
     /// 10 s of braking with 100 kN demanded: the electric brake is lost from 2 s on and air is back
     /// at 2.6 s; from 8 s on 5 % are missing.
     fn braking() -> Vec<Row> {
         let row = |cycle: i32| {
             let t_s = f64::from(cycle) * 0.05;
-            let mut row = row_at(t_s, 40.0);
-            row.brake_demand_n = 100e3;
-            row.electric_n = if t_s < 2.0 { 60e3 } else { 0.0 };
-            row.air_n = match t_s {
+            let air_n = match t_s {
                 t if t < 2.0 => 40e3,
                 t if t < 2.6 => 70e3,
                 t if t < 8.0 => 101e3,
                 _ => 95e3,
             };
-            row
+            let signals = [
+                (Signal::BrakeDemand, 100e3),
+                (Signal::ElectricBrake, if t_s < 2.0 { 60e3 } else { 0.0 }),
+                (Signal::AirBrake, air_n),
+            ];
+            row_at(t_s, 40.0, &signals)
         };
         (0..=200).map(row).collect()
     }
@@ -124,7 +130,9 @@ mod tests {
     #[test]
     fn nothing_settles_where_nothing_brakes() {
         let mut rows = braking();
-        rows.iter_mut().for_each(|row| row.brake_demand_n = 0.0);
+        for row in &mut rows {
+            row.signals.sample.set(Signal::BrakeDemand, 0.0);
+        }
         assert_eq!(settled(&rows, 1.9, f64::INFINITY), None);
         assert_eq!(steady_deviation(&rows, &[], 0.0), None);
     }

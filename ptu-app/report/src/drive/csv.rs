@@ -2,60 +2,114 @@
 
 use std::fmt::Write;
 
-use btu_rig::drive::Row;
+use btu_rig::drive::{Metrics, PAIRS, Row};
+use btu_rig::rig::PAIR_DEMANDS;
+use protocol::signal::Signal;
 
-use super::figures::FIGURES;
 use super::{Outcomes, Results};
 use crate::csv::Cell;
-use ptu_bench::drive::Driven;
 use ptu_bench::drive::monte_carlo::MonteCarlo;
 
-/// A number of a row.
-type Of = fn(&Row) -> f64;
+/// A column of a cycle: its name and its value.
+type Column = (&'static str, fn(&Row) -> f64);
+/// A column of an MT pair, behind `pair1_` to `pair4_`.
+type PairColumn = (&'static str, fn(&Row, usize) -> f64);
 
-/// Columns of a cycle.
-const COLUMNS: [(&str, Of); 15] = [
+/// Columns of an automatic run.
+const AUTOMATIC: [Column; 15] = [
     ("t_s", |r| r.t_s),
     ("x_m", |r| r.x_m),
     ("speed_kmh", |r| r.speed_kmh),
-    ("measured_kmh", |r| r.measured_kmh),
-    ("limit_kmh", |r| r.limit_kmh),
-    ("target_kmh", |r| r.target_kmh),
-    ("effort", |r| r.effort),
-    ("accel_m_s2", |r| r.accel_mps2),
-    ("jerk_m_s3", |r| r.jerk_mps3),
-    ("position_by_unit_m", |r| r.position_m),
-    ("traction_n", |r| r.traction_n),
-    ("electric_brake_n", |r| r.electric_brake_n),
-    ("air_brake_n", |r| r.air_brake_n),
+    ("measured_kmh", |r| r.value(Signal::Speed)),
+    ("limit_kmh", |r| r.value(Signal::Limit)),
+    ("target_kmh", |r| r.value(Signal::Target)),
+    ("effort", |r| r.value(Signal::Effort)),
+    ("accel_m_s2", |r| r.value(Signal::TrainAccel)),
+    ("jerk_m_s3", |r| r.value(Signal::TrainJerk)),
+    ("position_by_unit_m", |r| r.value(Signal::Position)),
+    ("traction_n", |r| r.value(Signal::Traction)),
+    ("electric_brake_n", |r| r.value(Signal::ElectricBrake)),
+    ("air_brake_n", |r| r.value(Signal::AirBrake)),
     ("power_w", |r| r.power_w),
     ("sliding", |r| f64::from(u8::from(r.sliding))),
 ];
 
+/// Columns of a run by hand.
+const BY_HAND: [Column; 14] = [
+    ("t_s", |r| r.t_s),
+    ("x_m", |r| r.x_m),
+    ("speed_kmh", |r| r.speed_kmh),
+    ("limit_kmh", |r| r.value(Signal::Limit)),
+    ("accel_m_s2", |r| r.value(Signal::TrainAccel)),
+    ("jerk_m_s3", |r| r.value(Signal::TrainJerk)),
+    ("lever", |r| r.lever.number()),
+    ("tcms_value", |r| r.value(Signal::TcmsValue)),
+    ("motor_demand_n", |r| r.value(Signal::MotorDemand)),
+    ("brake_demand_n", |r| r.value(Signal::BrakeDemand)),
+    ("te_n", |r| r.value(Signal::Traction)),
+    ("electric_n", |r| r.value(Signal::ElectricBrake)),
+    ("air_n", |r| r.value(Signal::AirBrake)),
+    ("sliding", |r| f64::from(u8::from(r.sliding))),
+];
+
+/// Columns of each MT pair of a run by hand.
+const OF_PAIR: [PairColumn; 7] = [
+    ("motor_demand_n", |r, pair| r.value(PAIR_DEMANDS[pair][0])),
+    ("te_n", |r, pair| r.pairs[pair].traction_n),
+    ("electric_n", |r, pair| r.pairs[pair].electric_n),
+    ("air_t_demand_n", |r, pair| r.value(PAIR_DEMANDS[pair][1])),
+    ("air_t_n", |r, pair| r.pairs[pair].air_trailers_n),
+    ("air_m_demand_n", |r, pair| r.value(PAIR_DEMANDS[pair][2])),
+    ("air_m_n", |r, pair| r.pairs[pair].air_motors_n),
+];
+
 /// All of it.
 pub fn csv(results: &Results) -> String {
+    let mut text = String::new();
     match &results.outcomes {
-        Outcomes::Single(runs) => cycles(runs),
-        Outcomes::Many(many) => trials(many),
-    }
-}
-
-fn cycles(runs: &[Driven]) -> String {
-    let names: Vec<_> = COLUMNS.iter().map(|column| column.0).collect();
-    let mut text = format!("section,controller,{}\n", names.join(","));
-    for run in runs {
-        let (section, controller) = (run.case.plan.section.section, run.case.controller.name());
-        for row in &run.outcome.rows {
-            let cells: Vec<_> = COLUMNS.iter().map(|column| cell((column.1)(row))).collect();
-            // Writing to a text cannot fail.
-            let _ = writeln!(text, "{section},{controller},{}", cells.join(","));
+        Outcomes::Single(runs) => {
+            text += &format!("section,controller,{}\n", names(&AUTOMATIC));
+            for run in runs {
+                let controller = run.case.controller.name();
+                let before = format!("{},{controller},", run.case.plan.section.section);
+                cycles(&mut text, &before, &run.outcome.rows, &AUTOMATIC, &[]);
+            }
+        }
+        Outcomes::Many(many) => text = trials(many),
+        Outcomes::ByHand(run) => {
+            let name = |pair| {
+                OF_PAIR
+                    .map(|column| format!(",pair{pair}_{}", column.0))
+                    .concat()
+            };
+            let pairs: String = (1..=PAIRS).map(name).collect();
+            text += &format!("{}{pairs}\n", names(&BY_HAND));
+            cycles(&mut text, "", &run.outcome.rows, &BY_HAND, &OF_PAIR);
         }
     }
     text
 }
 
+fn names(columns: &[Column]) -> String {
+    let names: Vec<_> = columns.iter().map(|column| column.0).collect();
+    names.join(",")
+}
+
+fn cycles(text: &mut String, before: &str, rows: &[Row], train: &[Column], pair: &[PairColumn]) {
+    for row in rows {
+        let cells = train.iter().map(|column| (column.1)(row));
+        let of_pair = |at| pair.iter().map(move |column| (column.1)(row, at));
+        let cells: Vec<_> = cells
+            .chain((0..PAIRS).flat_map(of_pair))
+            .map(cell)
+            .collect();
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "{before}{}", cells.join(","));
+    }
+}
+
 fn trials(many: &[MonteCarlo]) -> String {
-    let names: Vec<_> = FIGURES.iter().map(|figure| figure.key).collect();
+    let names: Vec<_> = Metrics::ALL.iter().map(|figure| figure.key).collect();
     let mut text = format!(
         "section,controller,seed,ending,load_kg,gradient_offset_permille,adhesion,delay_factor,\
          brake_factor,wheel_factor,psm1_m,psm2_m,psm3_m,psm4_m,stop_error_m,{}\n",
@@ -74,8 +128,11 @@ fn trials(many: &[MonteCarlo]) -> String {
                 c.wheel_factor,
             ];
             let error = [trial.stop_error_m.unwrap_or(f64::NAN)];
-            let of = |i: usize| trial.metrics.as_ref().map_or(f64::NAN, FIGURES[i].of);
-            let figures: Vec<_> = (0..FIGURES.len()).map(of).collect();
+            let metrics = trial.metrics.as_ref();
+            let figures: Vec<_> = Metrics::ALL
+                .iter()
+                .map(|figure| metrics.and_then(figure.of).unwrap_or(f64::NAN))
+                .collect();
             let values = drawn
                 .iter()
                 .chain(&c.marker_offsets_m)
@@ -96,7 +153,7 @@ fn trials(many: &[MonteCarlo]) -> String {
 }
 
 /// A number, or nothing for what is not known.
-pub fn cell(value: f64) -> String {
+fn cell(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.6}")
     } else {

@@ -3,24 +3,32 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::figures::{FIGURES, conditions, ending, off, title};
-use super::plots::plots;
-use super::{Outcomes, Results, html_many};
+use super::facts::{Fact, by_hand, conditions, ending, title};
+use super::plots::{plots, plots_by_hand, plots_of_many};
+use super::tables::{self, Table};
+use super::{Outcomes, Results};
 use crate::page_text;
+use crate::plot::Plot;
 use ptu_bench::clock;
-use ptu_bench::drive::{Case, Driven};
+use ptu_bench::drive::manual::ManualRun;
+use ptu_bench::drive::monte_carlo::MonteCarlo;
+use ptu_bench::drive::{Case, DriveBench, Driven};
+
+/// Look of the page, light and dark.
+const STYLE: &str = include_str!("style.css");
 
 /// The page.
 pub fn html(results: &Results) -> String {
     let (heading, body) = match &results.outcomes {
         Outcomes::Single(runs) => (
             "Station-to-station run",
-            html! { @for group in groups(runs) { (section(group)) } },
+            html! { @for group in groups(runs) { (of_runs(group)) } },
         ),
         Outcomes::Many(many) => (
             "Monte Carlo of station-to-station runs",
-            html! { @for one in many { (html_many::section(one)) } },
+            html! { @for one in many { (of_many(one)) } },
         ),
+        Outcomes::ByHand(run) => ("Driven by hand", of_run_by_hand(run)),
     };
     page(heading, &body)
 }
@@ -53,99 +61,129 @@ pub fn page(heading: &str, body: &Markup) -> String {
     page_text(page)
 }
 
+/// A section of the page: what came of it, its figures beside what was run on, plots, and the rest.
+fn section(
+    heading: &str,
+    verdicts: &[(bool, Markup)],
+    tables: [Markup; 2],
+    plots: &[Plot],
+    rest: &Markup,
+) -> Markup {
+    html! {
+        section {
+            h2 { (heading) }
+            @for (good, verdict) in verdicts { p.verdict.good[*good].bad[!*good] { (verdict) } }
+            div.tables { @for table in &tables { (table) } }
+            @for plot in plots { (plot.svg()) }
+            (rest)
+        }
+    }
+}
+
 /// Runs of the same section together: its controllers side by side.
 fn groups(runs: &[Driven]) -> impl Iterator<Item = &[Driven]> {
     runs.chunk_by(|a, b| a.case.plan.section.section == b.case.plan.section.section)
 }
 
-fn section(runs: &[Driven]) -> Markup {
-    let Some(first) = runs.first() else {
+fn of_runs(runs: &[Driven]) -> Markup {
+    let Some(Driven { case, .. }) = runs.first() else {
         return html! {};
     };
     let alone = runs.len() == 1;
-    html! {
-        section {
-            h2 { (if alone { title(&first.case) } else {
-                format!("{} section {}", first.case.bench.line.content.name, first.case.plan.section.section)
-            }) }
-            @for run in runs {
-                p.verdict.good[run.aligned()].bad[!run.aligned()] {
-                    @if !alone { b { (run.case.controller.name()) ": " } }
-                    (ending(run))
-                }
-            }
-            div.tables { (figures(runs)) (facts(&first.case)) }
-            @for plot in plots(runs) { (plot.svg()) }
-            @for run in runs { (events(run, alone)) }
-        }
-    }
+    let heading = if alone {
+        title(case)
+    } else {
+        let line = &case.bench.line.content.name;
+        format!("{line} section {}", case.plan.section.section)
+    };
+    let verdict = |run: &Driven| {
+        let name = run.case.controller.name();
+        (
+            run.aligned(),
+            html! { @if !alone { b { (name) ": " } } (ending(run)) },
+        )
+    };
+    let verdicts: Vec<_> = runs.iter().map(verdict).collect();
+    let events = |run: &Driven| {
+        let summary = html! { "Events" @if !alone { ", " (run.case.controller.name()) } };
+        folded(alone, &summary, &tables::events(&run.outcome.landmarks))
+    };
+    let rest = html! { @for run in runs { (events(run)) } };
+    let tables = [tables::of_runs(runs).html(), facts(case)];
+    section(&heading, &verdicts, tables, &plots(runs), &rest)
 }
 
-fn figures(runs: &[Driven]) -> Markup {
-    let of = |run: &Driven, shown: &dyn Fn(&btu_rig::drive::Metrics) -> String| {
-        run.outcome.metrics.as_ref().map_or("–".into(), shown)
+fn of_many(many: &MonteCarlo) -> Markup {
+    let (done, asked) = (many.trials.len(), many.asked);
+    let verdict = html! {
+        (format!("within ±10 cm {:.2} %, within ±30 cm {:.2} %", many.within(0.1) * 100.0, many.within(0.3) * 100.0))
+        ", more than 1 m past " (many.past_1m()) ", did not stop " (many.failures().count())
     };
-    html! {
-        table {
-            @if runs.len() > 1 {
-                tr { th {} @for run in runs { th.number { (run.case.controller.name()) } } th {} }
-            }
-            tr {
-                th { "Stop error" }
-                @for run in runs {
-                    td.number { (run.outcome.stop_error_m.map_or("–".into(), off)) }
-                }
-                td {}
-            }
-            @for figure in &FIGURES {
-                tr {
-                    th { (figure.name) }
-                    @for run in runs { td.number { (of(run, &|m| figure.shown(m))) } }
-                    td { (figure.unit) }
-                }
-            }
-        }
-    }
+    let rest = html! {
+        h3 { "Worst runs" }
+        p { "Repeat one with " code { "--scattered --seed SEED" } " in place of " code { "--monte-carlo" } "." }
+        (tables::worst(many).html())
+    };
+    section(
+        &format!("{}, {done} of {asked} runs", title(&many.case)),
+        &[(many.passed(), verdict)],
+        [tables::of_many(many).html(), facts(&many.case)],
+        &plots_of_many(many),
+        &rest,
+    )
+}
+
+fn of_run_by_hand(run: &ManualRun) -> Markup {
+    let (case, outcome) = (&run.case, &run.outcome);
+    let mut known = vec![("Sequence", case.name.clone())];
+    known.extend(by_hand(run));
+    let rest = html! {
+        h2 { "What was done" }
+        (tables::steps(run).html())
+        p { "Efforts are those of MT pair 1 3 s later, or before the next step." }
+        (folded(false, &html! { "Events of unit and TCMS" }, &tables::events(&outcome.landmarks)))
+    };
+    section(
+        &case.plan.sequence.title,
+        &[(run.passed(), html! { (outcome.ending) })],
+        [
+            tables::of_run_by_hand(run).html(),
+            made_of(known, &case.bench, None, case.seed),
+        ],
+        &plots_by_hand(run),
+        &rest,
+    )
 }
 
 /// What was run, on what, under which conditions.
-pub fn facts(case: &Case) -> Markup {
-    let bench = &case.bench;
-    let settings = bench
-        .settings
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>();
+fn facts(case: &Case) -> Markup {
+    let section = &case.plan.section;
+    let length_m = section.stop_m - section.start_m;
+    made_of(conditions(case), &case.bench, Some(length_m), case.seed)
+}
+
+/// What is known of a run, and what its bench was made of.
+fn made_of(known: Vec<Fact>, bench: &DriveBench, length_m: Option<f64>, seed: u64) -> Markup {
+    let (config, line, settings) = (&bench.config, &bench.line, &bench.settings);
+    let file = |name: &str, crc: u32| html! { td { (name) ", " code { (format!("{crc:08x}")) } } };
     html! {
         table {
-            @for (name, value) in conditions(case) { tr { th { (name) } td { (value) } } }
-            tr { th { "Unit configuration" } td { (bench.config.content.name) ", " code { (format!("{:08x}", bench.config.crc)) } } }
+            @for (name, value) in known { tr { th { (name) } td { (value) } } }
+            tr { th { "Unit configuration" } (file(&config.content.name, config.crc)) }
             @if !settings.is_empty() {
                 tr { th { "Keys changed" } td { @for setting in settings { code { (setting) } br; } } }
             }
-            tr { th { "Track database" } td { (bench.line.content.name) ", " code { (format!("{:08x}", bench.line.crc)) } } }
-            tr { th { "Length to the stop point" } td { (format!("{:.2} m", case.plan.section.stop_m - case.plan.section.start_m)) } }
-            tr { th { "Seed" } td { (case.seed) } }
+            tr { th { "Track database" } (file(&line.content.name, line.crc)) }
+            @if let Some(length_m) = length_m {
+                tr { th { "Length to the stop point" } td { (format!("{length_m:.2} m")) } }
+            }
+            tr { th { "Seed" } td { (seed) } }
         }
     }
 }
 
-fn events(run: &Driven, alone: bool) -> Markup {
-    html! {
-        details open[alone] {
-            summary { "Events" @if !alone { ", " (run.case.controller.name()) } }
-            table {
-                tr { th.number { "Time s" } th.number { "Place m" } th { "Event" } }
-                @for landmark in &run.outcome.landmarks {
-                    tr {
-                        td.number { (format!("{:.2}", landmark.t_s)) }
-                        td.number { (format!("{:.2}", landmark.x_m)) }
-                        td { (landmark.what) }
-                    }
-                }
-            }
-        }
-    }
+fn folded(open: bool, summary: &Markup, table: &Table) -> Markup {
+    html! { details open[open] { summary { (summary) } (table.html()) } }
 }
 
 /// An argument as a shell takes it back.
@@ -156,6 +194,3 @@ fn quoted(argument: &str) -> String {
     }
     format!("'{}'", argument.replace('\'', "'\\''"))
 }
-
-/// Look of the page, light and dark.
-const STYLE: &str = include_str!("style.css");

@@ -2,12 +2,16 @@
 //! Carlo one object for one case, `{"cases": [...]}` where several were.
 
 use btu_rig::conditions::{Conditions, Disturbance};
-use serde_json::{Map, Value, json};
+use btu_rig::drive::manual::Figures;
+use btu_rig::drive::{Figure, Landmark, Metrics};
+use protocol::line::Section;
+use serde_json::{Value, json};
 
-use super::figures::FIGURES;
+use super::tables::{StepResult, step_results};
 use super::{Outcomes, Results};
+use ptu_bench::drive::manual::ManualRun;
 use ptu_bench::drive::monte_carlo::{MonteCarlo, Trial, percentile};
-use ptu_bench::drive::{Case, Driven};
+use ptu_bench::drive::{Case, DriveBench, Driven};
 
 /// Percentiles and their keys.
 const PERCENTILES: [(&str, f64); 7] = [
@@ -31,56 +35,106 @@ pub fn json(results: &Results) -> Value {
             [one] if !results.list => many_json(one),
             many => json!({"cases": many.iter().map(many_json).collect::<Vec<_>>()}),
         },
+        Outcomes::ByHand(run) => by_hand_json(run),
     }
+}
+
+/// The objects' keys in one, in order.
+fn object(parts: impl IntoIterator<Item = Value>) -> Value {
+    let maps = parts.into_iter().filter_map(|part| match part {
+        Value::Object(map) => Some(map),
+        _ => None,
+    });
+    Value::Object(maps.flatten().collect())
 }
 
 fn run_json(run: &Driven) -> Value {
-    let outcome = &run.outcome;
-    let mut object = case_json(&run.case);
-    object.insert("ending".into(), outcome.ending.to_string().into());
-    object.insert("aligned".into(), run.aligned().into());
-    object.insert("stop_error_m".into(), outcome.stop_error_m.into());
-    for figure in &FIGURES {
-        object.insert(
-            figure.key.into(),
-            outcome.metrics.as_ref().map(figure.of).into(),
-        );
-    }
-    object.insert("load_kg".into(), run.case.plan.load_kg.into());
-    object.insert(
-        "conditions".into(),
-        conditions_json(&run.case.plan.conditions),
-    );
-    object.insert("seed".into(), run.case.seed.into());
-    let event = |l: &btu_rig::drive::Landmark| json!({"t_s": l.t_s, "x_m": l.x_m, "what": l.what});
-    let events: Vec<_> = outcome.landmarks.iter().map(event).collect();
-    object.insert("events".into(), events.into());
-    object.into()
+    let (case, outcome) = (&run.case, &run.outcome);
+    object([
+        case_json(case),
+        json!({
+            "ending": outcome.ending.to_string(),
+            "aligned": run.aligned(),
+            "stop_error_m": outcome.stop_error_m,
+        }),
+        figures_json(Metrics::ALL, outcome.metrics.as_ref()),
+        day_json(case.plan.load_kg, &case.plan.conditions, case.seed),
+        events_json(&outcome.landmarks),
+    ])
+}
+
+fn by_hand_json(run: &ManualRun) -> Value {
+    let (case, outcome) = (&run.case, &run.outcome);
+    let plan = &case.plan;
+    object([
+        json!({"sequence": case.name, "title": plan.sequence.title}),
+        place_json(&case.bench, &plan.section),
+        bench_json(&case.bench, &plan.train.name),
+        json!({"code": plan.code}),
+        day_json(plan.load_kg, &plan.conditions, case.seed),
+        json!({"ending": outcome.ending.to_string(), "passed": run.passed()}),
+        figures_json(Figures::ALL, Some(&outcome.figures)),
+        json!({"steps": step_results(run).iter().map(step_json).collect::<Vec<_>>()}),
+        events_json(&outcome.landmarks),
+    ])
+}
+
+fn step_json(result: &StepResult<'_>) -> Value {
+    let pair = result.pair.map(|pair| {
+        json!({
+            "te_n": pair.traction_n,
+            "electric_n": pair.electric_n,
+            "air_t_n": pair.air_trailers_n,
+            "air_m_n": pair.air_motors_n,
+            "brake_n": pair.brake_n(),
+        })
+    });
+    json!({
+        "t_s": result.done.t_s,
+        "x_m": result.done.x_m,
+        "speed_kmh": result.done.speed_kmh,
+        "what": result.done.what(),
+        "brake_settled_s": result.settled.map(|settled| settled.after_s),
+        "brake_worst_share": result.settled.map(|settled| settled.worst),
+        "pair1_later": pair,
+    })
+}
+
+fn figures_json<F>(table: &[Figure<F>], of: Option<&F>) -> Value {
+    let value = |figure: &Figure<F>| (figure.key.to_owned(), of.and_then(figure.of).into());
+    Value::Object(table.iter().map(value).collect())
+}
+
+fn events_json(landmarks: &[Landmark]) -> Value {
+    let event = |mark: &Landmark| json!({"t_s": mark.t_s, "x_m": mark.x_m, "what": mark.what});
+    json!({"events": landmarks.iter().map(event).collect::<Vec<_>>()})
 }
 
 /// What a case is, whatever is drawn.
-fn case_json(case: &Case) -> Map<String, Value> {
-    let bench = &case.bench;
-    let settings: Vec<_> = bench
-        .settings
-        .iter()
-        .map(|s| Value::from(s.to_string()))
-        .collect();
-    [
-        ("line", Value::from(bench.line.content.name.as_str())),
-        ("section", case.plan.section.section.into()),
-        ("controller", case.controller.name().into()),
-        ("train", case.plan.train.name().into()),
-        ("unit_config", bench.config.content.name.as_str().into()),
-        ("settings", settings.into()),
-    ]
-    .map(|(key, value)| (key.to_owned(), value))
-    .into_iter()
-    .collect()
+fn case_json(case: &Case) -> Value {
+    object([
+        place_json(&case.bench, &case.plan.section),
+        json!({"controller": case.controller.name()}),
+        bench_json(&case.bench, case.plan.train.name()),
+    ])
+}
+
+fn place_json(bench: &DriveBench, section: &Section) -> Value {
+    json!({"line": bench.line.content.name, "section": section.section})
+}
+
+fn bench_json(bench: &DriveBench, train: &str) -> Value {
+    let settings: Vec<_> = bench.settings.iter().map(ToString::to_string).collect();
+    json!({"train": train, "unit_config": bench.config.content.name, "settings": settings})
+}
+
+/// Load, train and day.
+fn day_json(load_kg: f64, conditions: &Conditions, seed: u64) -> Value {
+    json!({"load_kg": load_kg, "conditions": conditions_json(conditions), "seed": seed})
 }
 
 /// Train and day.
-pub fn conditions_json(conditions: &Conditions) -> Value {
+fn conditions_json(conditions: &Conditions) -> Value {
     let disturbance = match conditions.disturbance {
         Disturbance::None => Value::Null,
         Disturbance::Sine {
@@ -102,24 +156,24 @@ pub fn conditions_json(conditions: &Conditions) -> Value {
 }
 
 fn many_json(many: &MonteCarlo) -> Value {
-    let mut object = Map::new();
-    object.insert("runs".into(), many.trials.len().into());
-    object.insert("asked".into(), many.asked.into());
-    object.extend(case_json(&many.case));
-    object.insert("stop_error_m".into(), percentiles(&many.stop_errors_m()));
-    object.insert("within_10cm".into(), many.within(0.1).into());
-    object.insert("within_30cm".into(), many.within(0.3).into());
-    object.insert("past_1m".into(), many.past_1m().into());
-    object.insert("passed".into(), many.passed().into());
-    object.insert("failures".into(), many.failures().map(trial_json).collect());
-    for figure in &FIGURES {
-        object.insert(figure.key.into(), percentiles(&many.figures(figure.of)));
-    }
-    object.insert(
-        "worst".into(),
-        many.worst().into_iter().map(trial_json).collect(),
-    );
-    object.into()
+    let figure = |figure: &Figure<Metrics>| {
+        let spread = percentiles(&many.figures(figure.of));
+        (figure.key.to_owned(), spread)
+    };
+    object([
+        json!({"runs": many.trials.len(), "asked": many.asked}),
+        case_json(&many.case),
+        json!({
+            "stop_error_m": percentiles(&many.stop_errors_m()),
+            "within_10cm": many.within(0.1),
+            "within_30cm": many.within(0.3),
+            "past_1m": many.past_1m(),
+            "passed": many.passed(),
+            "failures": many.failures().map(trial_json).collect::<Vec<_>>(),
+        }),
+        Value::Object(Metrics::ALL.iter().map(figure).collect()),
+        json!({"worst": many.worst().into_iter().map(trial_json).collect::<Vec<_>>()}),
+    ])
 }
 
 fn trial_json(trial: &Trial) -> Value {

@@ -1,13 +1,12 @@
-//! Reports of drive runs: plain text, JSON, CSV, and HTML with plots. Station-to-station runs here,
-//! runs by hand in [`manual`].
+//! Reports of drive runs: plain text, JSON, CSV, and HTML with plots; of automatic runs, of many of them, and of
+//! runs by hand. `facts` and `tables` are what text and page share; `plots` are drawn on the page.
 
 mod csv;
-mod figures;
+mod facts;
 mod html;
-mod html_many;
 mod json;
-pub mod manual;
 mod plots;
+mod tables;
 mod text;
 
 use std::path::PathBuf;
@@ -17,11 +16,10 @@ pub use html::page;
 pub use json::json;
 pub use text::text;
 
-use serde_json::Value;
-
 use crate::json_text;
 use ptu_bench::data;
 use ptu_bench::drive::Driven;
+use ptu_bench::drive::manual::ManualRun;
 use ptu_bench::drive::monte_carlo::MonteCarlo;
 use ptu_bench::failure::Failure;
 
@@ -39,30 +37,8 @@ pub enum Outcomes {
     Single(Vec<Driven>),
     /// Cases, each many times.
     Many(Vec<MonteCarlo>),
-}
-
-/// What can be written as a report.
-pub trait Report {
-    /// As a page that stands alone.
-    fn html(&self) -> String;
-    /// As one JSON document.
-    fn json(&self) -> Value;
-    /// As a table.
-    fn csv(&self) -> String;
-}
-
-impl Report for Results {
-    fn html(&self) -> String {
-        html::html(self)
-    }
-
-    fn json(&self) -> Value {
-        json(self)
-    }
-
-    fn csv(&self) -> String {
-        csv::csv(self)
-    }
+    /// A sequence, or keys.
+    ByHand(Box<ManualRun>),
 }
 
 /// A report to write.
@@ -109,11 +85,11 @@ impl Target {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&self, report: &impl Report) -> Result<(), Failure> {
+    pub fn write(&self, results: &Results) -> Result<(), Failure> {
         let text = match self.format {
-            Format::Html => report.html(),
-            Format::Json => json_text(&report.json())? + "\n",
-            Format::Csv => report.csv(),
+            Format::Html => html::html(results),
+            Format::Json => json_text(&json(results))? + "\n",
+            Format::Csv => csv::csv(results),
         };
         data::write(&self.path, &text)
     }

@@ -1,10 +1,14 @@
-//! The plots of one run, or of several side by side, as the papers have them.
+//! The plots of automatic runs as the papers have them, of runs by hand as S3's figures 5 to 7, and of many runs.
 
-use btu_rig::drive::Row;
+use btu_rig::drive::{Row, ScatterDraw};
+use btu_rig::rig::PAIR_DEMANDS;
+use protocol::signal::Signal;
 
-use super::figures::off;
+use super::facts::off;
 use crate::plot::{Place, Plot, Series, Style};
 use ptu_bench::drive::Driven;
+use ptu_bench::drive::manual::ManualRun;
+use ptu_bench::drive::monte_carlo::MonteCarlo;
 
 /// Way before the stop point that is shown larger, m.
 const LAST_M: f64 = 12.0;
@@ -12,26 +16,46 @@ const LAST_M: f64 = 12.0;
 const BEYOND: f64 = 0.01;
 /// Way past the stop point, m.
 const PAST_M: f64 = 1.0;
+/// Full effort as a value of TCMS.
+const FULL: f64 = 1024.0;
+/// Bars of the histogram.
+const BARS: usize = 60;
+/// Dots of a scatter plot at most: more hide each other.
+const MOST_DOTS: usize = 2_000;
 
 /// What a curve shows of a row.
 type Of = fn(&Row) -> f64;
 
 const TIME: Of = |row| row.t_s;
 const PLACE: Of = |row| row.x_m;
+const TRACTION_KN: Of = |row| row.value(Signal::Traction) / 1e3;
+const ELECTRIC_KN: Of = |row| row.value(Signal::ElectricBrake) / 1e3;
+const AIR_KN: Of = |row| row.value(Signal::AirBrake) / 1e3;
+
+/// A curve: name, colour, style and value.
+type Curve<'a> = (&'a str, usize, Style, Of);
+
+fn series(rows: &[Row], x: Of, (name, colour, style, y): Curve<'_>) -> Series {
+    Series {
+        name: name.into(),
+        colour,
+        style,
+        points: rows.iter().map(|row| (x(row), y(row))).collect(),
+    }
+}
 
 /// Speed, effort, acceleration and jerk over time and distance, forces, and the last metres.
 pub fn plots(runs: &[Driven]) -> Vec<Plot> {
     let mut plots = Vec::new();
-    for (along, x) in [("time", TIME), ("distance", PLACE)] {
-        let label = if along == "time" {
-            "Time since the train began to move, s"
-        } else {
-            "Position in the section, m"
-        };
+    let alone = runs.len() == 1;
+    for (along, x_label, x) in [
+        ("time", "Time since the train began to move, s", TIME),
+        ("distance", "Position in the section, m", PLACE),
+    ] {
         let mut add = |title: &str, y_label: &str, series: Vec<Series>, y_reach| {
             plots.push(Plot {
                 title: format!("{title} over {along}"),
-                x_label: label.into(),
+                x_label: x_label.into(),
                 y_label: y_label.into(),
                 x_range: Some(range(runs, x)),
                 y_reach,
@@ -42,26 +66,22 @@ pub fn plots(runs: &[Driven]) -> Vec<Plot> {
         };
         add("Speed", "km/h", speed(runs, x), Some((0.0, 1.0)));
         if along == "time" {
-            add("Position", "m", position(runs), Some((0.0, 1.0)));
+            let mut position = each(runs, x, PLACE, "true");
+            let by_unit: Curve<'_> = ("by the unit", 1, Style::Dashed, |r| {
+                r.value(Signal::Position)
+            });
+            let only = runs.iter().filter(|_| alone);
+            position.extend(only.map(|run| series(&run.outcome.rows, x, by_unit)));
+            add("Position", "m", position, Some((0.0, 1.0)));
         }
-        add(
-            "Effort",
-            "−1024 .. 1023",
-            each(runs, x, |r| r.effort, "effort"),
-            Some((-1024.0, 1023.0)),
-        );
-        add(
-            "Acceleration",
-            "km/h/s",
-            each(runs, x, |r| r.accel_mps2 * 3.6, "acceleration"),
-            Some((-3.0, 3.0)),
-        );
-        add(
-            "Jerk",
-            "m/s³",
-            each(runs, x, moving_jerk, "jerk"),
-            Some((-1.0, 1.0)),
-        );
+        let effort: Of = |r| r.value(Signal::Effort);
+        let effort = each(runs, x, effort, "effort");
+        add("Effort", "−1024 .. 1023", effort, Some((-1024.0, 1023.0)));
+        let accel: Of = |r| r.value(Signal::TrainAccel) * 3.6;
+        let accel = each(runs, x, accel, "acceleration");
+        add("Acceleration", "km/h/s", accel, Some((-3.0, 3.0)));
+        let jerk = each(runs, x, moving_jerk, "jerk");
+        add("Jerk", "m/s³", jerk, Some((-1.0, 1.0)));
     }
     if let [run] = runs {
         for (plot, x) in plots
@@ -82,147 +102,85 @@ fn moving_jerk(row: &Row) -> f64 {
     if row.speed_kmh == 0.0 && row.t_s > 0.0 {
         f64::NAN
     } else {
-        row.jerk_mps3
-    }
-}
-
-fn curve(name: &str, colour: usize, style: Style, rows: &[Row], x: Of, y: Of) -> Series {
-    Series {
-        name: name.into(),
-        colour,
-        style,
-        points: rows.iter().map(|row| (x(row), y(row))).collect(),
+        row.value(Signal::TrainJerk)
     }
 }
 
 /// One curve for each run, named by its controller where there are several.
 fn each(runs: &[Driven], x: Of, y: Of, name: &str) -> Vec<Series> {
-    let named = |run: &Driven| {
-        if runs.len() > 1 {
-            run.case.controller.name().into()
+    let one = |(at, run): (usize, &Driven)| {
+        let name = if runs.len() > 1 {
+            run.case.controller.name()
         } else {
-            name.to_owned()
-        }
+            name
+        };
+        series(&run.outcome.rows, x, (name, at, Style::Line, y))
     };
-    let one =
-        |(i, run): (usize, &Driven)| curve(&named(run), i, Style::Line, &run.outcome.rows, x, y);
     runs.iter().enumerate().map(one).collect()
 }
 
 fn speed(runs: &[Driven], x: Of) -> Vec<Series> {
-    let Some(first) = runs.first() else {
-        return Vec::new();
-    };
-    let mut series = vec![curve(
-        "limit",
-        4,
-        Style::Line,
-        &first.outcome.rows,
-        x,
-        |r| r.limit_kmh,
-    )];
-    if runs.len() == 1 {
-        series.push(curve(
-            "target",
-            1,
-            Style::Dashed,
-            &first.outcome.rows,
-            x,
-            |r| r.target_kmh,
-        ));
-        series.push(curve(
-            "actual",
-            0,
-            Style::Line,
-            &first.outcome.rows,
-            x,
-            |r| r.speed_kmh,
-        ));
-    } else {
-        series.extend(each(runs, x, |r| r.speed_kmh, "actual"));
-    }
-    series
-}
-
-fn position(runs: &[Driven]) -> Vec<Series> {
-    let mut series = each(runs, TIME, |r| r.x_m, "true");
+    let limit: Curve<'_> = ("limit", 4, Style::Line, |r| r.value(Signal::Limit));
+    let target: Curve<'_> = ("target", 1, Style::Dashed, |r| r.value(Signal::Target));
+    let first = runs.iter().take(1);
+    let mut all: Vec<_> = first
+        .map(|run| series(&run.outcome.rows, x, limit))
+        .collect();
     if let [run] = runs {
-        series.push(curve(
-            "by the unit",
-            1,
-            Style::Dashed,
-            &run.outcome.rows,
-            TIME,
-            |r| r.position_m,
-        ));
+        all.push(series(&run.outcome.rows, x, target));
     }
-    series
+    all.extend(each(runs, x, |r| r.speed_kmh, "actual"));
+    all
 }
 
 fn forces(run: &Driven) -> Plot {
-    let rows = &run.outcome.rows;
+    let curves: [Curve<'_>; 3] = [
+        ("traction", 0, Style::Line, TRACTION_KN),
+        ("electric brake", 2, Style::Line, |r| -ELECTRIC_KN(r)),
+        ("air brake", 1, Style::Line, |r| -AIR_KN(r)),
+    ];
+    let run = std::slice::from_ref(run);
     Plot {
         title: "Forces on the rails over distance".into(),
         x_label: "Position in the section, m".into(),
         y_label: "kN".into(),
-        x_range: Some(range(std::slice::from_ref(run), PLACE)),
-        series: vec![
-            curve("traction", 0, Style::Line, rows, PLACE, |r| {
-                r.traction_n / 1e3
-            }),
-            curve("electric brake", 2, Style::Line, rows, PLACE, |r| {
-                -r.electric_brake_n / 1e3
-            }),
-            curve("air brake", 1, Style::Line, rows, PLACE, |r| {
-                -r.air_brake_n / 1e3
-            }),
-        ],
-        places: places(std::slice::from_ref(run), false),
+        x_range: Some(range(run, PLACE)),
+        series: curves
+            .map(|curve| series(&run[0].outcome.rows, PLACE, curve))
+            .into(),
+        places: places(run, false),
         ..Plot::default()
     }
 }
 
 /// The last metres larger: speed by the way that is left, true and as the unit sees it.
 fn last_metres(runs: &[Driven]) -> Option<Plot> {
-    let first = runs.first()?;
-    let stop_m = first.case.plan.section.stop_m;
-    let mut series = Vec::new();
-    for (i, run) in runs.iter().enumerate() {
-        let name = if runs.len() > 1 {
-            run.case.controller.name()
-        } else {
-            "actual"
-        };
-        let rows = run.outcome.rows.iter().filter(|row| row.t_s >= 0.0);
-        let last: Vec<_> = rows
-            .filter(|row| row.x_m >= stop_m - LAST_M - 2.0)
-            .copied()
-            .collect();
-        let mut one = curve(name, i, Style::Line, &last, PLACE, |r| r.speed_kmh);
+    let section = &runs.first()?.case.plan.section;
+    let stop_m = section.stop_m;
+    let mut all = each(runs, PLACE, |r| r.speed_kmh, "actual");
+    for (one, run) in all.iter_mut().zip(runs) {
+        let kept = |row: &Row| row.t_s >= 0.0 && row.x_m >= stop_m - LAST_M - 2.0;
+        let mut rows = run.outcome.rows.iter();
+        one.points.retain(|_| rows.next().is_some_and(kept));
         one.points.iter_mut().for_each(|point| point.0 -= stop_m);
-        series.push(one);
     }
     let errors = runs.iter().filter_map(|run| run.outcome.stop_error_m);
     let past = errors
         .clone()
         .fold(PAST_M, |most, error| most.max(error + 0.5));
-    let at = errors.map(|error| Place {
-        x: error,
-        name: off(error),
-    });
+    let at = |(x, name): (f64, String)| Place { x, name };
+    let psm4 = (-(stop_m - section.markers_m[3]), "PSM4".into());
     Some(Plot {
         title: "The last metres".into(),
         x_label: "Way past the stop point, m".into(),
         y_label: "km/h".into(),
         x_range: Some((-LAST_M, past)),
         y_reach: Some((0.0, 1.0)),
-        series,
-        places: std::iter::once(Place {
-            x: -(stop_m - first.case.plan.section.markers_m[3]),
-            name: "PSM4".into(),
-        })
-        .chain(at)
-        .collect(),
+        series: all,
+        places: std::iter::once(psm4)
+            .chain(errors.map(|error| (error, off(error))))
+            .map(at)
+            .collect(),
         ..Plot::default()
     })
 }
@@ -244,23 +202,176 @@ fn places(runs: &[Driven], by_time: bool) -> Vec<Place> {
     if by_time {
         let marks = run.outcome.landmarks.iter().filter(|_| runs.len() == 1);
         let marks = marks.filter(|mark| mark.what.starts_with("PSM") || mark.what == "stop");
-        let name = |what: &str| what.trim_end_matches(" passed").to_owned();
-        return marks
-            .map(|mark| Place {
-                x: mark.t_s,
-                name: name(&mark.what),
-            })
-            .collect();
+        let place = |mark: &btu_rig::drive::Landmark| Place {
+            x: mark.t_s,
+            name: mark.what.trim_end_matches(" passed").to_owned(),
+        };
+        return marks.map(place).collect();
     }
     let section = &run.case.plan.section;
-    let markers = (1..).zip(section.markers_m).map(|(i, x)| Place {
-        x,
-        name: format!("PSM{i}"),
-    });
-    markers
-        .chain([Place {
-            x: section.stop_m,
-            name: "stop".into(),
-        }])
+    let markers = (1..)
+        .zip(section.markers_m)
+        .map(|(i, x)| (x, format!("PSM{i}")));
+    let all = markers.chain([(section.stop_m, "stop".into())]);
+    all.map(|(x, name)| Place { x, name }).collect()
+}
+
+/// Speed, order, inverter and air of MT pair 1, and the train, over time.
+pub fn plots_by_hand(run: &ManualRun) -> Vec<Plot> {
+    use Style::{Dashed, Line};
+    const TOTAL: usize = 0;
+    const AIR: usize = 1;
+    const ELECTRIC: usize = 2;
+    const MOTOR_AIR: usize = 3;
+    const DEMAND: usize = 4;
+
+    let rows = &run.outcome.rows;
+    let plot = |title: &str, y_label: &str, y_reach, curves: &[Curve<'_>]| Plot {
+        title: title.into(),
+        x_label: "Time since the sequence began, s".into(),
+        y_label: y_label.into(),
+        x_range: Some((0.0, rows.last().map_or(1.0, |row| row.t_s))),
+        y_reach: Some(y_reach),
+        series: curves
+            .iter()
+            .map(|curve| series(rows, TIME, *curve))
+            .collect(),
+        places: (run.outcome.done.iter())
+            .map(|done| Place {
+                x: done.t_s,
+                name: done.what(),
+            })
+            .collect(),
+        ..Plot::default()
+    };
+    let speed: [Curve<'_>; 2] = [
+        ("limit", DEMAND, Dashed, |r| r.value(Signal::Limit)),
+        ("actual", TOTAL, Line, |r| r.speed_kmh),
+    ];
+    let order: [Curve<'_>; 1] = [("order", TOTAL, Line, |r| {
+        100.0 * r.value(Signal::TcmsValue) / FULL
+    })];
+    let inverter: [Curve<'_>; 3] = [
+        ("TE", TOTAL, Line, |r| r.pairs[0].traction_n / 1e3),
+        ("electric brake", ELECTRIC, Line, |r| {
+            -r.pairs[0].electric_n / 1e3
+        }),
+        ("demand", DEMAND, Dashed, |r| {
+            r.value(PAIR_DEMANDS[0][0]) / 1e3
+        }),
+    ];
+    let air: [Curve<'_>; 4] = [
+        ("T cars", AIR, Line, |r| r.pairs[0].air_trailers_n / 1e3),
+        ("M cars", MOTOR_AIR, Line, |r| r.pairs[0].air_motors_n / 1e3),
+        ("demands", DEMAND, Dashed, |r| {
+            r.value(PAIR_DEMANDS[0][1]) / 1e3
+        }),
+        ("demands", DEMAND, Dashed, |r| {
+            r.value(PAIR_DEMANDS[0][2]) / 1e3
+        }),
+    ];
+    let train: [Curve<'_>; 4] = [
+        ("electric", ELECTRIC, Line, ELECTRIC_KN),
+        ("air", AIR, Line, AIR_KN),
+        ("total", TOTAL, Line, |r| r.brake_n() / 1e3),
+        ("demand", DEMAND, Dashed, |r| {
+            r.value(Signal::BrakeDemand) / 1e3
+        }),
+    ];
+    let percent = "% of full power, full service";
+    let (up, both, full) = ((0.0, 1.0), (-1.0, 1.0), (-100.0, 100.0));
+    let mut plots = vec![
+        plot("Speed", "km/h", up, &speed),
+        plot(
+            "Order of TCMS to inverters and brakes",
+            percent,
+            full,
+            &order,
+        ),
+        plot("MT pair 1: inverter", "kN, brake negative", both, &inverter),
+        plot("MT pair 1: air brake", "kN", up, &air),
+        plot("Whole train: brake", "kN", up, &train),
+    ];
+    plots[0].shade_slides(rows, |row| row.sliding, TIME);
+    plots
+}
+
+/// How stop errors lie, and what they go with.
+pub fn plots_of_many(many: &MonteCarlo) -> Vec<Plot> {
+    /// A number of what is drawn.
+    type Drawn = fn(&ScatterDraw) -> f64;
+    let drawn: [(&str, Drawn); 7] = [
+        ("passengers, t", |d| d.load_kg / 1000.0),
+        ("gradients added, ‰", |d| {
+            d.conditions.gradient_offset_permille
+        }),
+        ("adhesion", |d| d.conditions.adhesion),
+        ("delays, of nominal", |d| d.conditions.delay_factor),
+        ("brakes, of nominal", |d| d.conditions.brake_factor),
+        ("wheel diameter, of configured", |d| {
+            d.conditions.wheel_factor
+        }),
+        ("PSM4 off by, cm", |d| {
+            d.conditions.marker_offsets_m[3] * 100.0
+        }),
+    ];
+    // What is held fixed, or does not act on the train, was not drawn.
+    let differs = |of: Drawn| {
+        let mut pairs = many.trials.windows(2);
+        pairs.any(|pair| of(&pair[0].drawn) != of(&pair[1].drawn))
+    };
+    let against = |(name, of): (&str, Drawn)| {
+        let trials = many.trials.iter();
+        let points =
+            trials.filter_map(|trial| Some((of(&trial.drawn), trial.stop_error_m? * 100.0)));
+        Plot {
+            title: format!("Stop error by {name}"),
+            x_label: name.into(),
+            y_label: "cm".into(),
+            series: vec![unnamed(Style::Dots, points.take(MOST_DOTS).collect())],
+            ..Plot::default()
+        }
+    };
+    let drawn = drawn.into_iter().filter(|(_, of)| differs(*of));
+    std::iter::once(histogram(many))
+        .chain(drawn.map(against))
         .collect()
+}
+
+fn unnamed(style: Style, points: Vec<(f64, f64)>) -> Series {
+    Series {
+        name: String::new(),
+        colour: 0,
+        style,
+        points,
+    }
+}
+
+fn histogram(many: &MonteCarlo) -> Plot {
+    let errors = many.stop_errors_m();
+    let end = |error: Option<&f64>| error.copied().unwrap_or(0.0);
+    let (low, high) = (end(errors.first()), end(errors.last()));
+    let width = ((high - low) / BARS as f64).max(1e-4);
+    let mut counts = vec![0.0; BARS + 1];
+    for error in &errors {
+        counts[(((error - low) / width) as usize).min(BARS)] += 1.0;
+    }
+    let bar = |(i, count): (usize, f64)| ((low + (i as f64 + 0.5) * width) * 100.0, count);
+    let tolerance_cm = many.case.tolerance_m() * 100.0;
+    let place = |x: f64| Place {
+        x,
+        name: format!("{x:+.0} cm"),
+    };
+    Plot {
+        title: "Stop errors".into(),
+        x_label: "Past the stop point, cm".into(),
+        y_label: "runs".into(),
+        y_reach: Some((0.0, 1.0)),
+        series: vec![unnamed(
+            Style::Bars,
+            counts.into_iter().enumerate().map(bar).collect(),
+        )],
+        places: [-tolerance_cm, tolerance_cm].map(place).into(),
+        ..Plot::default()
+    }
 }

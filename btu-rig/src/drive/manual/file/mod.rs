@@ -6,10 +6,10 @@ mod tests;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::action::REVERSER;
-use super::{Action, Load, Sequence, SequenceError, Step, When, Wrong};
+use super::action::{REVERSER, powers};
+use super::{Load, Sequence, SequenceError, Step, When, Wrong};
 use crate::lever::Lever;
-use crate::stimulus::{CutOut, TrainSwitch};
+use crate::stimulus::{CutOut, Stimulus, TrainSwitch};
 
 /// Steps a sequence may have.
 pub const MAX_STEPS: usize = 1000;
@@ -207,7 +207,7 @@ fn when(raw: &RawStep, lines: &Lines<'_>, at: usize) -> Result<When, SequenceErr
 }
 
 /// What is cut out or switched comes before the lever, so that one step can do both.
-fn actions(raw: &RawStep, lines: &Lines<'_>) -> Result<Vec<Action>, SequenceError> {
+fn actions(raw: &RawStep, lines: &Lines<'_>) -> Result<Vec<Stimulus>, SequenceError> {
     let mut actions = Vec::new();
     for (what, car, out) in [
         (CutOut::Brake, raw.brake_cut_out, true),
@@ -215,7 +215,7 @@ fn actions(raw: &RawStep, lines: &Lines<'_>) -> Result<Vec<Action>, SequenceErro
         (CutOut::Inverter, raw.inverter_cut_out, true),
         (CutOut::Inverter, raw.inverter_cut_in, false),
     ] {
-        actions.extend(car.map(|car| Action::CutOut { what, car, out }));
+        actions.extend(car.map(|car| Stimulus::CutOut { what, car, on: out }));
     }
     for (switch, on) in [
         (TrainSwitch::OtherCab, raw.other_active),
@@ -230,20 +230,20 @@ fn actions(raw: &RawStep, lines: &Lines<'_>) -> Result<Vec<Action>, SequenceErro
         (TrainSwitch::TurnBack, raw.turn_back),
         (TrainSwitch::Regeneration, raw.regeneration),
     ] {
-        actions.extend(on.map(|on| Action::Switch(switch, on)));
+        actions.extend(on.map(|on| Stimulus::Switch { switch, on }));
     }
-    actions.extend(raw.doors_closed.map(|closed| Action::Doors { closed }));
+    actions.extend(raw.doors_closed.map(|closed| Stimulus::Doors { closed }));
     if let Some(name) = &raw.reverser {
         let known = REVERSER.iter().find(|(_, known)| known == name.get_ref());
         let wrong = || Wrong::NoReverser(name.get_ref().clone());
-        let (position, _) = known.ok_or_else(|| lines.at(name.span().start, wrong()))?;
-        actions.push(Action::Reverser(*position));
+        let (position, _) = *known.ok_or_else(|| lines.at(name.span().start, wrong()))?;
+        actions.push(Stimulus::Reverser { position });
     }
     if let Some(name) = &raw.lever {
         let wrong = || Wrong::NoLever(name.get_ref().clone());
         let lever =
             Lever::from_name(name.get_ref()).ok_or_else(|| lines.at(name.span().start, wrong()))?;
-        actions.push(Action::Lever(lever));
+        actions.push(Stimulus::Controller { lever });
     }
     Ok(actions)
 }
@@ -255,7 +255,7 @@ fn in_order(steps: &[Step]) -> Result<(), SequenceError> {
             let (line, wrong) = (step.line, Wrong::NothingMoves(step.when.to_string()));
             return Err(SequenceError { line, wrong });
         }
-        if step.actions.iter().any(|action| action.powers()) {
+        if step.actions.iter().any(powers) {
             return Ok(());
         }
     }

@@ -1,6 +1,8 @@
 //! Sequence files: what is read, written back and refused.
 
 use super::*;
+use crate::drive::manual::action::{SWITCHES, toml};
+use crate::drive::manual::words;
 
 const GOOD: &str = r#"title = "one \"stop\""
 load = "full"
@@ -34,13 +36,9 @@ fn a_file_is_read_and_written_back() {
             (15, When::AtStandstill)
         ]
     );
-    let words: Vec<_> = sequence.steps[1]
-        .actions
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let found: Vec<_> = sequence.steps[1].actions.iter().map(words).collect();
     assert_eq!(
-        words,
+        found,
         ["brake of car 4 cut out", "regeneration cut-out", "B7"]
     );
     let mut again = Sequence::from_toml(&sequence.to_toml()).unwrap();
@@ -53,22 +51,19 @@ fn a_file_is_read_and_written_back() {
 /// Every action is written with a key that is read again as the same.
 #[test]
 fn every_action_comes_back_from_its_own_words() {
-    let switches = super::super::action::SWITCHES;
-    let switched = switches
-        .iter()
-        .map(|(switch, _)| Action::Switch(*switch, false));
-    let levers = Lever::ALL.into_iter().map(Action::Lever);
-    let reverser = [1, 0, -1].map(Action::Reverser);
-    let cut = |what, out| Action::CutOut { what, car: 3, out };
+    let switched = SWITCHES.map(|(switch, _)| Stimulus::Switch { switch, on: false });
+    let levers = Lever::ALL.map(|lever| Stimulus::Controller { lever });
+    let reverser = [1, 0, -1].map(|position| Stimulus::Reverser { position });
+    let cut = |what, on| Stimulus::CutOut { what, car: 3, on };
     let others = [
-        Action::Doors { closed: false },
+        Stimulus::Doors { closed: false },
         cut(CutOut::Brake, true),
         cut(CutOut::Brake, false),
         cut(CutOut::Inverter, true),
         cut(CutOut::Inverter, false),
     ];
-    for action in switched.chain(levers).chain(reverser).chain(others) {
-        let text = format!("title = \"x\"\n[[steps]]\nafter_s = 0\n{}\n", action.toml());
+    for action in (switched.into_iter().chain(levers).chain(reverser)).chain(others) {
+        let text = format!("title = \"x\"\n[[steps]]\nafter_s = 0\n{}\n", toml(&action));
         let sequence = Sequence::from_toml(&text).unwrap();
         assert_eq!(sequence.steps[0].actions, [action], "{text}");
     }

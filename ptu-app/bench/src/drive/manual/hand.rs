@@ -1,7 +1,8 @@
 //! Manual driving by keys in real time.
 
-use btu_rig::drive::manual::{Ending, Outcome, Player, Row};
-use btu_rig::lever::Lever;
+use btu_rig::drive::Row;
+use btu_rig::drive::manual::{Ending, Outcome, Player};
+use protocol::signal::Signal;
 
 use super::ManualCase;
 use super::keys::{Command, HELP, Keys};
@@ -56,7 +57,7 @@ pub fn drive_by_hand(case: &ManualCase, stop: &Stop) -> Result<Outcome, Failure>
         if scan.is_multiple_of(SHOWN_EVERY)
             && let Some(row) = player.newest()
         {
-            let mut line = status(row, player.lever());
+            let mut line = status(row);
             if let Some(brake) = player.atp_brake() {
                 line = format!("{line}   {brake}");
             }
@@ -67,16 +68,16 @@ pub fn drive_by_hand(case: &ManualCase, stop: &Stop) -> Result<Outcome, Failure>
 }
 
 /// Speed, limit, lever and efforts of the whole train.
-fn status(row: &Row, lever: Lever) -> String {
+fn status(row: &Row) -> String {
     // A size that is nothing has no sign.
-    let kn = |newtons: f64| newtons.max(0.0) / 1000.0 + 0.0;
+    let kn = |signal| row.value(signal).max(0.0) / 1000.0 + 0.0;
     format!(
         "{:5.1} km/h (limit {:.0})   {:<4}  TE {:4.0} kN   electric {:4.0} kN   air {:4.0} kN",
-        row.speed_kmh,
-        row.limit_kmh,
-        lever.to_string(),
-        kn(row.traction_n),
-        kn(row.electric_n),
-        kn(row.air_n),
+        row.speed_kmh.abs(),
+        row.value(Signal::Limit),
+        row.lever.to_string(),
+        kn(Signal::Traction),
+        kn(Signal::ElectricBrake),
+        kn(Signal::AirBrake),
     )
 }

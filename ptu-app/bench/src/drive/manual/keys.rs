@@ -1,18 +1,17 @@
 //! Maps the keys of a terminal to the actions of a driver.
 
-use btu_rig::drive::manual::Action;
 use btu_rig::lever::Lever;
-use btu_rig::stimulus::TrainSwitch;
+use btu_rig::stimulus::{Stimulus, TrainSwitch};
 
 /// What a driver is told before the start.
 pub const HELP: &str = "up + one notch up   down - one notch down   n neutral   b full brake   \
                         e emergency   r regeneration on/off   q quit";
 
 /// What a key asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Do this.
-    Act(Action),
+    Act(Stimulus),
     /// End the run.
     Quit,
 }
@@ -50,8 +49,10 @@ impl Keys {
             b'e' => self.lever_to(Lever::Emergency),
             b'r' => {
                 self.regeneration = !self.regeneration;
-                let switched = Action::Switch(TrainSwitch::Regeneration, self.regeneration);
-                Some(Command::Act(switched))
+                Some(Command::Act(Stimulus::Switch {
+                    switch: TrainSwitch::Regeneration,
+                    on: self.regeneration,
+                }))
             }
             b'q' => Some(Command::Quit),
             _ => None,
@@ -92,7 +93,7 @@ impl Keys {
             return None;
         }
         self.lever = lever;
-        Some(Command::Act(Action::Lever(lever)))
+        Some(Command::Act(Stimulus::Controller { lever }))
     }
 }
 
@@ -102,17 +103,19 @@ const LONGEST_ESCAPE: usize = 16;
 
 #[cfg(test)]
 mod tests {
+    use btu_rig::drive::manual::words;
+
     use super::*;
 
     /// Actions of all keys in a text, as words.
     fn pressed(text: &str) -> Vec<String> {
         let mut keys = Keys::default();
         let commands = text.bytes().filter_map(|byte| keys.press(byte));
-        let words = |command| match command {
-            Command::Act(action) => Action::to_string(&action),
+        let told = |command| match command {
+            Command::Act(action) => words(&action),
             Command::Quit => "quit".into(),
         };
-        commands.map(words).collect()
+        commands.map(told).collect()
     }
 
     #[test]

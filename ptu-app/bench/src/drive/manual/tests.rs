@@ -1,8 +1,9 @@
 //! Recorded driving sequences played with the embedded unit in the loop.
 
-use btu_rig::drive::manual::{Action, AtpBrake, Row};
+use btu_rig::drive::Row;
+use btu_rig::drive::manual::AtpBrake;
 use btu_rig::lever::Lever;
-use btu_rig::stimulus::TrainSwitch;
+use btu_rig::stimulus::{Stimulus, TrainSwitch};
 use protocol::message::FsbCause;
 
 use super::*;
@@ -47,11 +48,16 @@ fn a_run_by_hand_can_be_repeated_from_what_was_saved() {
     let mut bench = by_hand.bench.fresh(1);
     let mut player = Player::new(by_hand.plan.clone());
     let mut began = None;
+    let lever = |lever| Stimulus::Controller { lever };
+    let regeneration_cut_out = Stimulus::Switch {
+        switch: TrainSwitch::Regeneration,
+        on: false,
+    };
     let keys = [
-        (0, Action::Lever(Lever::Power(3))),
-        (7_130, Action::Switch(TrainSwitch::Regeneration, false)),
-        (7_130, Action::Lever(Lever::Brake(4))),
-        (9_010, Action::Lever(Lever::Emergency)),
+        (0, lever(Lever::Power(3))),
+        (7_130, regeneration_cut_out),
+        (7_130, lever(Lever::Brake(4))),
+        (9_010, lever(Lever::Emergency)),
     ];
     let outcome = loop {
         bench.tick().unwrap();

@@ -1,0 +1,140 @@
+//! What reports say of a run in words: how it ended, on which train and bench, under which conditions.
+
+use btu_rig::conditions::{Conditions, Disturbance};
+use btu_rig::drive::Outcome;
+
+use ptu_bench::drive::manual::ManualRun;
+use ptu_bench::drive::monte_carlo::Trial;
+use ptu_bench::drive::{Case, Driven};
+
+/// A name and its value.
+pub type Fact = (&'static str, String);
+
+/// A stop error for people, signed: centimetres, from 1 m on metres.
+pub fn off(metres: f64) -> String {
+    if metres.abs() < 1.0 {
+        format!("{:+.1} cm", metres * 100.0)
+    } else {
+        format!("{metres:+.2} m")
+    }
+}
+
+/// Where a run stopped, and why if it was not at its stop point.
+pub fn stop(trial: &Trial) -> String {
+    match trial.stop_error_m {
+        Some(error) if trial.stopped() => off(error),
+        Some(error) => format!("{}, {}", trial.ending, off(error)),
+        None => trial.ending.to_string(),
+    }
+}
+
+/// How a run ended, for people.
+pub fn ending(run: &Driven) -> String {
+    let tolerance_cm = run.case.tolerance_m() * 100.0;
+    let Outcome {
+        ending,
+        stop_error_m,
+        ..
+    } = &run.outcome;
+    match stop_error_m {
+        Some(error) => {
+            let side = if *error > 0.0 { "past" } else { "before" };
+            let verdict = if run.aligned() { "within" } else { "outside" };
+            format!(
+                "{ending}, {} {side} the stop point, {verdict} ±{tolerance_cm:.0} cm",
+                off(error.abs()).trim_start_matches('+')
+            )
+        }
+        None => ending.to_string(),
+    }
+}
+
+/// Section and controller of a case.
+pub fn title(case: &Case) -> String {
+    format!(
+        "{} section {}, {}",
+        case.bench.line.content.name,
+        case.plan.section.section,
+        case.controller.name()
+    )
+}
+
+fn loaded(train: &str, mass_kg: f64, load_kg: f64) -> [Fact; 2] {
+    [
+        ("Train", format!("{train}, {:.1} t", mass_kg / 1000.0)),
+        ("Passengers", format!("{:.1} t", load_kg / 1000.0)),
+    ]
+}
+
+/// Train and day of a run. What is nominal is not named but for train and load.
+pub fn conditions(case: &Case) -> Vec<Fact> {
+    let plan = &case.plan;
+    let nominal = Conditions::default();
+    let c = &plan.conditions;
+    let mass_kg: f64 = plan.train.cars(plan.load_kg).iter().map(|car| car.1).sum();
+    let mut found = Vec::from(loaded(plan.train.name(), mass_kg, plan.load_kg));
+    let factors: [(_, fn(&Conditions) -> f64, _, _); 5] = [
+        ("Gradients", |c| c.gradient_offset_permille, " ‰ added", 2),
+        ("Adhesion", |c| c.adhesion, "", 3),
+        ("Delays", |c| c.delay_factor, " of nominal", 3),
+        ("Brakes", |c| c.brake_factor, " of nominal", 3),
+        ("Wheel diameter", |c| c.wheel_factor, " of configured", 4),
+    ];
+    for (name, of, unit, decimals) in factors {
+        if of(c) != of(&nominal) {
+            found.push((name, format!("{:.decimals$}{unit}", of(c))));
+        }
+    }
+    if c.marker_offsets_m != nominal.marker_offsets_m {
+        let offsets = c
+            .marker_offsets_m
+            .map(|m| format!("{:+.1}", m * 100.0))
+            .join(", ");
+        found.push(("Markers off by", format!("{offsets} cm")));
+    }
+    if let Disturbance::Sine {
+        amplitude_n_s_per_m,
+        hz,
+    } = c.disturbance
+    {
+        found.push((
+            "Disturbance",
+            format!("{amplitude_n_s_per_m:.0} N·s/m at {hz} Hz"),
+        ));
+    }
+    found
+}
+
+/// What was driven by hand on what.
+pub fn by_hand(run: &ManualRun) -> Vec<Fact> {
+    let plan = &run.case.plan;
+    let cars = &plan.train.cars;
+    let mass_kg = cars.iter().map(|car| car.empty_kg).sum::<f64>() + plan.load_kg;
+    let mut facts = Vec::from(loaded(&plan.train.name, mass_kg, plan.load_kg));
+    facts.extend([
+        (
+            "Line",
+            format!("{} section {}", run.case.line, plan.section.section),
+        ),
+        (
+            "Speed code",
+            format!("{}, {:.0} km/h", plan.code, plan.limit_kmh),
+        ),
+    ]);
+    let added = plan.conditions.gradient_offset_permille;
+    if added != 0.0 {
+        facts.push(("Gradient", format!("{added:+.1} ‰ added")));
+    }
+    facts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_metres_are_told_in_metres() {
+        let told = [-0.015, 0.9994, 1.0, -847.22].map(off);
+        assert_eq!(told, ["-1.5 cm", "+99.9 cm", "+1.00 m", "-847.22 m"]);
+    }
+}

@@ -1,0 +1,273 @@
+//! The tables of a report, the same in text and on a page.
+
+use btu_rig::drive::manual::{Done, settled};
+use btu_rig::drive::{Figure, Landmark, Metrics};
+use btu_rig::rig::PairEfforts;
+use maud::{Markup, html};
+
+use super::facts::{conditions, off, stop};
+use ptu_bench::drive::Driven;
+use ptu_bench::drive::manual::ManualRun;
+use ptu_bench::drive::monte_carlo::{MonteCarlo, percentile};
+use ptu_bench::table;
+
+/// Time after which the efforts after a step are reported, s: jerk limit and lags are over.
+const LATER_S: f64 = 3.0;
+/// Percentiles that are shown.
+const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
+/// What stands for a value that is not known.
+const UNKNOWN: &str = "–";
+
+/// A table.
+pub struct Table {
+    /// Headings in text, and on a page; a page without headings has none.
+    headings: Vec<(String, String)>,
+    rows: Vec<Vec<String>>,
+    /// Columns of words on a page; all others are numbers.
+    words: Vec<usize>,
+    /// The first column names what stands in the others.
+    named: bool,
+}
+
+impl Table {
+    fn new(headings: &[(&str, &str)], words: impl Into<Vec<usize>>) -> Self {
+        let owned = |(text, page): &(&str, &str)| ((*text).into(), (*page).into());
+        Self {
+            headings: headings.iter().map(owned).collect(),
+            rows: Vec::new(),
+            words: words.into(),
+            named: false,
+        }
+    }
+
+    /// As text.
+    pub fn text(&self) -> String {
+        let headings: Vec<_> = self
+            .headings
+            .iter()
+            .map(|heading| heading.0.as_str())
+            .collect();
+        let mut table = table::Table::new(&headings);
+        for row in &self.rows {
+            table.row(row.iter().cloned());
+        }
+        table.render()
+    }
+
+    /// As a part of a page.
+    pub fn html(&self) -> Markup {
+        let class = |at: usize| (!self.words.contains(&at)).then_some("number");
+        html! {
+            table {
+                @if self.headings.iter().any(|heading| !heading.1.is_empty()) {
+                    tr { @for (at, heading) in self.headings.iter().enumerate() { th class=[class(at)] { (heading.1) } } }
+                }
+                @for row in &self.rows {
+                    tr {
+                        @for (at, cell) in row.iter().enumerate() {
+                            @if self.named && at == 0 { th { (cell) } } @else { td class=[class(at)] { (cell) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Figures of runs side by side, each as `figure` has it for a figure.
+fn figures<F>(table: &[Figure<F>], values: &[Option<&F>]) -> Vec<Vec<String>> {
+    let row = |figure: &Figure<F>| {
+        let shown = |run: &Option<&F>| {
+            run.and_then(|run| (figure.of)(run))
+                .map(|v| figure.shown(v))
+        };
+        let cells = values
+            .iter()
+            .map(|run| shown(run).unwrap_or(UNKNOWN.into()));
+        let named = std::iter::once(figure.name.into()).chain(cells);
+        named.chain([figure.unit.into()]).collect()
+    };
+    table.iter().map(row).collect()
+}
+
+fn one_run(rows: Vec<Vec<String>>) -> Table {
+    Table {
+        rows,
+        named: true,
+        ..Table::new(&[("FIGURE", ""), ("VALUE", ""), ("", "")], [0, 2])
+    }
+}
+
+/// Figures of automatic runs, side by side under the names of their controllers.
+pub fn of_runs(runs: &[Driven]) -> Table {
+    let error = |run: &Driven| run.outcome.stop_error_m.map_or(UNKNOWN.into(), off);
+    let mut rows = vec![vec!["Stop error".to_owned()]];
+    rows[0].extend(runs.iter().map(error));
+    rows[0].push(String::new());
+    let metrics: Vec<_> = runs
+        .iter()
+        .map(|run| run.outcome.metrics.as_ref())
+        .collect();
+    rows.extend(figures(Metrics::ALL, &metrics));
+    let mut table = one_run(rows);
+    if runs.len() > 1 {
+        let name = |run: &Driven| (String::new(), run.case.controller.name().to_owned());
+        table.words = vec![0, runs.len() + 1];
+        table.headings = runs.iter().map(name).collect();
+        table.headings.insert(0, Default::default());
+        table.headings.push(Default::default());
+    }
+    table
+}
+
+/// Figures of a run by hand.
+pub fn of_run_by_hand(run: &ManualRun) -> Table {
+    let found = &run.outcome.figures;
+    one_run(figures(
+        btu_rig::drive::manual::Figures::ALL,
+        &[Some(found)],
+    ))
+}
+
+/// How figures of many runs lie.
+pub fn of_many(many: &MonteCarlo) -> Table {
+    let row = |name: String, values: &[f64], shown: &dyn Fn(f64) -> String| {
+        let cell = |percent| percentile(values, percent).map_or("-".into(), shown);
+        let cells = PERCENTILES.iter().copied().chain([0.0, 100.0]).map(cell);
+        std::iter::once(name).chain(cells).collect()
+    };
+    let errors = row("Stop error".into(), &many.stop_errors_m(), &off);
+    let figure = |figure: &Figure<Metrics>| {
+        let name = format!("{}, {}", figure.name, figure.unit);
+        row(name, &many.figures(figure.of), &|value| figure.shown(value))
+    };
+    let percents = PERCENTILES.map(|percent| format!("{percent} %"));
+    let mut headings = vec![("FIGURE", "")];
+    headings.extend(
+        percents
+            .iter()
+            .map(|percent| (percent.as_str(), percent.as_str())),
+    );
+    headings.extend([("LEAST", "least"), ("MOST", "most")]);
+    Table {
+        rows: std::iter::once(errors)
+            .chain(Metrics::ALL.iter().map(figure))
+            .collect(),
+        named: true,
+        ..Table::new(&headings, [0])
+    }
+}
+
+/// The worst of many runs.
+pub fn worst(many: &MonteCarlo) -> Table {
+    let headings = [
+        ("WORST: SEED", "Seed"),
+        ("STOP", "Stop"),
+        ("TRAIN AND DAY", "Train and day"),
+    ];
+    let mut table = Table::new(&headings, [1, 2]);
+    for trial in many.worst() {
+        let mut case = many.case.clone();
+        (case.plan.load_kg, case.plan.conditions) = (trial.drawn.load_kg, trial.drawn.conditions);
+        let day = conditions(&case).into_iter().skip(1);
+        let day: Vec<_> = day
+            .map(|(name, value)| format!("{} {value}", name.to_lowercase()))
+            .collect();
+        let row = vec![trial.seed.to_string(), stop(trial), day.join("; ")];
+        table.rows.push(row);
+    }
+    table
+}
+
+/// What happened on the way.
+pub fn events(landmarks: &[Landmark]) -> Table {
+    let headings = [
+        ("TIME s", "Time s"),
+        ("PLACE m", "Place m"),
+        ("EVENT", "Event"),
+    ];
+    let row = |mark: &Landmark| {
+        vec![
+            format!("{:.2}", mark.t_s),
+            format!("{:.2}", mark.x_m),
+            mark.what.clone(),
+        ]
+    };
+    Table {
+        rows: landmarks.iter().map(row).collect(),
+        ..Table::new(&headings, [2])
+    }
+}
+
+/// A step of a run by hand with what it did to MT pair 1, the pair that S3 plots.
+pub struct StepResult<'a> {
+    /// What was done.
+    pub done: &'a Done,
+    /// How the brake settled.
+    pub settled: Option<btu_rig::drive::manual::Settled>,
+    /// MT pair 1 a few seconds later, or just before the next step.
+    pub pair: Option<PairEfforts>,
+}
+
+/// Results of all steps of a run.
+pub fn step_results(run: &ManualRun) -> Vec<StepResult<'_>> {
+    let outcome = &run.outcome;
+    let ends = outcome.done.iter().skip(1).map(|next| next.t_s);
+    let steps = outcome.done.iter().zip(ends.chain([f64::INFINITY]));
+    steps
+        .map(|(done, until_s)| {
+            let at_s = (done.t_s + LATER_S).min(until_s);
+            let row = outcome.row_at(at_s).filter(|row| row.t_s > done.t_s);
+            StepResult {
+                done,
+                settled: settled(&outcome.rows, done.t_s, until_s),
+                pair: row.map(|row| row.pairs[0]),
+            }
+        })
+        .collect()
+}
+
+/// Steps of a run by hand with their results.
+pub fn steps(run: &ManualRun) -> Table {
+    let headings = [
+        ("TIME s", "Time s"),
+        ("km/h", "km/h"),
+        ("DONE", "Done"),
+        ("WITHIN 2 % s", "Brake within 2 % after s"),
+        ("TE kN", "TE kN"),
+        ("EL kN", "Electric kN"),
+        ("AIR T kN", "Air T kN"),
+        ("AIR M kN", "Air M kN"),
+        ("BRAKE kN", "Brake kN"),
+    ];
+    let efforts: [fn(&PairEfforts) -> f64; 5] = [
+        |pair| pair.traction_n,
+        |pair| pair.electric_n,
+        |pair| pair.air_trailers_n,
+        |pair| pair.air_motors_n,
+        PairEfforts::brake_n,
+    ];
+    let row = |result: &StepResult<'_>| {
+        // Adding nothing takes the sign off a nothing.
+        let kn = |of: fn(&PairEfforts) -> f64| {
+            let pair = result.pair.as_ref();
+            pair.map_or(UNKNOWN.into(), |pair| {
+                format!("{:.2}", of(pair) / 1000.0 + 0.0)
+            })
+        };
+        let settled = result
+            .settled
+            .map(|settled| format!("{:.2}", settled.after_s));
+        let first = [
+            format!("{:.2}", result.done.t_s),
+            format!("{:.1}", result.done.speed_kmh),
+            result.done.what(),
+            settled.unwrap_or(UNKNOWN.into()),
+        ];
+        first.into_iter().chain(efforts.map(kn)).collect()
+    };
+    Table {
+        rows: step_results(run).iter().map(row).collect(),
+        ..Table::new(&headings, [2])
+    }
+}
