@@ -1,23 +1,22 @@
 //! The state that the bench thread shares with the window: the latest cycle, the rows before it, and the operator's
 //! requests to a run (pause, single step, answers).
 
-use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time;
 
 use btu_rig::procedure::Runner;
+use btu_rig::recorder::{Ring, Row, rows_of};
 use btu_rig::rig::Rig;
 use protocol::message::Identity;
 use protocol::signal::{Sample, Signal};
-use protocol::{CYCLE, Duration, Instant};
+use protocol::{Duration, Instant};
 
 use super::{LinkQuality, Wake};
 use crate::run::RunControl;
 
 /// Rows are kept for this long.
 pub const HISTORY: Duration = Duration::from_ms(120_000);
-const ROWS: usize = (HISTORY.as_us() / CYCLE.as_us()) as usize;
 /// The window is woken at most this often …
 const OFTEN: time::Duration = time::Duration::from_millis(33);
 /// … and at least this often while nothing changes but the time and counts.
@@ -45,21 +44,6 @@ pub enum Phase {
     MakingSafe,
 }
 
-/// Every signal at the end of one cycle.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// Bench time.
-    pub at: Instant,
-    values: [f64; Signal::COUNT],
-}
-
-impl Row {
-    /// NaN when the value was not known.
-    pub fn value(&self, signal: Signal) -> f64 {
-        self.values[signal.index()]
-    }
-}
-
 /// The bench after its latest cycle.
 #[derive(Debug, Default)]
 pub struct LiveData {
@@ -77,8 +61,8 @@ pub struct LiveData {
     pub restarts: u32,
     /// Counts how often the bench was rebuilt or made safe; manual orders of an earlier epoch are not executed.
     pub bench_epoch: u64,
-    /// The latest rows, oldest first, one per 50 ms; cleared when the bench is rebuilt.
-    pub rows: VecDeque<Row>,
+    /// The latest rows, one per 50 ms; cleared when the bench is rebuilt.
+    pub rows: Ring<{ rows_of(HISTORY) }>,
 }
 
 /// The operator's requests to the present run.
@@ -212,20 +196,14 @@ impl RunControl for LiveState {
         let mut pending = held(&self.pending);
         pending.rows.push(Row {
             at: now,
-            values: *rig.sample().values(),
+            sample: rig.sample().clone(),
         });
         // The window is reading: the row is published with the next cycle.
         let Ok(mut live) = self.live.try_lock() else {
             return;
         };
         for row in pending.rows.drain(..) {
-            if live.rows.back().is_some_and(|last| row.at < last.at) {
-                live.rows.clear();
-            }
-            if live.rows.len() == ROWS {
-                live.rows.pop_front();
-            }
-            live.rows.push_back(row);
+            live.rows.push(row);
         }
         live.now = now;
         live.sample.clone_from(rig.sample());

@@ -24,7 +24,7 @@ use btu_rig::stimulus::Stimulus;
 
 pub use event::BenchEvent;
 pub use link_quality::LinkQuality;
-pub use live_state::{HISTORY, LiveData, LiveState, Phase, Row};
+pub use live_state::{HISTORY, LiveData, LiveState, Phase};
 pub use permit::{Refused, permit};
 pub use progress::{Present, ProcedureProgress, Progress, Waiting};
 

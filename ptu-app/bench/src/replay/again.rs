@@ -1,6 +1,7 @@
 //! Repeats recorded stimuli on a freshly built embedded unit.
 
 use btu_rig::recorded::StimulusPlayer;
+use btu_rig::recorder::BEFORE;
 use btu_rig::rig::UnitLink;
 use fault_db::TraceData;
 use protocol::{CYCLE, Instant};
@@ -8,7 +9,7 @@ use protocol::{CYCLE, Instant};
 use super::{Original, Rule};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
-use crate::run::{BEFORE, BenchSetup, RecordedStimuli, Session};
+use crate::run::{BenchSetup, RecordedStimuli, Session};
 use crate::run::{READY_WITHIN, settled};
 use crate::stop::Stop;
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ato_under_test::Setup;
 use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
+use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{Bench, Rig, UnitLink};
 use btu_rig::train::TrainData;
 use protocol::Instant;
@@ -15,7 +16,6 @@ use protocol::message::Identity;
 
 use super::fault_watch::FaultSeen;
 use super::reach::Reached;
-use super::recorder::BEFORE;
 use super::session::Session;
 use super::{RunControl, unit_text};
 use crate::data::DataFile;

@@ -2,13 +2,14 @@
 //! them to the store and to the listener, and computes the verdict of the run.
 
 use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
+use btu_rig::recorder::Cut;
 use fault_db::{FaultRecord, Id, MeasurementRecord, RecordingRecord, StepRecord};
 use protocol::Duration;
 
 use super::event::{RecordedStimuli, SessionEvent};
 use super::made::BenchMade;
-use super::recorder::Cut;
 use super::store_thread::{RunStore, Speaker};
+use super::trace_data::trace_data;
 use super::{FaultSeen, Task};
 use crate::clock;
 use crate::failure::Exit;
@@ -118,7 +119,7 @@ impl<'a> Collector<'a> {
             SessionEvent::Run(_) => {}
             SessionEvent::LinkLost(_) => self.link_lost = true,
             SessionEvent::Fault(fault) => self.fault(fault),
-            SessionEvent::Trace(cut) => self.trace(*cut),
+            SessionEvent::Trace(cut) => self.trace(&cut),
             SessionEvent::Recording(stimuli) => self.recording(&procedure.id, &stimuli),
             SessionEvent::Ended { bench_time } => self.before += bench_time,
         }
@@ -182,11 +183,10 @@ impl<'a> Collector<'a> {
         });
     }
 
-    fn trace(&mut self, cut: Cut) {
-        let Cut { faults, mut trace } = cut;
+    fn trace(&mut self, cut: &Cut) {
+        let mut trace = trace_data(cut);
         trace.t0_bench_us += self.before.as_us() as i64;
-        let faults: Vec<_> = faults
-            .iter()
+        let faults: Vec<_> = (cut.faults.iter())
             .map(|number| self.faults_before + number)
             .collect();
         let date = faults.first().and_then(|number| self.dates.get(*number));

@@ -2,10 +2,10 @@
 
 use btu_rig::procedure::RunEvent;
 use btu_rig::recorded::StimulusRecord;
+use btu_rig::recorder::Cut;
 use protocol::{Duration, Instant};
 
 use super::fault_watch::FaultSeen;
-use super::recorder::Cut;
 
 /// What happens while a procedure runs on a bench. Times are bench times.
 #[derive(Clone, Debug)]

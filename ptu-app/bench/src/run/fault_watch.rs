@@ -8,7 +8,7 @@ use protocol::event::{Event, Severity};
 use protocol::message::SelfTest;
 use protocol::signal::Sample;
 
-use super::recorder::freeze_frame;
+use super::trace_data::freeze_frame;
 
 /// Code of a fault found by a failed check.
 pub const CHECK_FAILED: u16 = 9000;

@@ -20,7 +20,6 @@ pub mod loading;
 mod made;
 mod observe;
 mod reach;
-mod recorder;
 mod rounds;
 mod run_control;
 pub mod select;
@@ -28,6 +27,7 @@ mod session;
 mod settle;
 mod store_thread;
 mod suite;
+mod trace_data;
 pub mod unit_text;
 #[cfg(test)]
 mod untrusted_unit_tests;
@@ -49,7 +49,6 @@ pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use made::{BenchMade, Made, Stimuli};
 pub use observe::{Gatherer, of_run};
-pub(crate) use recorder::BEFORE;
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};
 

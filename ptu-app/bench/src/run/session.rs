@@ -7,6 +7,7 @@ use std::sync::Arc;
 use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::recorded::StimulusPlayer;
+use btu_rig::recorder::{Cut, Recorder};
 use btu_rig::rig::{Bench, UnitLink};
 use fault_db::TraceData;
 use protocol::signal::Sample;
@@ -14,7 +15,7 @@ use protocol::{CYCLE, Duration, Instant, SCAN};
 
 use super::RunControl;
 use super::fault_watch::{self, FaultSeen};
-use super::recorder::{Cut, Recorder};
+use super::trace_data::trace_data;
 use crate::link::Pace;
 use crate::stop::Stop;
 
@@ -245,7 +246,8 @@ impl<L: UnitLink> Session<L> {
             refused.extend(refusals.into_iter().map(|refusal| refusal.0));
         }
         let partial = self.bench.now() < window.until;
-        self.recorder.trace(window.from, window.trigger, partial)
+        let cut = self.recorder.cut(window.from, window.trigger, partial)?;
+        Some(trace_data(&cut))
     }
 
     /// Brings the bench to the quiescent state, for as long as that may take.

@@ -2,13 +2,13 @@
 //! harms what passes.
 
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict, loader};
+use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{LinkFailure, Random, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
 use protocol::{Duration, Instant};
 use std::sync::Arc;
 
-use super::recorder::BEFORE;
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
 use super::{BenchChoice, BenchSetup, SessionEvent, Task};

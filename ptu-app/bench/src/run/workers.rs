@@ -5,6 +5,7 @@ use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
+use btu_rig::recorder::BEFORE;
 use btu_rig::rig::UnitLink;
 use protocol::Instant;
 
@@ -12,7 +13,6 @@ use super::bench_setup::{BenchSetup, Connected};
 use super::event::SessionEvent;
 use super::fault_watch::FaultSeen;
 use super::first_failure::FirstFailure;
-use super::recorder::BEFORE;
 use super::session::Session;
 use super::settle::{READY_WITHIN, between_procedures, settled};
 use super::{ProcedureStream, RunPlan, Task, stream};

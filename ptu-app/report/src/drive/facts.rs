@@ -66,6 +66,9 @@ fn loaded(train: &str, mass_kg: f64, load_kg: f64) -> [Fact; 2] {
     ]
 }
 
+/// One of the conditions.
+type Of = fn(&Conditions) -> f64;
+
 /// Train and day of a run. What is nominal is not named but for train and load.
 pub fn conditions(case: &Case) -> Vec<Fact> {
     let plan = &case.plan;
@@ -73,7 +76,7 @@ pub fn conditions(case: &Case) -> Vec<Fact> {
     let c = &plan.conditions;
     let mass_kg: f64 = plan.train.cars(plan.load_kg).iter().map(|car| car.1).sum();
     let mut found = Vec::from(loaded(plan.train.name(), mass_kg, plan.load_kg));
-    let factors: [(_, fn(&Conditions) -> f64, _, _); 5] = [
+    let factors: [(_, Of, _, _); 5] = [
         ("Gradients", |c| c.gradient_offset_permille, " ‰ added", 2),
         ("Adhesion", |c| c.adhesion, "", 3),
         ("Delays", |c| c.delay_factor, " of nominal", 3),

@@ -70,8 +70,9 @@ impl Rows {
         self.values.iter_mut().for_each(Vec::clear);
         let before_s = |at: protocol::Instant| -live.now.since(at).as_secs();
         // One row beyond the left edge: its values hold until the next.
-        let first = live.rows.partition_point(|row| before_s(row.at) < -span_s);
-        for row in live.rows.range(first.saturating_sub(1)..) {
+        let rows = live.rows.rows();
+        let first = rows.partition_point(|row| before_s(row.at) < -span_s);
+        for row in rows.range(first.saturating_sub(1)..) {
             self.times_s.push(before_s(row.at));
             for (signal, values) in signals.iter().zip(&mut self.values) {
                 values.push(row.value(*signal));
