@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use crate::backend::Field;
+use crate::backend::{Field, SqlError};
 use crate::fault_state::FaultState;
 use crate::record::Verdict;
 
@@ -43,6 +43,30 @@ pub struct Refused {
     pub what: String,
     /// Why.
     pub reason: String,
+}
+
+/// A row outside its columns' domain: its table, its name there, and why.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    pub table: &'static str,
+    pub shown: String,
+    pub reason: String,
+}
+
+impl Refusal {
+    /// The error of reading such a row.
+    pub fn of(table: &'static str, shown: String, reason: String) -> SqlError {
+        SqlError::Refused(Box::new(Self {
+            table,
+            shown,
+            reason,
+        }))
+    }
+
+    /// Which row, as "fault event 0197…".
+    pub fn row(&self) -> String {
+        format!("{} {}", self.table.replace('_', " "), self.shown)
+    }
 }
 
 impl Refusals {

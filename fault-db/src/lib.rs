@@ -6,8 +6,8 @@
 //! 1. [`trace`]: equally spaced samples of named channels, compressed column by column;
 //! 2. [`Store`]: one open file or server, with its schema, its checks on opening and its errors;
 //! 3. operations on a store: [`RunWriter`] records a run as it happens, `query` reads, `fault_log` changes
-//!    the state of faults, `maintenance` checks, backs up, prunes and merges files, `sync` replicates
-//!    between a file and a server.
+//!    the state of faults, `maintenance` checks, backs up and prunes files, `replication` brings the rows
+//!    of one store into another.
 //!
 //! The crate reads no clock, starts no thread, draws no random number and opens no file but the database:
 //! the caller gives times and an [`IdSource`]. Exceptions: [`read_regular_file`] and [`AtomicFile`] read and
@@ -41,6 +41,7 @@ mod record;
 mod recording;
 mod recurrence;
 mod regular_file;
+mod replication;
 mod run_notes;
 mod run_writer;
 mod schema;
@@ -49,7 +50,6 @@ mod seal;
 mod server;
 mod sql_functions;
 mod store;
-mod sync;
 mod text_enum;
 pub mod trace;
 mod transaction;
@@ -64,7 +64,7 @@ pub use domain::{Refusals, Refused};
 pub use error::{QueryLimit, StoreError};
 pub use fault_state::{FaultAction, FaultState, TransitionError};
 pub use id::{Id, IdSource};
-pub use maintenance::{CheckReport, CopyOf, MergeCounts, Problem, PruneCounts, PruneRule};
+pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
 pub use open_options::{OpenOptions, Synchronous};
 pub use query::{
     DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
@@ -78,13 +78,15 @@ pub use record::{
 };
 pub use recording::{Recording, RecordingRecord};
 pub use regular_file::{open_regular_file, read_regular_file};
+pub use replication::{
+    CopyOf, Different, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
+};
 pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use seal::{RunSealed, SealHead};
 pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use store::Store;
-pub use sync::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
 pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};
 pub use views::VIEWS_PAGE;

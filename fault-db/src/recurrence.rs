@@ -8,7 +8,7 @@
 
 use sha2::{Digest as _, Sha256};
 
-use crate::backend::{Backend, Server, SqlResult, values};
+use crate::backend::{Backend, Row, SqlError, SqlResult, values};
 use crate::event_graph::heads;
 use crate::fault_event::{EventContext, NewEvent, insert_event_with_context};
 use crate::fault_state::{FaultAction, FaultState};
@@ -58,24 +58,7 @@ struct Recurrence {
     message: String,
 }
 
-/// Adds `recurred` events to a fault of a file; whether there were any. Runs in the caller's transaction,
-/// which has to recompute the fault afterwards.
-pub(crate) fn reopen_if_recurred(backend: &Backend, fault: i64) -> SqlResult<bool> {
-    let all = backend.select(RECURRED_IN_FILE, &values![fault], |row| {
-        Ok(Recurrence {
-            fault: row.get(0)?,
-            resolution: row.get(1)?,
-            lamport: row.get(2)?,
-            at_us: row.get(3)?,
-            message: row.get(4)?,
-        })
-    })?;
-    all.iter()
-        .try_for_each(|recurrence| insert_recurrence(backend, recurrence))?;
-    Ok(!all.is_empty())
-}
-
-/// The last event and the last occurrence of a server.
+/// The last event and the last occurrence of a store.
 #[derive(Clone, Copy)]
 pub(crate) struct HighWaterMark {
     event: i64,
@@ -96,35 +79,48 @@ impl HighWaterMark {
     }
 }
 
-/// The same for faults of a server, where either side is newer than the mark; which faults were reopened.
-pub(crate) fn reopen_recurred_on_server(
+/// Adds `recurred` events to these faults; which of them were reopened. Of a server only where either side is
+/// newer than the mark. Runs in the caller's transaction, which has to recompute the faults afterwards.
+pub(crate) fn reopen_recurred(
     backend: &Backend,
-    server: &Server,
     faults: &[i64],
     mark: HighWaterMark,
 ) -> SqlResult<Vec<i64>> {
-    let mut opened = Vec::new();
-    let found = server.select_columns(
-        RECURRED_ON_SERVER,
-        &[&faults, &mark.event, &mark.occurrence],
-    )?;
-    for row in found {
-        let resolution: &[u8] = row.try_get(1)?;
-        let Ok(resolution) = resolution.try_into().map(Id::from_bytes) else {
-            continue;
-        };
-        let recurrence = Recurrence {
-            fault: row.try_get(0)?,
-            resolution,
-            lamport: row.try_get(2)?,
-            at_us: row.try_get(3)?,
-            message: row.try_get(4)?,
-        };
-        insert_recurrence(backend, &recurrence)?;
-        opened.push(recurrence.fault);
+    let mut found = Vec::new();
+    match backend {
+        Backend::File(_) => {
+            for fault in faults {
+                found.extend(backend.select(RECURRED_IN_FILE, &values![*fault], read)?);
+            }
+        }
+        Backend::Server(server) => {
+            let marks: [&(dyn postgres::types::ToSql + Sync); 3] =
+                [&faults, &mark.event, &mark.occurrence];
+            for row in server.select_columns(RECURRED_ON_SERVER, &marks)? {
+                match read(Row::Server(&row)) {
+                    // An id accepted by an early version of the server.
+                    Err(SqlError::Value { .. }) => {}
+                    recurrence => found.push(recurrence?),
+                }
+            }
+        }
     }
-    opened.dedup();
-    Ok(opened)
+    for recurrence in &found {
+        insert_recurrence(backend, recurrence)?;
+    }
+    let mut reopened: Vec<i64> = found.iter().map(|recurrence| recurrence.fault).collect();
+    reopened.dedup();
+    Ok(reopened)
+}
+
+fn read(row: Row<'_>) -> SqlResult<Recurrence> {
+    Ok(Recurrence {
+        fault: row.get(0)?,
+        resolution: row.get(1)?,
+        lamport: row.get(2)?,
+        at_us: row.get(3)?,
+        message: row.get(4)?,
+    })
 }
 
 /// Each recurrence has its own event, with the same id wherever it is found.

@@ -7,6 +7,7 @@ use rusqlite::types::FromSqlError;
 
 use crate::full_text::{Search, words};
 use crate::record::{RepairRecord, part_name};
+use crate::server::derived_columns;
 use crate::units;
 
 /// Microseconds of a day.
@@ -28,6 +29,17 @@ pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
     })?;
     conn.create_scalar_function("search_words", 1, flags, |context| {
         Ok(words(&said(context.get_raw(0).as_str()?)).join(" "))
+    })?;
+    conn.create_scalar_function("server_part", 2, flags, |context| {
+        let (kind, body) = (context.get_raw(0), context.get_raw(1));
+        Ok(derived_columns::part(kind.as_str()?, body.as_str()?))
+    })?;
+    conn.create_scalar_function("server_event_words", 2, flags, |context| {
+        let (kind, body) = (context.get_raw(0), context.get_raw(1));
+        Ok(derived_columns::event_words(kind.as_str()?, body.as_str()?))
+    })?;
+    conn.create_scalar_function("server_note_words", 1, flags, |context| {
+        Ok(derived_columns::note_words(context.get_raw(0).as_str()?))
     })?;
     conn.create_scalar_function("says", 2, flags, |context| {
         let asked = context.get_or_create_aux(1, |asked| {

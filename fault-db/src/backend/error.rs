@@ -1,11 +1,14 @@
 //! Errors of a backend, before the file or server they concern is known.
 
-/// An error of a file, of a server, or of a value in a row.
+use crate::domain::Refusal;
+
+/// An error of a file, of a server, of a value in a row, or of a row outside its domain.
 #[derive(Debug)]
 pub(crate) enum SqlError {
     File(rusqlite::Error),
     Server(postgres::Error),
     Value { column: usize, reason: String },
+    Refused(Box<Refusal>),
 }
 
 pub(crate) type SqlResult<T> = Result<T, SqlError>;

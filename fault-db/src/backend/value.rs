@@ -31,6 +31,11 @@ macro_rules! values {
 pub(crate) use values;
 
 impl Value<'_> {
+    /// The value as an id, if it is one.
+    pub fn id(&self) -> Option<Id> {
+        Id::from_field(self.field()).ok()
+    }
+
     /// The same as a field, for comparison with stored rows.
     pub fn field(&self) -> Field<'_> {
         match self {
@@ -109,6 +114,17 @@ pub(crate) trait FromField<'a>: Sized {
 }
 
 impl Field<'_> {
+    /// The same value, owned.
+    pub fn to_value(self) -> Value<'static> {
+        match self {
+            Self::Null => Value::Null,
+            Self::Integer(value) => Value::Integer(value),
+            Self::Real(value) => Value::Real(value),
+            Self::Text(text) => Value::Text(Cow::Owned(text.to_owned())),
+            Self::Bytes(bytes) => Value::Bytes(Cow::Owned(bytes.to_vec())),
+        }
+    }
+
     fn kind(&self) -> &'static str {
         match self {
             Self::Null => "nothing",

@@ -393,6 +393,10 @@ impl StoreError {
                 path: path.to_path_buf(),
                 detail: format!("{doing}: column {column}: {reason}"),
             },
+            SqlError::Refused(refusal) => Self::Corrupt {
+                path: path.to_path_buf(),
+                detail: format!("{doing}: {}: {}", refusal.row(), refusal.reason),
+            },
         }
     }
 }

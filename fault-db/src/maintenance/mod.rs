@@ -1,10 +1,8 @@
-//! Maintenance of files: [check](crate::Store::check), backup, prune, merge.
+//! Maintenance of files: [check](crate::Store::check), backup, prune.
 
 mod backup;
 mod check;
-mod merge;
 mod prune;
 
 pub use check::{CheckReport, Problem};
-pub use merge::{CopyOf, MergeCounts};
 pub use prune::{PruneCounts, PruneRule};

@@ -20,6 +20,17 @@ pub(crate) enum ChainComparison {
     Rewritten { after: i64, what: String, id: Id },
 }
 
+/// Compares all chains known here, in the order of their files' ids.
+pub(crate) fn compare_all_chains(
+    here: &Backend,
+    there: &Backend,
+) -> SqlResult<Vec<(Id, ChainComparison)>> {
+    let all = "SELECT DISTINCT origin FROM seal ORDER BY origin";
+    let origins: Vec<Id> = here.select(all, &[], |row| row.get(0))?;
+    let compare = |origin| Ok((origin, compare_chains(here, there, origin)?));
+    origins.into_iter().map(compare).collect()
+}
+
 /// Compares a chain.
 pub(crate) fn compare_chains(
     here: &Backend,

@@ -1,6 +1,6 @@
 -- What follows from rows, kept for the laptops, who may only add. Each function says what the rows say; of the
 -- rest a laptop tells how far it is, and what a unit and a fault are called by now. Made anew by each
--- `ptu db server init`; how a fault is settled is fault-db/src/settle.rs.
+-- `ptu db server init`; how a fault is settled is fault-db/src/event_graph.rs.
 
 -- A file comes: what is here of it.
 CREATE OR REPLACE FUNCTION meet_laptop(file bytea, called text, ahead_us bigint)
@@ -76,35 +76,26 @@ $$;
 
 -- Of these faults, those that are not closed become one with the oldest of the same unit, code and part that is
 -- not closed either, and their ids other names of it. Each laptop that has either of them is told again what
--- was said about both.
+-- was said about both. How rows move is fault-db/src/event_graph.rs.
 CREATE OR REPLACE FUNCTION join_faults(faults bigint[]) RETURNS void
   LANGUAGE plpgsql SECURITY DEFINER SET search_path FROM CURRENT AS $$
 DECLARE
-  all_stays bigint[];
-  all_goes bigint[];
+  stays bigint;
+  goes bigint;
+  joined bigint[] := ARRAY[]::bigint[];
 BEGIN
-  SELECT array_agg(d.stays), array_agg(d.goes) INTO all_stays, all_goes FROM (
-    SELECT DISTINCT stays.seq AS stays, goes.seq AS goes FROM fault f
+  FOR stays, goes IN
+    SELECT DISTINCT oldest.seq, other.seq FROM fault f
       CROSS JOIN LATERAL (SELECT min(d.seq) AS seq FROM fault d WHERE d.unit = f.unit
-        AND d.code = f.code AND d.lru = f.lru AND d.state <> 'closed') AS stays
-      JOIN fault goes ON goes.unit = f.unit AND goes.code = f.code AND goes.lru = f.lru
-        AND goes.state <> 'closed' AND goes.seq > stays.seq
+        AND d.code = f.code AND d.lru = f.lru AND d.state <> 'closed') AS oldest
+      JOIN fault other ON other.unit = f.unit AND other.code = f.code AND other.lru = f.lru
+        AND other.state <> 'closed' AND other.seq > oldest.seq
     WHERE f.seq = ANY($1) AND f.state <> 'closed'
-  ) AS d;
-  IF all_stays IS NULL THEN
-    RETURN;
-  END IF;
-  UPDATE fault_occurrence SET fault = x.stays
-  FROM unnest(all_stays, all_goes) AS x(stays, goes) WHERE fault = x.goes;
-  UPDATE fault_event SET fault = x.stays
-  FROM unnest(all_stays, all_goes) AS x(stays, goes) WHERE fault = x.goes;
-  UPDATE fault_alias SET fault = x.stays
-  FROM unnest(all_stays, all_goes) AS x(stays, goes) WHERE fault = x.goes;
-  UPDATE laptop_fault SET fault = x.stays, fresh = fresh + 1
-  FROM unnest(all_stays, all_goes) AS x(stays, goes) WHERE fault IN (x.stays, x.goes);
-  INSERT INTO fault_alias(id, fault) SELECT f.id, x.stays
-  FROM unnest(all_stays, all_goes) AS x(stays, goes) JOIN fault f ON f.seq = x.goes
-  ON CONFLICT DO NOTHING;
-  DELETE FROM fault USING unnest(all_stays, all_goes) AS x(stays, goes) WHERE seq = x.goes;
-  PERFORM settle_faults(all_stays);
+  LOOP
+    {move};
+    UPDATE laptop_fault SET fault = stays, fresh = fresh + 1 WHERE fault IN (stays, goes);
+    DELETE FROM fault WHERE seq = goes;
+    joined := joined || stays;
+  END LOOP;
+  PERFORM settle_faults(joined);
 END $$;

@@ -7,7 +7,7 @@ use super::connect::open;
 use super::schema::{self, SERVER_SCHEMA_VERSION};
 use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::error::StoreError;
-use crate::event_graph::RECOMPUTE_FAULT;
+use crate::event_graph::{MOVE_ROWS, RECOMPUTE_FAULT};
 use crate::id::IdSource;
 use crate::store::Store;
 
@@ -131,7 +131,9 @@ fn set_up(backend: &Backend, server: &Server, ids: &mut IdSource, laptops: &str)
 
 /// The functions that maintain derived columns.
 fn functions() -> String {
-    include_str!("functions.sql").replace("{settle}", RECOMPUTE_FAULT)
+    let moved = MOVE_ROWS.join(";\n    ");
+    let moved = moved.replace("?1", "stays").replace("?2", "goes");
+    (include_str!("functions.sql").replace("{settle}", RECOMPUTE_FAULT)).replace("{move}", &moved)
 }
 
 /// Creates the laptops' account if need be; whether it did.

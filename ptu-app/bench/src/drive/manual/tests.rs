@@ -168,7 +168,7 @@ fn standstill_means_after_having_moved() {
 #[test]
 fn an_option_overrides_the_file() {
     let asked = Request {
-        load: Some(Load::Empty),
+        load: Some(LoadChoice::Empty),
         code: Some("65".into()),
         line: Some("line8".into()),
         sections: Some(SectionChoice::One(54)),

@@ -101,6 +101,14 @@ pub(super) fn save_on_server(backend: &Backend, laptop: i64, cursors: Cursors) -
 }
 
 impl Cursors {
+    /// The position of traces, or of all but traces.
+    pub fn of(&mut self, traces: bool) -> &mut i64 {
+        match traces {
+            true => &mut self.sent_traces,
+            false => &mut self.sent,
+        }
+    }
+
     /// What both sides have stored.
     pub fn minimum(self, other: Self) -> Self {
         cursors(

@@ -10,21 +10,21 @@ mod batch;
 mod cursors;
 mod outbox;
 mod outcome;
-mod pull;
-mod rows;
+mod receive;
 mod seal_chains;
-mod tables;
-mod traces;
 
 use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
+use crate::replication::tables::Of;
+use crate::replication::to_server::ServerApplier;
 use crate::server::schema::server_id;
 use crate::store::Store;
+use batch::Batch;
 use cursors::{Cursors, Laptop};
 pub use outcome::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
+use seal_chains::Chain;
 pub(crate) use seal_chains::chain_error;
-use seal_chains::{Chain, ChainError};
 
 const SENDING: &str = "sending";
 const RECEIVING: &str = "receiving";
@@ -63,11 +63,11 @@ impl Store {
             })?;
             file_id = parted.unwrap_or(file_id);
         }
-        let chains = seal_chains::look(self.backend(), server.backend(), file_id, self.path());
-        let chains = chains.map_err(|error| match error {
-            ChainError::Sql(error) => self.either(server, DOING, error),
-            ChainError::Refused(error) => error,
-        })?;
+        let chains = seal_chains::look(self.backend(), server.backend(), file_id);
+        let chains = chains.map_err(|error| self.either(server, DOING, error))?;
+        if let Some(stands) = &chains.refused {
+            return Err(chain_error(self.path(), stands));
+        }
         let laptop = server.change(DOING, |backend| {
             let met = cursors::register_laptop(backend, file_id, options);
             met.map_err(|error| server.failed(DOING, error))
@@ -109,12 +109,13 @@ struct Sync<'a> {
 
 impl Sync<'_> {
     fn all(&mut self, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
-        let reach = self.send(options)?;
+        let reach = self.send(SyncPhase::Sending, None, options)?;
         if !self.outcome.stopped {
             self.send_seals()?;
         }
         if !self.outcome.stopped && options.traces {
-            self.send_traces(reach, options)?;
+            // Up to where all runs were sent.
+            self.send(SyncPhase::SendingTraces, Some(reach), options)?;
         }
         if !self.outcome.stopped {
             self.receive(options)?;
@@ -124,35 +125,63 @@ impl Sync<'_> {
         Ok(())
     }
 
-    /// Sends all but traces; the last outbox entry that was covered.
-    fn send(&mut self, options: &mut SyncOptions<'_>) -> Result<i64, StoreError> {
-        let total = self.entries_after(self.cursors.sent, "what <> 'trace'")?;
+    /// Sends traces, or all but traces, up to an outbox entry or to the end; the last entry that was covered.
+    /// Each batch is read and sent in one transaction of the server, together with its cursor.
+    fn send(
+        &mut self,
+        phase: SyncPhase,
+        until: Option<i64>,
+        options: &mut SyncOptions<'_>,
+    ) -> Result<i64, StoreError> {
+        let traces = phase == SyncPhase::SendingTraces;
+        let total = self.entries_waiting(traces)?;
         let mut done = 0;
         loop {
             // Read first: an entry recorded from now on may be a trace whose run was not sent.
-            let reach = self.of_file(SENDING, batch::last)?;
-            let entries = self.of_file(SENDING, |file| batch::entries(file, self.cursors.sent))?;
+            let reach = match until {
+                Some(reach) => reach,
+                None => self.of_file(SENDING, batch::last)?,
+            };
+            let after = *self.cursors.of(traces);
+            let entries = |file: &Backend| batch::entries(file, traces, after, reach);
+            let entries = self.of_file(SENDING, entries)?;
             if entries.is_empty() || self.outcome.stopped {
                 return Ok(reach);
             }
-            done += self.send_batch(options, |sync, backend, cursors| {
-                let batch = batch::Batch::gather(sync.file.backend(), sync.wire, &entries)?;
-                cursors.sent = batch.through;
-                let count = batch.entries;
-                Ok((count, batch.send(backend, sync.wire, &sync.laptop)?))
+            let mut cursors = self.cursors;
+            let outcome = self.server.change(SENDING, |backend| {
+                let mut send = || {
+                    let batch = Batch::gather(self.file.backend(), self.wire, &entries)?;
+                    *cursors.of(traces) = batch.through;
+                    done += batch.entries;
+                    let new = self.applier(self.laptop.seq).apply(&batch.set)?;
+                    cursors::save_on_server(backend, self.laptop.seq, cursors)?;
+                    Ok(batch.outcome(&new))
+                };
+                send().map_err(|error| self.file.either(self.server, SENDING, error))
             })?;
-            let phase = SyncPhase::Sending;
+            self.cursors = cursors;
+            self.save(options)?;
+            self.outcome.add(outcome);
             self.tell(SyncProgress { phase, done, total }, options);
+        }
+    }
+
+    fn applier(&self, laptop: i64) -> ServerApplier<'_> {
+        ServerApplier {
+            backend: self.server.backend(),
+            server: self.wire,
+            laptop,
         }
     }
 
     /// Sends the seals of what was sent.
     fn send_seals(&mut self) -> Result<(), StoreError> {
-        let (file, server, wire) = (self.file, self.server, self.wire);
-        for chain in &mut self.chains {
+        let (file, server) = (self.file, self.server);
+        for mut chain in std::mem::take(&mut self.chains) {
             loop {
                 let sent = server.change(SENDING, |_| {
-                    seal_chains::send(file.backend(), wire, chain)
+                    seal_chains::send(file.backend(), &self.applier(0), &mut chain)
                         .map_err(|error| file.either(server, SENDING, error))
                 })?;
                 match sent {
@@ -164,57 +193,17 @@ impl Sync<'_> {
         Ok(())
     }
 
-    /// Sends traces up to an outbox entry up to which all runs were sent.
-    fn send_traces(&mut self, reach: i64, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
-        let total = self.entries_after(self.cursors.sent_traces, "what = 'trace'")?;
-        let mut done = 0;
-        loop {
-            let after = self.cursors.sent_traces;
-            let entries = self.of_file(SENDING, |file| traces::entries(file, after, reach))?;
-            if entries.is_empty() || self.outcome.stopped {
-                return Ok(());
-            }
-            done += self.send_batch(options, |sync, _, cursors| {
-                let batch = traces::Batch::gather(sync.file.backend(), sync.wire, &entries)?;
-                cursors.sent_traces = batch.through;
-                let count = batch.entries;
-                Ok((count, batch.send(sync.wire, sync.laptop.seq)?))
-            })?;
-            let phase = SyncPhase::SendingTraces;
-            self.tell(SyncProgress { phase, done, total }, options);
-        }
-    }
-
-    /// Reads and sends a batch in one transaction of the server, together with its cursor; the number of
-    /// entries.
-    fn send_batch(
-        &mut self,
-        options: &SyncOptions<'_>,
-        work: impl FnOnce(&Self, &Backend, &mut Cursors) -> SqlResult<(u64, SyncOutcome)>,
-    ) -> Result<u64, StoreError> {
-        let mut cursors = self.cursors;
-        let (count, outcome) = self.server.change(SENDING, |backend| {
-            let sent = work(self, backend, &mut cursors).and_then(|sent| {
-                cursors::save_on_server(backend, self.laptop.seq, cursors)?;
-                Ok(sent)
-            });
-            sent.map_err(|error| self.file.either(self.server, SENDING, error))
-        })?;
-        self.cursors = cursors;
-        self.save(options)?;
-        self.outcome.add(outcome);
-        Ok(count)
-    }
-
     /// Reports progress, and stops if the caller says so.
     fn tell(&mut self, progress: SyncProgress, options: &mut SyncOptions<'_>) {
         self.outcome.stopped |= !(options.go_on)(progress);
     }
 
     fn receive(&mut self, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
-        let until = self.of_server(RECEIVING, pull::last)?;
-        let new = self.of_server(RECEIVING, |backend| pull::fresh(backend, self.laptop.seq))?;
-        let scope = pull::PullScope {
+        let until = self.of_server(RECEIVING, receive::last)?;
+        let new = self.of_server(RECEIVING, |backend| {
+            receive::fresh(backend, self.laptop.seq)
+        })?;
+        let scope = receive::PullScope {
             laptop: self.laptop.seq,
             until,
             fresh: false,
@@ -223,7 +212,7 @@ impl Sync<'_> {
         let mut done = 0;
         // A pull from the beginning includes all faults anyway.
         if self.cursors.received > 0 {
-            let fresh = pull::PullScope {
+            let fresh = receive::PullScope {
                 fresh: true,
                 ..scope
             };
@@ -237,7 +226,7 @@ impl Sync<'_> {
         }
         self.cursors.received = until;
         self.server.change(RECEIVING, |_| {
-            pull::acknowledge(self.wire, self.laptop.seq, &new, until)
+            receive::acknowledge(self.wire, self.laptop.seq, &new, until)
                 .map_err(|error| self.server.failed(RECEIVING, error))
         })?;
         self.save(options)
@@ -246,24 +235,26 @@ impl Sync<'_> {
     fn receive_from(
         &mut self,
         after: i64,
-        scope: pull::PullScope,
+        scope: receive::PullScope,
         mut done: u64,
         options: &mut SyncOptions<'_>,
     ) -> Result<u64, StoreError> {
         let mut after = Some(after);
         while let Some(from) = after {
-            let batch = self.of_server(RECEIVING, |backend| pull::events(backend, scope, from))?;
+            let batch =
+                self.of_server(RECEIVING, |backend| receive::events(backend, scope, from))?;
             after = batch.next;
             self.outcome.refused.extend(batch.refused);
-            let events = batch.events;
-            if events.is_empty() {
+            let events = batch.set.rows(Of::Event).count();
+            if events == 0 {
                 continue;
             }
-            let added = self.file.change(RECEIVING, |file| {
-                pull::add(file, &events).map_err(|error| self.file.failed(RECEIVING, error))
+            let added = self.file.write(RECEIVING, |conn| {
+                receive::add(self.file.backend(), conn, &batch.set)
+                    .map_err(|error| self.file.failed(RECEIVING, error))
             })?;
             self.outcome.add(added);
-            done += events.len() as u64;
+            done += events as u64;
             let phase = SyncPhase::Receiving;
             let total = 0;
             self.tell(SyncProgress { phase, done, total }, options);
@@ -286,14 +277,15 @@ impl Sync<'_> {
     }
 
     fn waiting(&self) -> Result<u64, StoreError> {
-        let rest = self.entries_after(self.cursors.sent, "what <> 'trace'")?;
-        Ok(rest + self.entries_after(self.cursors.sent_traces, "what = 'trace'")?)
+        Ok(self.entries_waiting(false)? + self.entries_waiting(true)?)
     }
 
-    fn entries_after(&self, cursor: i64, which: &str) -> Result<u64, StoreError> {
-        let sql = format!("SELECT count(*) FROM outbox WHERE seq > ?1 AND {which}");
+    /// Traces, or all but traces, that are to be sent.
+    fn entries_waiting(&self, traces: bool) -> Result<u64, StoreError> {
+        let sql = "SELECT count(*) FROM outbox WHERE seq > ?1 AND (what = 'trace') = ?2";
+        let after = *{ self.cursors }.of(traces);
         let found = self.of_file("counting what waits", |file| {
-            file.first(&sql, &values![cursor], |row| row.get(0))
+            file.first(sql, &values![after, traces], |row| row.get(0))
         })?;
         Ok(found.unwrap_or_default())
     }
@@ -319,7 +311,9 @@ impl Store {
     /// Attributes an error to this file or to the server.
     fn either(&self, server: &Store, doing: &'static str, error: SqlError) -> StoreError {
         match error {
-            SqlError::File(_) | SqlError::Value { .. } => self.failed(doing, error),
+            SqlError::File(_) | SqlError::Value { .. } | SqlError::Refused(_) => {
+                self.failed(doing, error)
+            }
             SqlError::Server(_) => server.failed(doing, error),
         }
     }

@@ -4,12 +4,13 @@
 use std::path::Path;
 
 use super::outcome::Different;
-use super::rows::Rows;
-use super::tables;
-use crate::backend::{Backend, Server, SqlResult, values};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::seal::divergence::{ChainComparison, compare_chains};
+use crate::replication::rows::Rows;
+use crate::replication::tables::Of;
+use crate::replication::to_server::ServerApplier;
+use crate::seal::divergence::{ChainComparison, compare_all_chains, compare_chains};
 use crate::seal::{CopiedPayload, copied_from, head_of, start_chain_of_copy};
 
 /// Most seals of a batch.
@@ -28,61 +29,34 @@ pub(super) struct Chain {
 #[derive(Default)]
 pub(super) struct Chains {
     pub chains: Vec<Chain>,
+    /// The file's own chain, if it does not continue the one on the server.
+    pub refused: Option<ChainComparison>,
     /// Chains of other files that have forked.
     pub different: Vec<Different>,
 }
 
 /// Compares all chains of a file.
-///
-/// # Errors
-/// The file's own chain does not continue the one on the server.
-pub(super) fn look(
-    file: &Backend,
-    server: &Backend,
-    own: Id,
-    path: &Path,
-) -> Result<Chains, ChainError> {
+pub(super) fn look(file: &Backend, server: &Backend, own: Id) -> SqlResult<Chains> {
     let mut found = Chains::default();
-    let origins: Vec<Id> = file.select(
-        "SELECT DISTINCT origin FROM seal ORDER BY origin",
-        &[],
-        |row| row.get(0),
-    )?;
-    for origin in origins {
-        let until = head_of(file, origin)?.map_or(0, |(entries, _)| entries);
-        let stands = compare_chains(file, server, origin)?;
+    for (origin, stands) in compare_all_chains(file, server)? {
         match stands {
             ChainComparison::Extends { known } => found.chains.push(Chain {
                 origin,
                 sent: known,
-                until,
+                until: head_of(file, origin)?.map_or(0, |(entries, _)| entries),
             }),
-            stands if origin == own => return Err(ChainError::Refused(chain_error(path, &stands))),
+            stands if origin == own => found.refused = Some(stands),
             ChainComparison::Behind { .. } => {}
             ChainComparison::Forked { .. } | ChainComparison::Rewritten { .. } => {
                 // A copy that was given its own id recorded that, and sealed its entries again.
                 if copied_from(file, origin)?.is_none() {
-                    found.different.push(Different {
-                        what: "chain",
-                        id: origin,
-                    });
+                    let (what, id) = ("chain", origin);
+                    found.different.push(Different { what, id });
                 }
             }
         }
     }
     Ok(found)
-}
-
-/// An error of the comparison.
-pub(super) enum ChainError {
-    Sql(crate::backend::SqlError),
-    Refused(StoreError),
-}
-
-impl From<crate::backend::SqlError> for ChainError {
-    fn from(error: crate::backend::SqlError) -> Self {
-        Self::Sql(error)
-    }
 }
 
 /// The error for a file whose chain does not continue the one known elsewhere.
@@ -129,19 +103,22 @@ pub(super) fn rename_copy(
 }
 
 /// Sends the next seals of a chain in the caller's transaction; the number of bytes, or `None` at the end.
-pub(super) fn send(file: &Backend, server: &Server, chain: &mut Chain) -> SqlResult<Option<u64>> {
-    let mut rows = Rows::of(&tables::SEALS);
-    let sql = "SELECT origin, ordinal, what, id, covers, says, digest, hash FROM seal
-        WHERE origin = ?1 AND ordinal > ?2 AND ordinal <= ?3 ORDER BY ordinal LIMIT ?4";
+pub(super) fn send(
+    file: &Backend,
+    server: &ServerApplier<'_>,
+    chain: &mut Chain,
+) -> SqlResult<Option<u64>> {
+    let mut rows = Rows::of(Of::Seal.table(), true);
+    let next = "origin = ?1 AND ordinal > ?2 AND ordinal <= ?3 ORDER BY ordinal LIMIT ?4";
     file.each(
-        sql,
+        &Of::Seal.table().read_where(next),
         &values![chain.origin, chain.sent, chain.until, MOST_SEALS],
-        |row| rows.take(row, &[]),
+        |row| rows.take(row),
     )?;
-    if rows.count == 0 {
+    if rows.count() == 0 {
         return Ok(None);
     }
-    rows.send(server, 0)?;
-    chain.sent += rows.count as i64;
+    server.insert(&rows)?;
+    chain.sent += rows.count() as i64;
     Ok(Some(rows.bytes as u64))
 }

@@ -1,0 +1,455 @@
+//! Merges the history of one file into another, in one transaction.
+
+mod seals;
+mod trust;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use rusqlite::{Connection, ErrorCode};
+use serde::Serialize;
+
+use super::change_set::{ChangeSet, ENOUGH_BYTES, MOST_ENTRIES};
+use super::sync::{Different, chain_error};
+use super::tables::Of;
+use super::to_file::FileApplier;
+use crate::atomic_file::AtomicFile;
+use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::domain::{Refusal, Refusals, shown_id};
+use crate::error::StoreError;
+use crate::event_graph::{fault_of, settle};
+use crate::file::CACHE_KIB;
+use crate::id::Id;
+use crate::open_options::OpenOptions;
+use crate::recurrence::HighWaterMark;
+use crate::seal::divergence::{ChainComparison, compare_all_chains};
+use crate::seal::{BY_IMPORT, own_file_id};
+use crate::store::Store;
+use trust::{is_same, is_unwritten_remainder, seal_mismatch};
+
+/// The result of a merge.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct MergeCounts {
+    /// Units not known before.
+    pub units: usize,
+    /// Runs not known before.
+    pub runs: usize,
+    /// Steps not known before.
+    pub steps: usize,
+    /// Measurements not known before.
+    pub measurements: usize,
+    /// Faults not known before.
+    pub faults: usize,
+    /// Occurrences not known before.
+    pub occurrences: usize,
+    /// Events not known before.
+    pub events: usize,
+    /// Traces not known before.
+    pub traces: usize,
+    /// Recordings not known before.
+    pub recordings: usize,
+    /// Notes on runs not known before.
+    pub notes: usize,
+    /// Runs that are finished on both sides with different content; ours were kept.
+    pub different: Vec<Different>,
+    /// Set if the other file is a copy of a file whose chain of seals is known here.
+    pub copy: Option<CopyOf>,
+    /// Rows of the other file outside their columns' domain, and runs that do not match their seals: they
+    /// were left out, with all rows that depend on them.
+    pub refused: Refusals,
+}
+
+/// How another file is a copy.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CopyOf {
+    /// The file id that both have.
+    pub file: Id,
+    /// The last entry of the chain of seals that both have.
+    pub after: i64,
+    /// Whether the copy has entries of its own after that; else it is an older state.
+    pub went_on: bool,
+}
+
+impl Store {
+    /// Adds all rows that the other file has and this one has not, in one transaction. Runs finished here
+    /// stay as they are, because they are sealed; those that differ in the other file are listed.
+    pub fn import(&self, from: &Path) -> Result<MergeCounts, StoreError> {
+        let same = |path: &Path| std::fs::canonicalize(path).ok();
+        if same(from).is_some() && same(from) == same(self.path()) {
+            return Err(StoreError::SameFile {
+                path: from.to_path_buf(),
+            });
+        }
+        // Opening checks that the schema version is ours, and restricts the file's own SQL.
+        let other = Store::open_read_only(from)?;
+        match other.foreign_objects()?.into_iter().next() {
+            Some(what) => Err(StoreError::Altered {
+                path: from.to_path_buf(),
+                what,
+            }),
+            None => self.merge_from(&other),
+        }
+    }
+
+    /// Adds all rows of this file to another one, which is created if need be.
+    pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
+        if !to.exists() {
+            AtomicFile::can_be_made(to)?;
+        }
+        let target = Store::open(to, options)?;
+        let counts = target.merge_from(self)?;
+        target.close()?;
+        Ok(counts)
+    }
+
+    /// Adds all rows that the other store has and this one has not, in one transaction.
+    pub fn merge_from(&self, other: &Store) -> Result<MergeCounts, StoreError> {
+        const DOING: &str = "merging";
+        let theirs = other.file()?;
+        self.check_writable()?;
+        let set_cache = |size: i32| {
+            let set = self
+                .file()?
+                .execute_batch(&format!("PRAGMA cache_size = {size}"));
+            set.map_err(|error| self.failed(DOING, error))
+        };
+        // One read transaction, so that all tables are seen at the same moment.
+        let begin = theirs.execute_batch("BEGIN");
+        begin.map_err(|error| other.failed(DOING, error))?;
+        let merged = self.copy_of(other).and_then(|copy| {
+            // Indexes are filled in random order, which needs more of their pages in memory than usual.
+            set_cache(CACHE)?;
+            self.write(DOING, |conn| {
+                let merge = || Merge::begin(other.backend(), self.backend(), conn)?.all(copy);
+                merge().map_err(|error| self.error_of(other, error))
+            })
+        });
+        let _ = theirs.execute_batch("COMMIT");
+        // The cache is reduced again; it would last as long as this store is open.
+        let _ = set_cache(-(CACHE_KIB as i32));
+        merged
+    }
+
+    /// Compares the other file's chains of seals with the ones known here.
+    ///
+    /// # Errors
+    /// A chain was rewritten.
+    fn copy_of(&self, other: &Store) -> Result<Option<CopyOf>, StoreError> {
+        const DOING: &str = "comparing seals";
+        let look = || {
+            let own = own_file_id(other.backend())?;
+            Ok((own, compare_all_chains(other.backend(), self.backend())?))
+        };
+        let (own, chains) = look().map_err(|error: SqlError| other.failed(DOING, error))?;
+        let mut copy = None;
+        for (file, stands) in chains {
+            let (after, went_on) = match stands {
+                ChainComparison::Rewritten { .. } => {
+                    return Err(chain_error(other.path(), &stands));
+                }
+                ChainComparison::Forked { after } => (after, true),
+                ChainComparison::Behind { here, .. } => (here, false),
+                ChainComparison::Extends { .. } => continue,
+            };
+            if own == Some(file) {
+                copy = Some(CopyOf {
+                    file,
+                    after,
+                    went_on,
+                });
+            }
+        }
+        Ok(copy)
+    }
+
+    /// Attributes an error to the file that caused it.
+    fn error_of(&self, other: &Store, error: SqlError) -> StoreError {
+        const DOING: &str = "merging";
+        let SqlError::File(error) = error else {
+            return self.failed(DOING, error);
+        };
+        match error.sqlite_error_code() {
+            // A row of theirs without its parent.
+            Some(ErrorCode::ConstraintViolation) => StoreError::Corrupt {
+                path: other.path().to_path_buf(),
+                detail: error.to_string(),
+            },
+            // A value of the wrong type.
+            None => other.failed(DOING, error),
+            Some(ErrorCode::DatabaseCorrupt) if !is_whole(other) => other.failed(DOING, error),
+            Some(_) => self.failed(DOING, error),
+        }
+    }
+}
+
+/// Whether SQLite finds no damage in a file.
+fn is_whole(store: &Store) -> bool {
+    let checked = store.file().map(|conn| {
+        let check = conn.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0));
+        check.is_ok_and(|found| found == "ok")
+    });
+    checked.unwrap_or(false)
+}
+
+/// Page cache during a merge, as SQLite's `cache_size`: negative numbers are KiB.
+const CACHE: i32 = -(64 << 10);
+
+struct Merge<'a> {
+    theirs: &'a Backend,
+    ours: &'a Backend,
+    /// `ours` again, as a connection.
+    conn: &'a Connection,
+    applier: FileApplier<'a>,
+    counts: MergeCounts,
+    /// Runs of theirs with rows that refer to nothing.
+    of_nothing: BTreeSet<i64>,
+    /// Runs of theirs that are refused, with all that belongs to them.
+    refused_runs: BTreeSet<i64>,
+    /// What is known of faults of theirs.
+    faults_here: BTreeMap<i64, FaultHere>,
+    /// Ids of their runs, events and notes that are left out.
+    left_out: BTreeSet<Vec<u8>>,
+    /// Runs that are finished here and differ there.
+    different_runs: BTreeSet<Id>,
+}
+
+/// A run, event, note or trace of theirs, and the row number of its unit, fault or run.
+struct Entry {
+    seq: i64,
+    parent: i64,
+    id: Vec<u8>,
+}
+
+impl<'a> Merge<'a> {
+    fn begin(theirs: &'a Backend, ours: &'a Backend, conn: &'a Connection) -> SqlResult<Self> {
+        Ok(Self {
+            theirs,
+            ours,
+            conn,
+            applier: FileApplier::begin(ours, conn)?,
+            counts: MergeCounts::default(),
+            of_nothing: BTreeSet::new(),
+            refused_runs: BTreeSet::new(),
+            faults_here: BTreeMap::new(),
+            left_out: BTreeSet::new(),
+            different_runs: BTreeSet::new(),
+        })
+    }
+
+    fn all(mut self, copy: Option<CopyOf>) -> SqlResult<MergeCounts> {
+        let mark = HighWaterMark::of(self.ours)?;
+        self.find_orphans()?;
+        self.each(Of::Run, "unit", Self::run)?;
+        self.aliases()?;
+        self.each(Of::Event, "fault", Self::event)?;
+        self.each(Of::Note, "run", Self::note)?;
+        self.each(Of::Trace, "run", Self::trace)?;
+        settle(self.ours, &self.applier.touched, Some(mark))?;
+        self.seals()?;
+        self.applier.seal_the_rest(BY_IMPORT)?;
+        let new = |of: Of| self.applier.counts[of as usize] as usize;
+        Ok(MergeCounts {
+            units: new(Of::Unit),
+            runs: new(Of::Run),
+            steps: new(Of::Step),
+            measurements: new(Of::Measurement),
+            faults: self.applier.faults_added()?,
+            occurrences: new(Of::Occurrence),
+            events: new(Of::Event),
+            traces: new(Of::Trace),
+            recordings: new(Of::Recording),
+            notes: new(Of::Note),
+            copy,
+            ..self.counts
+        })
+    }
+
+    /// Reads all entries of a table of theirs into change sets, and applies these. `read` returns whether the
+    /// entry is taken or known.
+    fn each(
+        &mut self,
+        of: Of,
+        parent: &str,
+        read: fn(&mut Self, &mut ChangeSet, &Entry) -> SqlResult<bool>,
+    ) -> SqlResult<()> {
+        let sql = format!(
+            "SELECT seq, {parent}, id FROM {} WHERE seq > ?1 ORDER BY seq LIMIT {MOST_ENTRIES}",
+            of.table().name
+        );
+        let mut after = i64::MIN;
+        loop {
+            let entries = self.theirs.select(&sql, &values![after], |row| {
+                Ok(Entry {
+                    seq: row.get(0)?,
+                    parent: row.get(1)?,
+                    id: row.get(2)?,
+                })
+            })?;
+            if entries.is_empty() {
+                return Ok(());
+            }
+            let mut set = ChangeSet::new(false);
+            for entry in entries {
+                after = entry.seq;
+                let is_taken = read(self, &mut set, &entry)?;
+                for refusal in std::mem::take(&mut set.refused) {
+                    self.refuse(&entry, refusal);
+                }
+                if !is_taken {
+                    self.left_out.insert(entry.id);
+                }
+                if set.bytes() >= ENOUGH_BYTES {
+                    break;
+                }
+            }
+            self.applier.apply(&set)?;
+        }
+    }
+
+    /// Reads an entry with all that belongs to it; whether it was added to the change set.
+    fn take(
+        &mut self,
+        set: &mut ChangeSet,
+        of: Of,
+        entry: &Entry,
+        read: impl FnOnce(&mut ChangeSet) -> SqlResult<()>,
+    ) -> SqlResult<bool> {
+        let before = set.rows(of).count();
+        if let Some(refusal) = set.whole(read)? {
+            self.refuse(entry, refusal);
+        }
+        Ok(set.rows(of).count() > before)
+    }
+
+    fn refuse(&mut self, entry: &Entry, refusal: Refusal) {
+        let (what, reason) = match refusal.table {
+            "run_script" | "step" | "measurement" | "fault_occurrence" => (
+                format!("run {}", shown_id(&entry.id)),
+                format!("{}: {}", refusal.row(), refusal.reason),
+            ),
+            _ => (refusal.row(), refusal.reason),
+        };
+        self.counts.refused.add(what, reason);
+    }
+
+    /// A run that is finished here stays as it is, because it is sealed; only recordings are added, which its
+    /// seal covers by digest.
+    fn run(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
+        let known = "SELECT seq, verdict IS NOT NULL FROM run WHERE id = ?1";
+        let known = self.ours.first(known, &values![&entry.id[..]], |row| {
+            Ok((row.get::<i64>(0)?, row.get::<bool>(1)?))
+        })?;
+        let theirs = self.theirs;
+        if let (Some((ours, true)), Ok(id)) = (known, entry.id[..].try_into()) {
+            if !is_same(self.ours, ours, theirs, entry.seq)? {
+                let id = Id::from_bytes(id);
+                self.different_runs.insert(id);
+                (self.counts.different).push(Different { what: "run", id });
+            }
+            set.read(theirs, Of::Recording, entry.seq)?;
+            return Ok(true);
+        }
+        let refers_to_nothing = self.of_nothing.contains(&entry.seq);
+        let is_taken = self.take(set, Of::Run, entry, |set| {
+            set.run(theirs, entry.seq)?;
+            let reason = if refers_to_nothing {
+                Some("a step or fault it speaks of is not there".to_owned())
+            } else if known.is_some() && is_unwritten_remainder(theirs, entry.seq)? {
+                None
+            } else {
+                seal_mismatch(theirs, entry.seq)?
+            };
+            match reason {
+                Some(reason) => Err(Refusal::of("run", shown_id(&entry.id), reason)),
+                None => Ok(()),
+            }
+        })?;
+        if is_taken {
+            set.read(theirs, Of::Recording, entry.seq)?;
+        } else {
+            self.refused_runs.insert(entry.seq);
+        }
+        Ok(is_taken)
+    }
+
+    /// Applies the other ids that a fault has there.
+    fn aliases(&mut self) -> SqlResult<()> {
+        let faults = "SELECT DISTINCT fault FROM fault_alias ORDER BY fault";
+        for fault in self.theirs.select(faults, &[], |row| row.get(0))? {
+            if self.fault_here(fault)? != FaultHere::Known {
+                continue;
+            }
+            let (theirs, mut set) = (self.theirs, ChangeSet::new(false));
+            let refused = set.whole(|set| set.fault(theirs, fault))?;
+            if refused.is_some() {
+                self.faults_here.insert(fault, FaultHere::LeftOut);
+            }
+            self.applier.apply(&set)?;
+            for refusal in set.refused.into_iter().chain(refused) {
+                (self.counts.refused).add(refusal.row(), refusal.reason);
+            }
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
+        let theirs = self.theirs;
+        match self.fault_here(entry.parent)? {
+            FaultHere::Known => self.take(set, Of::Event, entry, |set| {
+                set.read(theirs, Of::Event, entry.seq)
+            }),
+            FaultHere::SeenByNobody => {
+                self.take(set, Of::Event, entry, |set| set.event(theirs, entry.seq))
+            }
+            FaultHere::LeftOut => Ok(false),
+        }
+    }
+
+    /// Whether a fault of theirs is here: it was, or it came with a run.
+    fn fault_here(&mut self, fault: i64) -> SqlResult<FaultHere> {
+        if let Some(known) = self.faults_here.get(&fault) {
+            return Ok(*known);
+        }
+        let ids = "SELECT id FROM fault WHERE seq = ?1 UNION ALL SELECT id FROM fault_alias WHERE fault = ?1";
+        let ids = (self.theirs).select(ids, &values![fault], |row| row.get::<Vec<u8>>(0))?;
+        let mut found = FaultHere::SeenByNobody;
+        let seen = "SELECT 1 FROM fault_occurrence WHERE fault = ?1";
+        if (self.theirs)
+            .first(seen, &values![fault], |_| Ok(()))?
+            .is_some()
+        {
+            found = FaultHere::LeftOut;
+        }
+        for id in ids {
+            if let Ok(id) = id[..].try_into().map(Id::from_bytes)
+                && fault_of(self.ours, id)?.is_some()
+            {
+                found = FaultHere::Known;
+            }
+        }
+        self.faults_here.insert(fault, found);
+        Ok(found)
+    }
+
+    fn note(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
+        let theirs = self.theirs;
+        let read = |set: &mut ChangeSet| set.read(theirs, Of::Note, entry.seq);
+        Ok(!self.refused_runs.contains(&entry.parent) && self.take(set, Of::Note, entry, read)?)
+    }
+
+    fn trace(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
+        let theirs = self.theirs;
+        let read = |set: &mut ChangeSet| set.trace(theirs, entry.seq);
+        Ok(!self.refused_runs.contains(&entry.parent) && self.take(set, Of::Trace, entry, read)?)
+    }
+}
+
+/// What becomes of a fault of theirs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum FaultHere {
+    Known,
+    /// Taken with its events.
+    SeenByNobody,
+    /// Only refused runs saw it, or it contradicts the runs that are finished here.
+    LeftOut,
+}

@@ -1,0 +1,127 @@
+//! What is believed of a file to be merged: runs that match their seals, refer to rows that are there, and are
+//! the same as here.
+
+use super::Merge;
+use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::replication::tables::TABLES;
+use crate::seal::{run_digest, version1};
+
+impl Merge<'_> {
+    /// Names rows whose parent does not exist, and marks the runs that they are part of.
+    pub(super) fn find_orphans(&mut self) -> SqlResult<()> {
+        for table in TABLES.iter().filter(|table| table.is_inserted) {
+            for column in table.columns {
+                let Some((parent, _)) = column.kind.parent() else {
+                    continue;
+                };
+                let (table, column) = (table.name, column.name);
+                let sql = format!(
+                    "SELECT count(*) FROM {table} WHERE {column} NOT IN (SELECT seq FROM {parent})"
+                );
+                let count = self.theirs.first(&sql, &[], |row| row.get::<i64>(0))?;
+                let count = count.unwrap_or(0);
+                if count > 0 {
+                    let what = format!("{count} rows of {}", table.replace('_', " "));
+                    let reason =
+                        format!("the {} they are of is not there", parent.replace('_', " "));
+                    self.counts.refused.add(what, reason);
+                }
+            }
+        }
+        // A sealed run is refused as a whole.
+        let of_nothing = self.theirs.select(
+            "SELECT DISTINCT run FROM measurement m WHERE NOT EXISTS
+                (SELECT 1 FROM step s WHERE s.run = m.run AND s.step_index = m.step_index)
+             UNION SELECT run FROM fault_occurrence WHERE fault NOT IN (SELECT seq FROM fault)",
+            &[],
+            |row| row.get::<i64>(0),
+        )?;
+        self.of_nothing.extend(of_nothing);
+        Ok(())
+    }
+}
+
+/// Whether a run is only the remainder that a busy file could not take: ended without a seal, and not passed.
+/// Such a run is sealed as found in the file where it began.
+pub(super) fn is_unwritten_remainder(theirs: &Backend, run: i64) -> SqlResult<bool> {
+    let rest =
+        "SELECT 1 FROM run r WHERE r.seq = ?1 AND r.verdict IN ('error', 'failed', 'aborted')
+         AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = r.id AND s.what = 'run')";
+    Ok(theirs.first(rest, &values![run], |_| Ok(()))?.is_some())
+}
+
+/// How a run differs from its seals, if it does.
+pub(super) fn seal_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
+    let is_over = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IS NOT NULL";
+    let is_over = theirs.first(is_over, &values![run], |_| Ok(()))?.is_some();
+    let sealed = seals(theirs, run)?;
+    let reason = match (is_over, sealed.is_empty()) {
+        (false, true) => return Ok(None),
+        (false, false) => "it has a seal and no verdict: the verdict was taken away",
+        (true, true) => "it has a verdict and no seal: the seal was taken away",
+        (true, false) => {
+            let mut fits = true;
+            for seal in sealed {
+                fits &= run_digest(theirs, run, seal.covers, &seal.payload)? == seal.digest[..];
+            }
+            if fits {
+                return Ok(None);
+            }
+            "it was changed after it was sealed"
+        }
+    };
+    Ok(Some(reason.to_owned()))
+}
+
+/// A seal of a run; files that shared the run before there were seals have each sealed it.
+#[derive(PartialEq, Eq)]
+struct Seal {
+    covers: i64,
+    payload: String,
+    digest: Vec<u8>,
+}
+
+/// The seals of a run.
+fn seals(backend: &Backend, run: i64) -> SqlResult<Vec<Seal>> {
+    backend.select(
+        "SELECT s.covers, s.says, s.digest FROM run r JOIN seal s ON s.id = r.id AND s.what = 'run'
+         WHERE r.seq = ?1",
+        &values![run],
+        |row| {
+            Ok(Seal {
+                covers: row.get(0)?,
+                payload: row.get(1)?,
+                digest: row.get(2)?,
+            })
+        },
+    )
+}
+
+/// Whether a run that is finished here is the same in the other file. One copied while it was running may
+/// well hold less.
+pub(super) fn is_same(ours: &Backend, run: i64, theirs: &Backend, there: i64) -> SqlResult<bool> {
+    let is_over = "SELECT 1 FROM run WHERE seq = ?1 AND (verdict IS NOT NULL
+        OR EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run'))";
+    if theirs
+        .first(is_over, &values![there], |_| Ok(()))?
+        .is_none()
+    {
+        return Ok(true);
+    }
+    match version1::digest(theirs, there) {
+        Ok(theirs) if theirs == version1::digest(ours, run)? => {}
+        // No text, or of another type.
+        Ok(_) | Err(SqlError::Value { .. }) => return Ok(false),
+        Err(error) => return Err(error),
+    }
+    // A row changed by hand still has its old seal; a row sealed again by hand has another digest.
+    let known = seals(ours, run)?;
+    for seal in seals(theirs, there)? {
+        if !known.contains(&seal)
+            && run_digest(ours, run, seal.covers, &seal.payload)? != seal.digest[..]
+        {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}

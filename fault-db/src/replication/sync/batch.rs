@@ -1,0 +1,217 @@
+//! One batch of outbox entries: read from the file, compared with what the server has, and applied.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::outcome::{Different, SyncOutcome};
+use crate::backend::{Backend, Server, SqlResult, values};
+use crate::domain::{Refusal, shown_id};
+use crate::id::Id;
+use crate::replication::change_set::{ChangeSet, Counts, ENOUGH_BYTES, MOST_ENTRIES};
+use crate::replication::tables::{DAMAGED, Of};
+
+/// An outbox entry: a run, event, note or trace.
+pub(super) struct Entry {
+    pub seq: i64,
+    of: Of,
+    row: i64,
+    /// `None` if it was pruned since.
+    id: Option<Vec<u8>>,
+    /// Of a run the digests of its seals, of a trace its checksum.
+    digests: BTreeSet<Vec<u8>>,
+}
+
+/// The next outbox entries up to this one: traces, or all others.
+pub(super) fn entries(
+    file: &Backend,
+    traces: bool,
+    after: i64,
+    until: i64,
+) -> SqlResult<Vec<Entry>> {
+    let mut entries = file.select(
+        "SELECT o.seq, o.what, o.row, CASE o.what WHEN 'run' THEN (SELECT id FROM run WHERE seq = o.row)
+                WHEN 'event' THEN (SELECT id FROM fault_event WHERE seq = o.row)
+                WHEN 'note' THEN (SELECT id FROM run_note WHERE seq = o.row)
+                ELSE (SELECT id FROM trace WHERE seq = o.row) END,
+            CASE o.what WHEN 'trace' THEN (SELECT sha256 FROM trace WHERE seq = o.row) END
+         FROM outbox o
+         WHERE o.seq > ?1 AND o.seq <= ?2 AND (o.what = 'trace') = ?3 ORDER BY o.seq LIMIT ?4",
+        &values![after, until, traces, MOST_ENTRIES],
+        |row| {
+            Ok(Entry {
+                seq: row.get(0)?,
+                of: match row.get::<&str>(1)? {
+                    "run" => Of::Run,
+                    "event" => Of::Event,
+                    "note" => Of::Note,
+                    _ => Of::Trace,
+                },
+                row: row.get(2)?,
+                id: row.get(3)?,
+                digests: row.get::<Option<Vec<u8>>>(4)?.into_iter().collect(),
+            })
+        },
+    )?;
+    for entry in entries.iter_mut().filter(|entry| entry.of == Of::Run) {
+        let sealed = "SELECT digest FROM seal WHERE id = ?1 AND what = 'run'";
+        let id = entry.id.as_deref().unwrap_or_default();
+        (entry.digests).extend(file.select(sealed, &values![id], |row| row.get::<Vec<u8>>(0))?);
+    }
+    Ok(entries)
+}
+
+/// The last outbox entry.
+pub(super) fn last(file: &Backend) -> SqlResult<i64> {
+    let last = "SELECT coalesce(max(seq), 0) FROM outbox";
+    Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())
+}
+
+/// What the server has of a run or trace.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// The same, complete.
+    Whole,
+    /// Part of it, or unknown.
+    Perhaps,
+    /// A different one with the same id.
+    Different,
+}
+
+/// The rows of one batch.
+pub(super) struct Batch {
+    pub set: ChangeSet,
+    /// The last entry included.
+    pub through: i64,
+    pub entries: u64,
+    outcome: SyncOutcome,
+}
+
+impl Batch {
+    /// Reads the rows of these entries that the server does not have, up to the size of one batch.
+    pub fn gather(file: &Backend, server: &Server, entries: &[Entry]) -> SqlResult<Self> {
+        let known = known(server, entries)?;
+        let mut batch = Self {
+            set: ChangeSet::new(true),
+            through: 0,
+            entries: 0,
+            outcome: SyncOutcome::default(),
+        };
+        for entry in entries {
+            batch.through = entry.seq;
+            batch.entries += 1;
+            if let Some(id) = &entry.id {
+                let known = known.get(id).copied().unwrap_or(Known::Perhaps);
+                batch.take(file, entry, id, known)?;
+            }
+            if batch.set.bytes() >= ENOUGH_BYTES {
+                break;
+            }
+        }
+        Ok(batch)
+    }
+
+    fn take(&mut self, file: &Backend, entry: &Entry, id: &[u8], known: Known) -> SqlResult<()> {
+        let (set, row) = (&mut self.set, entry.row);
+        let refused = match (known, entry.of) {
+            (Known::Different, of) => {
+                if let Ok(id) = id.try_into().map(Id::from_bytes) {
+                    let what = of.table().name;
+                    self.outcome.different.push(Different { what, id });
+                }
+                None
+            }
+            (Known::Whole, of) => {
+                self.outcome.already_there += 1;
+                // An occurrence may have been sent after its trace.
+                match of {
+                    Of::Trace => set.whole(|set| set.read(file, Of::Shown, row))?,
+                    _ => None,
+                }
+            }
+            (Known::Perhaps, Of::Run) => set.whole(|set| {
+                set.run(file, row)?;
+                set.read(file, Of::Recording, row)?;
+                let notes = "SELECT seq FROM run_note WHERE run = ?1 ORDER BY seq";
+                let notes = file.select(notes, &values![row], |row| row.get(0))?;
+                (notes.into_iter()).try_for_each(|note| set.read(file, Of::Note, note))
+            })?,
+            (Known::Perhaps, Of::Event) => set.whole(|set| set.event(file, row))?,
+            (Known::Perhaps, Of::Trace) => set.whole(|set| set.trace(file, row))?,
+            (Known::Perhaps, of) => set.whole(|set| set.read(file, of, row))?,
+        };
+        let alone = std::mem::take(&mut self.set.refused);
+        for refusal in alone.into_iter().chain(refused) {
+            self.refuse(entry, id, refusal);
+        }
+        Ok(())
+    }
+
+    fn refuse(&mut self, entry: &Entry, id: &[u8], refusal: Refusal) {
+        let Refusal { table, reason, .. } = &refusal;
+        let is_damaged = *table == "channel_set" || reason == DAMAGED;
+        if let (true, Ok(id)) = (is_damaged, id.try_into()) {
+            self.outcome.damaged_traces.push(Id::from_bytes(id));
+            return;
+        }
+        let own = entry.of.table().name;
+        let word = own.trim_start_matches("fault_").trim_start_matches("run_");
+        let what = format!("{word} {}", shown_id(id));
+        let (what, reason) = match *table {
+            table if table == own => (what, refusal.reason),
+            "run_note" => (format!("note {}", refusal.shown), refusal.reason),
+            "recording" | "fault_alias" => (refusal.row(), refusal.reason),
+            _ => (what, format!("{}: {reason}", refusal.row())),
+        };
+        self.outcome.refused.add(what, reason);
+    }
+
+    /// The outcome, when the server had this many new rows.
+    pub fn outcome(mut self, new: &Counts) -> SyncOutcome {
+        let new = |of: Of| new[of as usize];
+        for of in [Of::Run, Of::Event] {
+            let sent = self.set.rows(of).count() as u64;
+            self.outcome.already_there += sent.saturating_sub(new(of));
+        }
+        SyncOutcome {
+            runs: new(Of::Run),
+            occurrences: new(Of::Occurrence),
+            events: new(Of::Event),
+            notes: new(Of::Note),
+            traces: new(Of::Trace),
+            bytes: self.set.bytes() as u64,
+            ..self.outcome
+        }
+    }
+}
+
+/// What the server has of the entries' runs and traces. A sealed run was sent complete.
+fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, Known>> {
+    let ours: BTreeMap<&[u8], &BTreeSet<Vec<u8>>> = (entries.iter())
+        .filter(|entry| matches!(entry.of, Of::Run | Of::Trace))
+        .filter_map(|entry| Some((entry.id.as_deref()?, &entry.digests)))
+        .collect();
+    let mut known = BTreeMap::new();
+    if ours.is_empty() {
+        return Ok(known);
+    }
+    let ids: Vec<&[u8]> = ours.keys().copied().collect();
+    let found = server.select_columns(
+        "SELECT r.id, s.digest FROM unnest($1::bytea[]) AS x(id)
+            JOIN run r ON r.id = x.id LEFT JOIN seal s ON s.id = r.id AND s.what = 'run'
+         UNION ALL SELECT t.id, t.sha256 FROM unnest($1::bytea[]) AS x(id) JOIN trace t ON t.id = x.id",
+        &[&ids],
+    )?;
+    for row in found {
+        let (id, theirs): (Vec<u8>, Option<Vec<u8>>) = (row.try_get(0)?, row.try_get(1)?);
+        let state = match (ours.get(&id[..]), theirs) {
+            (Some(ours), Some(theirs)) if ours.contains(&theirs) => Known::Whole,
+            (Some(ours), Some(_)) if !ours.is_empty() => Known::Different,
+            _ => Known::Perhaps,
+        };
+        // Files that shared a run before there were seals have each sealed it.
+        let best = known.entry(id).or_insert(state);
+        if state == Known::Whole {
+            *best = state;
+        }
+    }
+    Ok(known)
+}
