@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use btu_rig::bench_scatter::BenchScatter;
+use btu_rig::drive::Load;
 use btu_rig::drive::Scatter;
 use btu_rig::drive::manual::Sequence;
 use btu_rig::train::TrainData;
@@ -28,7 +29,7 @@ use protocol::message::{Address as Party, CATALOGUE, Channel as WireChannel, Mes
 use protocol::{Backlog, Duration, Instant};
 use ptu_app::gui::Settings;
 use ptu_bench::clock::{self, Span};
-use ptu_bench::drive::{LoadChoice, SectionChoice, Setting};
+use ptu_bench::drive::{SectionChoice, Setting};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{BenchMade, Stimuli, loading};
 use ptu_report::Target;
@@ -468,7 +469,7 @@ fn words_of_the_command_line() {
         let _ = text.parse::<Endpoint>();
         let _ = text.parse::<Setting>();
         let _ = text.parse::<SectionChoice>();
-        let _ = text.parse::<LoadChoice>();
+        let _ = text.parse::<Load>();
         let _ = text.parse::<Target>();
         let _ = text.parse::<Verdict>();
         let _ = text.parse::<FaultState>();

@@ -34,7 +34,7 @@ use crate::stimulus::Stimulus;
 pub use figure::Figure;
 pub use landmarks::Landmark;
 pub use metrics::Metrics;
-pub use plan::{Codes, DrivePlan, PlanError};
+pub use plan::{Codes, DrivePlan, Load, PlanError};
 pub use row::{PAIRS, Row};
 pub use scatter::{Scatter, ScatterDraw};
 

@@ -1,5 +1,7 @@
 //! Plan of an automatic run: section, speed codes, load, and what deviates from nominal.
 
+use std::str::FromStr;
+
 use protocol::config::UnitConfig;
 use protocol::line::{Line, Section};
 use thiserror::Error;
@@ -40,6 +42,33 @@ impl PlanError {
             line: line.name.clone(),
             section,
             known: list(line.sections.iter().map(|s| s.section.to_string())),
+        }
+    }
+}
+
+/// Passengers aboard.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Load {
+    /// Nobody.
+    #[default]
+    Empty,
+    /// As many as the train carries.
+    Full,
+    /// So many, kg.
+    Passengers(f64),
+}
+
+impl FromStr for Load {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "empty" => Ok(Self::Empty),
+            "full" => Ok(Self::Full),
+            _ => text
+                .parse()
+                .map(Self::Passengers)
+                .map_err(|_| format!("\"{text}\" is no load: use a mass in kg, empty or full")),
         }
     }
 }

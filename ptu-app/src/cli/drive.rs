@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use btu_rig::conditions::Disturbance;
-use btu_rig::drive::{Ending, Scatter, manual};
+use btu_rig::drive::{Ending, Load, Scatter, manual};
 use clap::Args;
 use protocol::config::ControllerKind;
 
@@ -11,7 +11,7 @@ use super::{ScriptsOption, answered, print_json, print_out};
 use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
 use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use ptu_bench::drive::{
-    Driven, Fixed, LoadChoice, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
+    Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::pool::cores;
@@ -73,7 +73,7 @@ pub struct DriveArguments {
     mass: Option<f64>,
     /// Passengers: a mass, empty or full [default: empty, or the sequence's]
     #[arg(long, value_name = "KG|empty|full", allow_negative_numbers = true)]
-    load: Option<LoadChoice>,
+    load: Option<Load>,
     /// Force against the train: none, s1 or AMP@HZ in N·s/m and Hz
     #[arg(long, value_name = "NAME", value_parser = disturbance)]
     disturbance: Option<Disturbance>,

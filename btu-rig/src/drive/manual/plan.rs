@@ -4,7 +4,7 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::line::{Line, Section};
 use thiserror::Error;
 
-use super::{Sequence, SequenceError, Step, When, Wrong};
+use super::{Sequence, SequenceError, Step, When};
 use crate::conditions::Conditions;
 use crate::drive::PlanError;
 use crate::drive::plan::fixed_code;
@@ -107,20 +107,19 @@ impl Plan {
 
 /// Holds a step to what train and ATP can do.
 fn check(step: &Step, train: &CarsData, code: Option<&SpeedCode>) -> Result<(), SequenceError> {
-    let wrong = |wrong| {
+    let wrong = |message| {
         Err(SequenceError {
             line: step.line,
-            wrong,
+            message,
         })
     };
     if let (When::AtKmh(kmh), Some(code)) = (step.when, code)
         && kmh > code.limit_kmh
     {
-        return wrong(Wrong::BeyondLimit {
-            kmh: kmh.to_string(),
-            limit_kmh: code.limit_kmh.to_string(),
-            code: code.name.clone(),
-        });
+        let (limit_kmh, name) = (code.limit_kmh, &code.name);
+        return wrong(format!(
+            "{kmh} km/h is never reached: ATP brakes above {limit_kmh} km/h (code {name})"
+        ));
     }
     for action in &step.actions {
         let Stimulus::CutOut { what, car, .. } = *action else {
@@ -128,23 +127,20 @@ fn check(step: &Step, train: &CarsData, code: Option<&SpeedCode>) -> Result<(), 
         };
         let found = usize::from(car).checked_sub(1);
         let Some(found) = found.and_then(|at| train.cars.get(at)) else {
-            return wrong(Wrong::NoCar {
-                car,
-                train: train.name.clone(),
-                count: train.cars.len(),
-            });
+            let (name, count) = (&train.name, train.cars.len());
+            return wrong(format!("car {car}: train {name} has cars 1 to {count}"));
         };
         if what == CutOut::Inverter && found.role != Role::Motor {
             let motors = (1..)
                 .zip(&train.cars)
                 .filter(|(_, car)| car.role == Role::Motor);
             let motors: Vec<_> = motors.map(|(at, _): (usize, _)| at.to_string()).collect();
-            return wrong(Wrong::NoInverter {
-                car,
-                name: found.name.clone(),
-                train: train.name.clone(),
-                motors: motors.join(", "),
-            });
+            return wrong(format!(
+                "car {car} ({}) of train {} has no inverter; {} have one",
+                found.name,
+                train.name,
+                motors.join(", ")
+            ));
         }
     }
     Ok(())

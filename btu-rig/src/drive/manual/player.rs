@@ -5,8 +5,8 @@ use protocol::message::{EbCause, FsbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{CYCLE, Duration, Instant};
 
-use super::action::powers;
 use super::file::MAX_STEPS;
+use super::keys::powers;
 use super::outcome::told;
 use super::{AtpBrake, Done, Ending, Figures, Outcome, Plan, When};
 use crate::drive::recording::Recording;

@@ -1,21 +1,11 @@
-//! A sequence of notches and switches: each step's condition and actions, and the train's load.
+//! A sequence of notches and switches: each step's condition and actions, and what is wrong with one.
 
-use std::fmt::{self, Write};
+use std::fmt;
 
-use super::action::toml;
+use thiserror::Error;
+
+use crate::drive::Load;
 use crate::stimulus::Stimulus;
-
-/// Passengers aboard.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Load {
-    /// Nobody.
-    #[default]
-    Empty,
-    /// As many as the train carries.
-    Full,
-    /// So many, kg.
-    Kg(f64),
-}
 
 /// What a step waits for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,57 +60,12 @@ pub struct Sequence {
     pub end_after_s: Option<f64>,
 }
 
-impl Sequence {
-    /// As a file, which [`Sequence::from_toml`] takes back.
-    pub fn to_toml(&self) -> String {
-        let mut text = String::new();
-        // Writing to a text cannot fail.
-        let _ = writeln!(text, "title = {}", quoted(&self.title));
-        if let Some(line) = &self.line {
-            let _ = writeln!(text, "line = {}", quoted(line));
-        }
-        if let Some(section) = self.section {
-            let _ = writeln!(text, "section = {section}");
-        }
-        let _ = match self.load {
-            Load::Empty => writeln!(text, "load = \"empty\""),
-            Load::Full => writeln!(text, "load = \"full\""),
-            Load::Kg(kg) => writeln!(text, "load = {kg:?}"),
-        };
-        if let Some(code) = &self.code {
-            let _ = writeln!(text, "code = {}", quoted(code));
-        }
-        let _ = writeln!(text, "gradient_permille = {:?}", self.gradient_permille);
-        if let Some(end_after_s) = self.end_after_s {
-            let _ = writeln!(text, "end_after_s = {end_after_s:?}");
-        }
-        for step in &self.steps {
-            let when = match step.when {
-                When::After(seconds) => format!("after_s = {seconds:?}"),
-                When::AtKmh(kmh) => format!("at_kmh = {kmh:?}"),
-                When::AtStandstill => "at_standstill = true".into(),
-            };
-            let _ = writeln!(text, "\n[[steps]]\n{when}");
-            for action in &step.actions {
-                let _ = writeln!(text, "{}", toml(action));
-            }
-        }
-        text
-    }
-}
-
-/// A text as a basic string of TOML.
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from('"');
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => quoted.extend(['\\', letter]),
-            letter if letter.is_control() => {
-                let _ = write!(quoted, "\\u{:04X}", letter as u32);
-            }
-            letter => quoted.push(letter),
-        }
-    }
-    quoted.push('"');
-    quoted
+/// What is wrong with a sequence, and where.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line}: {message}")]
+pub struct SequenceError {
+    /// Line of the file, counted from 1.
+    pub line: usize,
+    /// What is wrong, and what there is instead.
+    pub message: String,
 }

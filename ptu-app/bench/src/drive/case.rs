@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use btu_rig::conditions::Conditions;
-use btu_rig::drive::{DrivePlan, Ending, Outcome, Scatter};
+use btu_rig::drive::{DrivePlan, Ending, Load, Outcome, Scatter};
 use btu_rig::train::TrainData;
 use protocol::config::{ControllerKind, checksum};
 use protocol::line::Line;
 
-use super::{DriveBench, Fixed, LoadChoice, SectionChoice, Setting, drive, train, unit_config};
+use super::{DriveBench, Fixed, SectionChoice, Setting, drive, train, unit_config};
 use crate::data::{DataFile, ScriptsDirectory, sha256};
 use crate::failure::Failure;
 use crate::pool;
@@ -34,7 +34,7 @@ pub struct Request {
     /// Total mass, kg.
     pub mass_kg: Option<f64>,
     /// Passengers.
-    pub load: Option<LoadChoice>,
+    pub load: Option<Load>,
     /// What is other than nominal.
     pub fixed: Fixed,
     /// Code from start to end, in place of the line's.

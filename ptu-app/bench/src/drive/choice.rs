@@ -65,32 +65,6 @@ impl SectionChoice {
     }
 }
 
-/// Passengers aboard.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LoadChoice {
-    /// No passengers.
-    Empty,
-    /// As many as the train carries.
-    Full,
-    /// So many, kg.
-    Passengers(f64),
-}
-
-impl FromStr for LoadChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "empty" => Ok(Self::Empty),
-            "full" => Ok(Self::Full),
-            _ => text
-                .parse()
-                .map(Self::Passengers)
-                .map_err(|_| format!("\"{text}\" is no load: use a mass in kg, empty or full")),
-        }
-    }
-}
-
 /// Force against the train by its name: `none`, `s1` [S1: 2e4 N·s/m at 1 Hz] or AMP@HZ.
 ///
 /// # Errors

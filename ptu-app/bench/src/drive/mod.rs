@@ -16,5 +16,5 @@ pub mod train;
 
 pub use bench::{DriveBench, drive};
 pub use case::{Case, Driven, Request, drive_all};
-pub use choice::{Fixed, LoadChoice, SectionChoice, disturbance};
+pub use choice::{Fixed, SectionChoice, disturbance};
 pub use settings::{Setting, unit_config};

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use btu_rig::conditions::Conditions;
+use btu_rig::drive::Load;
 use btu_rig::train::{IdealData, TrainData};
 
-use super::{Fixed, LoadChoice, Setting};
+use super::{Fixed, Setting};
 use crate::data::{ScriptsDirectory, read};
 use crate::failure::Failure;
 
@@ -38,7 +39,7 @@ pub fn train(directory: &ScriptsDirectory, name: &str) -> Result<TrainData, Fail
 pub fn load(
     train: &mut TrainData,
     mass_kg: Option<f64>,
-    load: Option<LoadChoice>,
+    load: Option<Load>,
 ) -> Result<Option<f64>, Failure> {
     let full_kg = train.full_load_kg();
     let in_range = |what: &str, value: f64, low: f64, high: f64| {
@@ -66,9 +67,9 @@ pub fn load(
         }
         (None, _) => match load {
             None => Ok(None),
-            Some(LoadChoice::Empty) => Ok(Some(0.0)),
-            Some(LoadChoice::Full) => Ok(Some(full_kg)),
-            Some(LoadChoice::Passengers(kg)) => in_range("--load", kg, 0.0, full_kg).map(Some),
+            Some(Load::Empty) => Ok(Some(0.0)),
+            Some(Load::Full) => Ok(Some(full_kg)),
+            Some(Load::Passengers(kg)) => in_range("--load", kg, 0.0, full_kg).map(Some),
         },
     }
 }

@@ -1,15 +1,17 @@
-//! Reads sequence files (TOML); an error names the line of the file.
+//! Reads and writes sequence files (TOML); an error names the line of the file.
 
 #[cfg(test)]
 mod tests;
 
-use serde::Deserialize;
-use toml::Spanned;
+use std::collections::BTreeMap;
+use std::fmt::Write;
 
-use super::action::{REVERSER, powers};
-use super::{Load, Sequence, SequenceError, Step, When, Wrong};
-use crate::lever::Lever;
-use crate::stimulus::{CutOut, Stimulus, TrainSwitch};
+use serde::Deserialize;
+use toml::{Spanned, Value};
+
+use super::keys::{self, powers};
+use super::{Sequence, SequenceError, Step, When};
+use crate::drive::Load;
 
 /// Steps a sequence may have.
 pub const MAX_STEPS: usize = 1000;
@@ -19,6 +21,8 @@ pub const MAX_AFTER_S: f64 = 3600.0;
 const MAX_KMH: f64 = 150.0;
 /// Steepest gradient, ‰.
 const MAX_PERMILLE: f64 = 50.0;
+/// Keys of a step's condition.
+const WHEN: [&str; 3] = ["after_s", "at_kmh", "at_standstill"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,31 +45,8 @@ enum RawLoad {
     Name(String),
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawStep {
-    after_s: Option<Spanned<f64>>,
-    at_kmh: Option<Spanned<f64>>,
-    at_standstill: Option<Spanned<bool>>,
-    lever: Option<Spanned<String>>,
-    reverser: Option<Spanned<String>>,
-    doors_closed: Option<bool>,
-    brake_cut_out: Option<u8>,
-    brake_cut_in: Option<u8>,
-    inverter_cut_out: Option<u8>,
-    inverter_cut_in: Option<u8>,
-    other_active: Option<bool>,
-    dead_man: Option<bool>,
-    emergency_button: Option<bool>,
-    emergency_button_2: Option<bool>,
-    eb_cut_out: Option<bool>,
-    main_reservoir_low: Option<bool>,
-    security_brake: Option<bool>,
-    parking_brake: Option<bool>,
-    forced_release: Option<bool>,
-    turn_back: Option<bool>,
-    regeneration: Option<bool>,
-}
+/// Keys of a step.
+type RawStep = BTreeMap<String, Spanned<Value>>;
 
 /// A text whose places are told as lines.
 struct Lines<'a>(&'a str);
@@ -77,14 +58,16 @@ impl Lines<'_> {
         1 + before.filter(|letter| **letter == b'\n').count()
     }
 
-    fn at(&self, byte: usize, wrong: Wrong) -> SequenceError {
-        let line = self.of(byte);
-        SequenceError { line, wrong }
+    fn at(&self, byte: usize, message: impl Into<String>) -> SequenceError {
+        SequenceError {
+            line: self.of(byte),
+            message: message.into(),
+        }
     }
 
     fn in_range(
         &self,
-        key: &'static str,
+        key: &str,
         value: &Spanned<f64>,
         (low, high): (f64, f64),
     ) -> Result<f64, SequenceError> {
@@ -92,15 +75,8 @@ impl Lines<'_> {
         if (low..=high).contains(&number) {
             return Ok(number);
         }
-        Err(self.at(
-            value.span().start,
-            Wrong::OutOfRange {
-                key,
-                value: number.to_string(),
-                low: low.to_string(),
-                high: high.to_string(),
-            },
-        ))
+        let message = format!("{key} = {number} is outside {low} .. {high}");
+        Err(self.at(value.span().start, message))
     }
 }
 
@@ -113,29 +89,28 @@ impl Sequence {
         let lines = Lines(text);
         let raw: RawFile = toml::from_str(text).map_err(|error| {
             let byte = error.span().map_or(0, |span| span.start);
-            lines.at(byte, Wrong::Syntax(error.message().to_owned()))
+            lines.at(byte, error.message())
         })?;
-        let gradient_permille = match &raw.gradient_permille {
-            Some(value) => {
-                lines.in_range("gradient_permille", value, (-MAX_PERMILLE, MAX_PERMILLE))?
-            }
-            None => 0.0,
+        let number = |key, value: &Option<Spanned<f64>>, range| {
+            let value = value.as_ref();
+            let checked = value.map(|value| lines.in_range(key, value, range));
+            checked.transpose()
         };
-        let end_after_s = raw.end_after_s.as_ref();
-        let end_after_s = end_after_s
-            .map(|value| lines.in_range("end_after_s", value, (0.0, MAX_AFTER_S)))
-            .transpose()?;
+        let gradients = (-MAX_PERMILLE, MAX_PERMILLE);
+        let gradient_permille = number("gradient_permille", &raw.gradient_permille, gradients)?;
+        let gradient_permille = gradient_permille.unwrap_or(0.0);
+        let end_after_s = number("end_after_s", &raw.end_after_s, (0.0, MAX_AFTER_S))?;
         let load = raw.load.map_or(Ok(Load::Empty), |raw| load(raw, &lines))?;
         let end = text.len();
         match raw.steps.len() {
-            0 => return Err(lines.at(end, Wrong::NoSteps)),
-            count if count > MAX_STEPS => return Err(lines.at(end, Wrong::TooManySteps)),
+            0 => return Err(lines.at(end, "no [[steps]]: nothing is done")),
+            count if count > MAX_STEPS => {
+                return Err(lines.at(end, format!("more than {MAX_STEPS} steps")));
+            }
             _ => {}
         }
-        let mut steps = Vec::new();
-        for raw in raw.steps {
-            steps.push(step(raw, &lines)?);
-        }
+        let steps = raw.steps.into_iter().map(|raw| step(raw, &lines));
+        let steps: Vec<_> = steps.collect::<Result<_, _>>()?;
         // On a gradient a train may roll off by itself.
         if gradient_permille == 0.0 {
             in_order(&steps)?;
@@ -151,28 +126,78 @@ impl Sequence {
             end_after_s,
         })
     }
+
+    /// As a file, which [`Sequence::from_toml`] takes back.
+    pub fn to_toml(&self) -> String {
+        let mut text = format!("title = {}\n", quoted(&self.title));
+        // Writing to a text cannot fail.
+        if let Some(line) = &self.line {
+            let _ = writeln!(text, "line = {}", quoted(line));
+        }
+        if let Some(section) = self.section {
+            let _ = writeln!(text, "section = {section}");
+        }
+        let _ = match self.load {
+            Load::Empty => writeln!(text, "load = \"empty\""),
+            Load::Full => writeln!(text, "load = \"full\""),
+            Load::Passengers(kg) => writeln!(text, "load = {kg:?}"),
+        };
+        if let Some(code) = &self.code {
+            let _ = writeln!(text, "code = {}", quoted(code));
+        }
+        let _ = writeln!(text, "gradient_permille = {:?}", self.gradient_permille);
+        if let Some(end_after_s) = self.end_after_s {
+            let _ = writeln!(text, "end_after_s = {end_after_s:?}");
+        }
+        for step in &self.steps {
+            let when = match step.when {
+                When::After(seconds) => format!("after_s = {seconds:?}"),
+                When::AtKmh(kmh) => format!("at_kmh = {kmh:?}"),
+                When::AtStandstill => "at_standstill = true".into(),
+            };
+            let _ = writeln!(text, "\n[[steps]]\n{when}");
+            for line in step.actions.iter().filter_map(keys::toml) {
+                let _ = writeln!(text, "{line}");
+            }
+        }
+        text
+    }
 }
 
 fn load(raw: Spanned<RawLoad>, lines: &Lines<'_>) -> Result<Load, SequenceError> {
     let at = raw.span().start;
-    match raw.into_inner() {
-        RawLoad::Kg(kg) if kg.is_finite() && kg >= 0.0 => Ok(Load::Kg(kg)),
-        RawLoad::Kg(kg) => Err(lines.at(at, Wrong::NoLoad(kg.to_string()))),
-        RawLoad::Name(name) => match name.as_str() {
-            "empty" => Ok(Load::Empty),
-            "full" => Ok(Load::Full),
-            _ => Err(lines.at(at, Wrong::NoLoad(name))),
-        },
-    }
+    let asked = match raw.into_inner() {
+        RawLoad::Kg(kg) if kg.is_finite() && kg >= 0.0 => return Ok(Load::Passengers(kg)),
+        RawLoad::Name(name) if name == "empty" => return Ok(Load::Empty),
+        RawLoad::Name(name) if name == "full" => return Ok(Load::Full),
+        RawLoad::Kg(kg) => kg.to_string(),
+        RawLoad::Name(name) => name,
+    };
+    let message = format!("no load \"{asked}\": use a mass in kg, \"empty\" or \"full\"");
+    Err(lines.at(at, message))
 }
 
 fn step(raw: Spanned<RawStep>, lines: &Lines<'_>) -> Result<Step, SequenceError> {
     let at = raw.span().start;
-    let raw = raw.into_inner();
-    let when = when(&raw, lines, at)?;
-    let actions = actions(&raw, lines)?;
+    let mut raw = raw.into_inner();
+    let when = when(&mut raw, lines, at)?;
+    let mut actions = Vec::new();
+    for name in keys::names() {
+        if let Some(value) = raw.remove(name) {
+            let action = keys::stimulus(name, value.get_ref());
+            actions.push(action.map_err(|wrong| lines.at(value.span().start, wrong))?);
+        }
+    }
+    if let Some((name, value)) = raw.first_key_value() {
+        let known = WHEN.into_iter().chain(keys::names());
+        let known: Vec<_> = known.map(|name| format!("`{name}`")).collect();
+        let known = known.join(", ");
+        let message = format!("unknown field `{name}`, expected one of {known}");
+        return Err(lines.at(value.span().start, message));
+    }
     if actions.is_empty() {
-        return Err(lines.at(at, Wrong::NoAction));
+        let message = "the step does nothing: give it a lever, a switch or a cut-out";
+        return Err(lines.at(at, message));
     }
     Ok(Step {
         line: lines.of(at),
@@ -181,83 +206,71 @@ fn step(raw: Spanned<RawStep>, lines: &Lines<'_>) -> Result<Step, SequenceError>
     })
 }
 
-fn when(raw: &RawStep, lines: &Lines<'_>, at: usize) -> Result<When, SequenceError> {
-    let given = [
-        ("after_s", raw.after_s.is_some()),
-        ("at_kmh", raw.at_kmh.is_some()),
-        ("at_standstill", raw.at_standstill.is_some()),
-    ];
-    let named: Vec<_> = given.iter().filter(|key| key.1).map(|key| key.0).collect();
-    if named.len() > 1 {
-        return Err(lines.at(at, Wrong::TwoConditions(named.join(" and "))));
-    }
-    match (&raw.after_s, &raw.at_kmh, &raw.at_standstill) {
-        (Some(value), ..) => {
-            let seconds = lines.in_range("after_s", value, (0.0, MAX_AFTER_S))?;
-            Ok(When::After(seconds))
+/// Takes a step's condition from its keys.
+fn when(raw: &mut RawStep, lines: &Lines<'_>, at: usize) -> Result<When, SequenceError> {
+    let given = WHEN.map(|name| Some((name, raw.remove(name)?)));
+    let given: Vec<_> = given.into_iter().flatten().collect();
+    let (name, value) = match &given[..] {
+        [] => {
+            let message =
+                "the step says not when: give it one of after_s, at_kmh and at_standstill";
+            return Err(lines.at(at, message));
         }
-        (_, Some(value), _) => {
-            let kmh = lines.in_range("at_kmh", value, (0.1, MAX_KMH))?;
-            Ok(When::AtKmh(kmh))
+        [one] => one,
+        several => {
+            let names: Vec<_> = several.iter().map(|(name, _)| *name).collect();
+            let names = names.join(" and ");
+            return Err(lines.at(at, format!("the step says when twice: {names}; keep one")));
         }
-        (_, _, Some(value)) if *value.get_ref() => Ok(When::AtStandstill),
-        (_, _, Some(value)) => Err(lines.at(value.span().start, Wrong::NotAtStandstill)),
-        _ => Err(lines.at(at, Wrong::NoCondition)),
+    };
+    let begin = value.span().start;
+    let wrong = |message| lines.at(begin, message);
+    let number = |range| {
+        let number = keys::of::<f64>(value.get_ref()).map_err(wrong)?;
+        lines.in_range(name, &Spanned::new(value.span(), number), range)
+    };
+    match *name {
+        "after_s" => number((0.0, MAX_AFTER_S)).map(When::After),
+        "at_kmh" => number((0.1, MAX_KMH)).map(When::AtKmh),
+        _ if keys::of::<bool>(value.get_ref()).map_err(wrong)? => Ok(When::AtStandstill),
+        _ => {
+            let message = "at_standstill can only be true: leave it out to wait for something else";
+            Err(lines.at(begin, message))
+        }
     }
-}
-
-/// What is cut out or switched comes before the lever, so that one step can do both.
-fn actions(raw: &RawStep, lines: &Lines<'_>) -> Result<Vec<Stimulus>, SequenceError> {
-    let mut actions = Vec::new();
-    for (what, car, out) in [
-        (CutOut::Brake, raw.brake_cut_out, true),
-        (CutOut::Brake, raw.brake_cut_in, false),
-        (CutOut::Inverter, raw.inverter_cut_out, true),
-        (CutOut::Inverter, raw.inverter_cut_in, false),
-    ] {
-        actions.extend(car.map(|car| Stimulus::CutOut { what, car, on: out }));
-    }
-    for (switch, on) in [
-        (TrainSwitch::OtherCab, raw.other_active),
-        (TrainSwitch::DeadMan, raw.dead_man),
-        (TrainSwitch::Button1, raw.emergency_button),
-        (TrainSwitch::Button2, raw.emergency_button_2),
-        (TrainSwitch::EbCutOut, raw.eb_cut_out),
-        (TrainSwitch::MainReservoirLow, raw.main_reservoir_low),
-        (TrainSwitch::SecurityBrake, raw.security_brake),
-        (TrainSwitch::ParkingBrake, raw.parking_brake),
-        (TrainSwitch::ForcedRelease, raw.forced_release),
-        (TrainSwitch::TurnBack, raw.turn_back),
-        (TrainSwitch::Regeneration, raw.regeneration),
-    ] {
-        actions.extend(on.map(|on| Stimulus::Switch { switch, on }));
-    }
-    actions.extend(raw.doors_closed.map(|closed| Stimulus::Doors { closed }));
-    if let Some(name) = &raw.reverser {
-        let known = REVERSER.iter().find(|(_, known)| known == name.get_ref());
-        let wrong = || Wrong::NoReverser(name.get_ref().clone());
-        let (position, _) = *known.ok_or_else(|| lines.at(name.span().start, wrong()))?;
-        actions.push(Stimulus::Reverser { position });
-    }
-    if let Some(name) = &raw.lever {
-        let wrong = || Wrong::NoLever(name.get_ref().clone());
-        let lever =
-            Lever::from_name(name.get_ref()).ok_or_else(|| lines.at(name.span().start, wrong()))?;
-        actions.push(Stimulus::Controller { lever });
-    }
-    Ok(actions)
 }
 
 /// A step that waits for motion comes after one that powers.
 fn in_order(steps: &[Step]) -> Result<(), SequenceError> {
     for step in steps {
         if !matches!(step.when, When::After(_)) {
-            let (line, wrong) = (step.line, Wrong::NothingMoves(step.when.to_string()));
-            return Err(SequenceError { line, wrong });
+            return Err(SequenceError {
+                line: step.line,
+                message: format!(
+                    "the step waits for {}, but no step before it powers: the train stands",
+                    step.when
+                ),
+            });
         }
         if step.actions.iter().any(powers) {
             return Ok(());
         }
     }
     Ok(())
+}
+
+/// A text as a basic string of TOML.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => quoted.extend(['\\', letter]),
+            letter if letter.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", letter as u32);
+            }
+            letter => quoted.push(letter),
+        }
+    }
+    quoted.push('"');
+    quoted
 }

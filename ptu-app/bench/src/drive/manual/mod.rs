@@ -10,13 +10,12 @@ use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
-use btu_rig::drive::manual::{
-    Ending, Load, ManualError, Outcome, Plan, Player, Sequence, SequenceError,
-};
+use btu_rig::drive::Load;
+use btu_rig::drive::manual::{Ending, ManualError, Outcome, Plan, Player, Sequence, SequenceError};
 use btu_rig::train::TrainData;
 
 use super::case::track;
-use super::{DriveBench, Fixed, LoadChoice, Request, train};
+use super::{DriveBench, Fixed, Request, train};
 use crate::data::{ScriptsDirectory, read};
 use crate::failure::Failure;
 
@@ -118,12 +117,7 @@ impl Request {
         if let Some(kg) = train::load(train, self.mass_kg, self.load)? {
             return Ok(kg);
         }
-        let load = match source.sequence.load {
-            Load::Empty => LoadChoice::Empty,
-            Load::Full => LoadChoice::Full,
-            Load::Kg(kg) => LoadChoice::Passengers(kg),
-        };
-        let loaded = train::load(train, None, Some(load));
+        let loaded = train::load(train, None, Some(source.sequence.load));
         let kg = loaded.map_err(|failure| {
             Failure::usage(format!(
                 "{}: {}",
@@ -176,7 +170,7 @@ impl Source {
 
 /// An error of a file at its line, as editors jump to it.
 fn located(file: &str, error: &SequenceError) -> Failure {
-    Failure::usage(format!("{file}:{}: {}", error.line, error.wrong))
+    Failure::usage(format!("{file}:{}: {}", error.line, error.message))
 }
 
 impl ManualCase {
@@ -210,7 +204,7 @@ impl ManualRun {
             title: plan.sequence.title.clone(),
             line: Some(self.case.line.clone()),
             section: Some(plan.section.section),
-            load: Load::Kg(plan.load_kg),
+            load: Load::Passengers(plan.load_kg),
             code: Some(plan.code.clone()),
             gradient_permille: plan.conditions.gradient_offset_permille,
             steps: Vec::new(),

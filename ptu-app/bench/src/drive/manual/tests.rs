@@ -168,7 +168,7 @@ fn standstill_means_after_having_moved() {
 #[test]
 fn an_option_overrides_the_file() {
     let asked = Request {
-        load: Some(LoadChoice::Empty),
+        load: Some(Load::Empty),
         code: Some("65".into()),
         line: Some("line8".into()),
         sections: Some(SectionChoice::One(54)),
