@@ -5,9 +5,8 @@ mod query_limit;
 mod server;
 mod sqlite;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::backend::SqlError;
 use crate::fault_state::TransitionError;
 use crate::id::Id;
 use crate::trace::TraceError;
@@ -381,22 +380,6 @@ impl StoreError {
         Self::NotFound {
             what,
             asked: id.to_string(),
-        }
-    }
-
-    /// Classifies an error of a file or a server by what a caller can do about it.
-    pub(crate) fn from_sql(path: &Path, doing: &'static str, error: SqlError) -> Self {
-        match error {
-            SqlError::File(error) => Self::from_sqlite(path, doing, error),
-            SqlError::Server(error) => server::classify(path, doing, error),
-            SqlError::Value { column, reason } => Self::Corrupt {
-                path: path.to_path_buf(),
-                detail: format!("{doing}: column {column}: {reason}"),
-            },
-            SqlError::Refused(refusal) => Self::Corrupt {
-                path: path.to_path_buf(),
-                detail: format!("{doing}: {}: {}", refusal.row(), refusal.reason),
-            },
         }
     }
 }

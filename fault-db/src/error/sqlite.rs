@@ -1,12 +1,29 @@
-//! Classifies errors of SQLite.
+//! Classifies errors of a backend; those of a server are in `server`.
 
 use std::path::Path;
 
 use rusqlite::ErrorCode;
 
-use super::StoreError;
+use super::{StoreError, server};
+use crate::backend::SqlError;
 
 impl StoreError {
+    /// Classifies an error of a file or a server by what a caller can do about it.
+    pub(crate) fn from_sql(path: &Path, doing: &'static str, error: SqlError) -> Self {
+        match error {
+            SqlError::File(error) => Self::from_sqlite(path, doing, error),
+            SqlError::Server(error) => server::classify(path, doing, error),
+            SqlError::Value { column, reason } => Self::Corrupt {
+                path: path.to_path_buf(),
+                detail: format!("{doing}: column {column}: {reason}"),
+            },
+            SqlError::Refused(refusal) => Self::Corrupt {
+                path: path.to_path_buf(),
+                detail: format!("{doing}: {}: {}", refusal.row(), refusal.reason),
+            },
+        }
+    }
+
     /// Classifies an error of SQLite by what a caller can do about it.
     pub(crate) fn from_sqlite(path: &Path, doing: &'static str, source: rusqlite::Error) -> Self {
         let path = path.to_path_buf();

@@ -9,7 +9,7 @@ use rusqlite::Connection;
 use tempfile::tempdir;
 
 /// Three runs, each with a step, a measurement and a fault; one repair, one note.
-fn three_runs(store: &Store) -> Vec<Id> {
+pub fn three_runs(store: &Store) -> Vec<Id> {
     let mut runs = Vec::new();
     for n in 0..3 {
         let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
@@ -238,37 +238,6 @@ fn at_most_a_hundred_findings_of_a_kind_are_listed() {
     let found = problems(&store);
     assert_eq!(found.len(), 101);
     assert_eq!(found[100].detail, "and 20 more of this kind");
-}
-
-/// Goal: writes that are committed together are all there or none is, and one that fails within is taken
-/// back alone.
-#[test]
-fn a_transaction_commits_all_writes_or_none() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
-    let count = |store: &Store| {
-        let runs = store.runs(&fault_db::RunFilter::default(), &|_| false);
-        runs.expect("listed").len()
-    };
-    let failed = store.transaction(|| {
-        three_runs(&store);
-        assert_eq!(count(&store), 3, "seen within");
-        store.resolve_run("nonsense")
-    });
-    failed.expect_err("nothing of it");
-    assert_eq!(count(&store), 0);
-    store
-        .transaction(|| {
-            three_runs(&store);
-            let nobody = Id::from_bytes([7; 16]);
-            store
-                .add_note(nobody, "kim", "", T0_US)
-                .expect_err("no such fault");
-            Ok(())
-        })
-        .expect("the rest goes on");
-    assert_eq!(count(&store), 3);
-    assert_eq!(problems(&store), []);
 }
 
 /// What a file with a little of everything says, and its path.

@@ -1,6 +1,7 @@
 //! What a run records is in the file, also when the program dies, the disk fills or another run
 //! writes at the same time.
 
+use crate::checking::three_runs;
 use crate::common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 use fault_db::{
@@ -386,4 +387,35 @@ fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
     refused(repaired.map(drop), "serial number");
     let detail = store.fault(fault).expect("there");
     assert_eq!(detail.events.len(), 1, "opened, and nothing else");
+}
+
+/// Goal: writes that are committed together are all there or none is, and one that fails within is taken
+/// back alone.
+#[test]
+fn a_transaction_commits_all_writes_or_none() {
+    let dir = tempdir().expect("a directory");
+    let store = open(&dir.path().join("a.db"));
+    let count = |store: &Store| {
+        let runs = store.runs(&RunFilter::default(), &|_| false);
+        runs.expect("listed").len()
+    };
+    let failed = store.transaction(|| {
+        three_runs(&store);
+        assert_eq!(count(&store), 3, "seen within");
+        store.resolve_run("nonsense")
+    });
+    failed.expect_err("nothing of it");
+    assert_eq!(count(&store), 0);
+    store
+        .transaction(|| {
+            three_runs(&store);
+            let nobody = fault_db::Id::from_bytes([7; 16]);
+            store
+                .add_note(nobody, "kim", "", T0_US)
+                .expect_err("no such fault");
+            Ok(())
+        })
+        .expect("the rest goes on");
+    assert_eq!(count(&store), 3);
+    assert_eq!(store.check().expect("checked").problems, []);
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fault_db::{
-    Address, Id, OpenOptions, RunWriter, Store, StoreError, SyncOptions, SyncOutcome, Synchronous,
+    Address, FaultDetail, FaultFilter, Id, OpenOptions, RunWriter, Store, StoreError, SyncOptions, SyncOutcome, Synchronous,
     Verdict,
 };
 use tempfile::TempDir;
@@ -120,6 +120,17 @@ pub fn record(store: &Store, serial: &str, at_us: i64, codes: &[i64], traces: bo
     end.finished_at_us = at_us + 60_000_000;
     writer.finish(&end).expect("an end");
     id
+}
+
+pub fn open_faults(store: &Store) -> Vec<Id> {
+    let all = store.faults(&FaultFilter::default()).expect("faults");
+    all.iter().map(|fault| fault.id).collect()
+}
+
+pub fn only_fault(store: &Store) -> FaultDetail {
+    let all = open_faults(store);
+    assert_eq!(all.len(), 1, "{all:?}");
+    store.fault(all[0]).expect("the fault")
 }
 
 pub fn connect(address: &str) -> Result<Store, StoreError> {

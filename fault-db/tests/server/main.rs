@@ -15,5 +15,6 @@ mod hostile_rows;
 mod insert_only;
 mod rights;
 mod sealed;
+mod shared_faults;
 mod syncing;
 mod trouble;
