@@ -4,7 +4,10 @@ use std::path::Path;
 
 use crate::care::{close_fault, one_run};
 use crate::common::{T0_US, open};
-use fault_db::{FaultFilter, FaultState, Id, QueryBounds, QueryLimit, RunFilter, SqlValue, StatKey, StatQuery, Store, StoreError, TrendQuery};
+use fault_db::{
+    FaultFilter, FaultState, Id, QueryBounds, QueryLimit, RunFilter, SqlValue, StatKey, StatQuery,
+    Store, StoreError, TrendQuery,
+};
 use tempfile::tempdir;
 
 const NOBODY_LIVES: &dyn Fn(&str) -> bool = &|_| false;

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use crate::common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
-use fault_db::{FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, RunState, RunWriter, Store, StoreError, Verdict};
+use fault_db::{
+    FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, RunState, RunWriter, Store,
+    StoreError, Verdict,
+};
 use rusqlite::Connection;
 use tempfile::tempdir;
 

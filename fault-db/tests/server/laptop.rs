@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use fault_db::{
-    Address, FaultDetail, FaultFilter, Id, OpenOptions, RunWriter, Store, StoreError, SyncOptions, SyncOutcome, Synchronous,
-    Verdict,
+    Address, FaultDetail, FaultFilter, Id, OpenOptions, RunWriter, Store, StoreError, SyncOptions,
+    SyncOutcome, Synchronous, Verdict,
 };
 use tempfile::TempDir;
 
