@@ -4,7 +4,7 @@
 //!
 //! It knows of the unit what frames say. Truth (position, speed, acceleration) is the rig's own.
 //!
-//! * `plan`: what is run;
+//! * `plan`: what is run; `watch`: what is looked at each scan;
 //! * `row`, `recording`: what is recorded each cycle;
 //! * `figure`: figures with the names and units that reports use;
 //! * `metrics`: figures of a run, from its rows;
@@ -21,10 +21,11 @@ mod plan;
 mod recording;
 mod row;
 pub mod scatter;
+mod watch;
 
 use protocol::message::{EbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
-use protocol::{CYCLE, Duration, Instant};
+use protocol::{Duration, Instant};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
@@ -248,16 +249,11 @@ impl Drive {
     }
 
     fn advance(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) -> Option<Ending> {
-        // Silence lasts for many cycles before it is one, so it need not be looked for each scan.
-        if now.as_us().is_multiple_of(CYCLE.as_us())
-            && let Some(text) = rig.link_error()
-        {
+        if let Some(text) = watch::link_error(now, rig) {
             return Some(Ending::LinkLost(text));
         }
         let sample = rig.sample();
-        let mode = sample
-            .get(Signal::Mode)
-            .map(|code| Mode::from_code(code as u8));
+        let mode = watch::mode(sample);
         let refusals = sample.get(Signal::Refusals).map(|bits| bits as u16);
         let moving = truth.speed_mps != 0.0;
         let late = |since: Instant, limit: Duration| now.since(since) >= limit;
@@ -307,10 +303,7 @@ impl Drive {
     ) -> Option<Ending> {
         let sample = rig.sample();
         if sample.get(Signal::Eb) == Some(1.0) && self.braked.is_none_or(|cause| cause.is_none()) {
-            let cause = sample
-                .get(Signal::EbCause)
-                .map(|code| EbCause::from_code(code as u8));
-            self.braked = Some(cause.filter(|cause| *cause != EbCause::None));
+            self.braked = Some(watch::eb_cause(sample));
         }
         // A unit that takes the last centimetres for a standstill goes back to Automatic there.
         let drives = matches!(mode, Some(Mode::AutomaticRun | Mode::Automatic));

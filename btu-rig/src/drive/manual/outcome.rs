@@ -49,10 +49,10 @@ pub enum Ending {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum AtpBrake {
     /// Full service.
-    #[error("ATP applied the full service brake{}", told(*.0, FsbCause::None, FsbCause::label))]
+    #[error("ATP applied the full service brake{}", told(*.0, FsbCause::label))]
     FullService(Option<FsbCause>),
     /// Emergency.
-    #[error("ATP applied the emergency brake{}", told(*.0, EbCause::None, EbCause::label))]
+    #[error("ATP applied the emergency brake{}", told(*.0, EbCause::label))]
     Emergency(Option<EbCause>),
 }
 
@@ -70,13 +70,8 @@ impl AtpBrake {
 }
 
 /// A cause behind a colon, or nothing.
-pub(super) fn told<C: PartialEq>(
-    cause: Option<C>,
-    none: C,
-    label: fn(C) -> &'static str,
-) -> String {
-    let known = cause.filter(|cause| *cause != none);
-    known.map_or_else(String::new, |cause| {
+pub(super) fn told<C>(cause: Option<C>, label: fn(C) -> &'static str) -> String {
+    cause.map_or_else(String::new, |cause| {
         format!(": {}", label(cause).replace('_', " "))
     })
 }

@@ -10,7 +10,7 @@ use super::keys::powers;
 use super::outcome::told;
 use super::{AtpBrake, Done, Ending, Figures, Outcome, Plan, When};
 use crate::drive::recording::Recording;
-use crate::drive::{Landmark, Row};
+use crate::drive::{Landmark, Row, watch};
 use crate::lever::Lever;
 use crate::procedure::Refusal;
 use crate::rig::{Rig, Truth};
@@ -162,10 +162,7 @@ impl Player {
         truth: &Truth,
         rig: &mut Rig,
     ) -> Result<Option<Ending>, Refusal> {
-        // Silence lasts for many cycles before it is one, so it need not be looked for each scan.
-        if now.as_us().is_multiple_of(CYCLE.as_us())
-            && let Some(text) = rig.link_error()
-        {
+        if let Some(text) = watch::link_error(now, rig) {
             return Ok(Some(Ending::LinkLost(text)));
         }
         match self.phase {
@@ -329,13 +326,12 @@ impl Player {
     /// Notes a brake that ATP applies, and its cause as soon as the unit says it.
     fn watch_atp(&mut self, now: Instant, rig: &Rig) {
         let sample = rig.sample();
-        let code = |signal| sample.get(signal).map(|code| code as u8);
         let on = |signal| sample.get(signal) == Some(1.0);
         let found = if on(Signal::Eb) {
-            let cause = code(Signal::EbCause).map(EbCause::from_code);
-            AtpBrake::Emergency(cause.filter(|cause| *cause != EbCause::None))
+            AtpBrake::Emergency(watch::eb_cause(sample))
         } else if on(Signal::Fsb) {
-            let cause = code(Signal::FsbCause).map(FsbCause::from_code);
+            let cause = sample.get(Signal::FsbCause);
+            let cause = cause.map(|code| FsbCause::from_code(code as u8));
             AtpBrake::FullService(cause.filter(|cause| *cause != FsbCause::None))
         } else {
             // By hand one drives on once ATP has released.
@@ -363,9 +359,7 @@ impl Player {
 fn refusal(rig: &Rig) -> Option<String> {
     let sample = rig.sample();
     let is = |signal, value: f64| sample.get(signal) == Some(value);
-    let mode = sample
-        .get(Signal::Mode)
-        .map(|code| Mode::from_code(code as u8));
+    let mode = watch::mode(sample);
     if mode != Some(Mode::Manual) {
         let named = mode.map_or("unknown", Mode::label);
         return Some(format!("the unit is in mode {named}"));
@@ -374,10 +368,7 @@ fn refusal(rig: &Rig) -> Option<String> {
         return Some("TCMS does not drive by hand".into());
     }
     if !is(Signal::Eb, 0.0) {
-        let cause = sample
-            .get(Signal::EbCause)
-            .map(|code| EbCause::from_code(code as u8));
-        let cause = told(cause, EbCause::None, EbCause::label);
+        let cause = told(watch::eb_cause(sample), EbCause::label);
         return Some(format!("the unit keeps the emergency brake applied{cause}"));
     }
     if !is(Signal::Fsb, 0.0) {

@@ -74,7 +74,7 @@ impl Table {
     }
 }
 
-/// Figures of runs side by side, each as `figure` has it for a figure.
+/// A row for each figure: its name, its value in each run, its unit.
 fn figures<F>(table: &[Figure<F>], values: &[Option<&F>]) -> Vec<Vec<String>> {
     let row = |figure: &Figure<F>| {
         let shown = |run: &Option<&F>| {

@@ -1,0 +1,29 @@
+//! What a drive looks at each scan: the link, and what the unit says of mode and brakes.
+
+use protocol::message::{EbCause, Mode};
+use protocol::signal::{Sample, Signal};
+use protocol::{CYCLE, Instant};
+
+use crate::rig::Rig;
+
+/// Why the unit cannot be reached any more. Silence lasts for many cycles before it is one, so it need not be
+/// looked for each scan.
+pub(super) fn link_error(now: Instant, rig: &Rig) -> Option<String> {
+    let cycle = now.as_us().is_multiple_of(CYCLE.as_us());
+    cycle.then(|| rig.link_error())?
+}
+
+/// The unit's mode, if it is known.
+pub(super) fn mode(sample: &Sample) -> Option<Mode> {
+    sample
+        .get(Signal::Mode)
+        .map(|code| Mode::from_code(code as u8))
+}
+
+/// Why the emergency brake is applied, if the unit says so.
+pub(super) fn eb_cause(sample: &Sample) -> Option<EbCause> {
+    let cause = sample
+        .get(Signal::EbCause)
+        .map(|code| EbCause::from_code(code as u8));
+    cause.filter(|cause| *cause != EbCause::None)
+}
