@@ -3,7 +3,6 @@
 #![allow(dead_code, reason = "each of the two test programs uses its part")]
 
 pub mod served;
-pub mod steady;
 pub mod terminal;
 pub mod window;
 

@@ -6,7 +6,6 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
 use crate::common::served::Unit;
-use crate::common::steady::steadily;
 use crate::common::{Place, list, number, scripts, text};
 use protocol::frame::{self, Decoder, Header};
 use protocol::link::{End, Link};
@@ -96,51 +95,47 @@ fn a_silent_unit() {
 /// A peer that is held up until `ptu` gives up was silent.
 #[test]
 fn a_unit_speaking_garbage() {
-    steadily(|| {
-        let address = peer(|mut stream| {
-            // A fixed sequence without meaning (linear congruence), flags and escapes included.
-            let mut state = 1_u32;
-            let mut noise = [0_u8; 96];
-            loop {
-                for byte in &mut noise {
-                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    *byte = (state >> 24) as u8;
-                }
-                if stream.write_all(&noise).is_err() {
-                    return;
-                }
-                std::thread::sleep(Duration::from_millis(10));
+    let address = peer(|mut stream| {
+        // A fixed sequence without meaning (linear congruence), flags and escapes included.
+        let mut state = 1_u32;
+        let mut noise = [0_u8; 96];
+        loop {
+            for byte in &mut noise {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                *byte = (state >> 24) as u8;
             }
-        });
-        fails(
-            &format!("tcp:{address}"),
-            &[
-                &address.to_string(),
-                "garbage",
-                "no valid frame",
-                "baud rate",
-            ],
-        );
+            if stream.write_all(&noise).is_err() {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
     });
+    fails(
+        &format!("tcp:{address}"),
+        &[
+            &address.to_string(),
+            "garbage",
+            "no valid frame",
+            "baud rate",
+        ],
+    );
 }
 
 /// A loop-back plug, or two testers on one line: what is heard are the own frames.
 #[test]
 fn an_echo_instead_of_a_unit() {
-    steadily(|| {
-        let address = peer(|mut stream| {
-            let mut heard = [0; 4096];
-            while let Ok(count @ 1..) = stream.read(&mut heard) {
-                if stream.write_all(&heard[..count]).is_err() {
-                    return;
-                }
+    let address = peer(|mut stream| {
+        let mut heard = [0; 4096];
+        while let Ok(count @ 1..) = stream.read(&mut heard) {
+            if stream.write_all(&heard[..count]).is_err() {
+                return;
             }
-        });
-        fails(
-            &format!("tcp:{address}"),
-            &[&address.to_string(), "no valid frame"],
-        );
+        }
     });
+    fails(
+        &format!("tcp:{address}"),
+        &[&address.to_string(), "no valid frame"],
+    );
 }
 
 #[test]
@@ -185,77 +180,69 @@ impl Other {
 
 #[test]
 fn a_unit_that_another_tester_has_says_so_and_is_had_when_that_one_leaves() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&[]);
-        let other = Other::on(&unit);
-        let by = other.address.to_string();
-        let taken = "the unit is taken by another tester";
-        fails(&unit.address, &[taken, &by, "wait until it has left"]);
-        let place = Place::new();
-        place
-            .ptu(&["faults", "import", "--unit", &unit.address])
-            .exits(3)
-            .explains(&[taken, &by]);
-        drop(other.leaves);
-        place
-            .ptu(&["run", "tcms/link", "--unit", &unit.address])
-            .exits(0);
-    });
+    let unit = Unit::on_tcp(&[]);
+    let other = Other::on(&unit);
+    let by = other.address.to_string();
+    let taken = "the unit is taken by another tester";
+    fails(&unit.address, &[taken, &by, "wait until it has left"]);
+    let place = Place::new();
+    place
+        .ptu(&["faults", "import", "--unit", &unit.address])
+        .exits(3)
+        .explains(&[taken, &by]);
+    drop(other.leaves);
+    place
+        .ptu(&["run", "tcms/link", "--unit", &unit.address])
+        .exits(0);
 }
 
 /// Goal: nobody waits for what is not measured. Method: a short run on both kinds of port, the second right after
 /// the first.
 #[test]
 fn a_run_on_a_port_takes_little_more_than_its_bench_time() {
-    steadily(|| {
-        for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
-            let place = Place::new();
-            for _ in 0..2 {
-                let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
-                said.exits(0);
-                let run = &report["run"];
-                let beside_s = number(&run["wall_time_s"]) - number(&run["bench_time_s"]);
-                assert!(beside_s < BESIDE_S, "{beside_s} s on {}", unit.address);
-            }
+    for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
+        let place = Place::new();
+        for _ in 0..2 {
+            let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
+            said.exits(0);
+            let run = &report["run"];
+            let beside_s = number(&run["wall_time_s"]) - number(&run["bench_time_s"]);
+            assert!(beside_s < BESIDE_S, "{beside_s} s on {}", unit.address);
         }
-    });
+    }
 }
 
 #[test]
 fn a_unit_with_another_configuration_is_told_at_once() {
-    steadily(|| {
-        let place = Place::new();
-        let read = |name: &str| std::fs::read_to_string(scripts().join(name)).expect(name);
-        for folder in ["units", "lines"] {
-            std::fs::create_dir(place.path(folder)).expect("a folder");
-        }
-        place.write(
-            "units/sg100.toml",
-            &(read("units/sg100.toml") + "# another\n"),
-        );
-        place.write("lines/line8.toml", &read("lines/line8.toml"));
-        let unit = Unit::on_tcp(&["--scripts", &place.text_path("")]);
-        place
-            .ptu(&["run", "tcms/link", "--unit", &unit.address])
-            .exits(3)
-            .explains(&["unit configuration", "checksum", "--unit-config"]);
-        let run = &place.json(&["runs", "show", "latest", "--json"])["run"];
-        assert!(number(&run["wall_time_s"]) < BESIDE_S, "{run}");
-    });
+    let place = Place::new();
+    let read = |name: &str| std::fs::read_to_string(scripts().join(name)).expect(name);
+    for folder in ["units", "lines"] {
+        std::fs::create_dir(place.path(folder)).expect("a folder");
+    }
+    place.write(
+        "units/sg100.toml",
+        &(read("units/sg100.toml") + "# another\n"),
+    );
+    place.write("lines/line8.toml", &read("lines/line8.toml"));
+    let unit = Unit::in_lock_step(&["--scripts", &place.text_path("")]);
+    place
+        .ptu(&["run", "tcms/link", "--unit", &unit.address])
+        .exits(3)
+        .explains(&["unit configuration", "checksum", "--unit-config"]);
+    let run = &place.json(&["runs", "show", "latest", "--json"])["run"];
+    assert!(number(&run["wall_time_s"]) < BESIDE_S, "{run}");
 }
 
 /// Goal: a unit without a serial number is no unknown one. Method: its run, and one that reached nobody.
 #[test]
 fn a_unit_without_a_serial_number_is_shown_as_one() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&["--serial-no", ""]);
-        let place = Place::new();
-        let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
-        said.exits(0);
-        assert_eq!(text(&report["run"]["unit_serial"]), "(no serial number)");
-        let (_, report) = place.run(&["tcms/link", "--serial-no", "A\u{1b}[2J"]);
-        assert_eq!(text(&report["run"]["unit_serial"]), "A\\x1b[2J");
-    });
+    let unit = Unit::in_lock_step(&["--serial-no", ""]);
+    let place = Place::new();
+    let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
+    said.exits(0);
+    assert_eq!(text(&report["run"]["unit_serial"]), "(no serial number)");
+    let (_, report) = place.run(&["tcms/link", "--serial-no", "A\u{1b}[2J"]);
+    assert_eq!(text(&report["run"]["unit_serial"]), "A\\x1b[2J");
 }
 
 /// What a proxy does to the bytes of one direction.
@@ -351,52 +338,46 @@ fn blames_nobody(address: &str, words: &[&str]) {
 
 #[test]
 fn a_bad_line_is_an_error_of_the_line() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&[]);
-        let address = proxy(&unit, flips(1), flips(2));
-        blames_nobody(
-            &address,
-            &["the line between tester and unit is bad", "check the cable"],
-        );
-    });
+    let unit = Unit::on_tcp(&[]);
+    let address = proxy(&unit, flips(1), flips(2));
+    blames_nobody(
+        &address,
+        &["the line between tester and unit is bad", "check the cable"],
+    );
 }
 
 #[test]
 fn a_log_that_is_never_answered() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&[]);
-        let mute = frames(|message, out| match message {
-            Message::LogEntry(_) | Message::LogEnd(_) => {}
-            other => out.push(other),
-        });
-        let address = proxy(&unit, unchanged(), mute);
-        blames_nobody(
-            &address,
-            &[
-                "the unit's log could not be read: asked ",
-                " times, no answer",
-            ],
-        );
+    let unit = Unit::on_tcp(&[]);
+    let mute = frames(|message, out| match message {
+        Message::LogEntry(_) | Message::LogEnd(_) => {}
+        other => out.push(other),
     });
+    let address = proxy(&unit, unchanged(), mute);
+    blames_nobody(
+        &address,
+        &[
+            "the unit's log could not be read: asked ",
+            " times, no answer",
+        ],
+    );
 }
 
 #[test]
 fn another_unit_in_the_middle_of_a_run() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&["--serial-no", "A-1"]);
-        let began = Instant::now();
-        let other = frames(move |message, out| {
-            out.push(match message {
-                Message::Identity(mut identity) if began.elapsed() > Duration::from_secs(8) => {
-                    identity.serial[0] = b'B';
-                    identity.into()
-                }
-                other => other,
-            });
+    let unit = Unit::on_tcp(&["--serial-no", "A-1"]);
+    let began = Instant::now();
+    let other = frames(move |message, out| {
+        out.push(match message {
+            Message::Identity(mut identity) if began.elapsed() > Duration::from_secs(8) => {
+                identity.serial[0] = b'B';
+                identity.into()
+            }
+            other => other,
         });
-        let address = proxy(&unit, unchanged(), other);
-        blames_nobody(&address, &["another unit answers", "\"A-1\"", "\"B-1\""]);
     });
+    let address = proxy(&unit, unchanged(), other);
+    blames_nobody(&address, &["another unit answers", "\"A-1\"", "\"B-1\""]);
 }
 
 /// Goal: a log without end costs neither the disk nor the time. Method: 4 000 entries a second beyond those

@@ -1,7 +1,6 @@
 //! A unit's own event log, read over its port: faults with freeze frames in the history, each once.
 
 use crate::common::served::{Running, Unit};
-use crate::common::steady::steadily;
 use crate::common::{Place, list, number, text};
 use serde_json::Value;
 
@@ -23,84 +22,82 @@ fn names(faults: &Value) -> Vec<&str> {
 /// sensor by one tester, and its log read by another.
 #[test]
 fn what_a_unit_logged_elsewhere_becomes_faults_once() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&["--inject", "speed_sensor_1.dead", "--serial-no", "FLD-1"]);
-        let (workshop, depot) = (Place::new(), Place::new());
-        let arguments = ["atp/overspeed", "--step", "code 25: at the limit*"];
-        Running::start(&workshop, &unit, &arguments)
-            .finish()
-            .exits(1);
+    let unit = Unit::on_tcp(&["--inject", "speed_sensor_1.dead", "--serial-no", "FLD-1"]);
+    let (workshop, depot) = (Place::new(), Place::new());
+    let arguments = ["atp/overspeed", "--step", "code 25: at the limit*"];
+    Running::start(&workshop, &unit, &arguments)
+        .finish()
+        .exits(1);
 
-        let first = import(&depot, &unit, &["--operator", "Kim"]);
-        assert_eq!(first["unit_serial"], "FLD-1");
-        assert_eq!(first["complete"], true);
-        let dead = list(&first["faults"])
-            .iter()
-            .find(|f| f["name"] == "tacho1_dead");
-        let dead = dead.unwrap_or_else(|| panic!("{first}"));
-        assert_eq!(dead["lru"], "speed_sensor_1");
-        let frozen = |name: &str| {
-            let samples = list(&dead["freeze_frame"]).iter();
-            samples
-                .clone()
-                .find(|sample| sample["name"] == name)
-                .cloned()
-        };
-        let speed = frozen("speed").expect("the speed it froze");
-        assert!(number(&speed["value"]) > 1.0, "{speed}");
-        for name in [
-            "limit",
-            "position",
-            "mode",
-            "eb_cause",
-            "parameter",
-            "log_index",
-        ] {
-            assert!(frozen(name).is_some(), "no {name} in {dead}");
-        }
-        assert!(
-            frozen("carrier_hz").is_none(),
-            "an entry does not tell of it"
-        );
+    let first = import(&depot, &unit, &["--operator", "Kim"]);
+    assert_eq!(first["unit_serial"], "FLD-1");
+    assert_eq!(first["complete"], true);
+    let dead = list(&first["faults"])
+        .iter()
+        .find(|f| f["name"] == "tacho1_dead");
+    let dead = dead.unwrap_or_else(|| panic!("{first}"));
+    assert_eq!(dead["lru"], "speed_sensor_1");
+    let frozen = |name: &str| {
+        let samples = list(&dead["freeze_frame"]).iter();
+        samples
+            .clone()
+            .find(|sample| sample["name"] == name)
+            .cloned()
+    };
+    let speed = frozen("speed").expect("the speed it froze");
+    assert!(number(&speed["value"]) > 1.0, "{speed}");
+    for name in [
+        "limit",
+        "position",
+        "mode",
+        "eb_cause",
+        "parameter",
+        "log_index",
+    ] {
+        assert!(frozen(name).is_some(), "no {name} in {dead}");
+    }
+    assert!(
+        frozen("carrier_hz").is_none(),
+        "an entry does not tell of it"
+    );
 
-        let runs = depot.json(&["runs", "list", "--json"]);
-        let run = &list(&runs)[0];
-        assert_eq!(run["source"], format!("log of {}", unit.address));
-        assert_eq!(
-            (&run["verdict"], &run["operator"]),
-            (&"failed".into(), &"Kim".into())
-        );
-        assert_eq!(run["step_count"], 0);
-        depot.ptu(&["runs", "show", "latest"]).exits(0);
+    let runs = depot.json(&["runs", "list", "--json"]);
+    let run = &list(&runs)[0];
+    assert_eq!(run["source"], format!("log of {}", unit.address));
+    assert_eq!(
+        (&run["verdict"], &run["operator"]),
+        (&"failed".into(), &"Kim".into())
+    );
+    assert_eq!(run["step_count"], 0);
+    depot.ptu(&["runs", "show", "latest"]).exits(0);
 
-        let second = import(&depot, &unit, &[]);
-        assert_eq!(number(&second["imported"]), 0.0, "{second}");
-        assert_eq!(second["known"], first["imported"]);
-        assert_eq!(
-            second["entries"], first["entries"],
-            "reading adds nothing to the log"
-        );
-        assert_eq!(depot.run_ids().len(), 1);
+    let second = import(&depot, &unit, &[]);
+    assert_eq!(number(&second["imported"]), 0.0, "{second}");
+    assert_eq!(second["known"], first["imported"]);
+    assert_eq!(
+        second["entries"], first["entries"],
+        "reading adds nothing to the log"
+    );
+    assert_eq!(depot.run_ids().len(), 1);
 
-        // Who drove it has judged it already.
-        let own = import(&workshop, &unit, &[]);
-        assert!(!names(&own["faults"]).contains(&"tacho1_dead"), "{own}");
-        assert!(number(&own["left_out"]["under_test"]) > 0.0, "{own}");
+    // Who drove it has judged it already.
+    let own = import(&workshop, &unit, &[]);
+    assert!(!names(&own["faults"]).contains(&"tacho1_dead"), "{own}");
+    assert!(number(&own["left_out"]["under_test"]) > 0.0, "{own}");
 
-        let other = [
-            "faults",
-            "import",
-            "--unit",
-            &unit.address,
-            "--serial-no",
-            "FLD-2",
-        ];
-        depot
-            .ptu(&other)
-            .exits(3)
-            .explains(&["FLD-1", "FLD-2", "--serial-no"]);
-        assert_eq!(depot.run_ids().len(), 1);
-    });
+    let other = [
+        "faults",
+        "import",
+        "--unit",
+        &unit.address,
+        "--serial-no",
+        "FLD-2",
+    ];
+    depot
+        .ptu(&other)
+        .exits(3)
+        .explains(&["FLD-1", "FLD-2", "--serial-no"]);
+    assert_eq!(depot.run_ids().len(), 1);
 }
 
 #[test]
@@ -116,5 +113,9 @@ fn without_a_unit_nothing_is_stored() {
         .ptu(&["faults", "import", "--unit", "sim"])
         .exits(2)
         .explains(&["embedded unit", "--unit"]);
+    place
+        .ptu(&["faults", "import", "--unit", "lockstep:/dev/pts/0"])
+        .exits(2)
+        .explains(&["lock step", "--unit serial:PATH"]);
     assert_eq!(place.run_ids(), [earlier]);
 }

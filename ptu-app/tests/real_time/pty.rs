@@ -4,7 +4,6 @@
 use std::time::{Duration, Instant};
 
 use crate::common::served::{Observer, Running, Unit};
-use crate::common::steady::steadily;
 use crate::common::terminal::{Terminal, ended};
 use crate::common::{Place, list, number, text};
 use protocol::message::{Message, Outputs, StatusBits};
@@ -70,7 +69,7 @@ fn steps_of(planned: &[Value]) -> usize {
 /// The suite is shared out among units on ports of their own, each of which is tested in real time beside
 /// the others.
 #[test]
-#[ignore = "takes four minutes of real time on a quiet machine: --test real_time -- --ignored"]
+#[ignore = "takes four minutes of real time on a quiet machine: scripts/test full"]
 fn a_whole_acceptance_suite_over_pseudo_terminals_passes_in_real_time() {
     let place = Place::new();
     let planned = list(&place.json(&["run", "--list", "--json"])).to_vec();
@@ -118,303 +117,283 @@ fn steps_passed(procedures: &[String]) -> usize {
 
 #[test]
 fn a_tester_slower_than_the_unit_is_told() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        Running::start(&place, &unit, &["tcms/link", "--slower", "2"])
-            .finish()
-            .exits(3)
-            .explains(&["times as fast", "--slower"]);
-        let as_slow = Unit::on_pty(&["--slower", "2"]);
-        Running::start(&place, &as_slow, &["tcms/link", "--slower", "2"])
-            .finish()
-            .exits(0);
-    });
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    Running::start(&place, &unit, &["tcms/link", "--slower", "2"])
+        .finish()
+        .exits(3)
+        .explains(&["times as fast", "--slower"]);
+    let as_slow = Unit::on_pty(&["--slower", "2"]);
+    Running::start(&place, &as_slow, &["tcms/link", "--slower", "2"])
+        .finish()
+        .exits(0);
 }
 
 /// Goal: a computer that holds a served unit up changes nothing that the unit sees. Method: it stands still for
 /// longer than it bears to hear nothing, while the tester goes on, for which it was silent and slow.
 #[test]
 fn a_unit_that_stood_still_has_heard_its_inputs_all_the_while() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let arguments = ["atp/limit_speed", "--report", "report.json"];
-        let mut run = Running::start(&place, &unit, &arguments);
-        run.recorded_steps(2);
-        unit.stand_still(Duration::from_millis(420));
-        let said = run.finish();
-        let report = place.read_json("report.json");
-        for fault in list(&report["faults"]) {
-            let of_tester = ["atc_silent", "check_failed"].contains(&text(&fault["name"]));
-            assert!(of_tester, "{}", said.all());
-        }
-        assert!(
-            said.code == Some(0) || said.code == Some(1),
-            "{}",
-            said.all()
-        );
-    });
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let arguments = ["atp/limit_speed", "--report", "report.json"];
+    let mut run = Running::start(&place, &unit, &arguments);
+    run.recorded_steps(2);
+    unit.stand_still(Duration::from_millis(420));
+    let said = run.finish();
+    let report = place.read_json("report.json");
+    for fault in list(&report["faults"]) {
+        let of_tester = ["atc_silent", "check_failed"].contains(&text(&fault["name"]));
+        assert!(of_tester, "{}", said.all());
+    }
+    assert!(
+        said.code == Some(0) || said.code == Some(1),
+        "{}",
+        said.all()
+    );
 }
 
 /// Goal: a tester that is held up by its own computer blames nobody. Method: it stands still for longer than
 /// the unit bears to hear nothing, which brakes.
 #[test]
 fn a_tester_that_stood_still_is_an_error_and_no_fault_of_the_unit() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let arguments = ["atp/overspeed", "tcms/link", "--report", "report.json"];
-        let mut run = Running::start(&place, &unit, &arguments);
-        run.recorded_steps(1);
-        run.stand_still(Duration::from_millis(3000));
-        run.finish()
-            .exits(3)
-            .explains(&["held up for", "run this again"]);
-        let report = place.read_json("report.json");
-        assert_eq!(report["run"]["verdict"], "error");
-        assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
-        let verdict = |step: &Value| text(&step["verdict"]).to_owned();
-        let verdicts: Vec<_> = list(&report["steps"]).iter().map(verdict).collect();
-        let stood_still = verdicts.iter().position(|verdict| verdict == "error");
-        let skipped = verdicts
-            .iter()
-            .filter(|verdict| *verdict == "skipped")
-            .count();
-        assert!(
-            stood_still.is_some_and(|at| at > 0) && skipped > 10,
-            "{verdicts:?}"
-        );
-        assert_eq!(
-            verdicts.last().map(String::as_str),
-            Some("passed"),
-            "the next is not held up"
-        );
-    });
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let arguments = ["atp/overspeed", "tcms/link", "--report", "report.json"];
+    let mut run = Running::start(&place, &unit, &arguments);
+    run.recorded_steps(1);
+    run.stand_still(Duration::from_millis(3000));
+    run.finish()
+        .exits(3)
+        .explains(&["held up for", "run this again"]);
+    let report = place.read_json("report.json");
+    assert_eq!(report["run"]["verdict"], "error");
+    assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
+    let verdict = |step: &Value| text(&step["verdict"]).to_owned();
+    let verdicts: Vec<_> = list(&report["steps"]).iter().map(verdict).collect();
+    let stood_still = verdicts.iter().position(|verdict| verdict == "error");
+    let skipped = verdicts
+        .iter()
+        .filter(|verdict| *verdict == "skipped")
+        .count();
+    assert!(
+        stood_still.is_some_and(|at| at > 0) && skipped > 10,
+        "{verdicts:?}"
+    );
+    assert_eq!(
+        verdicts.last().map(String::as_str),
+        Some("passed"),
+        "the next is not held up"
+    );
 }
 
 /// Goal: train lines and pulses that stop mean braking. Method: killed after the step before, early
 /// in the ramp, so that the brake is not applied yet.
 #[test]
 fn killed_in_an_overspeed_step_the_unit_brakes_within_a_second() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let mut run = Running::start(&place, &unit, &["atp/overspeed", "--step", "code 25*"]);
-        run.recorded_steps(1);
-        run.kill();
-        let killed = Instant::now();
-        let mut observer = Observer::on(&unit);
-        observer.wait(SLACK, "a brake still released", |message| {
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let mut run = Running::start(&place, &unit, &["atp/overspeed", "--step", "code 25*"]);
+    run.recorded_steps(1);
+    run.kill();
+    let killed = Instant::now();
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "a brake still released", |message| {
         matches!(message, Message::IoOutput(out) if out.outputs.contains(Outputs::EB_RELAY))
     });
-        observer.wait(SAFE_WITHIN + SLACK, "the emergency brake", eb_applied);
-        assert!(
-            killed.elapsed() < SAFE_WITHIN + SLACK,
-            "{:?}",
-            killed.elapsed()
-        );
-        drop(observer);
+    observer.wait(SAFE_WITHIN + SLACK, "the emergency brake", eb_applied);
+    assert!(
+        killed.elapsed() < SAFE_WITHIN + SLACK,
+        "{:?}",
+        killed.elapsed()
+    );
+    drop(observer);
 
-        let killed_run = &place.json(&["runs", "list", "--json"])[0];
-        assert_eq!(killed_run["state"], "interrupted");
-        assert!(killed_run["verdict"].is_null(), "{killed_run}");
-        assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
-        passes(&place, &unit, "tcms/link");
-        let states: Vec<_> = list(&place.json(&["runs", "list", "--json"]))
-            .iter()
-            .map(|run| text(&run["state"]).to_owned())
-            .collect();
-        assert_eq!(states, ["finished", "interrupted"]);
-    });
+    let killed_run = &place.json(&["runs", "list", "--json"])[0];
+    assert_eq!(killed_run["state"], "interrupted");
+    assert!(killed_run["verdict"].is_null(), "{killed_run}");
+    assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
+    passes(&place, &unit, "tcms/link");
+    let states: Vec<_> = list(&place.json(&["runs", "list", "--json"]))
+        .iter()
+        .map(|run| text(&run["state"]).to_owned())
+        .collect();
+    assert_eq!(states, ["finished", "interrupted"]);
 }
 
 /// Goal: no test signal outlives its tester. Method: killed in the step of the next code, after most of the
 /// time that of the code before took.
 #[test]
 fn killed_in_an_overspeed_step_of_the_test_board_the_test_signals_go_within_a_second() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let mut run = Running::start(&place, &unit, &["atp/ptu_overspeed", "--step", "code ?5*"]);
-        let steps = run.recorded_steps(2);
-        assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
-        std::thread::sleep(Duration::from_secs_f64(
-            0.7 * number(&steps[0]["bench_time_s"]),
-        ));
-        run.kill();
-        let killed = Instant::now();
-        let mut observer = Observer::on(&unit);
-        observer.wait(SLACK, "an armed unit with test signals", |message| {
-            matches!(message, Message::Status(status)
-            if status.bits.contains(StatusBits::ARMED) && !status.test_signals.is_empty())
-        });
-        let (mut brakes, mut free) = (None, None);
-        while killed.elapsed() < 2 * SAFE_WITHIN && (brakes.is_none() || free.is_none()) {
-            for message in observer.hear() {
-                if eb_applied(&message) {
-                    brakes.get_or_insert(killed.elapsed());
-                }
-                if released(&message) {
-                    free.get_or_insert(killed.elapsed());
-                }
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let mut run = Running::start(&place, &unit, &["atp/ptu_overspeed", "--step", "code ?5*"]);
+    let steps = run.recorded_steps(2);
+    assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
+    std::thread::sleep(Duration::from_secs_f64(
+        0.7 * number(&steps[0]["bench_time_s"]),
+    ));
+    run.kill();
+    let killed = Instant::now();
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "an armed unit with test signals", |message| {
+        matches!(message, Message::Status(status)
+        if status.bits.contains(StatusBits::ARMED) && !status.test_signals.is_empty())
+    });
+    let (mut brakes, mut free) = (None, None);
+    while killed.elapsed() < 2 * SAFE_WITHIN && (brakes.is_none() || free.is_none()) {
+        for message in observer.hear() {
+            if eb_applied(&message) {
+                brakes.get_or_insert(killed.elapsed());
+            }
+            if released(&message) {
+                free.get_or_insert(killed.elapsed());
             }
         }
-        for (what, after) in [("emergency brake", brakes), ("test signals gone", free)] {
-            let in_time = after.is_some_and(|after| after < SAFE_WITHIN + SLACK);
-            assert!(in_time, "{what} after {after:?}");
-        }
-        drop(observer);
-        assert_eq!(
-            place.json(&["runs", "list", "--json"])[0]["state"],
-            "interrupted"
-        );
-        passes(&place, &unit, "twc/ptu_exchange");
-    });
+    }
+    for (what, after) in [("emergency brake", brakes), ("test signals gone", free)] {
+        let in_time = after.is_some_and(|after| after < SAFE_WITHIN + SLACK);
+        assert!(in_time, "{what} after {after:?}");
+    }
+    drop(observer);
+    assert_eq!(
+        place.json(&["runs", "list", "--json"])[0]["state"],
+        "interrupted"
+    );
+    passes(&place, &unit, "twc/ptu_exchange");
 }
 
 /// Method: a clean-up that cannot succeed is reported when it ran.
 #[test]
 fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let script = place.write(
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let script = place.write(
         "long.star",
         "load(\"//_ptu.star\", \"train_as_found\", \"train_in_depot\")\n\
-         procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_in_depot(),\n\
-         \x20   cleanup = [until(mode, \"yard\", within = s(1)), train_as_found()])\n\
-         step(\"first\", do = [ptu.code(\"25\"), wait(s(1))], expect = becomes(armed, True))\n\
-         step(\"long\", do = wait(s(60)))\n\
-         step(\"never\", do = wait(s(1)))\n",
+     procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_in_depot(),\n\
+     \x20   cleanup = [until(mode, \"yard\", within = s(1)), train_as_found()])\n\
+     step(\"first\", do = [ptu.code(\"25\"), wait(s(1))], expect = becomes(armed, True))\n\
+     step(\"long\", do = wait(s(60)))\n\
+     step(\"never\", do = wait(s(1)))\n",
     );
-        let mut run = Running::start(&place, &unit, &[&script, "--report", "report.json"]);
-        run.recorded_steps(1);
-        std::thread::sleep(Duration::from_millis(500));
-        run.interrupt();
-        let stopped = Instant::now();
-        let said = run.finish();
-        let mut observer = Observer::on(&unit);
-        observer.wait(SLACK, "a status", |message| {
-            if let Message::Status(status) = message {
-                assert!(released(message), "{status:?}");
-            }
-            matches!(message, Message::Status(_))
-        });
-        assert!(stopped.elapsed() < ENDS_WITHIN, "{:?}", stopped.elapsed());
-        let said = said
-            .exits(130)
-            .explains(&["stopped by the operator", "clean-up:", "yard"]);
-        let report = place.read_json("report.json");
-        assert_eq!(report["run"]["verdict"], "aborted", "{}", said.all());
-        assert_eq!(report["run"]["state"], "finished");
-        let verdicts: Vec<_> = list(&report["steps"])
-            .iter()
-            .map(|step| text(&step["verdict"]))
-            .collect();
-        assert_eq!(verdicts, ["passed", "aborted", "skipped"]);
+    let mut run = Running::start(&place, &unit, &[&script, "--report", "report.json"]);
+    run.recorded_steps(1);
+    std::thread::sleep(Duration::from_millis(500));
+    run.interrupt();
+    let stopped = Instant::now();
+    let said = run.finish();
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "a status", |message| {
+        if let Message::Status(status) = message {
+            assert!(released(message), "{status:?}");
+        }
+        matches!(message, Message::Status(_))
     });
+    assert!(stopped.elapsed() < ENDS_WITHIN, "{:?}", stopped.elapsed());
+    let said = said
+        .exits(130)
+        .explains(&["stopped by the operator", "clean-up:", "yard"]);
+    let report = place.read_json("report.json");
+    assert_eq!(report["run"]["verdict"], "aborted", "{}", said.all());
+    assert_eq!(report["run"]["state"], "finished");
+    let verdicts: Vec<_> = list(&report["steps"])
+        .iter()
+        .map(|step| text(&step["verdict"]))
+        .collect();
+    assert_eq!(verdicts, ["passed", "aborted", "skipped"]);
 }
 
 /// Goal: a terminal that is closed ends a run as Ctrl-C does. Method: its own terminal goes, and all it could
 /// say goes nowhere.
 #[test]
 fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
-    steadily(|| {
-        let unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let terminal = Terminal::open();
-        let arguments = ["run", "--unit", &unit.address, "atp/ptu_overspeed"];
-        let mut run = terminal.start(&place.command(&arguments));
-        let begun = Instant::now();
-        let armed = |place: &Place| {
-            let shown = place.ptu(&["runs", "show", "latest", "--json"]);
-            let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
-            run["steps"]
-                .as_array()
-                .is_some_and(|steps| !steps.is_empty())
-        };
-        while !armed(&place) {
-            assert!(
-                begun.elapsed() < ENDS_WITHIN,
-                "no step within {ENDS_WITHIN:?}"
-            );
-            terminal.read();
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let terminal = Terminal::open();
+    let arguments = ["run", "--unit", &unit.address, "atp/ptu_overspeed"];
+    let mut run = terminal.start(&place.command(&arguments));
+    let begun = Instant::now();
+    let armed = |place: &Place| {
+        let shown = place.ptu(&["runs", "show", "latest", "--json"]);
+        let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
+        run["steps"]
+            .as_array()
+            .is_some_and(|steps| !steps.is_empty())
+    };
+    while !armed(&place) {
+        assert!(
+            begun.elapsed() < ENDS_WITHIN,
+            "no step within {ENDS_WITHIN:?}"
+        );
+        terminal.read();
+    }
+    drop(terminal);
+    assert_eq!(ended(&mut run, || {}), Some(130));
+    let mut observer = Observer::on(&unit);
+    observer.wait(SLACK, "a status", |message| {
+        if let Message::Status(status) = message {
+            assert!(released(message), "{status:?}");
         }
-        drop(terminal);
-        assert_eq!(ended(&mut run, || {}), Some(130));
-        let mut observer = Observer::on(&unit);
-        observer.wait(SLACK, "a status", |message| {
-            if let Message::Status(status) = message {
-                assert!(released(message), "{status:?}");
-            }
-            matches!(message, Message::Status(_))
-        });
-        let run = &place.json(&["runs", "list", "--json"])[0];
-        assert_eq!(run["verdict"], "aborted", "{run}");
-        assert_eq!(run["state"], "finished", "{run}");
+        matches!(message, Message::Status(_))
     });
+    let run = &place.json(&["runs", "list", "--json"])[0];
+    assert_eq!(run["verdict"], "aborted", "{run}");
+    assert_eq!(run["state"], "finished", "{run}");
 }
 
 #[test]
 fn a_unit_that_dies_in_a_run_is_an_error_and_the_record_is_closed() {
-    steadily(|| {
-        let mut unit = Unit::on_pty(&[]);
-        let place = Place::new();
-        let mut run = Running::start(
-            &place,
-            &unit,
-            &["atp/limit_speed", "--report", "report.json"],
-        );
-        run.recorded_steps(2);
-        unit.kill();
-        let died = Instant::now();
-        run.finish()
-            .exits(3)
-            .explains(&[&unit.port, "link to the unit"]);
-        assert!(died.elapsed() < ENDS_WITHIN, "{:?}", died.elapsed());
-        let report = place.read_json("report.json");
-        assert_eq!(report["run"]["verdict"], "error");
-        assert_eq!(report["run"]["state"], "finished");
-        let steps = list(&report["steps"]);
-        assert_eq!(steps[0]["verdict"], "passed");
-        assert!(steps.iter().any(|step| step["verdict"] == "error"));
-        assert!(steps.iter().all(|step| step["verdict"] != "failed"));
-    });
+    let mut unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    let mut run = Running::start(
+        &place,
+        &unit,
+        &["atp/limit_speed", "--report", "report.json"],
+    );
+    run.recorded_steps(2);
+    unit.kill();
+    let died = Instant::now();
+    run.finish()
+        .exits(3)
+        .explains(&[&unit.port, "link to the unit"]);
+    assert!(died.elapsed() < ENDS_WITHIN, "{:?}", died.elapsed());
+    let report = place.read_json("report.json");
+    assert_eq!(report["run"]["verdict"], "error");
+    assert_eq!(report["run"]["state"], "finished");
+    let steps = list(&report["steps"]);
+    assert_eq!(steps[0]["verdict"], "passed");
+    assert!(steps.iter().any(|step| step["verdict"] == "error"));
+    assert!(steps.iter().all(|step| step["verdict"] != "failed"));
 }
 
 #[test]
 fn over_tcp_a_procedure_passes_and_the_next_tester_is_let_in() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
-        let place = Place::new();
-        passes(&place, &unit, "tcms/link");
-        let run = &place.json(&["runs", "list", "--json"])[0];
-        assert_eq!(run["unit_serial"], "TCP-7");
-        assert_eq!(run["source"], unit.address);
-        let other = ["tcms/link", "--serial-no", "TCP-8"];
-        Running::start(&place, &unit, &other)
-            .finish()
-            .exits(3)
-            .explains(&["TCP-7", "TCP-8", "--serial-no"]);
-    });
+    let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
+    let place = Place::new();
+    passes(&place, &unit, "tcms/link");
+    let run = &place.json(&["runs", "list", "--json"])[0];
+    assert_eq!(run["unit_serial"], "TCP-7");
+    assert_eq!(run["source"], unit.address);
+    let other = ["tcms/link", "--serial-no", "TCP-8"];
+    Running::start(&place, &unit, &other)
+        .finish()
+        .exits(3)
+        .explains(&["TCP-7", "TCP-8", "--serial-no"]);
 }
 
 #[test]
 fn a_served_unit_with_a_slow_relay_fails() {
-    steadily(|| {
-        let unit = Unit::on_pty(&["--inject", "eb_relay.slow"]);
-        let place = Place::new();
-        let arguments = ["atp/power_up", "--report", "report.json"];
-        Running::start(&place, &unit, &arguments).finish().exits(1);
-        let report = place.read_json("report.json");
-        let failed = |step: &&serde_json::Value| step["verdict"] == "failed";
-        assert!(list(&report["steps"]).iter().any(|step| failed(&step)));
-        let fault = &list(&report["faults"])[0];
-        assert_eq!(fault["lru"], "eb_relay");
-        let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
-        assert!(number(&trace["trigger_row"]) >= 40.0, "two seconds before");
-    });
+    let unit = Unit::in_lock_step(&["--inject", "eb_relay.slow"]);
+    let place = Place::new();
+    let arguments = ["atp/power_up", "--report", "report.json"];
+    Running::start(&place, &unit, &arguments).finish().exits(1);
+    let report = place.read_json("report.json");
+    let failed = |step: &&serde_json::Value| step["verdict"] == "failed";
+    assert!(list(&report["steps"]).iter().any(|step| failed(&step)));
+    let fault = &list(&report["faults"])[0];
+    assert_eq!(fault["lru"], "eb_relay");
+    let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
+    assert!(number(&trace["trigger_row"]) >= 40.0, "two seconds before");
 }
 
 #[test]

@@ -2,7 +2,6 @@
 //! car, the signals at that moment and a trace; around a unit on a port, too.
 
 use crate::common::served::Unit;
-use crate::common::steady::steadily;
 use crate::common::{Place, list, text};
 use serde_json::Value;
 
@@ -93,36 +92,34 @@ fn what_tcms_finds_is_a_fault_with_its_car_and_what_stood_around_it() {
 /// says before the first step counts.
 #[test]
 fn faults_of_the_train_work_around_a_unit_on_a_port() {
-    steadily(|| {
-        let unit = Unit::on_tcp(&[]);
-        let place = Place::new();
-        place.write("desk.star", DESK);
-        let at = ["desk.star", "--unit", &unit.address];
-        let (said, report) = place.run(
+    let unit = Unit::in_lock_step(&[]);
+    let place = Place::new();
+    place.write("desk.star", DESK);
+    let at = ["desk.star", "--unit", &unit.address];
+    let (said, report) = place.run(
+        &[
+            &at[..],
+            &["--inject", "door_contact.open,master_controller.pot_low"],
+        ]
+        .concat(),
+    );
+    said.exits(1);
+    assert_eq!(
+        fault(&report, "controller_failed")["lru"],
+        "master_controller"
+    );
+    assert_eq!(fault(&report, "check_failed")["lru"], "door_contact");
+    place
+        .ptu(
             &[
+                &["run"],
                 &at[..],
-                &["--inject", "door_contact.open,master_controller.pot_low"],
+                &["--inject", "door_contact.open,tra.dead"],
             ]
             .concat(),
-        );
-        said.exits(1);
-        assert_eq!(
-            fault(&report, "controller_failed")["lru"],
-            "master_controller"
-        );
-        assert_eq!(fault(&report, "check_failed")["lru"], "door_contact");
-        place
-            .ptu(
-                &[
-                    &["run"],
-                    &at[..],
-                    &["--inject", "door_contact.open,tra.dead"],
-                ]
-                .concat(),
-            )
-            .exits(2)
-            .explains(&["--inject", "ato-under-test --inject"]);
-    });
+        )
+        .exits(2)
+        .explains(&["--inject", "ato-under-test --inject"]);
 }
 
 #[test]

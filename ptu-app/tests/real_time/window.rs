@@ -2,7 +2,6 @@
 //! the part that failed, and what goes wrong on it.
 
 use crate::common::served::Unit;
-use crate::common::steady::steadily;
 use crate::common::window::Window;
 use crate::common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
@@ -215,36 +214,34 @@ fn letting_go_in_a_run_closes_its_record_first() {
 
 #[test]
 fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
-    steadily(|| {
-        let place = Place::new();
-        let scripts = own_scripts(
-            &place,
-            "procedure(title = \"Lamp\", suspect = \"-\")\n\
-             step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
-        );
-        let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
-        window.click("Connect");
-        window.wait_for("SIM-0001");
-        window.click("Run");
-        window.wait_for("Does the lamp light?");
-        window.key(Page::Faults.key());
-        window.wait_for("a script asks");
-        let now = |window: &Window| window.app().units().chosen().bench.live().now;
-        let (began, before) = (std::time::Instant::now(), now(&window));
-        for _ in 0..100 {
-            window.step();
-        }
-        let bench_s = now(&window).since(before).as_secs();
-        let clock_s = began.elapsed().as_secs_f64();
-        // A bench that was held up makes up for the scans it missed, and is faster than the clock then.
-        assert!(
-            bench_s < clock_s + 0.5,
-            "{bench_s} s on the bench in {clock_s} s"
-        );
-        window.click("a script asks");
-        window.click("Yes");
-        window.wait_for_part("Run over: passed");
-    });
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Lamp\", suspect = \"-\")\n\
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
+    );
+    let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for("Does the lamp light?");
+    window.key(Page::Faults.key());
+    window.wait_for("a script asks");
+    let now = |window: &Window| window.app().units().chosen().bench.live().now;
+    let (began, before) = (std::time::Instant::now(), now(&window));
+    for _ in 0..100 {
+        window.step();
+    }
+    let bench_s = now(&window).since(before).as_secs();
+    let clock_s = began.elapsed().as_secs_f64();
+    // A bench that was held up makes up for the scans it missed, and is faster than the clock then.
+    assert!(
+        bench_s < clock_s + 0.5,
+        "{bench_s} s on the bench in {clock_s} s"
+    );
+    window.click("a script asks");
+    window.click("Yes");
+    window.wait_for_part("Run over: passed");
 }
 
 #[test]
@@ -314,31 +311,29 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
 
 #[test]
 fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
-    steadily(|| {
-        let mut unit = Unit::on_pty(&[]);
-        let mut settings = settings(Page::Procedures);
-        settings.language = Language::Korean;
-        settings.unit.endpoint = unit.address.clone();
-        let mut window = Window::with(Place::new(), scripts(), settings);
-        window.click("연결");
-        window.until("the unit", |window| {
-            window.app().units().chosen().phase() == Phase::Idle
-        });
-        window.click("시험 시작");
-        window.until("a step", |window| {
-            let run = window.app().units().chosen().run.as_ref();
-            run.is_some_and(|run| run.done > 0)
-        });
-        unit.kill();
-        window.wait_for_part("유닛과의 링크가 끊어졌습니다");
-        window.wait_for_part("시험 종료: 오류");
-        window.until("disconnected", |window| {
-            window.app().units().chosen().phase() == Phase::Offline
-        });
-        let run = latest(&window);
-        assert_eq!(run["run"]["verdict"], "error");
-        assert_eq!(run["run"]["state"], "finished");
+    let mut unit = Unit::on_pty(&[]);
+    let mut settings = settings(Page::Procedures);
+    settings.language = Language::Korean;
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("연결");
+    window.until("the unit", |window| {
+        window.app().units().chosen().phase() == Phase::Idle
     });
+    window.click("시험 시작");
+    window.until("a step", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.done > 0)
+    });
+    unit.kill();
+    window.wait_for_part("유닛과의 링크가 끊어졌습니다");
+    window.wait_for_part("시험 종료: 오류");
+    window.until("disconnected", |window| {
+        window.app().units().chosen().phase() == Phase::Offline
+    });
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "error");
+    assert_eq!(run["run"]["state"], "finished");
 }
 
 #[test]

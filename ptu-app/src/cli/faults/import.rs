@@ -31,7 +31,7 @@ use ptu_bench::table::Table;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ImportArguments {
-    /// The unit: serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
+    /// The unit: serial:PATH[@BAUD] or tcp:HOST:PORT
     #[arg(long, value_name = "UNIT")]
     unit: Endpoint,
     /// Serial number expected of it
@@ -71,10 +71,17 @@ struct Outcome {
 impl ImportArguments {
     /// Reads, judges, stores and tells.
     pub fn import(self, store: Store) -> Result<Exit, Failure> {
-        if self.unit == Endpoint::Sim {
-            return Err(Failure::usage(
-                "the embedded unit keeps no log from run to run; name a unit on a port with --unit",
-            ));
+        let undatable = match &self.unit {
+            Endpoint::Sim => Some("the embedded unit keeps no log from run to run"),
+            Endpoint::LockStep(_) => {
+                Some("the clock of a unit in lock step stands between scans, which dates no entry")
+            }
+            Endpoint::Serial { .. } | Endpoint::Tcp(_) => None,
+        };
+        if let Some(why) = undatable {
+            return Err(Failure::usage(format!(
+                "{why}; name a unit on a port with --unit serial:PATH or tcp:HOST:PORT"
+            )));
         }
         let outcome = self.outcome(&store)?;
         store.close()?;

@@ -10,10 +10,6 @@ use protocol::link::{End, Link};
 use protocol::message::{ArmRequest, Identify, IoInput, KeepAlive, Message, Taken};
 
 // What holds the machine up is no fault of the unit.
-#[path = "../../ptu-app/tests/common/steady.rs"]
-mod steady;
-
-use steady::steadily;
 
 /// A client of which nothing is heard is let go after this time, and what a busy machine may add.
 const SILENT: Duration = Duration::from_secs(10);
@@ -143,53 +139,49 @@ fn taken(heard: &[Message]) -> Option<Taken> {
 
 #[test]
 fn who_comes_second_is_told_who_has_the_unit_and_is_never_heard() {
-    steadily(|| {
-        let unit = Unit::serve();
-        let mut first = Client::connect(&unit);
-        assert!(first.is_answered(Duration::from_secs(2)));
-        let mut second = Client::connect(&unit);
-        second.send(Identify {});
-        second.send(ArmRequest { session: 7 });
-        second.send(KeepAlive { session: 7 });
-        let heard = second.hear_for(Duration::from_secs(2));
-        let taken = taken(&heard).unwrap_or_else(|| panic!("{heard:?}"));
-        assert_eq!(heard.len(), 1, "{heard:?}");
-        let own = first.stream.local_addr().expect("its address");
-        let ip = std::net::Ipv6Addr::from(taken.address).to_canonical();
-        assert_eq!(SocketAddr::new(ip, taken.port), own);
-        assert!(second.closed, "the end of the stream follows");
-        // Nothing of what it sent has become anybody's.
-        let heard = first.hear_for(Duration::from_millis(500));
-        let answers = |m: &Message| {
-            matches!(
-                m,
-                Message::Identity(_) | Message::ArmState(_) | Message::Status(_)
-            )
-        };
-        assert!(!heard.iter().any(answers), "{heard:?}");
-        assert!(first.is_answered(Duration::from_secs(2)));
-    });
+    let unit = Unit::serve();
+    let mut first = Client::connect(&unit);
+    assert!(first.is_answered(Duration::from_secs(2)));
+    let mut second = Client::connect(&unit);
+    second.send(Identify {});
+    second.send(ArmRequest { session: 7 });
+    second.send(KeepAlive { session: 7 });
+    let heard = second.hear_for(Duration::from_secs(2));
+    let taken = taken(&heard).unwrap_or_else(|| panic!("{heard:?}"));
+    assert_eq!(heard.len(), 1, "{heard:?}");
+    let own = first.stream.local_addr().expect("its address");
+    let ip = std::net::Ipv6Addr::from(taken.address).to_canonical();
+    assert_eq!(SocketAddr::new(ip, taken.port), own);
+    assert!(second.closed, "the end of the stream follows");
+    // Nothing of what it sent has become anybody's.
+    let heard = first.hear_for(Duration::from_millis(500));
+    let answers = |m: &Message| {
+        matches!(
+            m,
+            Message::Identity(_) | Message::ArmState(_) | Message::Status(_)
+        )
+    };
+    assert!(!heard.iter().any(answers), "{heard:?}");
+    assert!(first.is_answered(Duration::from_secs(2)));
 }
 
 /// Goal: nobody waits for a predecessor's sequence numbers and clock to be forgotten. Method: one that is far
 /// ahead leaves in the middle of a frame; the next begins at 0, and asks once.
 #[test]
 fn who_follows_on_a_connection_of_its_own_is_heard_at_once() {
-    steadily(|| {
-        let unit = Unit::serve();
-        for _ in 0..3 {
-            let mut client = Client::connect(&unit);
-            assert!(client.is_answered(Duration::from_millis(500)));
-            for _ in 0..50 {
-                client.send(KeepAlive { session: 0 });
-            }
-            client
-                .stream
-                .write_all(&[0x7E, 1, 1, 0x10])
-                .expect("half a frame");
-            client.hear_for(Duration::from_millis(300));
+    let unit = Unit::serve();
+    for _ in 0..3 {
+        let mut client = Client::connect(&unit);
+        assert!(client.is_answered(Duration::from_millis(500)));
+        for _ in 0..50 {
+            client.send(KeepAlive { session: 0 });
         }
-    });
+        client
+            .stream
+            .write_all(&[0x7E, 1, 1, 0x10])
+            .expect("half a frame");
+        client.hear_for(Duration::from_millis(300));
+    }
 }
 
 /// How long the unit keeps a client that does this every 100 ms.
@@ -207,39 +199,35 @@ fn kept_for(at_most: Duration, act: impl Fn(&mut Client)) -> Duration {
 
 #[test]
 fn a_client_that_falls_silent_is_let_go_and_one_that_speaks_on_any_channel_is_not() {
-    steadily(|| {
-        let longest = SILENT + SLACK;
-        let noise = |client: &mut Client| drop(client.stream.write_all(&[0x7E, 1, 2, 3, 0x7E]));
-        let rack = |client: &mut Client| client.send(IoInput::default());
-        let [silent, noisy, speaking] = std::thread::scope(|scope| {
-            let silent = scope.spawn(|| kept_for(longest, |_| {}));
-            let noisy = scope.spawn(|| kept_for(longest, noise));
-            let speaking = scope.spawn(|| kept_for(longest, rack));
-            [silent, noisy, speaking].map(|kept| kept.join().expect("a client"))
-        });
-        for kept in [silent, noisy] {
-            assert!((SILENT..longest).contains(&kept), "{kept:?}");
-        }
-        assert!(speaking >= longest, "{speaking:?}");
+    let longest = SILENT + SLACK;
+    let noise = |client: &mut Client| drop(client.stream.write_all(&[0x7E, 1, 2, 3, 0x7E]));
+    let rack = |client: &mut Client| client.send(IoInput::default());
+    let [silent, noisy, speaking] = std::thread::scope(|scope| {
+        let silent = scope.spawn(|| kept_for(longest, |_| {}));
+        let noisy = scope.spawn(|| kept_for(longest, noise));
+        let speaking = scope.spawn(|| kept_for(longest, rack));
+        [silent, noisy, speaking].map(|kept| kept.join().expect("a client"))
     });
+    for kept in [silent, noisy] {
+        assert!((SILENT..longest).contains(&kept), "{kept:?}");
+    }
+    assert!(speaking >= longest, "{speaking:?}");
 }
 
 #[test]
 fn what_was_sent_while_the_unit_stood_still_is_not_heard_as_fresh() {
-    steadily(|| {
-        let unit = Unit::serve();
-        std::thread::sleep(Duration::from_millis(200));
-        unit.signal("STOP");
-        let mut client = Client::connect(&unit);
-        client.send(Identify {});
-        client.send(KeepAlive { session: 0 });
-        std::thread::sleep(Duration::from_millis(1500));
-        unit.signal("CONT");
-        let heard = client.hear_for(Duration::from_millis(700));
-        let answers = |m: &Message| matches!(m, Message::Identity(_) | Message::Status(_));
-        assert!(!heard.iter().any(answers), "{heard:?}");
-        assert!(client.is_answered(Duration::from_secs(2)));
-    });
+    let unit = Unit::serve();
+    std::thread::sleep(Duration::from_millis(200));
+    unit.signal("STOP");
+    let mut client = Client::connect(&unit);
+    client.send(Identify {});
+    client.send(KeepAlive { session: 0 });
+    std::thread::sleep(Duration::from_millis(1500));
+    unit.signal("CONT");
+    let heard = client.hear_for(Duration::from_millis(700));
+    let answers = |m: &Message| matches!(m, Message::Identity(_) | Message::Status(_));
+    assert!(!heard.iter().any(answers), "{heard:?}");
+    assert!(client.is_answered(Duration::from_secs(2)));
 }
 
 #[test]

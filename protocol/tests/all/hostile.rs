@@ -4,15 +4,13 @@
 //! of the vector files are cut, joined, repeated, flipped and mixed with noise; whatever a receiver
 //! accepts must be, byte for byte, a frame of the corpus.
 
-mod common;
-
 use std::collections::BTreeSet;
 
 use protocol::Instant;
 use protocol::frame::{self, Decoder, MAX_PENDING};
 use protocol::link::{End, Link};
 
-use common::{Random, corpus};
+use crate::common::{Random, corpus};
 
 const SEEDS: u64 = 400;
 const MUTATIONS: usize = 60;

@@ -1,11 +1,8 @@
 //! Automatic operation from station to station through the wire: position by markers and wheels,
 //! what ATO does with inputs it cannot believe, and the record of the run.
 
-mod common;
-mod journey;
-
-use common::{Bench, fault};
-use journey::Journey;
+use crate::common::{Bench, fault};
+use crate::journey::Journey;
 use protocol::SCAN;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{

@@ -18,7 +18,7 @@ use protocol::message::{AtcToTcms, AtcToTcmsBits, IoOutput, ModeSwitch, Outputs}
 use protocol::signal::Signal;
 use protocol::{CYCLE, Instant, SCAN};
 
-use crate::bench::order;
+use super::bench::order;
 
 /// The rig and what a unit in automatic run would say to it.
 struct Stand {
@@ -31,8 +31,8 @@ struct Stand {
 
 impl Stand {
     fn new(train: TrainData) -> Self {
-        let config = include_str!("../../../scripts/units/sg100.toml");
-        let line = include_str!("../../../scripts/lines/line8.toml");
+        let config = include_str!("../../../../scripts/units/sg100.toml");
+        let line = include_str!("../../../../scripts/lines/line8.toml");
         let config = UnitConfig::from_toml(config).unwrap();
         let mut rig = Rig::new(&config, &Line::from_toml(line).unwrap(), 1);
         rig.set_train(train);

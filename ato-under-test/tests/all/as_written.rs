@@ -1,13 +1,11 @@
 //! The unit does what `protocol/WIRE.md` says: its table of values outside a field's range, and its worked
 //! sessions.
 
-mod common;
-
 use std::path::Path;
 
+use crate::common::Bench;
 use ato_under_test::kernel::{LOG_CAPACITY, RUN_ROWS};
 use ato_under_test::{Setup, Unit};
-use common::Bench;
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
@@ -146,7 +144,7 @@ fn every_enumeration_and_set_of_bits_towards_the_unit_has_a_rule() {
 #[test]
 fn the_prose_names_what_the_unit_keeps_and_is_configured_to() {
     let text = described("WIRE.md");
-    let config = common::config();
+    let config = crate::common::config();
     let (tacho, link) = (&config.tacho, &config.link);
     for phrase in [
         format!("keeps the newest {LOG_CAPACITY} entries"),
@@ -408,9 +406,9 @@ impl Player {
         let mut player = Self {
             unit: Unit::new(Setup {
                 serial: "SG-0042".into(),
-                config: common::config(),
+                config: crate::common::config(),
                 config_crc: 1,
-                line: common::line(),
+                line: crate::common::line(),
                 tdb_crc: 2,
                 seed: 7,
                 faults: Vec::new(),

@@ -5,7 +5,7 @@ use btu_rig::tcms::{Lamps, PowerCuts};
 use btu_rig::train::CarSet;
 use protocol::event::Event;
 
-use crate::bench::Bench;
+use super::bench::Bench;
 
 #[test]
 fn an_inverter_that_does_not_answer_brakes_until_it_answers_or_is_cut_out() {

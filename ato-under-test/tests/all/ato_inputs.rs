@@ -26,11 +26,11 @@ struct Drawn {
 }
 
 fn config() -> UnitConfig {
-    UnitConfig::from_toml(include_str!("../../scripts/units/sg100.toml")).unwrap()
+    UnitConfig::from_toml(include_str!("../../../scripts/units/sg100.toml")).unwrap()
 }
 
 fn printed() -> Section {
-    let line = Line::from_toml(include_str!("../../scripts/lines/line8.toml")).unwrap();
+    let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
     line.section(61).unwrap().clone()
 }
 

@@ -1,8 +1,6 @@
 //! Properties of the wire: whatever is sent arrives, and whatever happens to it on the way is
 //! refused and counted.
 
-mod common;
-
 use proptest::collection::vec;
 use proptest::prelude::*;
 use protocol::frame::{Decoder, MAX_BODY, Reject};
@@ -10,7 +8,7 @@ use protocol::link::{Counters, End, Link, MAX_AHEAD, RESYNC, Received};
 use protocol::message::{CATALOGUE, Channel, Identify, KeepAlive, Message, MessageSpec};
 use protocol::{Duration, Instant};
 
-use common::{message_from, over_channels, receiver, sender};
+use crate::common::{message_from, over_channels, receiver, sender};
 
 /// Any message: every field of every layout takes any bytes, unknown words and bits included.
 fn any_message() -> impl Strategy<Value = Message> {

@@ -11,7 +11,7 @@ use btu_rig::tcms::PowerCuts;
 use btu_rig::train::{CarSet, CarsData, Train, TrainData, TrainInputs};
 use protocol::message::{ModeSwitch, Outputs};
 
-use crate::bench::Bench;
+use super::bench::Bench;
 
 type Make = fn(&mut Bench);
 

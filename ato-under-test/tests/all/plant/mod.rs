@@ -13,7 +13,7 @@ pub const MARKERS_TO_STOP_M: [f64; 4] = [546.0, 108.5, 21.0, 3.5];
 const PULSE_M: f64 = 0.027;
 
 pub fn config() -> AtoConfig {
-    let text = include_str!("../../../scripts/units/sg100.toml");
+    let text = include_str!("../../../../scripts/units/sg100.toml");
     UnitConfig::from_toml(text).unwrap().ato
 }
 

@@ -7,10 +7,8 @@
     reason = "figures, for whoever asks with --nocapture"
 )]
 
-mod plant;
-
+use crate::plant::{KMH, Row, Run, config, drive, rms, s1_errors};
 use ato_under_test::ato::controller::{ControllerInput, Fuzzy, Pi, controller};
-use plant::{KMH, Row, Run, config, drive, rms, s1_errors};
 use proptest::prelude::*;
 use protocol::config::{AtoConfig, ControllerKind, GainUnit};
 

@@ -5,7 +5,7 @@ use btu_rig::tcms::{EbSources, Lamps};
 use btu_rig::train::{CarSet, TrainData};
 use protocol::message::{AtcToTcmsBits, ModeSwitch, Outputs};
 
-use crate::bench::{Bench, order};
+use super::bench::{Bench, order};
 
 /// It masks P, value and electric brake; cut out, it masks itself and nothing else.
 #[test]

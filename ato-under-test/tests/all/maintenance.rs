@@ -1,8 +1,6 @@
 //! What the unit promises to a tester: arming, stimuli, the event log.
 
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, CATALOGUE, Channel, ClearLog, Message, Outputs,
     TestCode, TestSpeed, TrainLines,

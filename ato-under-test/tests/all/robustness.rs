@@ -1,8 +1,6 @@
 //! Whatever comes in, the unit stays safe: random handling by proptest, invariants after each scan.
 
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use proptest::prelude::*;
 use protocol::message::{DoorSide, ModeSwitch, Outputs, TrainLines};
 
@@ -65,7 +63,7 @@ fn perform(bench: &mut Bench, act: &Act) {
             bench.input.level_mv = *level_mv;
         }
         Act::TableCode(index) => {
-            let name = common::config().codes[*index].name.clone();
+            let name = crate::common::config().codes[*index].name.clone();
             bench.code(&name);
         }
         Act::Speed(speeds) => bench.speeds = *speeds,
@@ -83,13 +81,13 @@ fn perform(bench: &mut Bench, act: &Act) {
             side,
             departure,
         } => {
-            let section = &common::line().sections[0];
+            let section = &crate::common::line().sections[0];
             bench.station = Some(protocol::message::TwcWayside {
                 station: *station,
                 loop_id: *loop_id,
                 door_side: DoorSide::from_code(*side),
                 departure: *departure,
-                ..common::departure(section)
+                ..crate::common::departure(section)
             });
         }
         Act::NoStation => bench.station = None,
@@ -128,7 +126,7 @@ proptest! {
     #[test]
     fn a_lasting_excess_always_brakes(index in 0usize..7, excess_kmh in 7.0f64..30.0) {
         let mut bench = Bench::new(&[]);
-        let code = common::config().codes[index].clone();
+        let code = crate::common::config().codes[index].clone();
         bench.code(&code.name);
         bench.run(0.6);
         bench.speed_kmh(code.limit_kmh + excess_kmh);

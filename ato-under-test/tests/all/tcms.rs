@@ -1,11 +1,8 @@
 //! What TCMS tells the unit: who opens the emergency brake line, what lets a train not run, and whose
 //! fault it is that a train does not do what ATO asks.
 
-mod common;
-mod journey;
-
-use common::{Bench, fault};
-use journey::Journey;
+use crate::common::{Bench, fault};
+use crate::journey::Journey;
 use protocol::SCAN;
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};

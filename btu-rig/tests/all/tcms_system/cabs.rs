@@ -5,7 +5,7 @@ use btu_rig::tcms::{EbSources, Lamps, PowerCuts, TcmsMode};
 use protocol::event::Event;
 use protocol::message::{AtcToTcmsBits, ModeSwitch};
 
-use crate::bench::Bench;
+use super::bench::Bench;
 
 #[test]
 fn commands_count_only_from_the_cab_whose_relay_is_energised() {

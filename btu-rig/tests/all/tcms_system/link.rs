@@ -9,7 +9,7 @@ use protocol::link::{End, Link};
 use protocol::message::{AtcToTcms, AtcToTcmsBits, ModeSwitch};
 use protocol::{Instant, SCAN};
 
-use crate::bench::{Bench, order};
+use super::bench::{Bench, order};
 
 const P: AtcToTcmsBits = AtcToTcmsBits::POWER;
 const B: AtcToTcmsBits = AtcToTcmsBits::BRAKE;
@@ -90,8 +90,8 @@ fn refused_frames_are_told_when_many_come_together() {
 /// Through the wire: a frame that comes again (stale sequence), one with a wrong FCS, one cut short.
 #[test]
 fn the_rig_counts_what_its_link_refuses() {
-    let config = include_str!("../../../scripts/units/sg100.toml");
-    let line = include_str!("../../../scripts/lines/line8.toml");
+    let config = include_str!("../../../../scripts/units/sg100.toml");
+    let line = include_str!("../../../../scripts/lines/line8.toml");
     let config = UnitConfig::from_toml(config).unwrap();
     let mut rig = Rig::new(&config, &Line::from_toml(line).unwrap(), 1);
     let mut unit = Link::new(End::Unit);

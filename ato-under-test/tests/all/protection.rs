@@ -1,8 +1,6 @@
 //! What the unit promises about braking, seen from the wire.
 
-mod common;
-
-use common::{Bench, fault};
+use crate::common::{Bench, fault};
 use protocol::injection::{Effect, Place};
 use protocol::message::{EbCause, FsbCause, Mode, ModeSwitch, Outputs, Refusals, TrainLines};
 
@@ -19,7 +17,7 @@ fn a_healthy_unit_at_rest_logs_no_fault() {
 #[test]
 fn each_code_gives_its_limit_and_its_loss_the_most_restrictive_one() {
     let mut bench = Bench::new(&[]);
-    for (index, code) in common::config().codes.iter().enumerate() {
+    for (index, code) in crate::common::config().codes.iter().enumerate() {
         bench.code(&code.name);
         bench.run(0.6);
         assert_eq!(usize::from(bench.status.code_index), index);
@@ -315,7 +313,7 @@ fn automatic_run_needs_every_precondition_and_says_which_is_missing() {
 #[test]
 fn doors_are_enabled_only_aligned_on_the_right_side() {
     let mut bench = Bench::new(&[]);
-    let section = common::line().sections[0].clone();
+    let section = crate::common::line().sections[0].clone();
     bench.code("75");
     bench.run(1.0);
     bench.speed_kmh(70.0);
@@ -341,7 +339,7 @@ fn doors_are_enabled_only_aligned_on_the_right_side() {
         next_station: section.to_station + 1,
         loop_id: section.to_loop,
         door_side: protocol::message::DoorSide::Right,
-        ..common::departure(&section)
+        ..crate::common::departure(&section)
     });
     bench.run(2.0);
     assert!(

@@ -1,13 +1,11 @@
 //! Known answers: the files of `vectors/`, made without this crate, tested both ways.
 
-mod common;
-
 use protocol::frame::{self, Header, VERSION};
 use protocol::link::{End, Link};
 use protocol::message::{Address, CATALOGUE, Channel, Message};
 use protocol::{Instant, frame::Reject};
 
-use common::{blocks, bytes, only_frame, over_channels};
+use crate::common::{blocks, bytes, only_frame, over_channels};
 
 const FILES: [&str; 5] = ["ptu.hex", "io.hex", "tcms.hex", "twc.hex", "escapes.hex"];
 

@@ -6,10 +6,6 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 // What holds the machine up is no fault of the unit or the client, which talk in real time.
-#[path = "../../ptu-app/tests/common/steady.rs"]
-mod steady;
-
-use steady::steadily;
 
 struct Served(Child);
 
@@ -50,47 +46,41 @@ fn client(arguments: &[&str]) -> Output {
 
 #[test]
 fn it_arms_the_unit_sets_a_code_and_reads_back_the_limit() {
-    steadily(|| {
-        let (_unit, port) = serve();
-        let output = client(&[&port]);
-        let text = String::from_utf8_lossy(&output.stdout);
-        assert!(
-            output.status.success(),
-            "{text}{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        assert!(
-            text.contains("1528"),
-            "the limit of 55 km/h in cm/s: {text}"
-        );
-    });
+    let (_unit, port) = serve();
+    let output = client(&[&port]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        text.contains("1528"),
+        "the limit of 55 km/h in cm/s: {text}"
+    );
 }
 
 /// Goal: the text says how the emergency brake is released. Method: a client that knows nothing else drives the
 /// unit into it, and out of it again.
 #[test]
 fn it_drives_the_unit_into_the_emergency_brake_and_releases_it() {
-    steadily(|| {
-        let (_unit, port) = serve();
-        let output = client(&[&port, "--overspeed", "1750"]);
-        let said = [output.stdout, output.stderr].concat();
-        let said = String::from_utf8_lossy(&said);
-        assert!(output.status.success(), "{said}");
-        assert!(
-            said.contains("acknowledged: emergency brake released"),
-            "{said}"
-        );
-    });
+    let (_unit, port) = serve();
+    let output = client(&[&port, "--overspeed", "1750"]);
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("acknowledged: emergency brake released"),
+        "{said}"
+    );
 }
 
 #[test]
 fn without_the_maintenance_key_it_is_refused() {
-    steadily(|| {
-        let (_unit, port) = serve();
-        let output = client(&[&port, "--no-key"]);
-        let said = [output.stdout, output.stderr].concat();
-        let said = String::from_utf8_lossy(&said);
-        assert_eq!(output.status.code(), Some(1), "{said}");
-        assert!(said.contains("key_off"), "{said}");
-    });
+    let (_unit, port) = serve();
+    let output = client(&[&port, "--no-key"]);
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("key_off"), "{said}");
 }

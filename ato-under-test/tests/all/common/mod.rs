@@ -63,11 +63,11 @@ pub struct Bench {
 }
 
 pub fn config() -> UnitConfig {
-    UnitConfig::from_toml(include_str!("../../../scripts/units/sg100.toml")).unwrap()
+    UnitConfig::from_toml(include_str!("../../../../scripts/units/sg100.toml")).unwrap()
 }
 
 pub fn line() -> Line {
-    Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
+    Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap()
 }
 
 pub fn departure(section: &protocol::line::Section) -> TwcWayside {

@@ -1,0 +1,13 @@
+//! What the unit promises, in process and in virtual time.
+
+mod as_written;
+mod ato_inputs;
+mod automatic_operation;
+mod common;
+mod journey;
+mod maintenance;
+mod plant;
+mod protection;
+mod robustness;
+mod speed_control;
+mod tcms;
