@@ -24,11 +24,13 @@ pub mod injection;
 pub mod line;
 pub mod link;
 pub mod message;
+mod pace;
 pub mod shown;
 pub mod signal;
 mod speed;
 mod time;
 
 pub use backlog::Backlog;
+pub use pace::ScanDeadlines;
 pub use speed::Speed;
 pub use time::{CYCLE, Duration, Instant, SCAN};

@@ -85,6 +85,11 @@ impl Duration {
         self.0
     }
 
+    /// This span so many times.
+    pub const fn times(self, count: u32) -> Self {
+        Self(self.0 * count as u64)
+    }
+
     /// Whole milliseconds.
     pub const fn as_ms(self) -> u64 {
         self.0 / 1000

@@ -11,16 +11,11 @@ use anyhow::{Context, Result};
 use ato_under_test::Unit;
 use clap::{ArgGroup, Parser};
 use protocol::frame::SCAN_END;
-use protocol::{Backlog, Duration, Instant, SCAN};
-use rustix::time::{ClockId, Timespec};
+use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 
 pub use data::UsageError;
 pub use tell::note;
 use wire::Wire;
-
-const NANOS_PER_SECOND: i64 = 1_000_000_000;
-/// Time between scans that are made up.
-const MAKE_UP_NANOS: i64 = 1_000_000;
 
 /// An on-board ATC unit (ATP + ATO + TWC) to be tested over a wire.
 ///
@@ -107,14 +102,18 @@ fn run_in_lock_step(mut unit: Unit, wire: &mut Wire) -> Result<()> {
 
 /// One scan every 10 ms of the monotonic clock, or so many times that; a late scan is made up, not skipped.
 fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
-    let mut due = rustix::time::clock_gettime(ClockId::Monotonic);
+    let began = std::time::Instant::now();
+    let clock = || Instant::from_us(began.elapsed().as_micros() as u64);
+    let mut deadlines = ScanDeadlines::new(clock(), slower);
     let mut now = Instant::ZERO;
     let mut read = [0u8; 4096];
     let mut backlog = Backlog::default();
     let mut received = Vec::with_capacity(1024);
     let mut to_send = Vec::with_capacity(1024);
     loop {
-        let behind = sleep_until(&mut due, i64::from(slower))?;
+        let wait = deadlines.next(clock()).since(clock());
+        std::thread::sleep(std::time::Duration::from_micros(wait.as_us()));
+        let behind = deadlines.behind(clock());
         let another = wire.attend(now, behind, unit.frames_accepted());
         if another.context("attending to the wire")? {
             backlog = Backlog::default();
@@ -129,39 +128,4 @@ fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
         wire.write(&to_send).context("writing to the wire")?;
         now += SCAN;
     }
-}
-
-/// Sleeps to the next scan. Late scans are made up no faster than one a millisecond, so that the
-/// other end can follow scan by scan. Gives how far the scan is behind its time.
-fn sleep_until(due: &mut Timespec, slower: i64) -> Result<Duration> {
-    *due = later(*due, SCAN.as_us() as i64 * 1000 * slower);
-    let soonest = later(
-        rustix::time::clock_gettime(ClockId::Monotonic),
-        MAKE_UP_NANOS * slower,
-    );
-    let late = (due.tv_sec, due.tv_nsec) < (soonest.tv_sec, soonest.tv_nsec);
-    let wake = if late { soonest } else { *due };
-    while let Err(error) =
-        rustix::thread::clock_nanosleep_absolute(rustix::thread::ClockId::Monotonic, &wake)
-    {
-        if error != rustix::io::Errno::INTR {
-            return Err(error).context("waiting for the next scan");
-        }
-    }
-    let late_nanos = nanos_since(*due, rustix::time::clock_gettime(ClockId::Monotonic));
-    let late_us = late_nanos / 1000 / slower;
-    Ok(Duration::from_us(
-        u64::try_from(late_us).unwrap_or_default(),
-    ))
-}
-
-fn nanos_since(before: Timespec, at: Timespec) -> i64 {
-    (at.tv_sec - before.tv_sec) * NANOS_PER_SECOND + at.tv_nsec - before.tv_nsec
-}
-
-fn later(mut at: Timespec, nanos: i64) -> Timespec {
-    at.tv_nsec += nanos;
-    at.tv_sec += at.tv_nsec / NANOS_PER_SECOND;
-    at.tv_nsec %= NANOS_PER_SECOND;
-    at
 }
