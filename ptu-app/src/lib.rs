@@ -3,8 +3,8 @@
 //! * [`cli`]: the command line, one file per verb;
 //! * [`gui`]: the technician's window.
 //!
-//! Only `ptu-app` and its crates `ptu-bench` and `ptu-report` read clocks, start threads and open files other than
-//! the database.
+//! Of the workspace only `ptu-app`, its crates `ptu-bench` and `ptu-report` and the served unit's program read clocks;
+//! the database crate opens its own files and connections.
 
 pub mod cli;
 mod console;
