@@ -18,6 +18,7 @@ extern crate alloc;
 
 mod backlog;
 pub mod config;
+pub mod display_text;
 pub mod event;
 pub mod frame;
 pub mod injection;
@@ -25,7 +26,6 @@ pub mod line;
 pub mod link;
 pub mod message;
 mod pace;
-pub mod shown;
 pub mod signal;
 mod speed;
 mod time;

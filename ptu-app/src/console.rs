@@ -9,12 +9,12 @@ use std::time::Duration;
 use btu_rig::procedure::{Procedure, RunEvent, Verdict};
 use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
-use protocol::shown;
+use protocol::display_text;
 
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{Listener, RunPlan, SessionEvent, Speaker, steps_of};
+use ptu_bench::stdio;
 use ptu_bench::table::{Table, cell};
-use ptu_bench::tell;
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
@@ -69,7 +69,7 @@ impl Console {
         let _ = self.thread.join();
         let left_out = self.left_out.load(Ordering::Relaxed);
         if left_out > 0 {
-            tell::note(&format!(
+            stdio::note(&format!(
                 "{left_out} lines were left out because nothing took them; `ptu runs show latest` has all"
             ));
         }
@@ -77,7 +77,7 @@ impl Console {
 }
 
 fn bar(steps: u64) -> Option<ProgressBar> {
-    tell::draws().then(|| {
+    stdio::draws().then(|| {
         let bar = ProgressBar::new(steps).with_message("bringing the unit up");
         bar.enable_steady_tick(TICK);
         let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
@@ -92,8 +92,8 @@ fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
         match (shown, bar) {
             (Shown::Present(what), Some(bar)) => bar.set_message(what),
             (Shown::StepDone, Some(bar)) => bar.inc(1),
-            (Shown::Line(line), Some(bar)) => bar.println(shown::line(&line)),
-            (Shown::Line(line), None) => tell::note(&shown::line(&line)),
+            (Shown::Line(line), Some(bar)) => bar.println(display_text::line(&line)),
+            (Shown::Line(line), None) => stdio::note(&display_text::line(&line)),
             (Shown::Present(_) | Shown::StepDone, None) => {}
         }
     }
@@ -250,7 +250,7 @@ fn summary(run: &RunDetail) -> String {
     format!(
         "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s",
         run.run.id.short(),
-        shown::line(&run.run.unit_serial),
+        display_text::line(&run.run.unit_serial),
         run.steps.len(),
         run.faults.len(),
         run.run

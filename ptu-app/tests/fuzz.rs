@@ -31,7 +31,7 @@ use ptu_app::gui::Settings;
 use ptu_bench::clock::{self, Span};
 use ptu_bench::drive::{SectionChoice, Setting};
 use ptu_bench::link::Endpoint;
-use ptu_bench::run::{BenchMade, Stimuli, loading};
+use ptu_bench::run::{BenchContents, Stimuli, loading};
 use ptu_report::Target;
 use ptu_report::trace_io::{Seconds, import};
 
@@ -415,7 +415,7 @@ fn settings_and_recordings() {
     let made = r#"{"source":"sim","serial":"S","unit_config":{"name":"sg100","sha256":"a"},"line":{"name":"line8","sha256":"b"},
         "train":{"name":"line6","sha256":"c"},"seed":1,"scatter":null,"realtime":false}"#;
     fuzz_text("bench-made", [made], 60_000, |text| {
-        let _ = serde_json::from_str::<BenchMade>(text);
+        let _ = serde_json::from_str::<BenchContents>(text);
     });
     let stimuli = r#"{"began_us":5,"tape":{"deeds":[{"at_us":1,"act":{"stimulus":{"speed":{"to_mps":1.5,"accel_mps2":1.0}}}},
         {"at_us":2,"act":{"stimulus":"code_off"}}],"lost":0}}"#;
@@ -512,7 +512,7 @@ fn databases() {
                 let _ = store.trace(trace.id);
                 let _ = store
                     .recording(trace.id)
-                    .map(|kept| kept.map(|kept| BenchMade::read(&kept)));
+                    .map(|kept| kept.map(|kept| BenchContents::read(&kept)));
             }
         }
         drop(store);

@@ -1,8 +1,8 @@
 //! The program around the unit: arguments, data files, pacing and the wire's far end.
 
 mod data;
+mod stdio;
 mod tcp;
-mod tell;
 mod wire;
 
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use protocol::frame::SCAN_END;
 use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 
 pub use data::UsageError;
-pub use tell::note;
+pub use stdio::note;
 use wire::Wire;
 
 /// An on-board ATC unit (ATP + ATO + TWC) to be tested over a wire.
@@ -68,7 +68,7 @@ pub struct Arguments {
 pub fn serve(arguments: &Arguments) -> Result<()> {
     let setup = data::setup(arguments)?;
     let mut wire = Wire::open(arguments)?;
-    tell::note(&format!(
+    stdio::note(&format!(
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name
     ));

@@ -10,7 +10,7 @@ use protocol::message::Taken;
 use protocol::{Duration, Instant};
 use socket2::{SockRef, TcpKeepalive};
 
-use super::tell;
+use super::stdio;
 
 /// A client of which no frame was accepted for so long is let go.
 const SILENT: Duration = Duration::from_ms(10_000);
@@ -56,7 +56,7 @@ impl Server {
         let listener =
             TcpListener::bind(address).with_context(|| format!("listening on {address}"))?;
         listener.set_nonblocking(true)?;
-        tell::place(&listener.local_addr()?.to_string())?;
+        stdio::place(&listener.local_addr()?.to_string())?;
         Ok(Self {
             listener,
             client: None,

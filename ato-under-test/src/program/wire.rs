@@ -11,7 +11,7 @@ use rustix::pty::OpenptFlags;
 use rustix::termios::OptionalActions;
 
 use super::tcp::Server;
-use super::{Arguments, tell};
+use super::{Arguments, stdio};
 
 /// Baud rate of a serial port when none is given.
 const BAUD: u32 = 115_200;
@@ -52,7 +52,7 @@ impl Wire {
         if !waits {
             rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
         }
-        tell::place(&name.to_string_lossy())?;
+        stdio::place(&name.to_string_lossy())?;
         Ok(Self::Pty {
             master: File::from(master),
             _slave: File::from(slave),
@@ -72,7 +72,7 @@ impl Wire {
             .timeout(std::time::Duration::ZERO)
             .open()
             .with_context(|| format!("opening serial port {path}"))?;
-        tell::place(path)?;
+        stdio::place(path)?;
         Ok(Self::Serial(port))
     }
 

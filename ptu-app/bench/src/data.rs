@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, did_you_mean};
 use crate::new_file::{NewFile, cannot_write};
-use crate::private;
+use crate::owner_only;
 
 /// Folder of unit configurations and the fault catalogue.
 const UNITS: &str = "units";
@@ -280,7 +280,7 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
 pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
     let failed = |error: &dyn Display| cannot_write(file, error);
     if let Some(folder) = file.parent() {
-        private::folder(folder).map_err(|error| failed(&error))?;
+        owner_only::folder(folder).map_err(|error| failed(&error))?;
     }
     let content = serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?;
     let mut new = NewFile::begin(file)?;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fault_db::{StoreError, TraceError};
 
-use crate::tell;
+use crate::stdio;
 
 /// Exit codes of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Failure {
 impl Failure {
     /// Prints the failure on stderr.
     pub fn tell(&self) {
-        tell::note(&format!("ptu: {self}"));
+        stdio::note(&format!("ptu: {self}"));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::tell;
+use crate::stdio;
 
 /// Lines told where there is no terminal.
 const LINES: usize = 10;
@@ -18,7 +18,7 @@ pub struct Progress {
 impl Progress {
     /// Of `count` runs, called `what`.
     pub fn new(count: usize, what: String) -> Self {
-        let bar = tell::draws().then(|| {
+        let bar = stdio::draws().then(|| {
             let style = "{bar:30} {pos}/{len} runs  {elapsed} (left {eta})  {msg}";
             ProgressBar::new(count as u64)
                 .with_message(what.clone())
@@ -44,7 +44,7 @@ impl Progress {
         let tenth = done * LINES / self.count.max(1);
         if tenth > self.told {
             self.told = tenth;
-            tell::note(&format!("{}: {done} of {} runs", self.what, self.count));
+            stdio::note(&format!("{}: {done} of {} runs", self.what, self.count));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use protocol::shown;
+use protocol::display_text;
 use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
 
 /// Widest cell, in columns; of the last column, which nothing stands behind, as wide as the longest note.
@@ -76,7 +76,7 @@ pub fn padded(text: &str, width: usize) -> String {
 
 /// A text that others wrote, as it may stand in a table.
 pub fn cell(text: &str, widest: usize) -> String {
-    cut(&shown::line(text), widest).into_owned()
+    cut(&display_text::line(text), widest).into_owned()
 }
 
 /// The text, with … in place of what is beyond this width, in columns.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt::Write;
 
 use fault_db::{MeasurementRecord, RunDetail, StepDetail};
-use protocol::shown;
+use protocol::display_text;
 
 use ptu_bench::clock::rfc3339;
 
@@ -80,7 +80,7 @@ impl Cell {
     pub fn written(self) -> String {
         match self {
             Self::Number(number) => number,
-            Self::Text(text) => quoted(&shown::lines(&no_formula(&text))),
+            Self::Text(text) => quoted(&display_text::lines(&no_formula(&text))),
         }
     }
 }
@@ -89,7 +89,7 @@ impl Cell {
 /// none.
 pub fn no_formula(text: &str) -> Cow<'_, str> {
     // Some pass over what has no width.
-    let begins = text.trim_start_matches(|letter| letter == ' ' || shown::is_unseen(letter));
+    let begins = text.trim_start_matches(|letter| letter == ' ' || display_text::is_unseen(letter));
     match text.starts_with(['\t', '\r', '\n'])
         || begins.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠'])
     {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fault_db::Id;
-use protocol::shown;
+use protocol::display_text;
 use serde_json::{Value, json};
 
 use crate::words::Language;
@@ -48,7 +48,7 @@ pub fn diagnosis_text(answer: &Answer) -> String {
     let mut text = format!(
         "run {}  unit {}  {} steps, {} not passed, {} faults\n\n{}\n",
         run.id.short(),
-        shown::line(&run.unit_serial),
+        display_text::line(&run.unit_serial),
         run.steps,
         run.steps_not_passed,
         run.faults,

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepDetail};
-use protocol::shown;
+use protocol::display_text;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -138,7 +138,7 @@ pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
 /// reads it has each letter as it was.
 pub fn json_safe(text: &str) -> Cow<'_, str> {
     // What is below is spelled so already, or stands between values.
-    let is_spelled = |letter: char| letter >= '\u{7f}' && shown::is_unseen(letter);
+    let is_spelled = |letter: char| letter >= '\u{7f}' && display_text::is_unseen(letter);
     if !text.contains(is_spelled) {
         return Cow::Borrowed(text);
     }
@@ -169,7 +169,7 @@ mod tests {
     fn control_characters_in_a_document_are_escaped_reversibly() {
         let text = "\x1b]0;x\x07 \x7f \u{9b}31m \u{202e} \u{e0041} \u{feff} 한 é \"\\ \n";
         let written = json_text(&json!({ text: [text] })).expect("JSON");
-        let acts = |letter: char| shown::is_unseen(letter) && letter != '\n';
+        let acts = |letter: char| display_text::is_unseen(letter) && letter != '\n';
         assert!(!written.contains(acts), "{written:?}");
         let read: Value = serde_json::from_str(&written).expect("JSON");
         assert_eq!(read, json!({ text: [text] }));

@@ -1,7 +1,7 @@
 //! JUnit XML, for tools that collect test results.
 
 use fault_db::{RunDetail, StepDetail, Verdict};
-use protocol::shown;
+use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use ptu_bench::failure::Failure;
@@ -20,7 +20,7 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
             }
             begun = Some((
                 step.procedure.clone(),
-                TestSuite::new(&*shown::line(&step.procedure)),
+                TestSuite::new(&*display_text::line(&step.procedure)),
             ));
         }
         if let Some((_, suite)) = &mut begun {
@@ -42,8 +42,8 @@ fn case(step: &StepDetail) -> TestCase {
         Verdict::Failed => failed(NonSuccessKind::Failure, &step.message),
         Verdict::Error | Verdict::Aborted => failed(NonSuccessKind::Error, &step.message),
     };
-    let mut case = TestCase::new(&*shown::line(&step.name), status);
-    case.set_classname(&*shown::line(&step.procedure));
+    let mut case = TestCase::new(&*display_text::line(&step.name), status);
+    case.set_classname(&*display_text::line(&step.procedure));
     case.set_time(std::time::Duration::from_micros(
         step.bench_time_us.max(0) as u64
     ));
@@ -58,13 +58,13 @@ fn case(step: &StepDetail) -> TestCase {
         })
         .collect();
     if !lines.is_empty() {
-        case.set_system_out(&*shown::lines(&lines.join("\n")));
+        case.set_system_out(&*display_text::lines(&lines.join("\n")));
     }
     case
 }
 
 fn failed(kind: NonSuccessKind, message: &str) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(kind);
-    status.set_message(&*shown::lines(message));
+    status.set_message(&*display_text::lines(message));
     status
 }

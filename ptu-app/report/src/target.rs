@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use fault_db::{RunDetail, Store};
 use maud::Markup;
-use protocol::shown;
+use protocol::display_text;
 
 use crate::json::{json_text, run_json};
 use crate::run::{self, Sheet};
@@ -115,7 +115,7 @@ pub fn write_beside(
 
 /// A page as it stands in its file: nothing in it acts on a terminal or turns the order of what is read.
 pub(crate) fn page_text(page: Markup) -> String {
-    shown::lines(&page.into_string()).into_owned()
+    display_text::lines(&page.into_string()).into_owned()
 }
 
 fn content(

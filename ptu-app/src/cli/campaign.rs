@@ -13,8 +13,8 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::pool::cores;
 use ptu_bench::progress::Progress;
 use ptu_bench::run_diagnosis::settings;
+use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
-use ptu_bench::tell;
 use ptu_report::campaign::{campaign_json, campaign_text};
 
 /// Make a fault dictionary: run the suite against every fault mode, and say what the dictionary is worth
@@ -83,7 +83,7 @@ impl CampaignArguments {
         })?;
         drop(progress);
         let Some(outcome) = outcome else {
-            tell::note("stopped; no dictionary was made");
+            stdio::note("stopped; no dictionary was made");
             return Ok(Exit::Aborted);
         };
         let dictionary = &outcome.dictionary;

@@ -7,7 +7,7 @@ use fault_db::{Address, Store, StoreError};
 
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
-use ptu_bench::{private, tell};
+use ptu_bench::{owner_only, stdio};
 
 /// Names a history for all commands that are given none.
 const VARIABLE: &str = "PTU_DB";
@@ -96,10 +96,10 @@ impl Database {
     pub(in crate::cli) fn open_file(&self) -> Result<Store, Failure> {
         let path = self.file()?;
         if self.named().is_none() {
-            private::folder_of(&path)?;
+            owner_only::folder_of(&path)?;
         }
-        if let Some(told) = private::told_if_shared(&path) {
-            tell::note(&told);
+        if let Some(told) = owner_only::told_if_shared(&path) {
+            stdio::note(&told);
         }
         Ok(Store::open(&path, clock::open_options())?)
     }
@@ -110,7 +110,7 @@ impl Database {
             Place::File(path) => {
                 let store = Store::open_read_only(&path)?;
                 for stranger in store.foreign_objects()? {
-                    tell::note(&format!(
+                    stdio::note(&format!(
                         "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
                         path.display()
                     ));

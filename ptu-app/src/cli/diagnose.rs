@@ -8,7 +8,7 @@ use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
 use super::{Database, ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::run_diagnosis::diagnose_run;
-use ptu_bench::tell;
+use ptu_bench::stdio;
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 
 /// Find the part that failed, why it is that one, and the next best check
@@ -53,7 +53,7 @@ impl DiagnoseArguments {
         let id = store.resolve_run(&self.run.unwrap_or_default())?;
         let answer = diagnose_run(&store, &self.scripts.find()?, id)?;
         for warning in &answer.warnings {
-            tell::note(warning);
+            stdio::note(warning);
         }
         if self.json {
             print_json(&diagnosis_json(&answer))

@@ -12,8 +12,8 @@ use diagnosis::matrix::{
 use super::print_out;
 use ptu_bench::data::read_within;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::stdio;
 use ptu_bench::table::Table;
-use ptu_bench::tell;
 use ptu_report::json_safe;
 
 /// States a table shows; JSON has all.
@@ -70,7 +70,7 @@ pub(super) fn diagnose_matrix(
         let text = plan
             .to_json(&matrix, &known)
             .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
-        tell::document(&json_safe(&text))?;
+        stdio::document(&json_safe(&text))?;
         return Ok(Exit::Passed);
     }
     print_out(&text(&matrix, &known, &plan, options.outcomes.is_some()))

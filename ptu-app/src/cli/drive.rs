@@ -15,8 +15,8 @@ use ptu_bench::drive::{
 };
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::pool::cores;
+use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
-use ptu_bench::tell;
 use ptu_report::drive::{self as report, Outcomes, Results, Target};
 
 /// Drive from station to station and measure the stop, or drive by hand
@@ -192,7 +192,7 @@ impl DriveArguments {
         );
         match save {
             Some((file, sequence)) if done => write(file, sequence)?,
-            Some(_) => tell::note("nothing was done: nothing saved"),
+            Some(_) => stdio::note("nothing was done: nothing saved"),
             None => {}
         }
         answer

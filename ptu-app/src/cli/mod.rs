@@ -30,7 +30,7 @@ use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
 use ptu_bench::run::loading;
-use ptu_bench::tell;
+use ptu_bench::stdio;
 use ptu_report::json_text;
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
@@ -135,7 +135,7 @@ impl Cli {
 /// Tells help, or why a command line cannot be read.
 fn told(error: &clap::Error) -> Exit {
     if error.use_stderr() {
-        tell::note(error.render().to_string().trim_end());
+        stdio::note(error.render().to_string().trim_end());
         return Exit::Usage;
     }
     match error.print() {
@@ -176,13 +176,13 @@ fn unknown_unit(store: &Store, serial: &str, said: &str) -> Result<Option<String
 
 /// Prints one JSON document.
 fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
-    tell::document(&json_text(value)?)?;
+    stdio::document(&json_text(value)?)?;
     Ok(Exit::Passed)
 }
 
 /// Prints text for people.
 fn print_out(text: &str) -> Result<Exit, Failure> {
-    tell::answer(text)?;
+    stdio::answer(text)?;
     Ok(Exit::Passed)
 }
 

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::{print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::tell;
+use ptu_bench::stdio;
 use ptu_report::csv::Cell;
 
 /// How an answer is printed.
@@ -51,7 +51,7 @@ impl Output {
         if self.json {
             print_json(&rows)
         } else if self.csv {
-            tell::document(&csv(columns, rows))?;
+            stdio::document(&csv(columns, rows))?;
             Ok(Exit::Passed)
         } else {
             print_out(&table())

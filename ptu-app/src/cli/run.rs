@@ -20,8 +20,8 @@ use ptu_bench::run::{
     self, BenchChoice, BenchSetup, Outcome, RunPlan, Suite, Task, check_serial, select,
 };
 use ptu_bench::run_diagnosis::{Bench, adaptive, diagnose_run};
+use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
-use ptu_bench::tell;
 use ptu_report::diagnosis::diagnosis_text;
 
 /// Run check procedures; by default all under scripts/ but those on request only
@@ -133,9 +133,9 @@ impl RunArguments {
             sha256: scripts_sha256,
             ..
         } = Suite::load(&directory, &self.procedures, &setup)?;
-        printed.iter().for_each(|line| tell::note(line));
+        printed.iter().for_each(|line| stdio::note(line));
         if !errors.is_empty() {
-            errors.iter().for_each(|error| tell::note(error));
+            errors.iter().for_each(|error| stdio::note(error));
             let what = if errors.len() == 1 { "error" } else { "errors" };
             return Err(Failure::usage(format!(
                 "{} {what} in the scripts; nothing was driven",
@@ -151,7 +151,7 @@ impl RunArguments {
             if procedures.is_empty() {
                 return Err(Failure::usage(why));
             }
-            tell::note(&format!("left out: {why}"));
+            stdio::note(&format!("left out: {why}"));
         }
         if self.check {
             let steps: usize = procedures
@@ -219,7 +219,7 @@ impl RunArguments {
             procedures = run;
             let names: Vec<_> = left_out.iter().map(|p: &Arc<_>| p.id.as_str()).collect();
             if !names.is_empty() {
-                tell::note(&format!("run only when named: {}", names.join(", ")));
+                stdio::note(&format!("run only when named: {}", names.join(", ")));
             }
         }
         procedures
@@ -296,7 +296,7 @@ impl RunArguments {
         let result = run::run(plan, setup, store, &stop, &mut console);
         console.finish();
         let (store, outcome) = result?;
-        let detail = store.run(outcome.id, &ptu_bench::owner::is_alive)?;
+        let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;
         // The database and the reports have it: what a terminal does not take changes no verdict.
         let said = print_out(&verdict_table(&detail))
             .and_then(|_| self.say_diagnosis(&store, directory, &outcome));
@@ -321,7 +321,7 @@ impl RunArguments {
             answer
                 .warnings
                 .iter()
-                .for_each(|warning| tell::note(warning));
+                .for_each(|warning| stdio::note(warning));
             print_out(&format!("\n{}", diagnosis_text(&answer)))?;
         } else if outcome.exit == Exit::Failed
             && let Ok(answer) = diagnose_run(store, directory, outcome.id)

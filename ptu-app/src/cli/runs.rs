@@ -10,7 +10,7 @@ use super::{
 use crate::console::verdict_table;
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::owner;
+use ptu_bench::process_id;
 use ptu_bench::table::Table;
 use ptu_report::{run_json, run_summary_json};
 
@@ -99,7 +99,7 @@ impl RunsArguments {
                     limit: Some(limit),
                     ..RunFilter::default()
                 };
-                let runs = store.runs(&filter, &owner::is_alive)?;
+                let runs = store.runs(&filter, &process_id::is_alive)?;
                 if json {
                     return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
                 }
@@ -118,7 +118,7 @@ impl RunsArguments {
                 scripts,
             } => {
                 reports.check()?;
-                let run = store.run(store.resolve_run(&id)?, &owner::is_alive)?;
+                let run = store.run(store.resolve_run(&id)?, &process_id::is_alive)?;
                 if !reports.is_empty() {
                     // A report without diagnosis is better than none; a wrong --scripts is told.
                     let directory = match scripts.find() {

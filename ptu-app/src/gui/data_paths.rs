@@ -7,7 +7,7 @@ use fault_db::{Store, StoreError};
 use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::Failure;
-use ptu_bench::private;
+use ptu_bench::owner_only;
 
 /// The files that pages read and runs are recorded in.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl DataPaths {
     /// # Errors
     /// It cannot be opened.
     pub fn open(&self) -> Result<Store, Failure> {
-        private::folder_of(&self.database)?;
+        owner_only::folder_of(&self.database)?;
         Ok(Store::open(&self.database, clock::open_options())?)
     }
 

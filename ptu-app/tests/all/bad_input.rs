@@ -2,7 +2,7 @@
 //! driven, and what was recorded before is still there.
 
 use crate::common::{Place, list, scripts, text};
-use protocol::shown::is_unseen;
+use protocol::display_text::is_unseen;
 
 const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
 

@@ -2,9 +2,9 @@
 
 #[path = "../../../fault-db/tests/server/private.rs"]
 #[allow(dead_code, reason = "the tests of fault-db use the rest of it")]
-mod private;
+mod owner_only;
 
-use self::private::{free_port, shared};
+use self::owner_only::{free_port, shared};
 use crate::common::{Place, list, record_bad_unit, relay_fault, text};
 use serde_json::Value;
 

@@ -20,7 +20,7 @@ use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 
 /// Patience with a busy machine that paints in software.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(300);
 /// Pages, in the order of their keys F1 to F6.
 const PAGES: [&str; 6] = [
     "bench",

@@ -246,9 +246,10 @@ fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
 
 #[test]
 fn reaching_a_unit_can_be_given_up() {
-    let unit = Unit::on_pty(&[]);
+    // It never answers, so that it is still being reached however slowly the window is drawn.
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
     let mut settings = settings(Page::Bench);
-    settings.unit.endpoint = unit.address.clone();
+    settings.unit.endpoint = format!("tcp:{}", silent.local_addr().expect("its address"));
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.click("Connect");
     window.click("cancel");

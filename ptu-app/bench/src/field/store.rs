@@ -104,7 +104,7 @@ fn run_record(source: &Source) -> RunRecord {
         scripts_sha256: String::new(),
         unit_config_sha256: source.unit_config_sha256.clone(),
         injected: None,
-        owner: crate::owner::this_process(),
+        owner: crate::process_id::this_process(),
         scripts: Vec::new(),
     }
 }

@@ -7,11 +7,11 @@
 //! * [`explain`]: first deviation of a trace from its twin, and the chain from there to the brake;
 //! * [`rerun`]: the same stimuli on the embedded unit or one on a port, recorded as a run of its own.
 
-mod again;
 mod compare;
 mod explain;
 mod original;
 mod path;
+mod replay_embedded;
 mod rerun;
 
 pub use compare::{Comparison, Deviation, Difference, Rule, compare};
@@ -19,4 +19,4 @@ pub use explain::{Explanation, Link, explain};
 pub use original::{Original, rule_between};
 pub use rerun::{Likeness, Rerun, Rerunning, rerun};
 
-pub use again::good_twin;
+pub use replay_embedded::good_twin;

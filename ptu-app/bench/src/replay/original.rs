@@ -5,7 +5,7 @@ use protocol::Instant;
 
 use super::Rule;
 use crate::failure::Failure;
-use crate::run::{BenchMade, Stimuli, Window};
+use crate::run::{BenchContents, Stimuli, Window};
 
 /// How two stored traces compare: to the last bit where both come from benches in virtual time.
 ///
@@ -14,7 +14,7 @@ use crate::run::{BenchMade, Stimuli, Window};
 pub fn rule_between(store: &Store, a: Id, b: Id) -> Result<Rule, Failure> {
     // Not known where there is no recording.
     let on_port = |trace| match store.recording(trace)? {
-        Some(recording) => Ok::<_, Failure>(BenchMade::read(&recording)?.0.on_port()),
+        Some(recording) => Ok::<_, Failure>(BenchContents::read(&recording)?.0.on_port()),
         None => Ok(false),
     };
     Ok(if on_port(a)? || on_port(b)? {
@@ -36,7 +36,7 @@ pub struct Original {
     /// What came.
     pub trace: TraceData,
     /// What the bench was made of.
-    pub made: BenchMade,
+    pub made: BenchContents,
     /// What was done to it.
     pub stimuli: Stimuli,
     /// Bench time of the run at which the bench's clock was 0, µs.
@@ -83,7 +83,7 @@ impl Original {
                 id.short()
             ))
         })?;
-        let (made, stimuli) = BenchMade::read(&recording)?;
+        let (made, stimuli) = BenchContents::read(&recording)?;
         if trace.rows() == 0 {
             return Err(Failure::usage(format!("trace {} has no rows", id.short())));
         }

@@ -7,13 +7,13 @@ use fault_db::{
 use protocol::Instant;
 use protocol::injection::FaultMode;
 
-use super::again::{Again, from_here, on_embedded};
+use super::replay_embedded::{Again, from_here, on_embedded};
 use super::{Comparison, Original, compare, good_twin};
 use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
-use crate::run::{BenchMade, BenchSetup, Connected};
+use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
 
 /// What a replay is to be.
@@ -131,7 +131,7 @@ pub fn rerun(
         Some(_) => Verdict::Error,
         None => likeness.verdict(),
     };
-    let again_made = BenchMade::of(&setup, serial.clone());
+    let again_made = BenchContents::of(&setup, serial.clone());
     let trace_id = write(
         &mut writer,
         original,
@@ -240,7 +240,7 @@ fn run_record(
         scripts_sha256: String::new(),
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
-        owner: crate::owner::this_process(),
+        owner: crate::process_id::this_process(),
         scripts: Vec::new(),
     }
 }
@@ -249,7 +249,7 @@ fn run_record(
 fn write(
     writer: &mut RunWriter<'_>,
     original: &Original,
-    made: &BenchMade,
+    made: &BenchContents,
     again: &Again,
     verdict: Verdict,
     likeness: Likeness,

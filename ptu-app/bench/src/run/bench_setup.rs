@@ -14,8 +14,8 @@ use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::message::Identity;
 
+use super::connect_port::Reached;
 use super::fault_watch::FaultSeen;
-use super::reach::Reached;
 use super::session::Session;
 use super::{RunControl, unit_text};
 use crate::data::DataFile;

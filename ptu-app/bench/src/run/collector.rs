@@ -6,8 +6,8 @@ use btu_rig::recorder::Cut;
 use fault_db::{FaultRecord, Id, MeasurementRecord, RecordingRecord, StepRecord};
 use protocol::Duration;
 
+use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
-use super::made::BenchMade;
 use super::store_thread::{RunStore, Speaker};
 use super::trace_data::trace_data;
 use super::{FaultSeen, Task};
@@ -55,7 +55,7 @@ pub struct Collector<'a> {
     store: RunStore,
     listener: &'a mut dyn Listener,
     /// What the benches are made of.
-    made: BenchMade,
+    made: BenchContents,
     /// Place of the present procedure in the run, counted from 1.
     ordinal: u32,
     procedure: Option<std::sync::Arc<Procedure>>,
@@ -76,7 +76,7 @@ pub struct Collector<'a> {
 
 impl<'a> Collector<'a> {
     /// A collector that records in `store`.
-    pub fn new(store: RunStore, listener: &'a mut dyn Listener, made: BenchMade) -> Self {
+    pub fn new(store: RunStore, listener: &'a mut dyn Listener, made: BenchContents) -> Self {
         Self {
             store,
             listener,

@@ -8,19 +8,19 @@
 //! of the procedures, so that the record does not depend on the number of workers.
 
 pub(crate) mod adaptive;
+mod bench_contents;
 pub(crate) mod bench_setup;
 mod choice;
 mod collector;
+mod connect_port;
 #[cfg(test)]
 mod early_end_tests;
 mod event;
 mod fault_watch;
 mod first_failure;
 pub mod loading;
-mod made;
 mod observe;
-mod reach;
-mod rounds;
+mod repetitions;
 mod run_control;
 pub mod select;
 mod session;
@@ -41,13 +41,13 @@ use btu_rig::procedure::{self, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
 pub use adaptive::Adaptive;
+pub use bench_contents::{BenchContents, BenchFile, Stimuli};
 pub use bench_setup::{BenchSetup, Connected};
 pub use choice::{BenchChoice, check_serial};
 pub use collector::{Listener, Outcome, steps_of, stored};
 pub use event::{RecordedStimuli, SessionEvent};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
-pub use made::{BenchMade, Made, Stimuli};
 pub use observe::{Gatherer, of_run};
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};
@@ -141,7 +141,7 @@ pub fn run_on(
     let record = run_record(plan, setup, connected.serial(), began.at_us);
     let run_store = RunStore::begin(store, record, listener.speaker(), stop)?;
     let id = run_store.id;
-    let made = BenchMade::of(setup, connected.serial());
+    let made = BenchContents::of(setup, connected.serial());
     let mut collector = Collector::new(run_store, listener, made);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
@@ -217,7 +217,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         scripts_sha256: plan.scripts_sha256.clone(),
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
-        owner: crate::owner::this_process(),
+        owner: crate::process_id::this_process(),
         scripts: plan
             .tasks
             .iter()

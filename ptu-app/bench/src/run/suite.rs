@@ -7,7 +7,7 @@ use btu_rig::procedure::Procedure;
 use btu_rig::procedure::loader::Loaded;
 use protocol::injection::FaultCatalogue;
 
-use super::made::train_sha256;
+use super::bench_contents::train_sha256;
 use super::{BenchSetup, loading, select};
 use crate::data::{ScriptsDirectory, sha256};
 use crate::failure::{Failure, did_you_mean};

@@ -10,9 +10,9 @@ use super::history::OwnHistory;
 use super::{UNIT_CONFIG, settings};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
-use crate::owner;
+use crate::process_id;
 use crate::run::{Adaptive, of_run};
-use crate::tell;
+use crate::stdio;
 
 /// What decides what a healthy unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub fn diagnose_run(
     directory: &ScriptsDirectory,
     id: Id,
 ) -> Result<Answer, Failure> {
-    let run = store.run(id, &owner::is_alive)?;
+    let run = store.run(id, &process_id::is_alive)?;
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
     let Chosen {
@@ -129,7 +129,7 @@ pub fn adaptive(
         )));
     }
     for warning in &chosen.warnings {
-        tell::note(warning);
+        stdio::note(warning);
     }
     let settings = settings(directory)?;
     let history = OwnHistory::up_to_now(serial, store, &settings)?;

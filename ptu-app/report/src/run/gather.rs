@@ -8,7 +8,7 @@ use super::plots::drawn_channels;
 use super::{Sheet, SheetTrace};
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::Failure;
-use ptu_bench::owner;
+use ptu_bench::process_id;
 use ptu_bench::run_diagnosis::diagnose_run;
 
 impl Sheet {
@@ -22,7 +22,7 @@ impl Sheet {
         directory: Option<&ScriptsDirectory>,
         id: Id,
     ) -> Result<Self, Failure> {
-        let run = store.run(id, &owner::is_alive)?;
+        let run = store.run(id, &process_id::is_alive)?;
         let occurrences = store.run_occurrences(id)?;
         let all = traces(&run, &occurrences);
         let more_traces = all.len().saturating_sub(Self::MOST_TRACES);

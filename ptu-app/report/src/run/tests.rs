@@ -5,7 +5,7 @@ use fault_db::{
     RunRecord, RunWriter, ScriptRecord, StepRecord, Store, TraceData, UnitRecord, Verdict,
 };
 
-use protocol::shown;
+use protocol::display_text;
 
 use super::pdf::{HEIGHT, PageItem, WIDTH, laid_out};
 use super::{Sheet, html, pdf};
@@ -180,10 +180,10 @@ fn hostile_text_in_the_database_is_plain_text_on_the_page() {
     let (store, id) = stored(4, true);
     let page = html(&sheet(&store, id), Language::English.words());
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
-    let acts = |letter: char| shown::is_unseen(letter) && letter != '\n';
+    let acts = |letter: char| display_text::is_unseen(letter) && letter != '\n';
     assert!(!page.contains(acts) && page.contains("\\x1b[31m\\x9b2J\\u{202e}"));
     for page in laid_out(&sheet(&store, id), Language::English.words()) {
-        assert!(!words_of(&page).contains(shown::is_unseen));
+        assert!(!words_of(&page).contains(display_text::is_unseen));
     }
     assert!(page.contains("472") && page.contains("640") && page.contains("Failed"));
     assert_eq!(

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use fault_db::{Channel, ChannelKind};
-use protocol::shown;
+use protocol::display_text;
 use serde_json::{Value, json};
 
 use super::about::About;
@@ -40,7 +40,11 @@ pub fn put_headings<'a>(
     }
     for channel in channels {
         let heading = heading(channel);
-        write!(out, ",{}", quoted(&shown::line(&no_formula(&heading))))?;
+        write!(
+            out,
+            ",{}",
+            quoted(&display_text::line(&no_formula(&heading)))
+        )?;
     }
     out.write_all(b"\n")
 }

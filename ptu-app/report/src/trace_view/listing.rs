@@ -5,7 +5,7 @@ use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
 use super::TraceView;
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
-use ptu_bench::owner;
+use ptu_bench::process_id;
 
 /// Runs looked through, the newest.
 pub const RUNS: u32 = 500;
@@ -75,7 +75,7 @@ pub fn list(store: &Store) -> Result<Vec<ListedRun>, Failure> {
         ..RunFilter::default()
     };
     let mut listed = Vec::new();
-    for run in store.runs(&newest, &owner::is_alive)? {
+    for run in store.runs(&newest, &process_id::is_alive)? {
         let traces = store.traces(run.id)?;
         if traces.is_empty() {
             continue;

@@ -1,7 +1,7 @@
 //! `ptu db`: care of the database.
 
-mod care;
 mod check;
+mod maintenance;
 mod query;
 mod server;
 mod sync;
@@ -62,7 +62,7 @@ enum Verb {
         json: bool,
     },
     /// Delete old traces that no open fault needs; runs and faults stay
-    Prune(care::PruneArguments),
+    Prune(maintenance::PruneArguments),
     Sync(sync::SyncArguments),
     /// Look after a server for many laptops
     Server(server::ServerArguments),

@@ -10,8 +10,8 @@ use super::watch::{Watch, too_long};
 use crate::cli::output::Output;
 use crate::cli::{Database, print_json};
 use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::stdio;
 use ptu_bench::table::Table;
-use ptu_bench::tell;
 
 /// Rows a query prints at most.
 const MAX_ROWS: usize = 10_000;
@@ -64,7 +64,7 @@ impl QueryArguments {
             return print_json(&answer);
         }
         if answer.truncated && !self.output.is_table() {
-            tell::note(&format!(
+            stdio::note(&format!(
                 "only the first {MAX_ROWS} rows; add LIMIT, or ask for less"
             ));
         }

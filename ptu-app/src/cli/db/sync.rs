@@ -7,11 +7,11 @@ use fault_db::{Address, Store, StoreError, SyncOptions, SyncOutcome, SyncPhase, 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use super::care::{rivals, told_refused};
+use super::maintenance::{rivals, told_refused};
 use crate::cli::{Database, answered, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stop::Stop;
-use ptu_bench::{clock, owner, tell};
+use ptu_bench::{clock, process_id, stdio};
 
 /// Bring this laptop's history to a server, and what others said about its faults back
 ///
@@ -61,7 +61,7 @@ impl SyncArguments {
                 laptop: &laptop(),
                 traces: !self.no_traces,
                 as_copy: self.as_copy,
-                is_alive: &owner::is_alive,
+                is_alive: &process_id::is_alive,
                 now_us: &clock::now_us,
                 go_on: &mut |progress| {
                     shown.tell(progress);
@@ -78,7 +78,7 @@ impl SyncArguments {
             false => print_out(&text(&outcome, &server, took_s)),
         };
         for warning in warnings(&outcome) {
-            tell::note(&warning);
+            stdio::note(&warning);
         }
         let exit = if outcome.stopped {
             Exit::Aborted
@@ -235,8 +235,8 @@ impl Shown {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
-        if !tell::draws() {
-            tell::note(what);
+        if !stdio::draws() {
+            stdio::note(what);
             return;
         }
         let style = match progress.total {

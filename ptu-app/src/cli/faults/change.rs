@@ -6,7 +6,7 @@ use fault_db::{FaultState, RepairRecord, Store};
 use crate::cli::print_out;
 use ptu_bench::clock::now_us;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
-use ptu_bench::tell;
+use ptu_bench::stdio;
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed
 #[derive(Debug, Args)]
@@ -80,7 +80,7 @@ impl RepairArguments {
         };
         let state = store.record_repair(id, &repair, &self.who, now_us())?;
         if let Some(note) = note {
-            tell::note(&note);
+            stdio::note(&note);
         }
         print_out(&format!("fault {} is {}", id.short(), state.as_str()))
     }

@@ -8,8 +8,8 @@ use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
 use ptu_bench::clock::local;
 use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::stdio;
 use ptu_bench::table::Table;
-use ptu_bench::tell;
 use ptu_report::{FAULT_KEYS, fault_json};
 
 /// List faults, last seen first
@@ -45,7 +45,7 @@ impl ListArguments {
             return print_out(&self.filter.nothing(store)?);
         }
         if more && !self.output.is_table() {
-            tell::note(&format!("only the first {}; see --limit", self.limit));
+            stdio::note(&format!("only the first {}; see --limit", self.limit));
         }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
         self.output.print(&FAULT_KEYS, &rows, || {

@@ -1,7 +1,7 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
 use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
-use protocol::shown::line;
+use protocol::display_text::line;
 use serde_json::{Value, json};
 
 use crate::cli::{print_json, print_out};

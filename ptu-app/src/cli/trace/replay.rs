@@ -75,7 +75,7 @@ impl ReplayArguments {
             operator: self.operator.clone(),
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
-        let detail = store.run(rerun.run_id, &ptu_bench::owner::is_alive)?;
+        let detail = store.run(rerun.run_id, &ptu_bench::process_id::is_alive)?;
         let told = match self.json {
             true => print_json(&rerun_json(&original, &rerun)),
             false => print_out(&text(&original, &rerun)),

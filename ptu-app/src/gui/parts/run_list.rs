@@ -8,7 +8,7 @@ use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
-use ptu_bench::owner;
+use ptu_bench::process_id;
 use ptu_report::words::Words;
 
 /// As many runs as are listed.
@@ -91,7 +91,7 @@ impl RunList {
                     limit: Some(MOST),
                     ..RunFilter::default()
                 };
-                Ok(paths.read()?.runs(&filter, &owner::is_alive)?)
+                Ok(paths.read()?.runs(&filter, &process_id::is_alive)?)
             }));
         }
         self.runs.poll();

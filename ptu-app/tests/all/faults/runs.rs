@@ -8,7 +8,7 @@ use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::owner;
+use ptu_bench::process_id;
 use ptu_bench::run::{self, BenchChoice, BenchSetup, Listener, RunPlan, SessionEvent, Suite, Task};
 use ptu_bench::run_diagnosis::diagnose_run;
 use ptu_bench::stop::Stop;
@@ -92,7 +92,9 @@ impl TestBench {
         let store = Store::open(&path, clock::open_options()).expect("a database");
         let ran = run::run(&plan, setup, store, &Stop::default(), &mut Nobody);
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
-        let detail = store.run(outcome.id, &owner::is_alive).expect("the run");
+        let detail = store
+            .run(outcome.id, &process_id::is_alive)
+            .expect("the run");
         let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
         let first = answer.diagnosis.candidates.first();
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);

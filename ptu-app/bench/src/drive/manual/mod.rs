@@ -1,6 +1,6 @@
 //! A train driven by hand: a sequence of notches and switches from a file, or keys on a terminal.
 
-mod hand;
+mod keyboard;
 mod keys;
 mod terminal;
 #[cfg(test)]
@@ -19,7 +19,7 @@ use super::{DriveBench, Fixed, Request, train};
 use crate::data::{ScriptsDirectory, read};
 use crate::failure::Failure;
 
-pub use hand::drive_by_hand;
+pub use keyboard::drive_by_hand;
 
 /// What stands for a file when keys are asked for.
 pub const KEYS: &str = "keys";

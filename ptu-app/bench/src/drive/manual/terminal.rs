@@ -8,8 +8,8 @@ use rustix::termios::{
 };
 
 use crate::failure::Failure;
+use crate::stdio;
 use crate::table::cut;
-use crate::tell;
 
 /// Width of a terminal that does not say, columns.
 const USUAL_COLUMNS: usize = 80;
@@ -28,7 +28,7 @@ impl Terminal {
     /// # Errors
     /// There is no terminal.
     pub fn open() -> Result<Self, Failure> {
-        if !stdin().is_terminal() || !tell::draws() {
+        if !stdin().is_terminal() || !stdio::draws() {
             return Err(Failure::usage(
                 "--manual keys needs a terminal; drive a sequence instead, as --manual figure5",
             ));
@@ -56,16 +56,16 @@ impl Terminal {
 
     /// Writes a line in place of the last, as far as it fits.
     pub fn show(&self, line: &str) {
-        let columns = tcgetwinsize(tell::stderr()).map_or(0, |size| usize::from(size.ws_col));
+        let columns = tcgetwinsize(stdio::stderr()).map_or(0, |size| usize::from(size.ws_col));
         let columns = if columns == 0 { USUAL_COLUMNS } else { columns };
         // What cannot be shown does not stop the train.
-        tell::redraw(&cut(line, columns - 1));
+        stdio::redraw(&cut(line, columns - 1));
     }
 }
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        tell::redraw("");
+        stdio::redraw("");
         let _ = tcsetattr(stdin(), OptionalActions::Now, &self.before);
     }
 }

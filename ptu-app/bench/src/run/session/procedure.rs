@@ -11,7 +11,7 @@ use protocol::{Duration, Instant};
 use super::Session;
 use crate::run::event::{RecordedStimuli, SessionEvent};
 use crate::run::fault_watch::{self, FaultSeen};
-use crate::run::rounds::Rounds;
+use crate::run::repetitions::Rounds;
 use crate::run::settle::between_procedures;
 
 /// The state of one procedure's run.

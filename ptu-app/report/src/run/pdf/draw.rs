@@ -8,7 +8,7 @@ use krilla::page::PageSettings;
 use krilla::paint::{Fill, Stroke, StrokeDash};
 use krilla::surface::Surface;
 use krilla::text::Font;
-use protocol::shown;
+use protocol::display_text;
 
 use super::font::Letters;
 use super::item::{HEIGHT, Ink, Item, WIDTH};
@@ -59,7 +59,7 @@ fn metadata(sheet: &Sheet, words: &Words) -> Metadata {
         .title(format!(
             "{} {} {}",
             words.report.sheet,
-            shown::line(&run.unit_serial),
+            display_text::line(&run.unit_serial),
             run.id.short()
         ))
         .language(words.language.code().to_owned())

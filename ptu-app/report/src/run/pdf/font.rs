@@ -1,7 +1,7 @@
 //! Widths of letters, and line breaking by them.
 
 use krilla::text::{GlyphId, KrillaGlyph};
-use protocol::shown;
+use protocol::display_text;
 use ttf_parser::Face;
 
 use crate::fonts::PRETENDARD;
@@ -57,7 +57,7 @@ impl Letters {
     /// cannot be seen is spelled.
     pub fn lines(&self, text: &str, size: f32, width: f32) -> Vec<String> {
         let mut lines = Vec::new();
-        for paragraph in shown::lines(text).replace('\t', " ").lines() {
+        for paragraph in display_text::lines(text).replace('\t', " ").lines() {
             let mut line = String::new();
             for word in paragraph.split_inclusive(' ') {
                 // The space after a word may hang over the edge.

@@ -1,6 +1,6 @@
 //! Items on a PDF page with their positions, in points (1/72 inch) from the upper left corner.
 
-use protocol::shown;
+use protocol::display_text;
 
 /// Width of A4.
 pub const WIDTH: f32 = 595.28;
@@ -85,7 +85,7 @@ impl Item {
             ink,
             strong: false,
             turned: false,
-            text: shown::line(text).into_owned(),
+            text: display_text::line(text).into_owned(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! A plot in the PDF, from the same marks as on the HTML page.
 
-use protocol::shown;
+use protocol::display_text;
 
 use super::font::Letters;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
@@ -60,7 +60,7 @@ fn items(mark: &Mark, scale: f32, letters: &Letters) -> Vec<Item> {
                 ink: ink(*role),
                 strong: *role == Role::Title,
                 turned: *turned,
-                text: shown::line(text).into_owned(),
+                text: display_text::line(text).into_owned(),
             }]
         }
         Mark::Line { role, pieces } => {

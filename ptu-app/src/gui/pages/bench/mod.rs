@@ -5,10 +5,10 @@
 
 mod forms;
 mod live;
+mod live_copy;
 mod plot;
 mod rolling;
 mod scale;
-mod seen;
 mod stimuli;
 mod text;
 mod track;
@@ -20,11 +20,11 @@ use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 use crate::gui::PageContext;
 use forms::Forms;
 use live::{View, view};
+use live_copy::Seen;
 use plot::Plot;
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::run::BenchSetup;
 use rolling::chosen;
-use seen::Seen;
 use stimuli::{Given, Hand, stimuli};
 
 /// Width of the stimuli, and the least that is left of it in a small window.

@@ -2,7 +2,7 @@
 
 use protocol::signal::{Kind, Signal};
 
-use super::seen::Seen;
+use super::live_copy::Seen;
 use ptu_report::words::{Bench, fill};
 
 /// Shown in place of an unknown value.

@@ -4,7 +4,7 @@ use btu_rig::stimulus::StationData;
 use protocol::line::{Line, Section};
 use protocol::signal::Signal;
 
-use super::seen::Seen;
+use super::live_copy::Seen;
 
 /// Room before the start and behind the end that is shown, m.
 const AROUND_M: f64 = 60.0;

@@ -8,7 +8,7 @@ use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::usual_folder;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::NewFile;
-use ptu_bench::owner;
+use ptu_bench::process_id;
 use ptu_report::words::Language;
 use ptu_report::{self, Target};
 
@@ -47,7 +47,7 @@ pub fn write(
     let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
     let file = NewFile::begin(wanted)?;
     let store = paths.read()?;
-    let detail = store.run(run, &owner::is_alive)?;
+    let detail = store.run(run, &process_id::is_alive)?;
     ptu_report::write_beside(&target, file, &store, &paths.scripts, &detail, language)
 }
 

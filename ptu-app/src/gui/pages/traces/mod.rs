@@ -1,7 +1,7 @@
 //! The traces page: lanes on one axis, cursors, and the trace of a good unit behind.
 
 mod bar;
-mod behind;
+mod compared_trace;
 mod events;
 mod export;
 mod input;
@@ -18,7 +18,7 @@ use fault_db::Id;
 
 use crate::gui::query_worker::Pending;
 use crate::gui::{Destination, PageContext, Palette};
-use behind::BehindAsked;
+use compared_trace::BehindAsked;
 use export::Export;
 use lanes::Painted;
 use list::TraceList;

@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 use super::View;
 use super::card::{Fact, card, facts};
 use crate::gui::Palette;
-use crate::gui::pages::bench::seen::Seen;
+use crate::gui::pages::bench::live_copy::Seen;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
 use ptu_report::words::Bench;
 

@@ -6,8 +6,8 @@ use protocol::signal::Signal;
 use super::View;
 use super::card::{Fact, facts, named, put};
 use crate::gui::Palette;
+use crate::gui::pages::bench::live_copy::Seen;
 use crate::gui::pages::bench::scale::from_middle;
-use crate::gui::pages::bench::seen::Seen;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
 use ptu_report::words::Bench;
 

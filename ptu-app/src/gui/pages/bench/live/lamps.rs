@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 
 use super::card::{named, put};
 use crate::gui::Palette;
-use crate::gui::pages::bench::seen::Seen;
+use crate::gui::pages::bench::live_copy::Seen;
 use ptu_report::words::Bench;
 
 /// Lamps beside each other.

@@ -18,8 +18,8 @@ use eframe::egui::{Ui, vec2};
 pub use card::{framed, heading, put};
 pub use log::log;
 
+use super::live_copy::Seen;
 use super::scale::Dial;
-use super::seen::Seen;
 use super::track::{Sent, Strip};
 use crate::gui::Palette;
 use card::card;

@@ -5,7 +5,7 @@ use eframe::egui::Ui;
 use protocol::config::UnitConfig;
 use protocol::signal::Signal;
 
-use super::hand::{Hand, named_number, number, row};
+use super::buttons::{Hand, named_number, number, row};
 use crate::gui::pages::bench::forms::{CodeForm, NO_DRIFT, Way};
 use ptu_report::words::Bench;
 

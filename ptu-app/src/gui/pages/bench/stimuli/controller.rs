@@ -5,7 +5,7 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Slider, Ui};
 use protocol::signal::Signal;
 
-use super::hand::{Hand, number, row};
+use super::buttons::{Hand, number, row};
 use crate::gui::pages::bench::forms::TrainForm;
 use ptu_report::words::Bench;
 

@@ -5,7 +5,7 @@ use eframe::egui::Ui;
 use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 
-use super::hand::{Hand, row};
+use super::buttons::{Hand, row};
 use ptu_report::words::Bench;
 
 /// Switches of the train, with their names.

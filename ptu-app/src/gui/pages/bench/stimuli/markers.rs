@@ -4,7 +4,7 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::Ui;
 use protocol::line::Line;
 
-use super::hand::{Hand, named_number, one_of, row};
+use super::buttons::{Hand, named_number, one_of, row};
 use crate::gui::pages::bench::forms::MarkerForm;
 
 /// Farthest a marker can be moved, m.

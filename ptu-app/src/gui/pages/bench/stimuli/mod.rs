@@ -1,8 +1,8 @@
 //! All manual stimuli, in groups.
 
 mod atp;
+mod buttons;
 mod controller;
-mod hand;
 mod lines;
 mod markers;
 mod speed;
@@ -13,7 +13,7 @@ mod twc;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-pub use hand::{Given, Hand};
+pub use buttons::{Given, Hand};
 
 use super::forms::Forms;
 use ptu_bench::run::BenchSetup;

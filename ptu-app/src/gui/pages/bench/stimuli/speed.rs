@@ -4,7 +4,7 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::Ui;
 use protocol::signal::Signal;
 
-use super::hand::{Hand, named_number, number, row};
+use super::buttons::{Hand, named_number, number, row};
 use crate::gui::pages::bench::forms::{MotionForm, TachoKind};
 use ptu_report::words::fill;
 

@@ -4,7 +4,7 @@ use btu_rig::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TcmsCondition};
 use btu_rig::train::TrainData;
 use eframe::egui::Ui;
 
-use super::hand::{Hand, number, row};
+use super::buttons::{Hand, number, row};
 use crate::gui::pages::bench::forms::TrainForm;
 
 /// Adhesion beyond this is glue.

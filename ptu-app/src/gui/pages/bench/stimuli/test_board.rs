@@ -6,7 +6,7 @@ use protocol::config::UnitConfig;
 use protocol::line::Line;
 use protocol::signal::Signal;
 
-use super::hand::{Hand, check, named_number, number, one_of, row};
+use super::buttons::{Hand, check, named_number, number, one_of, row};
 use super::{atp, speed, twc};
 use crate::gui::pages::bench::forms::{Forms, MotionForm, Way};
 use crate::gui::pages::bench::text;

@@ -6,7 +6,7 @@ use protocol::line::Line;
 use protocol::message::{DoorSide, RunningMode};
 use protocol::signal::Signal;
 
-use super::hand::{Hand, check, named_number, number, one_of, row};
+use super::buttons::{Hand, check, named_number, number, one_of, row};
 use super::markers::sections;
 use crate::gui::pages::bench::forms::{StationForm, Way};
 use ptu_report::words::Bench;

@@ -4,7 +4,7 @@
 use std::io::{self, ErrorKind, Write};
 
 use anyhow::{Context, Result};
-use protocol::shown;
+use protocol::display_text;
 
 /// Tells where the unit can be reached; somebody who has gone away knows it.
 ///
@@ -13,7 +13,7 @@ use protocol::shown;
 #[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
 pub fn place(place: &str) -> Result<()> {
     let mut out = io::stdout().lock();
-    match writeln!(out, "{}", shown::line(place)).and_then(|()| out.flush()) {
+    match writeln!(out, "{}", display_text::line(place)).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(error).context("telling where the unit is")
         }
@@ -24,5 +24,5 @@ pub fn place(place: &str) -> Result<()> {
 /// Tells something beside; whoever does not listen misses it.
 #[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
 pub fn note(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", shown::lines(text));
+    let _ = writeln!(io::stderr().lock(), "{}", display_text::lines(text));
 }

@@ -9,8 +9,8 @@ use super::keys::{Command, HELP, Keys};
 use super::terminal::Terminal;
 use crate::failure::Failure;
 use crate::link::Pace;
+use crate::stdio;
 use crate::stop::Stop;
-use crate::tell;
 
 /// The status line changes every so many scans: 100 ms.
 const SHOWN_EVERY: u64 = 10;
@@ -21,7 +21,7 @@ const SHOWN_EVERY: u64 = 10;
 /// There is no terminal.
 pub fn drive_by_hand(case: &ManualCase, stop: &Stop) -> Result<Outcome, Failure> {
     let terminal = Terminal::open()?;
-    tell::note(HELP);
+    stdio::note(HELP);
     terminal.show("the unit starts …");
     let mut bench = case.bench.fresh(case.seed);
     let mut player = Player::new(case.plan.clone());

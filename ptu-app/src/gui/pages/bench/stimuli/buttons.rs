@@ -10,7 +10,7 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-use crate::gui::pages::bench::seen::Seen;
+use crate::gui::pages::bench::live_copy::Seen;
 use crate::gui::{Messages, Palette};
 use ptu_bench::bench_worker::BenchWorker;
 use ptu_report::words::{Words, fill};

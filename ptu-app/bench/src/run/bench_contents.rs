@@ -19,7 +19,7 @@ use crate::link::Endpoint;
 
 /// A data file a bench was made of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Made {
+pub struct BenchFile {
     /// Its name.
     pub name: String,
     /// What was changed in it by `--set`.
@@ -31,17 +31,17 @@ pub struct Made {
 
 /// What the benches of a run are made of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BenchMade {
+pub struct BenchContents {
     /// Where the unit was: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
     /// Serial number of the unit.
     pub serial: String,
     /// Unit configuration.
-    pub unit_config: Made,
+    pub unit_config: BenchFile,
     /// Track database.
-    pub line: Made,
+    pub line: BenchFile,
     /// Train around the unit.
-    pub train: Made,
+    pub train: BenchFile,
     /// Seed of the run; that of a procedure follows from its name.
     pub seed: u64,
     /// How units, trains and benches were let differ.
@@ -60,24 +60,24 @@ pub struct Stimuli {
     pub record: StimulusRecord,
 }
 
-impl BenchMade {
+impl BenchContents {
     /// What `setup` makes benches of, for a unit of this serial number.
     pub fn of(setup: &BenchSetup, serial: String) -> Self {
         let (config, line) = (&setup.config, &setup.line);
         Self {
             source: setup.endpoint.to_string(),
             serial,
-            unit_config: Made {
+            unit_config: BenchFile {
                 name: config.name.clone(),
                 settings: config.settings.clone(),
                 sha256: config.sha256.clone(),
             },
-            line: Made {
+            line: BenchFile {
                 name: line.name.clone(),
                 settings: line.settings.clone(),
                 sha256: line.sha256.clone(),
             },
-            train: Made {
+            train: BenchFile {
                 name: setup.train.name().to_owned(),
                 settings: Vec::new(),
                 sha256: train_sha256(&setup.train),
@@ -174,7 +174,7 @@ impl BenchMade {
     }
 }
 
-fn gone<T>(what: &str, made: &Made, found: Result<T, Failure>) -> Result<T, Failure> {
+fn gone<T>(what: &str, made: &BenchFile, found: Result<T, Failure>) -> Result<T, Failure> {
     found.map_err(|failure| {
         Failure::usage(format!(
             "the recording was made with {what} \"{}\", which cannot be had any more: {failure}",
@@ -183,7 +183,7 @@ fn gone<T>(what: &str, made: &Made, found: Result<T, Failure>) -> Result<T, Fail
     })
 }
 
-fn same(what: &str, made: &Made, found: &str) -> Result<(), Failure> {
+fn same(what: &str, made: &BenchFile, found: &str) -> Result<(), Failure> {
     if made.sha256 == found {
         return Ok(());
     }

@@ -5,7 +5,7 @@
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
-use protocol::shown;
+use protocol::display_text;
 
 use crate::failure::Failure;
 use crate::table::cut;
@@ -48,7 +48,7 @@ pub fn draws() -> bool {
 /// Replaces the last line of the terminal.
 pub fn redraw(line: &str) {
     let mut terminal = stderr().lock();
-    let _ = write!(terminal, "{CLEAR}{}", shown::line(line)).and_then(|()| terminal.flush());
+    let _ = write!(terminal, "{CLEAR}{}", display_text::line(line)).and_then(|()| terminal.flush());
 }
 
 /// What clears the line from its beginning.
@@ -56,7 +56,7 @@ const CLEAR: &str = "\r\x1b[K";
 
 /// The text without control characters, its lines cut to [`WIDEST`].
 fn readable(text: &str) -> String {
-    let text = shown::lines(text);
+    let text = display_text::lines(text);
     let lines: Vec<_> = text.split('\n').map(|line| cut(line, WIDEST)).collect();
     lines.join("\n")
 }

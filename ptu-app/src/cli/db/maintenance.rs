@@ -13,7 +13,7 @@ use crate::cli::database::only_file;
 use crate::cli::{Database, answered, print_json, print_out, since_argument};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::tell;
+use ptu_bench::stdio;
 
 /// Which traces may go; those of faults that are not closed never do.
 #[derive(Debug, Args)]
@@ -127,15 +127,15 @@ fn tell_merged(
         print_out(&(merged(counts) + &rivals))
     };
     if let Some(copy) = &counts.copy {
-        tell::note(&copied(copy));
+        stdio::note(&copied(copy));
     }
     for Different { what, id } in &counts.different {
-        tell::note(&format!(
+        stdio::note(&format!(
             "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
         ));
     }
     for refused in told_refused(&counts.refused) {
-        tell::note(&refused);
+        stdio::note(&refused);
     }
     let exit = match counts.different.is_empty() && counts.refused.is_empty() {
         true => Exit::Passed,
