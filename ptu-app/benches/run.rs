@@ -29,7 +29,7 @@ fn main() {
 struct Nobody;
 
 impl Listener for Nobody {
-    fn hear(&mut self, _: &Procedure, _: &SessionEvent) {}
+    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
 fn setup() -> (ScriptsDirectory, BenchSetup) {

@@ -103,7 +103,7 @@ fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
 }
 
 impl Listener for Console {
-    fn hear(&mut self, procedure: &Procedure, event: &SessionEvent) {
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
         let present =
             |what: String| Shown::Present(cell(&format!("{}: {what}", procedure.id), BESIDE_BAR));
         let shown = match event {

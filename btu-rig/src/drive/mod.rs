@@ -2,7 +2,7 @@
 //! the rig. Sans-IO: stepped once a scan after [`crate::rig::Bench::tick`], it gives the unit what
 //! a wayside and a cab would, watches the train, and ends with an [`Outcome`].
 //!
-//! It knows of the unit what frames say. Truth (position, speed, acceleration) is the rig's own.
+//! It knows of the unit what frames say. TrueMotion (position, speed, acceleration) is the rig's own.
 //!
 //! * `plan`: what is run; `watch`: what is looked at each scan;
 //! * `row`, `recording`: what is recorded each cycle;
@@ -29,7 +29,7 @@ use protocol::{Duration, Instant};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
-use crate::rig::{Rig, Truth};
+use crate::rig::{Rig, TrueMotion};
 use crate::stimulus::Stimulus;
 
 pub use figure::Figure;
@@ -239,7 +239,12 @@ impl Drive {
     }
 
     /// The next loop, once the train has left the first.
-    fn hand_over(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) -> Result<(), Refusal> {
+    fn hand_over(
+        &mut self,
+        now: Instant,
+        truth: &TrueMotion,
+        rig: &mut Rig,
+    ) -> Result<(), Refusal> {
         let left_m = truth.position_m - self.plan.section.start_m;
         if !self.handed_over && left_m >= LOOP_LEFT_M {
             self.handed_over = true;
@@ -248,7 +253,7 @@ impl Drive {
         Ok(())
     }
 
-    fn advance(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) -> Option<Ending> {
+    fn advance(&mut self, now: Instant, truth: &TrueMotion, rig: &mut Rig) -> Option<Ending> {
         if let Some(text) = watch::link_error(now, rig) {
             return Some(Ending::LinkLost(text));
         }

@@ -5,7 +5,7 @@ use protocol::{CYCLE, Instant, SCAN};
 use super::{Landmark, Row, landmarks};
 use crate::procedure::UnitEvent;
 use crate::recorder;
-use crate::rig::{Rig, Truth};
+use crate::rig::{Rig, TrueMotion};
 
 /// Rows of a usual run, so that they need not move as they come.
 const USUAL_ROWS: usize = 2_500;
@@ -24,7 +24,7 @@ pub(super) struct Recording {
 
 impl Recording {
     /// One scan. Times of rows are the bench's until the run has its zero.
-    pub fn scan(&mut self, now: Instant, truth: &Truth, rig: &mut Rig) {
+    pub fn scan(&mut self, now: Instant, truth: &TrueMotion, rig: &mut Rig) {
         let read = rig.take_events().into_iter();
         self.log.extend(read.map(|event| (now, event)));
         self.work_j += truth.tractive_power_w.max(0.0) * SCAN.as_secs();

@@ -4,7 +4,7 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::Driver;
-use super::condition::{Captured, Truth};
+use super::condition::{Captured, TrueMotion};
 use super::describe::bits_seen;
 use super::plan::Action;
 use super::report::RunEvent;
@@ -171,12 +171,12 @@ impl ActionRun {
 }
 
 /// Whether a wait for a condition is over, or how to make the problem it ended with.
-fn until(truth: Truth, late: bool) -> Result<bool, fn(String) -> Problem> {
+fn until(truth: TrueMotion, late: bool) -> Result<bool, fn(String) -> Problem> {
     match truth {
-        Truth::Yes => Ok(true),
-        Truth::No if late => Err(Problem::Failed),
-        Truth::NoData(_) if late => Err(Problem::NoData),
-        Truth::No | Truth::NoData(_) => Ok(false),
+        TrueMotion::Yes => Ok(true),
+        TrueMotion::No if late => Err(Problem::Failed),
+        TrueMotion::NoData(_) if late => Err(Problem::NoData),
+        TrueMotion::No | TrueMotion::NoData(_) => Ok(false),
     }
 }
 

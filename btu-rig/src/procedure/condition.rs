@@ -93,7 +93,7 @@ impl std::fmt::Display for MissingData {
 
 /// Answer to a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Truth {
+pub(super) enum TrueMotion {
     /// It holds.
     Yes,
     /// It does not.
@@ -119,15 +119,15 @@ impl Operand {
 
 impl Condition {
     /// Whether it holds in `sample`.
-    pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> Truth {
+    pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> TrueMotion {
         match self {
             Self::Compare {
                 signal,
                 comparison,
                 operand,
             } => compare(*signal, *comparison, operand, sample, captured),
-            Self::All(parts) => fold(parts, sample, captured, Truth::Yes, Truth::No),
-            Self::Any(parts) => fold(parts, sample, captured, Truth::No, Truth::Yes),
+            Self::All(parts) => fold(parts, sample, captured, TrueMotion::Yes, TrueMotion::No),
+            Self::Any(parts) => fold(parts, sample, captured, TrueMotion::No, TrueMotion::Yes),
         }
     }
 
@@ -162,14 +162,14 @@ fn fold(
     parts: &[Condition],
     sample: &Sample,
     captured: &Captured,
-    otherwise: Truth,
-    decisive: Truth,
-) -> Truth {
+    otherwise: TrueMotion,
+    decisive: TrueMotion,
+) -> TrueMotion {
     let mut result = otherwise;
     for part in parts {
         match part.truth(sample, captured) {
             truth if truth == decisive => return decisive,
-            missing_data @ Truth::NoData(_) => result = missing_data,
+            missing_data @ TrueMotion::NoData(_) => result = missing_data,
             _ => {}
         }
     }
@@ -184,13 +184,13 @@ fn compare(
     operand: &Operand,
     sample: &Sample,
     captured: &Captured,
-) -> Truth {
+) -> TrueMotion {
     let Some(found) = sample.get(signal).filter(|v| v.is_finite()) else {
-        return Truth::NoData(MissingData::Signal(signal));
+        return TrueMotion::NoData(MissingData::Signal(signal));
     };
     let wanted = match operand.value(captured) {
         Ok(wanted) => wanted,
-        Err(missing_data) => return Truth::NoData(missing_data),
+        Err(missing_data) => return TrueMotion::NoData(missing_data),
     };
     let lsb = match signal.definition().kind {
         Kind::Number { lsb } => lsb,
@@ -209,7 +209,11 @@ fn compare(
         Comparison::Has => bits(found) & bits(wanted) == bits(wanted),
         Comparison::Lacks => bits(found) & bits(wanted) == 0,
     };
-    if holds { Truth::Yes } else { Truth::No }
+    if holds {
+        TrueMotion::Yes
+    } else {
+        TrueMotion::No
+    }
 }
 
 /// A value as the set of bits it stands for.
@@ -250,11 +254,14 @@ mod tests {
         for (comparison, expected) in table {
             for (value, expected) in [54.0, wire_55, 56.0].into_iter().zip(expected) {
                 let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
-                assert_eq!(truth == Truth::Yes, expected, "{comparison:?} {value}");
+                assert_eq!(truth == TrueMotion::Yes, expected, "{comparison:?} {value}");
             }
             for value in [f64::NAN, f64::INFINITY] {
                 let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
-                assert_eq!(truth, Truth::NoData(MissingData::Signal(Signal::Limit)));
+                assert_eq!(
+                    truth,
+                    TrueMotion::NoData(MissingData::Signal(Signal::Limit))
+                );
             }
         }
     }
@@ -274,8 +281,12 @@ mod tests {
             for (comparison, expected) in [(Comparison::Has, has), (Comparison::Lacks, lacks)] {
                 let condition = is(Signal::Lamps, comparison, f64::from(wanted));
                 let truth = condition.truth(&sample, &[]);
-                assert_eq!(truth == Truth::Yes, expected, "{found:b} {condition:?}");
-                let missing_data = Truth::NoData(MissingData::Signal(Signal::Lamps));
+                assert_eq!(
+                    truth == TrueMotion::Yes,
+                    expected,
+                    "{found:b} {condition:?}"
+                );
+                let missing_data = TrueMotion::NoData(MissingData::Signal(Signal::Lamps));
                 assert_eq!(condition.truth(&Sample::default(), &[]), missing_data);
             }
         }
@@ -286,7 +297,7 @@ mod tests {
         let known = is(Signal::Limit, Comparison::Above, 50.0);
         let known_false = is(Signal::Limit, Comparison::Below, 50.0);
         let missing = is(Signal::Eb, Comparison::Equal, 1.0);
-        let missing_data = Truth::NoData(MissingData::Signal(Signal::Eb));
+        let missing_data = TrueMotion::NoData(MissingData::Signal(Signal::Eb));
         let cases = [
             (
                 Condition::All(vec![known.clone(), missing.clone()]),
@@ -294,9 +305,12 @@ mod tests {
             ),
             (
                 Condition::All(vec![missing.clone(), known_false.clone()]),
-                Truth::No,
+                TrueMotion::No,
             ),
-            (Condition::Any(vec![missing.clone(), known]), Truth::Yes),
+            (
+                Condition::Any(vec![missing.clone(), known]),
+                TrueMotion::Yes,
+            ),
             (Condition::Any(vec![known_false, missing]), missing_data),
         ];
         for (condition, expected) in cases {
@@ -319,12 +333,18 @@ mod tests {
                 offset: 1.0,
             },
         };
-        assert_eq!(condition.truth(&sample(55.0), &[Some(53.0)]), Truth::Yes);
-        assert_eq!(condition.truth(&sample(55.0), &[Some(54.5)]), Truth::No);
+        assert_eq!(
+            condition.truth(&sample(55.0), &[Some(53.0)]),
+            TrueMotion::Yes
+        );
+        assert_eq!(
+            condition.truth(&sample(55.0), &[Some(54.5)]),
+            TrueMotion::No
+        );
         for captured in [&[None][..], &[Some(f64::NAN)], &[]] {
             assert_eq!(
                 condition.truth(&sample(55.0), captured),
-                Truth::NoData(MissingData::Measurement)
+                TrueMotion::NoData(MissingData::Measurement)
             );
         }
     }

@@ -4,7 +4,7 @@ use protocol::Instant;
 use protocol::signal::Signal;
 
 use super::action_run::Scan;
-use super::condition::{Captured, MissingData, Truth};
+use super::condition::{Captured, MissingData, TrueMotion};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::{Measurement, Verdict};
@@ -24,12 +24,12 @@ impl Edge {
         missing_data: &mut Option<MissingData>,
     ) -> bool {
         match condition.truth(scan.sample, scan.captured) {
-            Truth::Yes => self.was_false,
-            Truth::No => {
+            TrueMotion::Yes => self.was_false,
+            TrueMotion::No => {
                 self.was_false = true;
                 false
             }
-            Truth::NoData(missing) => {
+            TrueMotion::NoData(missing) => {
                 *missing_data = Some(missing);
                 false
             }

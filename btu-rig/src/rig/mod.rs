@@ -58,7 +58,7 @@ pub use log_session::LogSession;
 pub use random::Random;
 pub use tcms::PAIR_DEMANDS;
 pub use train_faults::{Misplaced, check_places};
-pub use true_motion::{PairEfforts, Truth};
+pub use true_motion::{PairEfforts, TrueMotion};
 
 use antenna::Antenna;
 use cab_desk::CabDesk;

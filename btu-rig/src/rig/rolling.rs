@@ -9,7 +9,7 @@ use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 use super::random::Random;
 use super::tcms::pair_cars;
-use super::{PairEfforts, Rig, Truth};
+use super::{PairEfforts, Rig, TrueMotion};
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);
@@ -57,11 +57,11 @@ impl Rig {
     }
 
     /// What the train really does at the scan's end.
-    pub fn truth(&self) -> Truth {
+    pub fn truth(&self) -> TrueMotion {
         let motion = self.wheel.motion();
         let track = self.track.as_ref();
         let state = &self.train_state;
-        Truth {
+        TrueMotion {
             speed_mps: self.wheel.velocity_mps(),
             accel_mps2: motion.last().accel_mps2,
             position_m: track.map_or(motion.position_m, |t| t.in_section_m(motion.position_m)),

@@ -2,7 +2,7 @@
 
 /// The train's true state at a scan's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Truth {
+pub struct TrueMotion {
     /// Speed, m/s, forward positive.
     pub speed_mps: f64,
     /// Acceleration at the scan's end, m/s², forward positive.

@@ -13,7 +13,7 @@ use crate::drive::recording::Recording;
 use crate::drive::{Landmark, Row, watch};
 use crate::lever::Lever;
 use crate::procedure::Refusal;
-use crate::rig::{Rig, Truth};
+use crate::rig::{Rig, TrueMotion};
 use crate::stimulus::Stimulus;
 use crate::tcms::TcmsMode;
 use crate::train::TrainData;
@@ -159,7 +159,7 @@ impl Player {
     fn advance(
         &mut self,
         now: Instant,
-        truth: &Truth,
+        truth: &TrueMotion,
         rig: &mut Rig,
     ) -> Result<Option<Ending>, Refusal> {
         if let Some(text) = watch::link_error(now, rig) {
@@ -215,7 +215,7 @@ impl Player {
     }
 
     /// What keeps the train from being driven, in words; none = nothing does.
-    fn lacking(&self, truth: &Truth, rig: &Rig) -> Option<String> {
+    fn lacking(&self, truth: &TrueMotion, rig: &Rig) -> Option<String> {
         let brakes = truth.air_brake_n > RELEASED_SHARE * self.plan.full_service_n();
         let brakes = brakes.then(|| "the brakes do not release".into());
         refusal(rig).or(brakes)
@@ -225,7 +225,7 @@ impl Player {
         &mut self,
         now: Instant,
         since: Instant,
-        truth: &Truth,
+        truth: &TrueMotion,
         rig: &mut Rig,
     ) -> Result<Option<Ending>, Refusal> {
         if now.since(since) >= LONGEST {
@@ -277,7 +277,7 @@ impl Player {
         })
     }
 
-    fn reached(&self, now: Instant, truth: &Truth, when: When) -> bool {
+    fn reached(&self, now: Instant, truth: &TrueMotion, when: When) -> bool {
         let waiting = &self.waiting;
         match when {
             When::After(seconds) => now.since(waiting.since) >= Duration::from_secs(seconds),
@@ -292,7 +292,7 @@ impl Player {
     fn perform(
         &mut self,
         now: Instant,
-        truth: &Truth,
+        truth: &TrueMotion,
         rig: &mut Rig,
         line: usize,
         actions: Vec<Stimulus>,
@@ -314,7 +314,7 @@ impl Player {
     }
 
     /// Begins to wait for the next step.
-    fn wait(&mut self, now: Instant, truth: &Truth, leaves: bool) {
+    fn wait(&mut self, now: Instant, truth: &TrueMotion, leaves: bool) {
         self.waiting.since = now;
         self.waiting.from_kmh = truth.speed_mps.abs() * 3.6;
         if leaves {

@@ -9,7 +9,7 @@ use super::schedule::ScheduledStep;
 use super::{Phase, Runner};
 use crate::procedure::Driver;
 use crate::procedure::action_run::{ActionRun, Scan};
-use crate::procedure::condition::Truth;
+use crate::procedure::condition::TrueMotion;
 use crate::procedure::plan::{OnFail, Step};
 use crate::procedure::report::{RunEvent, StepResult, Verdict};
 use crate::procedure::step_run::StepRun;
@@ -72,14 +72,14 @@ impl Runner {
         let truth = step
             .when
             .as_ref()
-            .map_or(Truth::Yes, |when| when.truth(sample, &self.captured));
+            .map_or(TrueMotion::Yes, |when| when.truth(sample, &self.captured));
         match truth {
-            Truth::Yes => {}
-            Truth::No => {
+            TrueMotion::Yes => {}
+            TrueMotion::No => {
                 self.pass_over(turn, now, Verdict::Skipped, "its condition does not hold");
                 return false;
             }
-            Truth::NoData(missing_data) => {
+            TrueMotion::NoData(missing_data) => {
                 self.pass_over(
                     turn,
                     now,

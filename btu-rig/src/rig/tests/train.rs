@@ -7,7 +7,7 @@ use protocol::signal::Signal;
 
 use super::{FakeUnit, config, line};
 use crate::conditions::Conditions;
-use crate::rig::{Bench, Rig, Truth};
+use crate::rig::{Bench, Rig, TrueMotion};
 use crate::stimulus::{CutOut, Stimulus};
 use crate::train::TrainData;
 
@@ -61,7 +61,7 @@ fn true_values_are_the_trains_and_the_distance_to_its_stop() {
     assert_eq!(bench.rig().truth().to_stop_m, Some(850.03));
     ask(&mut bench, 1.0);
     bench.run_ms(15_000);
-    let Truth {
+    let TrueMotion {
         speed_mps,
         accel_mps2,
         position_m,
@@ -170,7 +170,8 @@ fn energy_is_kept_over_a_hill() {
             .sum()
     };
     let inertia_kg = 296_368.0 + 60_000.0;
-    let energy_j = |t: &Truth| 0.5 * inertia_kg * t.speed_mps.powi(2) + potential_j(t.position_m);
+    let energy_j =
+        |t: &TrueMotion| 0.5 * inertia_kg * t.speed_mps.powi(2) + potential_j(t.position_m);
 
     let mut bench = at_departure(&line, Conditions::default());
     bench.apply(Stimulus::Load {

@@ -275,7 +275,7 @@ impl BenchThread {
 struct EventForwarder<'a>(&'a BenchThread);
 
 impl Listener for EventForwarder<'_> {
-    fn hear(&mut self, procedure: &Procedure, event: &SessionEvent) {
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
         // Traces and recorded stimuli are large, and the window reads them from the database.
         if !matches!(event, SessionEvent::Trace(_) | SessionEvent::Recording(_)) {
             self.0.tell(BenchEvent::Run {

@@ -145,7 +145,7 @@ impl Progress {
     }
 
     /// Takes an event of the procedure called `id`.
-    pub fn hear(&mut self, id: &str, event: &SessionEvent) {
+    pub fn on_event(&mut self, id: &str, event: &SessionEvent) {
         let Some(place) = self.place(id) else { return };
         match event {
             SessionEvent::Run(event) => self.event(place, event),

@@ -11,7 +11,7 @@ use crate::data::ScriptsDirectory;
 use crate::drive::train::train;
 use crate::failure::Failure;
 use crate::link::Endpoint;
-use crate::run::Gatherer;
+use crate::run::ObservationBuilder;
 use crate::run::{BenchSetup, SessionEvent, Task, loading, run_here};
 use crate::run_diagnosis::{LINE, TRAIN, UNIT_CONFIG};
 use crate::stop::Stop;
@@ -113,9 +113,9 @@ impl Suite {
             ..SuiteRun::default()
         };
         for task in self.tasks.iter().take_while(|_| stop.may_begin()) {
-            let mut gatherer = Gatherer::new(&task.procedure.id);
+            let mut observation = ObservationBuilder::new(&task.procedure.id);
             run_here(&setup, task, stop, &mut |event| {
-                gatherer.take(&event);
+                observation.take(&event);
                 match event {
                     SessionEvent::Fault(fault) => {
                         run.passed = false;
@@ -132,7 +132,7 @@ impl Suite {
                     _ => {}
                 }
             });
-            run.seen.steps.extend(gatherer.finish());
+            run.seen.steps.extend(observation.finish());
             for (fault, onset_s) in setup.faults.iter_mut().zip(&own_onset) {
                 fault.onset_s = *onset_s;
             }

@@ -10,7 +10,7 @@ use btu_rig::procedure::RunOptions;
 use diagnosis::{Dictionary, Model, Settings, Strategy};
 
 use super::bench_setup::Connected;
-use super::observe::Gatherer;
+use super::observe::ObservationBuilder;
 use super::workers::Worker;
 use super::{ProcedureStream, RunPlan, Task, stream};
 use crate::stop::Stop;
@@ -81,10 +81,10 @@ fn isolate(
                 ..task.options.clone()
             },
         };
-        let mut gatherer = Gatherer::new(&task.procedure.id);
+        let mut observation = ObservationBuilder::new(&task.procedure.id);
         let enough = Cell::new(false);
         let mut sink = |event| {
-            if let Some(step) = gatherer.take(&event)
+            if let Some(step) = observation.take(&event)
                 && !strategy.saw(step)
             {
                 enough.set(true);

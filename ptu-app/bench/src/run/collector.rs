@@ -17,7 +17,7 @@ use crate::failure::Exit;
 /// Receives the events of a run while it goes on.
 pub trait Listener {
     /// Called for each event of `procedure`.
-    fn hear(&mut self, procedure: &Procedure, event: &SessionEvent);
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent);
 
     /// The line to print once everything recorded before the event is in the file.
     fn line(&self, _procedure: &Procedure, _event: &SessionEvent) -> Option<String> {
@@ -108,7 +108,7 @@ impl<'a> Collector<'a> {
         let Some(procedure) = self.procedure.clone() else {
             return;
         };
-        self.listener.hear(&procedure, &event);
+        self.listener.on_event(&procedure, &event);
         let line = self.listener.line(&procedure, &event);
         match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),

@@ -67,7 +67,7 @@ impl RunControl for Presser {
 struct Deaf;
 
 impl Listener for Deaf {
-    fn hear(&mut self, _: &Procedure, _: &SessionEvent) {}
+    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
 fn directory() -> ScriptsDirectory {
@@ -263,7 +263,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
 struct Slow(usize);
 
 impl Listener for Slow {
-    fn hear(&mut self, _: &Procedure, event: &SessionEvent) {
+    fn on_event(&mut self, _: &Procedure, event: &SessionEvent) {
         if matches!(event, SessionEvent::Ended { .. }) {
             std::thread::sleep(Duration::from_millis(3 * self.0 as u64));
         }
@@ -326,7 +326,7 @@ struct Busy {
 }
 
 impl Listener for Busy {
-    fn hear(&mut self, _: &Procedure, event: &SessionEvent) {
+    fn on_event(&mut self, _: &Procedure, event: &SessionEvent) {
         use btu_rig::procedure::RunEvent::StepStarted;
         let SessionEvent::Run(StepStarted { name, .. }) = event else {
             return;

@@ -48,7 +48,7 @@ pub use collector::{Listener, Outcome, steps_of, stored};
 pub use event::{RecordedStimuli, SessionEvent};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
-pub use observe::{Gatherer, of_run};
+pub use observe::{ObservationBuilder, of_run};
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};
 

@@ -11,13 +11,13 @@ use super::{CHECK_FAILED, FaultSeen, SessionEvent};
 
 /// Gathers the steps of a procedure, each with the signs that showed since the one before.
 #[derive(Debug)]
-pub struct Gatherer {
+pub struct ObservationBuilder {
     procedure: String,
     waiting: BTreeSet<Sign>,
     steps: Vec<StepSeen>,
 }
 
-impl Gatherer {
+impl ObservationBuilder {
     /// Of the procedure called `procedure`.
     pub fn new(procedure: &str) -> Self {
         Self {

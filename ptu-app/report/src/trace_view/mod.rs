@@ -3,38 +3,38 @@
 //!
 //! * [`columns`]: quantities, least and greatest value per column of pixels;
 //! * [`spans`]: choices and bits, as stretches of one value;
-//! * [`TraceView`]: a trace with every signal summarised once ([`Pyramid`], [`Runs`]);
-//! * [`Axis`]: time or distance; [`Camera`]: the part of it in view;
+//! * [`TraceView`]: a trace with every signal summarised once ([`MinMaxIndex`], [`Runs`]);
+//! * [`Axis`]: time or distance; [`VisibleRange`]: the part of it in view;
 //! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;
 //! * [`choose`]: the signals to show first;
 //! * [`listing`]: which traces there are, and one read from the database with what happened in it;
 //! * [`Overlay`]: another trace or the good twin behind it;
-//! * [`Scene`]: all of this as one picture: lanes, view, cursors, the trace behind.
+//! * [`TracePlot`]: all of this as one picture: lanes, view, cursors, the trace behind.
 
 mod axis;
-mod camera;
 pub mod choose;
 pub mod columns;
 pub mod csv;
 pub mod listing;
+mod min_max_index;
 mod overlay;
-mod pyramid;
 mod runs;
-mod scene;
 pub mod spans;
 pub mod statistics;
+mod trace_plot;
 pub mod value;
 mod view;
+mod visible_range;
 
 pub use axis::{Axis, Edges, Kind};
-pub use camera::Camera;
 pub use columns::Column;
+pub use min_max_index::MinMaxIndex;
 pub use overlay::{Against, Overlay, Parting};
-pub use pyramid::Pyramid;
 pub use runs::Runs;
-pub use scene::{Behind, Cursor, Lane, Scene};
 pub use spans::{Shown, Span};
+pub use trace_plot::{Behind, Cursor, Lane, TracePlot};
 pub use view::{Summary, TraceView};
+pub use visible_range::VisibleRange;
 
 /// What part of an axis is in view, in the axis' unit: s or m.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use btu_rig::procedure::describe::bit_names;
 use fault_db::{Channel, ChannelKind, TraceData};
 use protocol::signal::Signal;
 
-use super::pyramid::Pyramid;
+use super::min_max_index::MinMaxIndex;
 use super::runs::Runs;
 
 /// A trace made ready to be drawn.
@@ -20,7 +20,7 @@ pub struct TraceView {
 #[derive(Debug)]
 pub enum Summary {
     /// A number that is measured or counted.
-    Quantity(Pyramid),
+    Quantity(MinMaxIndex),
     /// A word, or a set of bits with names.
     Choice(Runs),
     /// On or off.
@@ -96,7 +96,7 @@ impl Summary {
             ChannelKind::Bit => Self::Bit(Runs::of(samples)),
             ChannelKind::Enum { .. } => Self::Choice(Runs::of(samples)),
             ChannelKind::Number { .. } if is_set(&channel.name) => Self::Choice(Runs::of(samples)),
-            ChannelKind::Number { .. } => Self::Quantity(Pyramid::of(samples)),
+            ChannelKind::Number { .. } => Self::Quantity(MinMaxIndex::of(samples)),
         }
     }
 }

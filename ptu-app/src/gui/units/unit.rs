@@ -137,11 +137,11 @@ impl Unit {
         }
         let events: Vec<_> = self.bench.events().collect();
         for event in events {
-            self.hear(event, words, said);
+            self.on_event(event, words, said);
         }
     }
 
-    fn hear(&mut self, event: BenchEvent, words: &Words, said: &mut Said<'_>) {
+    fn on_event(&mut self, event: BenchEvent, words: &Words, said: &mut Said<'_>) {
         let frame = &words.frame;
         match event {
             BenchEvent::Connected { serial } => {
@@ -183,7 +183,7 @@ impl Unit {
                     self.lose(why.clone(), words, said);
                 }
                 if let Some(run) = &mut self.run {
-                    run.hear(&procedure, &event);
+                    run.on_event(&procedure, &event);
                 }
             }
             BenchEvent::RunEnded(outcome) => {

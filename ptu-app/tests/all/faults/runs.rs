@@ -49,7 +49,7 @@ pub struct TestBench {
 struct Nobody;
 
 impl Listener for Nobody {
-    fn hear(&mut self, _: &Procedure, _: &SessionEvent) {}
+    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
 impl TestBench {

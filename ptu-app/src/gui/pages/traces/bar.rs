@@ -3,7 +3,7 @@
 use eframe::egui::{RichText, Role, Ui, WidgetInfo};
 
 use crate::gui::{PageContext, Palette};
-use ptu_report::trace_view::{Axis, Cursor, Kind, Scene};
+use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
 use ptu_report::words::fill;
 
 /// How much one press zooms.
@@ -12,7 +12,7 @@ pub const ZOOM: f64 = 0.7;
 /// The bar.
 pub fn view(
     ui: &mut Ui,
-    scene: &mut Scene,
+    scene: &mut TracePlot,
     choosing: &mut bool,
     told: &mut bool,
     context: &mut PageContext<'_>,
@@ -76,12 +76,12 @@ pub fn view(
 }
 
 /// A place on the axis, as `−9.55 s`.
-pub fn place(scene: &Scene, row: usize) -> String {
+pub fn place(scene: &TracePlot, row: usize) -> String {
     length(scene, scene.axis().at(row))
 }
 
 /// A length on the axis.
-pub fn length(scene: &Scene, length: f64) -> String {
+pub fn length(scene: &TracePlot, length: f64) -> String {
     let text = match scene.axis().kind() {
         Kind::Time => format!("{length:.2} s"),
         Kind::Distance => format!("{length:.2} m"),

@@ -10,7 +10,7 @@ use crate::gui::parts::named_combo;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use ptu_report::trace_view::{Against, Overlay, Parting, Scene};
+use ptu_report::trace_view::{Against, Overlay, Parting, TracePlot};
 use ptu_report::words::fill;
 
 /// Traces offered to compare with.
@@ -28,7 +28,7 @@ pub struct BehindAsked {
 
 impl BehindAsked {
     /// Takes what has come, and asks where the traces part when that is not known.
-    pub fn poll(&mut self, scene: &mut Scene, context: &mut PageContext<'_>) {
+    pub fn poll(&mut self, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.overlay.poll() {
             match std::mem::take(&mut self.overlay) {
                 Request::Ready(overlay) => scene.lay_behind(Arc::new(overlay)),
@@ -73,7 +73,7 @@ impl BehindAsked {
     pub fn bar(
         &mut self,
         ui: &mut Ui,
-        scene: &mut Scene,
+        scene: &mut TracePlot,
         list: &TraceList,
         context: &mut PageContext<'_>,
     ) {
@@ -112,7 +112,7 @@ impl BehindAsked {
         }
     }
 
-    fn ask(&mut self, against: Option<Against>, scene: &mut Scene, context: &PageContext<'_>) {
+    fn ask(&mut self, against: Option<Against>, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.against = against;
         self.parting = None;
         scene.lay_nothing_behind();
@@ -140,7 +140,7 @@ impl BehindAsked {
     }
 }
 
-fn offset(ui: &mut Ui, scene: &mut Scene, context: &PageContext<'_>) {
+fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {
     let words = &context.words.traces;
     let period_s = scene.view().data().period_us as f64 / 1e6;
     let Some(shift_rows) = scene.behind().map(|behind| behind.shift_rows) else {
@@ -159,7 +159,7 @@ fn offset(ui: &mut Ui, scene: &mut Scene, context: &PageContext<'_>) {
     }
 }
 
-fn said(ui: &mut Ui, scene: &mut Scene, context: &mut PageContext<'_>) {
+fn said(ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
     let words = &context.words.traces;
     let parting = scene.behind().and_then(|behind| behind.parting.as_ref());
     let Some(parting) = parting else {

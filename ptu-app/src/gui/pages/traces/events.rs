@@ -7,7 +7,7 @@ use super::row::Sheet;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
 use ptu_report::trace_view::listing::Event;
-use ptu_report::trace_view::{Cursor, Scene};
+use ptu_report::trace_view::{Cursor, TracePlot};
 use ptu_report::words::Words;
 
 /// Height of the strip above the lanes.
@@ -18,7 +18,7 @@ const ROWS: usize = 2;
 const LINKS: usize = 40;
 
 /// What happened, each a way to where it did.
-pub fn links(ui: &mut Ui, scene: &mut Scene, words: &Words) {
+pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     let palette = Palette::of(ui);
     let opened = scene.opened().clone();
     ui.horizontal_wrapped(|ui| {

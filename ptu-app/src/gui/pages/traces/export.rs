@@ -14,7 +14,7 @@ use crate::gui::parts::usual_folder;
 use crate::gui::query_worker::Pending;
 use ptu_bench::new_file::{NewFile, cannot_write};
 use ptu_report::trace_view::csv::csv;
-use ptu_report::trace_view::{Kind, Scene};
+use ptu_report::trace_view::{Kind, TracePlot};
 use ptu_report::words::fill;
 
 /// What is to be written, and what is under way.
@@ -34,7 +34,7 @@ impl Export {
     }
 
     /// Name and buttons; `rect` is what the picture is of.
-    pub fn bar(&mut self, ui: &mut Ui, scene: &Scene, rect: Rect, context: &PageContext<'_>) {
+    pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {
         let words = &context.words.traces;
         ui.label(context.words.common.file);
         let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(260.0));
@@ -95,7 +95,7 @@ impl Export {
         });
     }
 
-    fn write_csv(&mut self, scene: &Scene, context: &PageContext<'_>) {
+    fn write_csv(&mut self, scene: &TracePlot, context: &PageContext<'_>) {
         let opened = scene.opened().clone();
         let channels: Vec<usize> = scene.lanes().iter().filter_map(|lane| lane.place).collect();
         let rows = scene.rows_in_view();

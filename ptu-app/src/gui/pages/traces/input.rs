@@ -4,7 +4,7 @@ use eframe::egui::{Event, EventFilter, Key, Rect, Response, Ui};
 
 use super::bar::ZOOM;
 use crate::gui::parts::lane;
-use ptu_report::trace_view::{Cursor, Scene};
+use ptu_report::trace_view::{Cursor, TracePlot};
 
 /// How much one point of wheel zooms.
 const WHEEL: f64 = 0.005;
@@ -24,7 +24,7 @@ pub enum Drag {
 }
 
 /// Wheel, drag and click over the lanes, which lie in `rect`.
-pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut Scene, drag: &mut Drag) {
+pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, drag: &mut Drag) {
     let width = f64::from(rect.width().max(1.0));
     let share = |x: f32| f64::from(x - rect.left()) / width;
     if let Some(at) = response.hover_pos().filter(|at| rect.contains(*at)) {
@@ -40,7 +40,7 @@ pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut Scene, drag
             scene.camera().pan(-f64::from(wheel.x) / width);
         }
     }
-    let near = |scene: &Scene, cursor: Cursor, x: f32| {
+    let near = |scene: &TracePlot, cursor: Cursor, x: f32| {
         scene.cursor(cursor).is_some_and(|row| {
             let at = lane::x_at(rect, scene.window(), scene.axis().at(row));
             (at - x).abs() <= NEAR
@@ -82,7 +82,7 @@ fn shifted_click(event: &Event) -> bool {
 }
 
 /// Keys, unless something else has the keyboard.
-pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut Scene) {
+pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
     let filter = EventFilter {
         horizontal_arrows: true,
         escape: true,

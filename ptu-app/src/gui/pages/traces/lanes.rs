@@ -12,7 +12,7 @@ use super::row::{self, GAP, Scratch, Sheet};
 use crate::gui::Palette;
 use crate::gui::parts::lane::{self, AXIS_HEIGHT};
 use ptu_bench::clock;
-use ptu_report::trace_view::{Against, Cursor, Kind, Scene};
+use ptu_report::trace_view::{Against, Cursor, Kind, TracePlot};
 use ptu_report::words::Words;
 
 /// Room for names left of the lanes, and for the values beside their axes.
@@ -76,7 +76,7 @@ impl Places {
 
 impl Painted {
     /// Shows them in all the room there is.
-    pub fn lanes(&mut self, ui: &mut Ui, scene: &mut Scene, words: &Words) {
+    pub fn lanes(&mut self, ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
         let palette = Palette::of(ui);
         let all = ui.available_rect_before_wrap();
         self.rect = all;
@@ -179,7 +179,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
 }
 
 /// What is told at the right, under the cursors or else under the pointer: heads, and rows of the values.
-fn told(scene: &Scene, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
+fn told(scene: &TracePlot, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
     let at = |row: usize| bar::place(scene, row);
     match [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor)) {
         [Some(a), Some(b)] => {

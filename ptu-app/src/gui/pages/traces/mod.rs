@@ -22,7 +22,7 @@ use compared_trace::BehindAsked;
 use export::Export;
 use lanes::Painted;
 use list::TraceList;
-use ptu_report::trace_view::Scene;
+use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, Opened};
 use ptu_report::words::fill;
 
@@ -34,7 +34,7 @@ const ROW: f32 = 24.0;
 pub struct TracesPage {
     list: TraceList,
     opening: Option<Pending<(Opened, String)>>,
-    scene: Option<Scene>,
+    scene: Option<TracePlot>,
     /// Why nothing is shown.
     trouble: Option<String>,
     behind: BehindAsked,
@@ -88,7 +88,7 @@ impl TracesPage {
                 Ok((opened, name)) => {
                     self.export.name_after(name);
                     self.behind = BehindAsked::default();
-                    self.scene = Some(Scene::new(Arc::new(opened), &context.settings.lanes));
+                    self.scene = Some(TracePlot::new(Arc::new(opened), &context.settings.lanes));
                 }
                 Err(failure) => {
                     self.scene = None;
@@ -157,7 +157,7 @@ impl TracesPage {
 }
 
 /// Whose trace it is, what is amiss with it, and ways on from here.
-fn heading(ui: &mut Ui, scene: &Scene, list: &TraceList, context: &mut PageContext<'_>) {
+fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
     let words = context.words;
     let opened = scene.opened();
     ui.horizontal_wrapped(|ui| {

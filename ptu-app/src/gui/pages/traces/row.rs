@@ -9,7 +9,9 @@ use super::table;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
 use ptu_report::trace_view::value::named;
-use ptu_report::trace_view::{Axis, Behind, Column, Edges, Lane, Scene, Span, Summary, TraceView};
+use ptu_report::trace_view::{
+    Axis, Behind, Column, Edges, Lane, Span, Summary, TracePlot, TraceView,
+};
 use ptu_report::words::Words;
 
 /// Heights of lanes as usual.
@@ -26,7 +28,7 @@ pub const GAP: f32 = 4.0;
 /// What lanes are painted from.
 pub struct Sheet<'a> {
     /// The trace as it is looked at.
-    pub scene: &'a Scene,
+    pub scene: &'a TracePlot,
     /// Where the parts of the picture are.
     pub places: Places,
     /// Rows whose values are told.
@@ -56,7 +58,7 @@ struct Source<'a> {
 
 impl Scratch {
     /// Finds the first rows of the columns of pixels, which all lanes share.
-    pub fn edges(&mut self, scene: &Scene, width: f32) {
+    pub fn edges(&mut self, scene: &TracePlot, width: f32) {
         let columns = width.round().max(1.0) as usize;
         scene.axis().edges(scene.window(), columns, &mut self.own);
         if let Some(behind) = scene.behind() {

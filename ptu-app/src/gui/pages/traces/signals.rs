@@ -3,7 +3,7 @@
 use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::gui::{PageContext, Palette};
-use ptu_report::trace_view::{Scene, Summary};
+use ptu_report::trace_view::{Summary, TracePlot};
 use ptu_report::words::fill;
 
 /// How much one press makes a lane taller.
@@ -18,7 +18,12 @@ enum Pressed {
 }
 
 /// The chooser.
-pub fn choose(ui: &mut Ui, scene: &mut Scene, find: &mut String, context: &mut PageContext<'_>) {
+pub fn choose(
+    ui: &mut Ui,
+    scene: &mut TracePlot,
+    find: &mut String,
+    context: &mut PageContext<'_>,
+) {
     let words = &context.words.traces;
     ui.horizontal(|ui| {
         ui.label(RichText::new(words.signals).strong());
@@ -72,7 +77,7 @@ pub fn name_input(response: &Response, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, response.enabled(), name));
 }
 
-fn shown(ui: &mut Ui, scene: &Scene, context: &PageContext<'_>) -> Option<Pressed> {
+fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<Pressed> {
     let words = &context.words.traces;
     let mut pressed = None;
     for (i, lane) in scene.lanes().iter().enumerate() {
@@ -98,7 +103,7 @@ fn shown(ui: &mut Ui, scene: &Scene, context: &PageContext<'_>) -> Option<Presse
     pressed
 }
 
-fn act(pressed: Pressed, signals: &mut Vec<String>, scene: &mut Scene) {
+fn act(pressed: Pressed, signals: &mut Vec<String>, scene: &mut TracePlot) {
     match pressed {
         Pressed::Up(i) if i > 0 => signals.swap(i, i - 1),
         Pressed::Down(i) if i + 1 < signals.len() => signals.swap(i, i + 1),

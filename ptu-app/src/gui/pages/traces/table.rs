@@ -5,14 +5,14 @@ use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 use super::bar;
 use ptu_report::trace_view::statistics::Statistics;
 use ptu_report::trace_view::value::{named, number};
-use ptu_report::trace_view::{Cursor, Scene};
+use ptu_report::trace_view::{Cursor, TracePlot};
 use ptu_report::words::{Words, fill};
 
 /// States told by share; a counter has as many as rows.
 const STATES: usize = 4;
 
 /// The table.
-pub fn statistics(ui: &mut Ui, scene: &mut Scene, words: &Words) {
+pub fn statistics(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     let traces = &words.traces;
     let (rows, between) = scene.stretch_rows();
     let length = scene.axis().at(rows.end.saturating_sub(1)) - scene.axis().at(rows.start);
@@ -60,7 +60,7 @@ pub fn statistics(ui: &mut Ui, scene: &mut Scene, words: &Words) {
     });
 }
 
-fn row(ui: &mut Ui, scene: &Scene, place: usize, statistics: &Statistics, words: &Words) {
+fn row(ui: &mut Ui, scene: &TracePlot, place: usize, statistics: &Statistics, words: &Words) {
     let channel = scene.view().channel(place);
     for cursor in [Cursor::A, Cursor::B] {
         let value = scene.value(place, cursor);
@@ -103,7 +103,7 @@ fn row(ui: &mut Ui, scene: &Scene, place: usize, statistics: &Statistics, words:
 }
 
 /// B − A of a quantity; empty for anything else.
-pub fn difference(scene: &Scene, place: usize) -> String {
+pub fn difference(scene: &TracePlot, place: usize) -> String {
     let channel = scene.view().channel(place);
     match scene.difference(place) {
         Some(value) if !value.is_nan() => number(value, &channel.unit),

@@ -8,11 +8,11 @@ const FAN: usize = 4;
 
 /// Extremes of stretches of 4, 16, 64 … rows, made once.
 #[derive(Clone, Debug, Default)]
-pub struct Pyramid {
+pub struct MinMaxIndex {
     levels: Vec<Vec<Column>>,
 }
 
-impl Pyramid {
+impl MinMaxIndex {
     /// Of a column of samples; those that are not known (NaN) count for nothing.
     pub fn of(samples: &[f64]) -> Self {
         let mut levels: Vec<Vec<Column>> = Vec::new();
@@ -94,7 +94,7 @@ mod tests {
     fn any_stretch_has_the_extremes_of_its_rows() {
         for rows in [1, 3, 4, 5, 16, 17, 64, 65, 200, 257] {
             let samples = noise(rows);
-            let pyramid = Pyramid::of(&samples);
+            let pyramid = MinMaxIndex::of(&samples);
             for from in 0..rows {
                 for to in from..=rows {
                     let found = pyramid.range(&samples, from, to);
@@ -118,7 +118,7 @@ mod tests {
             end: 5,
         };
         let mut columns = Vec::new();
-        Pyramid::of(&samples).columns(&samples, &edges, &mut columns);
+        MinMaxIndex::of(&samples).columns(&samples, &edges, &mut columns);
         let known: Vec<_> = columns.iter().map(|c| (c.low, c.high)).collect();
         assert_eq!(known[..3], [(1.0, 5.0), (5.0, 5.0), (5.0, 5.0)]);
         assert_eq!(known[3..5], [(2.0, 2.0), (2.0, 2.0)]);
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn no_rows_are_no_trouble() {
-        let pyramid = Pyramid::of(&[]);
+        let pyramid = MinMaxIndex::of(&[]);
         assert!(!pyramid.range(&[], 0, 0).is_known());
     }
 }

@@ -7,13 +7,13 @@ const BEYOND: f64 = 0.02;
 
 /// Which part of the axis is in view, and how far it may go.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct VisibleRange {
     window: Window,
     whole: Window,
     least: f64,
 }
 
-impl Camera {
+impl VisibleRange {
     /// All of it in view; no less than `least` can be.
     pub fn new(whole: Window, least: f64) -> Self {
         let room = whole.length() * BEYOND;
@@ -77,8 +77,8 @@ impl Camera {
 mod tests {
     use super::*;
 
-    fn camera() -> Camera {
-        Camera::new(
+    fn camera() -> VisibleRange {
+        VisibleRange::new(
             Window {
                 from: 0.0,
                 to: 100.0,
@@ -113,7 +113,7 @@ mod tests {
         // Ends that rounding puts past each other when all of it is in view.
         for length in 1..2000 {
             let to = f64::from(length) * 0.05;
-            let mut camera = Camera::new(Window { from: -10.0, to }, 0.4);
+            let mut camera = VisibleRange::new(Window { from: -10.0, to }, 0.4);
             camera.pan(0.1);
             camera.zoom(0.3, 7.0);
         }

@@ -7,7 +7,7 @@ use super::listing::Opened;
 use super::overlay::{Against, Overlay, Parting};
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
-use super::{Axis, Camera, Kind, choose};
+use super::{Axis, Kind, VisibleRange, choose};
 use crate::ticks;
 
 /// Fewest rows in view.
@@ -50,10 +50,10 @@ pub struct Behind {
 
 /// A trace as it is looked at.
 #[derive(Debug)]
-pub struct Scene {
+pub struct TracePlot {
     opened: Arc<Opened>,
     axis: Axis,
-    camera: Camera,
+    camera: VisibleRange,
     lanes: Vec<Lane>,
     cursors: [Option<usize>; 2],
     close: bool,
@@ -62,7 +62,7 @@ pub struct Scene {
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
-impl Scene {
+impl TracePlot {
     /// All of a trace over time, with these signals; with the usual ones if there are none.
     pub fn new(opened: Arc<Opened>, signals: &[String]) -> Self {
         let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
@@ -96,7 +96,7 @@ impl Scene {
     }
 
     /// The part in view.
-    pub fn camera(&mut self) -> &mut Camera {
+    pub fn camera(&mut self) -> &mut VisibleRange {
         &mut self.camera
     }
 
@@ -321,12 +321,12 @@ impl Scene {
     }
 }
 
-fn camera(axis: &Axis, view: &TraceView) -> Camera {
+fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     let least = match axis.kind() {
         Kind::Time => FEWEST_ROWS * view.data().period_us as f64 / 1e6,
         Kind::Distance => LEAST_WAY_M,
     };
-    Camera::new(axis.whole(), least)
+    VisibleRange::new(axis.whole(), least)
 }
 
 /// Its axis, with 0 so many rows before the trigger.

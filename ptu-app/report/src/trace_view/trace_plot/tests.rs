@@ -1,11 +1,11 @@
-//! Cursors, axes and statistics of a scene.
+//! Cursors, axes and statistics of a plot.
 
 use fault_db::Id;
 
 use super::super::tests::trace;
 use super::*;
 
-fn scene() -> Scene {
+fn scene() -> TracePlot {
     let ramp: Vec<f64> = (0..100).map(f64::from).collect();
     let way: Vec<f64> = (0..100).map(|row| f64::from(row) * 0.5).collect();
     let mut data = trace(&[("speed", &ramp), ("train_position", &way)]);
@@ -17,7 +17,7 @@ fn scene() -> Scene {
         events: Vec::new(),
     };
     let signals = ["speed", "nothing"].map(str::to_owned);
-    Scene::new(Arc::new(opened), &signals)
+    TracePlot::new(Arc::new(opened), &signals)
 }
 
 #[test]
