@@ -44,6 +44,17 @@ pub enum Anchor {
     End,
 }
 
+impl Anchor {
+    /// The part of the text before it.
+    pub fn share(self) -> f32 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5,
+            Self::End => 1.0,
+        }
+    }
+}
+
 /// A mark, in units of the drawing from its upper left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {

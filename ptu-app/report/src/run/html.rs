@@ -2,8 +2,9 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
+use super::Sheet;
 use super::block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone};
-use super::{Sheet, blocks};
+use super::content::blocks;
 use crate::page_text;
 use crate::words::Words;
 

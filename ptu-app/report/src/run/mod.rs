@@ -1,13 +1,14 @@
-//! The test sheet of a run: one gathering from the store, one sequence of blocks, two ways to
-//! draw them. What a page and a printed sheet say is therefore the same.
+//! The test sheet of a run: one gathering from the store, one sequence of blocks, one layout on pages. What
+//! the HTML page, the PDF and the window say is therefore the same, and the window shows the PDF's pages.
 //!
-//! [`Sheet::gather`] → [`blocks`] → `html` or `pdf`
+//! [`Sheet::gather`] → blocks → [`html()`], or [`page::pages`] → [`pdf()`] and the window
 
 mod block;
 mod content;
 mod diagnosis;
 mod gather;
 mod html;
+pub mod page;
 mod pdf;
 mod plots;
 mod steps;
@@ -19,8 +20,6 @@ use std::collections::BTreeMap;
 
 use fault_db::{Id, RunDetail, TraceData};
 
-pub use block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone};
-pub use content::blocks;
 pub use html::html;
 pub use pdf::pdf;
 

@@ -7,9 +7,10 @@ use fault_db::{
 
 use protocol::display_text;
 
-use super::pdf::{HEIGHT, PageItem, WIDTH, laid_out};
+use super::page::font::Letters;
+use super::page::{self, HEIGHT, Item, WIDTH};
 use super::{Sheet, html, pdf};
-use crate::words::Language;
+use crate::words::{Language, Words};
 
 const HOSTILE: &str = "<script>alert(\"1\")</script>&'\u{1b}[31m\u{9b}2J\u{202e}";
 
@@ -167,12 +168,18 @@ fn sheet(stored: &Stored, id: Id) -> Sheet {
     Sheet::gather(&stored.store, None, id).expect("a sheet")
 }
 
-fn words_of(page: &[PageItem]) -> String {
-    let text = |item: &PageItem| match item {
-        PageItem::Text { text, .. } => Some(text.clone()),
+fn laid_out(sheet: &Sheet, words: &Words) -> Vec<page::Page> {
+    page::pages(sheet, words).expect("pages")
+}
+
+/// The texts of a page, each line ended.
+fn words_of(page: &[Item]) -> String {
+    let text = |item: &Item| match item {
+        Item::Text(text) => Some(text.lines.clone()),
         _ => None,
     };
-    page.iter().filter_map(text).collect::<Vec<_>>().join(" ")
+    let lines = page.iter().filter_map(text).flatten();
+    lines.map(|(_, line)| line + " ").collect()
 }
 
 #[test]
@@ -210,6 +217,7 @@ fn korean_sheets_are_korean_and_all_placeholders_are_filled() {
 fn two_hundred_steps_stand_on_pages_with_headings() {
     let (store, id) = stored(200, true);
     let pages = laid_out(&sheet(&store, id), Language::English.words());
+    let letters = Letters::new().expect("the font");
     let mut said = String::new();
     for (number, page) in (1..).zip(&pages) {
         let words = words_of(page);
@@ -218,13 +226,22 @@ fn two_hundred_steps_stand_on_pages_with_headings() {
             assert!(words.contains("Step, measurement"), "page {number}");
         }
         for item in page {
-            let PageItem::Text { x, y, .. } = item else {
+            let Item::Text(text) = item else {
                 continue;
             };
-            assert!(
-                (0.0..WIDTH).contains(x) && (0.0..HEIGHT).contains(y),
-                "{item:?}"
-            );
+            for (y, line) in &text.lines {
+                let long = letters.width(line.trim_end(), text.size);
+                let x = text.x
+                    - if text.turned {
+                        0.0
+                    } else {
+                        long * text.anchor.share()
+                    };
+                assert!(
+                    (0.0..WIDTH).contains(&x) && (0.0..HEIGHT).contains(y),
+                    "{item:?}"
+                );
+            }
         }
         said += &words;
     }

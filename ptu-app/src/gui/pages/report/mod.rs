@@ -1,11 +1,8 @@
 //! The test sheet of a run: shown as it will be printed, and written to a file.
 
 mod bar;
-mod drawing;
 mod file;
-mod flow;
 mod paper;
-mod ruler;
 
 use std::path::PathBuf;
 
@@ -15,8 +12,9 @@ use fault_db::Id;
 use crate::gui::parts::{RunList, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use paper::Paper;
-use ptu_report::run::{Block, Sheet, blocks};
+use ptu_bench::failure::Failure;
+use ptu_report::run::Sheet;
+use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
 
 /// The page.
@@ -35,7 +33,6 @@ pub struct ReportPage {
     pass: u64,
     /// Language of the sheet; none = the window's.
     language: Option<Language>,
-    paper: Paper,
     file: String,
     writing: Request<PathBuf>,
     note: RunNoteForm,
@@ -44,7 +41,7 @@ pub struct ReportPage {
 /// A sheet.
 struct Shown {
     run: Id,
-    blocks: Vec<Block>,
+    pages: Vec<Page>,
     /// Its traces with the faults each shows.
     traces: Vec<(Id, String)>,
     /// Something in it did not pass.
@@ -94,7 +91,7 @@ impl ReportPage {
         self.ended = context.units.runs_ended();
         self.asked = Request::Pending(context.queries.run(move |paths| {
             let sheet = Sheet::gather(&paths.read()?, Some(&paths.scripts), run)?;
-            Ok(Shown::of(&sheet, language))
+            Shown::of(&sheet, language)
         }));
     }
 
@@ -111,10 +108,7 @@ impl ReportPage {
     fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.asked.poll() {
             match std::mem::take(&mut self.asked) {
-                Request::Ready(shown) => {
-                    self.shown = Some(shown);
-                    self.paper = Paper::default();
-                }
+                Request::Ready(shown) => self.shown = Some(shown),
                 other => self.asked = other,
             }
         }
@@ -156,22 +150,22 @@ impl ReportPage {
         self.bar(ui, context);
         ui.separator();
         if let Some(shown) = &self.shown {
-            self.paper.show(ui, shown.run, &shown.blocks);
+            paper::show(ui, shown.run, &shown.pages);
         }
     }
 }
 
 impl Shown {
-    fn of(sheet: &Sheet, language: Language) -> Self {
+    fn of(sheet: &Sheet, language: Language) -> Result<Self, Failure> {
         let run = &sheet.run.run;
         let traces = sheet.traces.iter();
-        Self {
+        Ok(Self {
             run: run.id,
-            blocks: blocks(sheet, language.words()),
+            pages: pages(sheet, language.words())?,
             traces: traces
                 .map(|trace| (trace.id, trace.faults.join(", ")))
                 .collect(),
             faulty: run.steps_not_passed > 0 || run.faults > 0,
-        }
+        })
     }
 }

@@ -1,93 +1,72 @@
-//! A sheet in the window: placed once for a width, then only what is in view is drawn.
+//! The pages of a sheet in the window, as they will be printed: scaled to the room there is, in the window's
+//! colours. Only what is in view is drawn.
 
-use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use eframe::egui::emath::GuiRounding;
+use eframe::egui::epaint::TextShape;
+use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    Color32, FontId, Galley, Key, Label, Pos2, Rect, ScrollArea, Stroke, StrokeKind, Ui, UiBuilder,
-    Vec2, pos2, vec2,
+    Color32, FontId, Galley, Key, Label, Pos2, Rangef, Rect, Role, ScrollArea, Sense, Shape,
+    Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use fault_db::Id;
 
-use super::drawing;
-use super::flow::{
-    ABOVE_HEADING, ABOVE_SUBHEADING, AROUND_ROW, BELOW, BETWEEN, CELL, Flow, HEADING, INSIDE_FRAME,
-    NAMES, Piece, SUBHEADING, TEXT, TITLE, heading, placed,
-};
-use super::ruler::Ruler;
 use crate::gui::Palette;
-use ptu_report::plot::Mark;
-use ptu_report::run::{Align, Block, Cell, Row, RowKind, Table, Tone};
+use ptu_report::run::page::{DASH, HEIGHT, Ink, Item, Page, Text, WIDTH};
 
-/// A sheet is so wide at least and at most, points.
-const WIDTH: (f32, f32) = (560.0, 1000.0);
-/// It is placed anew when its width has changed by so much, points.
+/// A page is so wide at least and at most, points of the window.
+const WIDE: RangeInclusive<f32> = 864.0..=1168.0;
+/// Its width is a multiple of this, so that few sizes of letters are made.
 const STEP: f32 = 16.0;
-/// Free beside it, points.
-const BESIDE: f32 = 12.0;
+/// Free beside and between pages.
+const BETWEEN: f32 = 12.0;
 /// Share of what is in view that a key scrolls by.
 const PAGE: f32 = 0.9;
+/// How far words reach above and below their base line, in sizes of the letters.
+const ABOVE: f32 = 1.0;
+const BELOW: f32 = 0.4;
 
-/// A sheet as it was placed.
-#[derive(Default)]
-pub struct Paper {
-    flow: Option<Flow>,
-    /// Points on a pixel may change the widths of letters.
-    pixels_per_point: f32,
-    /// What plots are drawn with, by their block; made when first in view.
-    marks: BTreeMap<usize, Vec<Mark>>,
-}
-
-impl Paper {
-    /// Shows the blocks of the sheet of this run.
-    pub fn show(&mut self, ui: &mut Ui, run: Id, blocks: &[Block]) {
-        let area = ScrollArea::both()
-            .id_salt(("sheet", run))
-            .auto_shrink(false);
-        area.show_viewport(ui, |ui, viewport| {
-            let flow = self.placed(ui, blocks, viewport.width());
-            let beside = ((viewport.width() - flow.width) / 2.0).max(BESIDE);
-            let corner = ui.min_rect().min;
-            let whole = vec2(flow.width + 2.0 * BESIDE, flow.height + HEADING);
-            ui.set_min_size(whole);
-            keys(ui, viewport.height());
-            let ink = Ink::of(ui);
-            let marks = &mut self.marks;
-            for piece in flow.within(viewport.top(), viewport.bottom()) {
-                let at = corner + vec2(beside, piece.top);
-                let on = On {
-                    ui,
-                    ink: &ink,
-                    at,
-                    width: flow.width,
-                    piece,
-                };
-                if let Some(block) = blocks.get(piece.block) {
-                    on.draw(block, marks);
-                }
+/// Shows the pages of the sheet of this run.
+pub fn show(ui: &mut Ui, run: Id, pages: &[Page]) {
+    let area = ScrollArea::both()
+        .id_salt(("sheet", run))
+        .auto_shrink(false);
+    area.show_viewport(ui, |ui, viewport| {
+        let room = viewport.width() - 2.0 * BETWEEN;
+        let wide = room.clamp(*WIDE.start(), *WIDE.end());
+        let scale = (wide / STEP).floor() * STEP / WIDTH;
+        let size = vec2(WIDTH, HEIGHT) * scale;
+        let beside = ((viewport.width() - size.x) / 2.0).max(BETWEEN);
+        let whole = vec2(
+            size.x + 2.0 * BETWEEN,
+            pages.len() as f32 * (size.y + BETWEEN),
+        );
+        let corner = ui.min_rect().min;
+        ui.set_min_size(whole);
+        keys(ui, viewport.height());
+        for (number, page) in pages.iter().enumerate() {
+            let top = number as f32 * (size.y + BETWEEN);
+            let seen = Rangef::new(viewport.top() - top, viewport.bottom() - top);
+            if !seen.intersects(Rangef::new(0.0, size.y)) {
+                continue;
             }
-            self.flow = Some(flow);
-        });
-    }
-
-    /// The sheet placed for what is `room` wide.
-    fn placed(&mut self, ui: &Ui, blocks: &[Block], room: f32) -> Flow {
-        let width = (room - 2.0 * BESIDE).clamp(WIDTH.0, WIDTH.1);
-        let width = (width / STEP).floor() * STEP;
-        let pixels_per_point = ui.pixels_per_point();
-        let same = |flow: &Flow| flow.width == width && self.pixels_per_point == pixels_per_point;
-        match self.flow.take().filter(same) {
-            Some(flow) => flow,
-            None => {
-                self.pixels_per_point = pixels_per_point;
-                self.marks.clear();
-                let mut ruler = Ruler::new(ui);
-                Flow::new(blocks, width, &mut |text, size, width| {
-                    ruler.height(text, size, width)
-                })
-            }
+            let at = corner + vec2(beside, top);
+            let edge = Stroke::new(1.0, Palette::of(ui).grid);
+            let area = Rect::from_min_size(at, size);
+            let ground = ui.visuals().extreme_bg_color;
+            let painter = ui.painter();
+            painter.rect(area, 0.0, ground, edge, StrokeKind::Outside);
+            let paper = Paper {
+                ui,
+                number,
+                at,
+                scale,
+            };
+            paper.draw(page, Rangef::new(seen.min / scale, seen.max / scale));
         }
-    }
+    });
 }
 
 /// A page up or down where no field has the keys.
@@ -104,198 +83,188 @@ fn keys(ui: &Ui, page: f32) {
     }
 }
 
-/// What words are written in.
-struct Ink {
-    palette: Palette,
-    plain: Color32,
-    strong: Color32,
-}
-
-impl Ink {
-    fn of(ui: &Ui) -> Self {
-        Self {
-            palette: Palette::of(ui),
-            plain: ui.visuals().text_color(),
-            strong: ui.visuals().strong_text_color(),
-        }
-    }
-
-    fn tone(&self, tone: Tone) -> Color32 {
-        match tone {
-            Tone::Plain => self.plain,
-            Tone::Soft => self.palette.quiet,
-            Tone::Good => self.palette.good,
-            Tone::Bad => self.palette.bad,
-        }
-    }
-}
-
-/// Where a piece is drawn.
-struct On<'a> {
+/// Where a page is drawn.
+struct Paper<'a> {
     ui: &'a mut Ui,
-    ink: &'a Ink,
+    number: usize,
     at: Pos2,
-    width: f32,
-    piece: &'a Piece,
+    scale: f32,
 }
 
-impl On<'_> {
-    fn draw(mut self, block: &Block, marks: &mut BTreeMap<usize, Vec<Mark>>) {
-        let (plain, strong, soft) = (self.ink.plain, self.ink.strong, self.ink.palette.quiet);
-        match block {
-            Block::Title(title, below) => {
-                let high = self.words((0.0, BELOW), TITLE, strong, title).y;
-                self.words((0.0, BELOW + high), TEXT, soft, below);
+impl Paper<'_> {
+    /// Draws the items between these heights of the page.
+    fn draw(mut self, page: &Page, seen: Rangef) {
+        for (place, item) in page.iter().enumerate() {
+            if !extent(item).intersects(seen) {
+                continue;
             }
-            Block::Heading(text) => {
-                let high = self.words((0.0, ABOVE_HEADING), HEADING, strong, text).y;
-                self.rule(ABOVE_HEADING + high + 2.0, soft);
-            }
-            Block::Subheading(text, end) => {
-                let long = self
-                    .words((0.0, ABOVE_SUBHEADING), SUBHEADING, strong, text)
-                    .x;
-                self.words((long + BETWEEN, ABOVE_SUBHEADING + 2.0), TEXT, soft, end);
-            }
-            Block::Verdict(tone, verdict, beside) => self.verdict(*tone, verdict, beside),
-            Block::Facts(facts) => {
-                if let Some((name, value)) = facts.get(self.piece.line) {
-                    self.wrapped((0.0, 0.0), NAMES - BETWEEN, TEXT, soft, name);
-                    self.wrapped((NAMES, 0.0), self.width - NAMES, TEXT, plain, value);
+            match item {
+                Item::Text(text) => self.text(place, text),
+                Item::Line {
+                    points,
+                    ink,
+                    width,
+                    dashed,
+                } => {
+                    let points: Vec<_> = points.iter().map(|(x, y)| self.point(*x, *y)).collect();
+                    let stroke = Stroke::new(width * self.scale, self.colour(*ink));
+                    let painter = self.ui.painter();
+                    if *dashed {
+                        let [dash, gap] = DASH.map(|long| long * self.scale);
+                        painter.extend(Shape::dashed_line(&points, stroke, dash, gap));
+                    } else {
+                        painter.add(Shape::line(points, stroke));
+                    }
                 }
-            }
-            Block::Text(tone, text) => {
-                let colour = self.ink.tone(*tone);
-                self.wrapped((0.0, 0.0), self.width, TEXT, colour, text);
-            }
-            Block::Table(table) => self.table(table),
-            Block::Plot(plot) => {
-                let (width, height) = plot.size(f64::from(self.width));
-                let marks = marks
-                    .entry(self.piece.block)
-                    .or_insert_with(|| plot.marks(width));
-                let rect = Rect::from_min_size(self.at, vec2(width as f32, height as f32));
-                let id = self.ui.scope_id().with(("plot", self.piece.block));
-                drawing::plot(self.ui, id, rect, &plot.title, marks);
-            }
-            Block::Signatures(who, date) => self.signatures(who, date),
-        }
-    }
-
-    /// The verdict within a frame.
-    fn verdict(&mut self, tone: Tone, verdict: &str, beside: &str) {
-        let colour = self.ink.tone(tone);
-        let frame = vec2(self.width, self.piece.height - 2.0 * BELOW);
-        let frame = Rect::from_min_size(self.at + vec2(0.0, BELOW), frame);
-        let stroke = Stroke::new(2.0, colour);
-        let painter = self.ui.painter();
-        painter.rect_stroke(frame, 4.0, stroke, StrokeKind::Inside);
-        let inside = BELOW + INSIDE_FRAME;
-        let long = self.words((14.0, inside), TITLE, colour, verdict).x;
-        let plain = self.ink.plain;
-        self.words((14.0 + long + 16.0, inside + 8.0), TEXT, plain, beside);
-    }
-
-    fn table(&mut self, table: &Table) {
-        let line = self.piece.line;
-        if line == 0 {
-            self.row(&heading(table), table);
-            self.rule(self.piece.height, self.ink.palette.quiet);
-        } else if let Some(row) = table.rows.get(line - 1) {
-            if row.kind == RowKind::Head && line > 1 {
-                self.rule(0.0, self.ink.palette.grid);
-            }
-            self.row(row, table);
-        }
-    }
-
-    fn row(&mut self, row: &Row, table: &Table) {
-        for cell in placed(row, &table.columns, self.width) {
-            match cell.cell {
-                Cell::Text(tone, text) => {
-                    let colour = self.ink.tone(*tone);
-                    let laid = self.laid(cell.width, CELL, colour, text);
-                    let spare = match cell.align {
-                        Align::Left => 0.0,
-                        Align::Right => (cell.width - laid.size().x).max(0.0),
-                    };
-                    self.put((cell.left + spare, AROUND_ROW), laid);
+                Item::Area(x, y, wide, high, ink) => {
+                    let area = self.area(*x, *y, *wide, *high);
+                    let colour = self.colour(*ink);
+                    self.ui.painter().rect_filled(area, 0.0, colour);
                 }
-                Cell::Verdict(tone, text) => {
-                    let colour = self.ink.tone(*tone);
-                    let laid = self.laid(cell.width, CELL, colour, text);
-                    let at = self.at + vec2(cell.left, AROUND_ROW);
-                    let chip = Rect::from_min_size(at, laid.size()).expand2(vec2(5.0, 1.0));
-                    let ground = colour.gamma_multiply(0.18);
-                    self.ui.painter().rect_filled(chip, 4.0, ground);
-                    self.put((cell.left, AROUND_ROW), laid);
+                Item::Disc(x, y, radius, ink) => {
+                    let (middle, colour) = (self.point(*x, *y), self.colour(*ink));
+                    let radius = radius * self.scale;
+                    self.ui.painter().circle_filled(middle, radius, colour);
                 }
-                Cell::Gauge(Some(gauge)) => {
-                    let at = self.at + vec2(cell.left, AROUND_ROW);
-                    let bar = Rect::from_min_size(at, vec2(cell.width, CELL + 2.0));
-                    drawing::gauge(self.ui, bar, gauge);
+                Item::Drawing(x, y, wide, high, title) => {
+                    let area = self.area(*x, *y, *wide, *high);
+                    let id = self.ui.scope_id().with((self.number, place));
+                    let response = self.ui.interact(area, id, Sense::hover());
+                    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, title));
                 }
-                Cell::Gauge(None) => {}
             }
         }
     }
 
-    fn signatures(&mut self, who: &[String], date: &str) {
-        let each = self.width / who.len().max(1) as f32;
-        let (plain, soft) = (self.ink.plain, self.ink.palette.quiet);
-        for (number, name) in who.iter().enumerate() {
-            let left = number as f32 * each;
-            for (from, share, text) in [(0.0, 0.56, name.as_str()), (0.62, 0.3, date)] {
-                let begin = self.at + vec2(left + from * each, 50.0);
-                let line = begin.x..=begin.x + share * each;
-                let stroke = Stroke::new(1.0, plain);
-                self.ui.painter().hline(line, begin.y, stroke);
-                self.words((left + from * each, 54.0), TEXT, soft, text);
-            }
+    fn point(&self, x: f32, y: f32) -> Pos2 {
+        self.at + vec2(x, y) * self.scale
+    }
+
+    fn area(&self, x: f32, y: f32, wide: f32, high: f32) -> Rect {
+        Rect::from_min_size(self.point(x, y), vec2(wide, high) * self.scale)
+    }
+
+    fn colour(&self, ink: Ink) -> Color32 {
+        let palette = Palette::of(self.ui);
+        match ink {
+            Ink::Black => self.ui.visuals().text_color(),
+            Ink::Soft | Ink::Rule => palette.quiet,
+            Ink::Good => palette.good,
+            Ink::Bad => palette.bad,
+            Ink::Grid => palette.grid,
+            Ink::Band => palette.good.gamma_multiply(0.45),
+            Ink::Shade => palette.warn.gamma_multiply(0.25),
+            Ink::Curve(place) => palette.curves[place % palette.curves.len()],
         }
     }
 
-    fn rule(&self, y: f32, colour: Color32) {
-        let across = self.at.x..=self.at.x + self.width;
-        let stroke = Stroke::new(1.0, colour);
-        self.ui.painter().hline(across, self.at.y + y, stroke);
-    }
-
-    /// A text as wide as there is room on the right; its size.
-    fn words(&mut self, from: (f32, f32), size: f32, colour: Color32, text: &str) -> Vec2 {
-        self.wrapped(from, self.width - from.0, size, colour, text)
-    }
-
-    fn wrapped(
-        &mut self,
-        from: (f32, f32),
-        width: f32,
-        size: f32,
-        colour: Color32,
-        text: &str,
-    ) -> Vec2 {
-        let laid = self.laid(width, size, colour, text);
-        let room = laid.size();
-        self.put(from, laid);
-        room
-    }
-
-    fn laid(&self, width: f32, size: f32, colour: Color32, text: &str) -> Arc<Galley> {
-        let font = FontId::proportional(size);
-        let painter = self.ui.painter();
-        painter.layout(text.to_owned(), font, colour, width.max(size))
-    }
-
-    /// A label: what is said can be read by a screen reader and copied.
-    fn put(&mut self, (x, y): (f32, f32), laid: Arc<Galley>) {
+    /// Words as a label, which a screen reader reads and from which can be copied; those of a drawing only seen.
+    fn text(&mut self, place: usize, text: &Text) {
+        let Some((first, _)) = text.lines.first() else {
+            return;
+        };
+        let laid = self.laid(text);
         if laid.text().is_empty() {
             return;
         }
-        let at = pos2(self.at.x + x, self.at.y + y);
-        let name = (self.piece.block, self.piece.line, x.to_bits());
+        let begin = self.point(text.x, *first);
+        let back = text.anchor.share() * laid.size().x;
+        let above = base(&laid);
+        if text.turned {
+            let corner = pos2(begin.x - above, begin.y + back);
+            let shape = TextShape::new(corner, laid, self.colour(text.ink));
+            let upwards = -std::f32::consts::FRAC_PI_2;
+            self.ui.painter().add(shape.with_angle(upwards));
+            return;
+        }
+        let corner = begin - vec2(back, above);
+        if text.in_drawing {
+            let colour = self.colour(text.ink);
+            self.ui.painter().galley(corner, laid, colour);
+            return;
+        }
         let place = UiBuilder::new()
-            .id_salt(name)
-            .max_rect(Rect::from_min_size(at, laid.size()));
+            .id_salt((self.number, place))
+            .max_rect(Rect::from_min_size(corner, laid.size()));
         self.ui.new_child(place).add(Label::new(laid));
+    }
+
+    /// The lines, broken where the page breaks them, as one text.
+    fn laid(&self, text: &Text) -> Arc<Galley> {
+        let font = FontId::proportional(text.size * self.scale);
+        let colour = match text.ink {
+            Ink::Black if text.strong => self.ui.visuals().strong_text_color(),
+            ink => self.colour(ink),
+        };
+        let painter = self.ui.painter();
+        let line = |(_, line): &(f32, String)| {
+            let line = line.trim_end_matches('\n').to_owned();
+            painter.layout_no_wrap(line, font.clone(), colour)
+        };
+        if let [only] = &text.lines[..] {
+            return line(only);
+        }
+        let lines: Vec<_> = text.lines.iter().map(line).collect();
+        let whole = text.lines.iter().map(|(_, line)| line.as_str()).collect();
+        let job = LayoutJob::simple(whole, font, colour, f32::INFINITY);
+        let pixels = self.ui.pixels_per_point();
+        let mut laid = Galley::concat(Arc::new(job), &lines, pixels);
+        let width = laid.rect.width();
+        let (mut rect, mut mesh) = (Rect::NOTHING, Rect::NOTHING);
+        for (row, (y, line)) in laid.rows.iter_mut().zip(&text.lines) {
+            let spare = width - row.row.size.x;
+            let below = (y - text.lines[0].0) * self.scale;
+            row.pos = pos2(spare * text.anchor.share(), below).round_to_pixels(pixels);
+            row.ends_with_newline = line.ends_with('\n');
+            rect |= row.rect();
+            mesh |= row.row.visuals.mesh_bounds.translate(row.pos.to_vec2());
+        }
+        (laid.rect, laid.mesh_bounds) = (rect, mesh);
+        Arc::new(laid)
+    }
+}
+
+/// From the top of a row to its base line.
+fn base(laid: &Galley) -> f32 {
+    let letter = laid.rows.iter().find_map(|row| row.glyphs.first());
+    letter.map_or(0.0, |letter| letter.pos.y)
+}
+
+/// Between which heights of its page an item is.
+fn extent(item: &Item) -> Rangef {
+    match item {
+        Item::Text(text) if text.turned => Rangef::EVERYTHING,
+        Item::Text(text) => {
+            let (above, below) = (ABOVE * text.size, BELOW * text.size);
+            let lines = text.lines.iter();
+            lines.fold(Rangef::NOTHING, |all, (y, _)| {
+                Rangef::new(all.min.min(y - above), all.max.max(y + below))
+            })
+        }
+        Item::Line { points, .. } => points.iter().fold(Rangef::NOTHING, |all, (_, y)| {
+            Rangef::new(all.min.min(*y), all.max.max(*y))
+        }),
+        Item::Area(_, y, _, high, _) | Item::Drawing(_, y, _, high, _) => Rangef::new(*y, y + high),
+        Item::Disc(_, y, radius, _) => Rangef::new(y - radius, y + radius),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_item_is_between_the_heights_where_it_is_seen() {
+        let line = Item::Line {
+            points: vec![(0.0, 9.0), (5.0, 3.0), (7.0, 4.0)],
+            ink: Ink::Grid,
+            width: 0.5,
+            dashed: false,
+        };
+        let disc = Item::Disc(10.0, 20.0, 2.0, Ink::Good);
+        let area = Item::Area(10.0, 20.0, 5.0, 6.0, Ink::Band);
+        for (item, from, to) in [(line, 3.0, 9.0), (disc, 18.0, 22.0), (area, 20.0, 26.0)] {
+            assert_eq!(extent(&item), Rangef::new(from, to), "{item:?}");
+        }
     }
 }

@@ -46,7 +46,14 @@ fn needed(pieces: &[Piece]) -> f32 {
 fn put(pages: &mut [Vec<Item>], piece: &Piece, used: &mut f32) {
     if let Some(page) = pages.last_mut() {
         let by = TOP + *used;
-        page.extend(piece.items.iter().map(|item| item.clone().lowered(by)));
+        for item in piece.items.iter().map(|item| item.clone().lowered(by)) {
+            match (page.last_mut(), item) {
+                (Some(Item::Text(before)), Item::Text(after)) if piece.goes_on => {
+                    before.lines.extend(after.lines);
+                }
+                (_, item) => page.push(item),
+            }
+        }
     }
     *used += piece.height;
 }
@@ -67,9 +74,11 @@ mod tests {
     fn names(page: &[Item]) -> Vec<&str> {
         page.iter()
             .filter_map(|item| match item {
-                Item::Text { text, .. } => Some(text.as_str()),
+                Item::Text(text) => Some(&text.lines),
                 _ => None,
             })
+            .flatten()
+            .map(|(_, words)| words.as_str())
             .collect()
     }
 
@@ -92,13 +101,28 @@ mod tests {
         for page in &pages {
             assert!(names(page).contains(&"heading"));
             for item in page {
-                let Item::Text { y, .. } = item else { continue };
-                assert!((TOP..=HEIGHT - BOTTOM).contains(y), "{item:?}");
+                let Item::Text(text) = item else { continue };
+                let (y, _) = text.lines[0];
+                assert!((TOP..=HEIGHT - BOTTOM).contains(&y), "{item:?}");
             }
         }
         let rows = pages.iter().flat_map(|page| names(page));
         assert_eq!(rows.filter(|name| *name == "row").count(), 150);
         assert_eq!(names(&pages[3]).last(), Some(&"after"));
+    }
+
+    #[test]
+    fn lines_of_a_paragraph_are_one_text_on_each_page() {
+        let line = |name, goes_on| Piece {
+            goes_on,
+            ..piece(name, 20.0)
+        };
+        let mut pieces = vec![piece("full", ROOM - 40.0), line("a ", false)];
+        pieces.extend(["b ", "c ", "d"].map(|name| line(name, true)));
+        let pages = pages(&pieces);
+        assert_eq!([pages[0].len(), pages[1].len()], [2, 1]);
+        assert_eq!(names(&pages[0]), ["full", "a ", "b "]);
+        assert_eq!(names(&pages[1]), ["c ", "d"]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Writes the items of a page to the PDF.
+//! A test sheet as PDF. The same run gives the same bytes.
 
 use krilla::Document;
 use krilla::color::rgb::Color;
@@ -10,10 +10,10 @@ use krilla::surface::Surface;
 use krilla::text::Font;
 use protocol::display_text;
 
-use super::font::Letters;
-use super::item::{HEIGHT, Ink, Item, WIDTH};
+use super::Sheet;
+use super::page::font::Letters;
+use super::page::{self, DASH, HEIGHT, Ink, Item, Text, WIDTH};
 use crate::fonts::PRETENDARD;
-use crate::run::Sheet;
 use crate::words::Words;
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
@@ -24,22 +24,22 @@ const WEIGHT: f32 = 0.035;
 const QUARTER: f32 = 0.5523;
 
 /// The document.
-pub fn document(
-    pages: &[Vec<Item>],
-    sheet: &Sheet,
-    words: &Words,
-    letters: &Letters,
-) -> Result<Vec<u8>, Failure> {
+///
+/// # Errors
+/// The shipped font does not serve, or the document cannot be made of it.
+pub fn pdf(sheet: &Sheet, words: &Words) -> Result<Vec<u8>, Failure> {
+    let pages = page::pages(sheet, words)?;
+    let letters = Letters::new()?;
     let failed = |what: &str| Failure::bench(format!("cannot make the PDF: {what}"));
     let font = Font::new(PRETENDARD.into(), 0).ok_or_else(|| failed("the shipped font"))?;
     let size = || PageSettings::from_wh(WIDTH, HEIGHT).ok_or_else(|| failed("the page size"));
     let mut document = Document::new();
     document.set_metadata(metadata(sheet, words));
-    for items in pages {
+    for items in &pages {
         let mut page = document.start_page_with(size()?);
         let mut surface = page.surface();
         for item in items {
-            draw(item, &mut surface, &font, letters);
+            draw(item, &mut surface, &font, &letters);
         }
         surface.finish();
         page.finish();
@@ -70,30 +70,7 @@ fn metadata(sheet: &Sheet, words: &Words) -> Metadata {
 
 fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &Letters) {
     match item {
-        Item::Text {
-            x,
-            y,
-            size,
-            ink,
-            strong,
-            turned,
-            text,
-        } => {
-            if text.is_empty() {
-                return;
-            }
-            surface.set_fill(Some(fill(*ink)));
-            surface.set_stroke(strong.then(|| stroke(*ink, WEIGHT * size, false)));
-            let glyphs = letters.glyphs(text);
-            if *turned {
-                surface.push_transform(&Transform::from_rotate_at(-90.0, *x, *y));
-            }
-            let at = Point::from_xy(*x, *y);
-            surface.draw_glyphs(at, &glyphs, font.clone(), text, *size, false);
-            if *turned {
-                surface.pop();
-            }
-        }
+        Item::Text(text) => words(text, surface, font, letters),
         Item::Line {
             points,
             ink,
@@ -114,6 +91,41 @@ fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &Letters) 
             surface.set_stroke(None);
             surface.set_fill(Some(fill(*ink)));
             put(surface, disc(*x, *y, *radius));
+        }
+        Item::Drawing(..) => {}
+    }
+}
+
+fn words(text: &Text, surface: &mut Surface<'_>, font: &Font, letters: &Letters) {
+    let Text {
+        x,
+        size,
+        ink,
+        strong,
+        turned,
+        ..
+    } = *text;
+    for (y, line) in &text.lines {
+        let line = line.trim_end();
+        if line.is_empty() {
+            continue;
+        }
+        let back = letters.width(line, size) * text.anchor.share();
+        surface.set_fill(Some(fill(ink)));
+        surface.set_stroke(strong.then(|| stroke(ink, WEIGHT * size, false)));
+        let glyphs = letters.glyphs(line);
+        let (x, y) = if turned {
+            (x, y + back)
+        } else {
+            (x - back, *y)
+        };
+        if turned {
+            surface.push_transform(&Transform::from_rotate_at(-90.0, x, y));
+        }
+        let at = Point::from_xy(x, y);
+        surface.draw_glyphs(at, &glyphs, font.clone(), line, size, false);
+        if turned {
+            surface.pop();
         }
     }
 }
@@ -167,7 +179,7 @@ fn stroke(ink: Ink, width: f32, dashed: bool) -> Stroke {
         paint: colour(ink).into(),
         width,
         dash: dashed.then(|| StrokeDash {
-            array: vec![3.0, 2.2],
+            array: DASH.into(),
             offset: 0.0,
         }),
         ..Stroke::default()

@@ -1,4 +1,4 @@
-//! Tables in the PDF: each row is a piece, and its cells wrap.
+//! Tables on pages: each row is a piece, and its cells wrap.
 
 use super::font::Letters;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
@@ -70,14 +70,12 @@ fn row(row: &Row, columns: &[Column], letters: &Letters) -> Piece {
                     split.push("…".into());
                 }
                 lines = lines.max(split.len());
-                for (number, line) in split.iter().enumerate() {
-                    let left = match align {
-                        Align::Left => from,
-                        Align::Right => from + inside - letters.width(line, SIZE),
-                    };
-                    let base = ABOVE + LINE * (number as f32 + 0.78);
-                    items.push(Item::text(left, base, SIZE, ink(*tone), line));
-                }
+                let base = |number| ABOVE + LINE * (number as f32 + 0.78);
+                let all = (0..).map(base).zip(split).collect();
+                items.push(match align {
+                    Align::Left => Item::lines(from, SIZE, ink(*tone), all),
+                    Align::Right => Item::lines(from + inside, SIZE, ink(*tone), all).ending(),
+                });
             }
             Cell::Gauge(Some(gauge)) => items.extend(bar(gauge, from, inside.min(BAR.0))),
             Cell::Gauge(None) => {}

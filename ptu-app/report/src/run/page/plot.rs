@@ -1,10 +1,9 @@
-//! A plot in the PDF, from the same marks as on the HTML page.
+//! A plot on a page, from the same marks as on the HTML page.
 
 use protocol::display_text;
 
-use super::font::Letters;
-use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
-use crate::plot::{Anchor, Mark, Plot, Role};
+use super::item::{INSIDE, Ink, Item, MARGIN, Piece, Text};
+use crate::plot::{Mark, Plot, Role};
 
 /// Width of the drawing in its own units: words in it are as large as those around it.
 const WIDTH: f64 = 800.0;
@@ -16,21 +15,22 @@ const DOT: f32 = 2.0;
 const BELOW: f32 = 6.0;
 
 /// The drawing, which is never cut.
-pub fn piece(plot: &Plot, letters: &Letters) -> Piece {
+pub fn piece(plot: &Plot) -> Piece {
     let (width, height) = plot.size(WIDTH);
     let scale = INSIDE / width as f32;
+    let height = height as f32 * scale;
     let marks = plot.marks(WIDTH);
+    let all = Item::Drawing(MARGIN, 0.0, INSIDE, height, plot.title.clone());
     Piece {
-        items: marks
-            .iter()
-            .flat_map(|mark| items(mark, scale, letters))
+        items: std::iter::once(all)
+            .chain(marks.iter().flat_map(|mark| items(mark, scale)))
             .collect(),
-        height: height as f32 * scale + BELOW,
+        height: height + BELOW,
         ..Piece::default()
     }
 }
 
-fn items(mark: &Mark, scale: f32, letters: &Letters) -> Vec<Item> {
+fn items(mark: &Mark, scale: f32) -> Vec<Item> {
     let place = |(x, y): (f64, f64)| (MARGIN + x as f32 * scale, y as f32 * scale);
     match mark {
         Mark::Text {
@@ -40,28 +40,17 @@ fn items(mark: &Mark, scale: f32, letters: &Letters) -> Vec<Item> {
             turned,
             text,
         } => {
-            let size = SIZE * scale;
-            let back = letters.width(text, size)
-                * match anchor {
-                    Anchor::Start => 0.0,
-                    Anchor::Middle => 0.5,
-                    Anchor::End => 1.0,
-                };
             let (x, y) = place(*at);
-            let (x, y) = if *turned {
-                (x, y + back)
-            } else {
-                (x - back, y)
-            };
-            vec![Item::Text {
+            vec![Item::Text(Text {
                 x,
-                y,
-                size,
+                anchor: *anchor,
+                size: SIZE * scale,
                 ink: ink(*role),
                 strong: *role == Role::Title,
                 turned: *turned,
-                text: display_text::line(text).into_owned(),
-            }]
+                in_drawing: true,
+                lines: vec![(y, display_text::line(text).into_owned())],
+            })]
         }
         Mark::Line { role, pieces } => {
             let drawn = pieces.iter().filter(|piece| piece.len() > 1);

@@ -54,13 +54,12 @@ impl Letters {
     }
 
     /// The text in lines no wider than `width`: broken at spaces, and words wider than a line anywhere. What
-    /// cannot be seen is spelled.
+    /// cannot be seen is spelled. A line keeps the space or line feed at its end, which hangs over the edge.
     pub fn lines(&self, text: &str, size: f32, width: f32) -> Vec<String> {
         let mut lines = Vec::new();
         for paragraph in display_text::lines(text).replace('\t', " ").lines() {
             let mut line = String::new();
             for word in paragraph.split_inclusive(' ') {
-                // The space after a word may hang over the edge.
                 if self.width(&format!("{line}{}", word.trim_end()), size) <= width {
                     line += word;
                     continue;
@@ -76,14 +75,11 @@ impl Letters {
                     line.push(letter);
                 }
             }
+            line.push('\n');
             lines.push(line);
         }
-        if lines.is_empty() {
-            lines.push(String::new());
-        }
-        for line in &mut lines {
-            line.truncate(line.trim_end().len());
-        }
+        let last = lines.pop().unwrap_or_default();
+        lines.push(last.trim_end().to_owned());
         lines
     }
 }
@@ -95,14 +91,13 @@ mod tests {
     #[test]
     fn lines_are_no_wider_than_asked_for_and_nothing_is_lost() {
         let letters = Letters::new().expect("the font");
-        let text = "비상제동 계전기가 늦게 떨어진다 and 0123456789abcdef0123456789abcdef0123456789abcdef ends";
+        let text = "비상제동 계전기가 늦게\n떨어진다 and 0123456789abcdef0123456789abcdef0123456789abcdef ends";
         for width in [30.0, 60.0, 200.0] {
             let lines = letters.lines(text, 8.0, width);
             for line in &lines {
-                assert!(letters.width(line, 8.0) <= width, "{line}");
+                assert!(letters.width(line.trim_end(), 8.0) <= width, "{line}");
             }
-            let letters_of = |text: &str| text.replace(' ', "");
-            assert_eq!(letters_of(&lines.concat()), letters_of(text));
+            assert_eq!(lines.concat(), text);
         }
     }
 

@@ -48,19 +48,19 @@ fn block(block: &Block, letters: &Letters) -> Vec<Piece> {
             }
             all
         }
-        Block::Plot(of) => vec![plot::piece(of, letters)],
+        Block::Plot(of) => vec![plot::piece(of)],
         Block::Signatures(who, date) => vec![signatures(who, date)],
     }
 }
 
 /// Lines of running words, each a piece; `below` is free after the last.
 fn words(text: &str, size: f32, line: f32, ink: Ink, below: f32, letters: &Letters) -> Vec<Piece> {
-    let lines = letters.lines(text, size, INSIDE);
+    let lines = letters.lines(text, size, INSIDE).into_iter().enumerate();
     let mut all: Vec<_> = lines
-        .iter()
-        .map(|words| Piece {
-            items: vec![Item::text(MARGIN, line * 0.78, size, ink, words)],
+        .map(|(number, words)| Piece {
+            items: vec![Item::lines(MARGIN, size, ink, vec![(line * 0.78, words)])],
             height: line,
+            goes_on: number > 0,
             ..Piece::default()
         })
         .collect();
@@ -128,16 +128,15 @@ fn fact(name: &str, value: &str, letters: &Letters) -> Piece {
     let names = letters.lines(name, SIZE, NAMES - 8.0);
     let values = letters.lines(value, SIZE, INSIDE - NAMES);
     let lines = names.len().max(values.len());
-    let column = |lines: &[String], x: f32, ink: Ink| -> Vec<Item> {
-        let line = |(number, text): (usize, &String)| {
-            Item::text(x, LINE * (number as f32 + 0.78), SIZE, ink, text)
-        };
-        lines.iter().enumerate().map(line).collect()
+    let column = |lines: Vec<String>, x: f32, ink: Ink| {
+        let base = |number| LINE * (number as f32 + 0.78);
+        Item::lines(x, SIZE, ink, (0..).map(base).zip(lines).collect())
     };
-    let mut items = column(&names, MARGIN, Ink::Soft);
-    items.extend(column(&values, MARGIN + NAMES, Ink::Black));
     Piece {
-        items,
+        items: vec![
+            column(names, MARGIN, Ink::Soft),
+            column(values, MARGIN + NAMES, Ink::Black),
+        ],
         height: lines as f32 * LINE + 1.0,
         ..Piece::default()
     }

@@ -1,0 +1,169 @@
+//! Items on a page with their positions, in points (1/72 inch) from the upper left corner.
+
+use protocol::display_text;
+
+use crate::plot::Anchor;
+
+/// Width of A4.
+pub const WIDTH: f32 = 595.28;
+/// Height of A4.
+pub const HEIGHT: f32 = 841.89;
+/// Length of a dash and of the gap after it.
+pub const DASH: [f32; 2] = [3.0, 2.2];
+/// Left and right of what is printed.
+pub(super) const MARGIN: f32 = 42.0;
+/// Above what flows: the header is within it.
+pub(super) const TOP: f32 = 54.0;
+/// Below what flows: the footer is within it.
+pub(super) const BOTTOM: f32 = 48.0;
+/// Width of what is printed.
+pub(super) const INSIDE: f32 = WIDTH - 2.0 * MARGIN;
+
+/// What something is drawn in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ink {
+    /// Words.
+    Black,
+    /// Less weight.
+    Soft,
+    /// Passed.
+    Good,
+    /// Did not pass.
+    Bad,
+    /// Edges and rules.
+    Rule,
+    /// Grids.
+    Grid,
+    /// What is allowed.
+    Band,
+    /// A shaded stretch.
+    Shade,
+    /// A curve of this colour.
+    Curve(usize),
+}
+
+/// Something on a page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// Words.
+    Text(Text),
+    /// A line through points.
+    Line {
+        /// The points.
+        points: Vec<(f32, f32)>,
+        /// Colour.
+        ink: Ink,
+        /// Thickness.
+        width: f32,
+        /// Broken, as [`DASH`] says.
+        dashed: bool,
+    },
+    /// A filled rectangle: left, top, width and height.
+    Area(f32, f32, f32, f32, Ink),
+    /// A filled disc: its middle and radius.
+    Disc(f32, f32, f32, Ink),
+    /// A drawing is here (left, top, width and height), which the items after it make up, with its title
+    /// for those who cannot see it.
+    Drawing(f32, f32, f32, f32, String),
+}
+
+/// Words on a page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Text {
+    /// From the left to the anchor.
+    pub x: f32,
+    /// Which point of each line that is.
+    pub anchor: Anchor,
+    /// Height of letters.
+    pub size: f32,
+    /// Colour.
+    pub ink: Ink,
+    /// Drawn with weight.
+    pub strong: bool,
+    /// Runs upwards.
+    pub turned: bool,
+    /// Part of a drawing, whose title is read in its place.
+    pub in_drawing: bool,
+    /// Base line of each line, from above, and its words; together they are the whole text: a line keeps the
+    /// space or line feed at which it was broken.
+    pub lines: Vec<(f32, String)>,
+}
+
+impl Item {
+    /// A line of words; what cannot be seen is spelled.
+    pub(crate) fn text(x: f32, y: f32, size: f32, ink: Ink, text: &str) -> Self {
+        Self::lines(
+            x,
+            size,
+            ink,
+            vec![(y, display_text::line(text).into_owned())],
+        )
+    }
+
+    /// Lines of words, each with its base line.
+    pub(crate) fn lines(x: f32, size: f32, ink: Ink, lines: Vec<(f32, String)>) -> Self {
+        Self::Text(Text {
+            x,
+            anchor: Anchor::Start,
+            size,
+            ink,
+            strong: false,
+            turned: false,
+            in_drawing: false,
+            lines,
+        })
+    }
+
+    /// The same with weight, where it is words.
+    pub(crate) fn strong(mut self) -> Self {
+        if let Self::Text(text) = &mut self {
+            text.strong = true;
+        }
+        self
+    }
+
+    /// The same with its place at the right end of each line, where it is words.
+    pub(crate) fn ending(mut self) -> Self {
+        if let Self::Text(text) = &mut self {
+            text.anchor = Anchor::End;
+        }
+        self
+    }
+
+    /// A level line.
+    pub(crate) fn rule(x: f32, y: f32, long: f32, ink: Ink) -> Self {
+        Self::Line {
+            points: vec![(x, y), (x + long, y)],
+            ink,
+            width: 0.5,
+            dashed: false,
+        }
+    }
+
+    /// The same, so much further down.
+    pub(crate) fn lowered(mut self, by: f32) -> Self {
+        match &mut self {
+            Self::Text(text) => text.lines.iter_mut().for_each(|line| line.0 += by),
+            Self::Area(_, y, ..) | Self::Disc(_, y, ..) | Self::Drawing(_, y, ..) => *y += by,
+            Self::Line { points, .. } => points.iter_mut().for_each(|point| point.1 += by),
+        }
+        self
+    }
+}
+
+/// Items that stay together, from 0 down to `height`.
+#[derive(Clone, Debug, Default)]
+pub struct Piece {
+    /// What is drawn; left edges are the page's, heights the piece's own.
+    pub items: Vec<Item>,
+    /// Height.
+    pub height: f32,
+    /// Stays on a page with at least the beginning of what follows.
+    pub with_next: bool,
+    /// Drawn again at the top of each page on which its table goes on.
+    pub repeated: bool,
+    /// Belongs to the last piece that is repeated.
+    pub under_repeated: bool,
+    /// Its words go on from those of the piece before, and are one text with them where both are on one page.
+    pub goes_on: bool,
+}
