@@ -115,6 +115,18 @@ fn a_note_is_kept_and_stands_on_the_sheet() {
     );
 }
 
+/// The lines break as on the printed page; what is read and copied is the text.
+#[test]
+fn a_text_of_several_lines_is_read_as_one() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let text = "relay K3 clicks late, seen from the wall side of the rack; ".repeat(5) + "\n\nend";
+    place.ptu(&["runs", "note", "latest", &text]).exits(0);
+    let mut window = on(place, Language::English);
+    window.wait_for(&text);
+    assert!(window.shows("Test sheet   BAD-1"), "the page's header");
+}
+
 #[test]
 fn a_note_is_written_as_soon_as_a_run_is_over() {
     let mut settings = Settings {
