@@ -11,6 +11,8 @@ use ptu_bench::failure::Failure;
 pub struct Letters {
     face: Face<'static>,
     per_em: f32,
+    /// The letters that most texts are made of, looked up once.
+    ascii: [(u32, f32); 128],
 }
 
 impl Letters {
@@ -22,7 +24,14 @@ impl Letters {
         let face = Face::parse(PRETENDARD, 0)
             .map_err(|error| Failure::bench(format!("the shipped font cannot be read: {error}")))?;
         let per_em = f32::from(face.units_per_em());
-        Ok(Self { face, per_em })
+        let ascii = [(0, 0.0); 128];
+        let mut letters = Self {
+            face,
+            per_em,
+            ascii,
+        };
+        letters.ascii = std::array::from_fn(|code| letters.look_up(code as u8 as char));
+        Ok(letters)
     }
 
     /// Width of a text, in units of its size.
@@ -47,6 +56,13 @@ impl Letters {
 
     /// Number and width of a letter's glyph.
     fn letter(&self, letter: char) -> (u32, f32) {
+        match self.ascii.get(letter as usize) {
+            Some(known) => *known,
+            None => self.look_up(letter),
+        }
+    }
+
+    fn look_up(&self, letter: char) -> (u32, f32) {
         let letter = if letter.is_control() { ' ' } else { letter };
         let id = self.face.glyph_index(letter).unwrap_or_default();
         let advance = self.face.glyph_hor_advance(id).unwrap_or_default();
