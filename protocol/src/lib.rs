@@ -8,7 +8,7 @@
 //! * [`Backlog`]: spreads bytes that waited over the scans that are made up;
 //! * [`config`], [`mod@line`], [`injection`]: unit configuration, track database and fault modes as
 //!   checked data;
-//! * [`shown`]: makes text from outside safe to display.
+//! * [`display_text`]: makes text from outside safe to display.
 //!
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
 //! units straight. `no_std` with `alloc`: no clock, no thread, no file.
