@@ -10,14 +10,12 @@ use std::sync::Arc;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{Procedure, RunOptions};
-use btu_rig::train::TrainData;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fault_db::Store;
 use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::link::Endpoint;
-use ptu_bench::run::{self, BenchSetup, Listener, Outcome, RunPlan, SessionEvent, Task};
+use ptu_bench::run::{self, BenchChoice, BenchSetup, Outcome, RunPlan, Task};
 use ptu_bench::stop::Stop;
 
 const STEPS: usize = 5000;
@@ -26,28 +24,10 @@ fn main() {
     divan::main();
 }
 
-struct Nobody;
-
-impl Listener for Nobody {
-    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
-}
-
 fn setup() -> (ScriptsDirectory, BenchSetup) {
     let scripts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts"));
     let directory = ScriptsDirectory::find(Some(scripts)).expect("scripts");
-    let setup = BenchSetup {
-        endpoint: Endpoint::Sim,
-        config: directory.unit_config("sg100").expect("unit configuration"),
-        line: directory.line("line8").expect("line"),
-        train: TrainData::line6(),
-        faults: Vec::new(),
-        seed: 1,
-        scatter: None,
-        serial: None,
-        realtime: false,
-        slower: 1,
-        run_control: None,
-    };
+    let setup = BenchChoice::default().setup(&directory).expect("a bench");
     (directory, setup)
 }
 
@@ -80,7 +60,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
     };
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();
-    let (store, outcome) = run::run(&plan, setup.clone(), store, &stop, &mut Nobody).expect("run");
+    let (store, outcome) = run::run(&plan, setup.clone(), store, &stop, &mut ()).expect("run");
     store.close().expect("close");
     outcome
 }

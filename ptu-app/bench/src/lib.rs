@@ -1,4 +1,4 @@
-//! Runs procedures on units under test. Nothing here draws, and nothing writes a report.
+//! Runs procedures on units under test. Nothing here knows the window, and nothing writes a report.
 //!
 //! * [`link`]: links to the embedded unit and to units on ports;
 //! * [`run`]: runs procedures on benches, and stores and forwards their events;

@@ -1,18 +1,15 @@
 //! Runs the whole suite on one embedded unit in memory and keeps only what diagnosis reads.
 
-use std::sync::Arc;
-
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use diagnosis::{CheckName, Observation};
 use protocol::injection::FaultCatalogue;
 
 use super::samples::Sample;
 use crate::data::ScriptsDirectory;
-use crate::drive::train::train;
 use crate::failure::Failure;
-use crate::link::Endpoint;
-use crate::run::ObservationBuilder;
-use crate::run::{BenchSetup, SessionEvent, Task, loading, run_here};
+use crate::run::{
+    BenchChoice, BenchSetup, ObservationBuilder, SessionEvent, Task, loading, run_here,
+};
 use crate::run_diagnosis::{LINE, TRAIN, UNIT_CONFIG};
 use crate::stop::Stop;
 
@@ -41,32 +38,25 @@ impl Suite {
     /// # Errors
     /// A file is missing or wrong.
     pub fn load(directory: &ScriptsDirectory) -> Result<Self, Failure> {
-        let config = directory.unit_config(UNIT_CONFIG)?;
-        let line = directory.line(LINE)?;
-        let train = train(directory, TRAIN)?;
+        let choice = BenchChoice {
+            unit_config: UNIT_CONFIG.into(),
+            line: LINE.into(),
+            train: TRAIN.into(),
+            scatter: true,
+            ..BenchChoice::default()
+        };
+        let setup = choice.setup(directory)?;
         let texts = directory.procedures()?;
-        let loaded = loading::load(&texts, &config.content, &line.content, &train)?;
+        let (config, line) = (&setup.config.content, &setup.line.content);
+        let loaded = loading::load(&texts, config, line, &setup.train)?;
         if let Some(error) = loaded.errors.first() {
             return Err(Failure::usage(format!(
                 "{error}; `ptu run --check` shows all errors"
             )));
         }
-        let scatter = directory.bench_scatter(None)?;
         let procedures = loaded.procedures.into_iter().filter(|p| !p.on_request);
         Ok(Self {
-            setup: BenchSetup {
-                endpoint: Endpoint::Sim,
-                config,
-                line,
-                train,
-                faults: Vec::new(),
-                seed: 0,
-                scatter: Some(Arc::new(scatter)),
-                serial: None,
-                realtime: false,
-                slower: 1,
-                run_control: None,
-            },
+            setup,
             tasks: procedures
                 .map(|procedure| Task {
                     procedure,

@@ -30,6 +30,11 @@ pub trait Listener {
     }
 }
 
+/// Nobody is told.
+impl Listener for () {
+    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
+}
+
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {

@@ -64,12 +64,6 @@ impl RunControl for Presser {
     }
 }
 
-struct Deaf;
-
-impl Listener for Deaf {
-    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
-}
-
 fn directory() -> ScriptsDirectory {
     let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
     ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts")
@@ -134,7 +128,7 @@ fn recorded(
     let mut connected = setup.connect(&presser.stop).expect("the embedded unit");
     let (_folder, store) = store();
     let (began, stop) = (Began::now(), &presser.stop);
-    let ran = run_on(&mut connected, &began, plan, &setup, store, stop, &mut Deaf);
+    let ran = run_on(&mut connected, &began, plan, &setup, store, stop, &mut ());
     let (store, outcome) = ran.expect("it is recorded");
     let detail = store.run(outcome.id, &|_| true).expect("the run");
     (outcome, detail)
@@ -456,7 +450,7 @@ fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
     stop.press();
     let (folder, store) = store();
     let plan = plan_of(&[PASSES]);
-    let Err(failure) = run(&plan, setup, store, &stop, &mut Deaf) else {
+    let Err(failure) = run(&plan, setup, store, &stop, &mut ()) else {
         panic!("there is no unit")
     };
     assert_eq!(failure.exit, Exit::Aborted, "{}", failure.message);

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use crate::common::{Place, list, number, scripts, text};
-use btu_rig::procedure::{Procedure, RunOptions};
+use btu_rig::procedure::RunOptions;
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::process_id;
-use ptu_bench::run::{self, BenchChoice, BenchSetup, Listener, RunPlan, SessionEvent, Suite, Task};
+use ptu_bench::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
 use ptu_bench::run_diagnosis::diagnose_run;
 use ptu_bench::stop::Stop;
 use ptu_report::run_json;
@@ -44,12 +44,6 @@ pub struct TestBench {
     setup: BenchSetup,
     suite: Suite,
     pub catalogue: FaultCatalogue,
-}
-
-struct Nobody;
-
-impl Listener for Nobody {
-    fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
 impl TestBench {
@@ -90,7 +84,7 @@ impl TestBench {
         let place = Place::new();
         let path = place.path("history.db");
         let store = Store::open(&path, clock::open_options()).expect("a database");
-        let ran = run::run(&plan, setup, store, &Stop::default(), &mut Nobody);
+        let ran = run::run(&plan, setup, store, &Stop::default(), &mut ());
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
         let detail = store
             .run(outcome.id, &process_id::is_alive)

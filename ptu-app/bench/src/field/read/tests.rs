@@ -11,8 +11,8 @@ use protocol::message::{EbCause, IoOutput, LogEnd, LogEntry, Message, Mode, Stat
 
 use super::*;
 use crate::data::ScriptsDirectory;
-use crate::link::{Delayed, Endpoint, SimLink};
-use crate::run::{BenchSetup, Session};
+use crate::link::{Delayed, SimLink};
+use crate::run::{BenchChoice, Session};
 
 /// An entry made standing.
 pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
@@ -34,20 +34,11 @@ pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
 pub fn bench(faults: &[&str]) -> Session<Delayed<SimLink>> {
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
     let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
-    let faults: Vec<_> = faults.iter().map(|name| (*name).to_owned()).collect();
-    let setup = BenchSetup {
-        endpoint: Endpoint::Sim,
-        config: directory.unit_config("sg100").expect("configuration"),
-        line: directory.line("line8").expect("line"),
-        train: btu_rig::train::TrainData::line6(),
-        faults: directory.chosen_faults(&faults).expect("faults"),
-        seed: 1,
-        scatter: None,
-        serial: None,
-        realtime: false,
-        slower: 1,
-        run_control: None,
+    let choice = BenchChoice {
+        faults: faults.iter().map(|name| (*name).to_owned()).collect(),
+        ..BenchChoice::default()
     };
+    let setup = choice.setup(&directory).expect("a bench");
     let mut session = setup.sim_session("field", &Stop::default());
     session.judge_bring_up(Duration::from_ms(20_000), |_| false);
     session

@@ -5,14 +5,12 @@ use std::path::Path;
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
 use btu_rig::rig::Random;
-use btu_rig::train::TrainData;
 use protocol::Duration;
 use protocol::injection::FaultMode;
 
 use super::*;
 use crate::data::ScriptsDirectory;
-use crate::link::Endpoint;
-use crate::run::select;
+use crate::run::{BenchChoice, select};
 
 /// Goal: procedures do not lean on a fresh unit, so that a unit on a port passes them all in a
 /// row. Method: all of them, forward and backward, on one embedded unit in virtual time.
@@ -171,18 +169,6 @@ fn a_fault_between_two_procedures_is_recorded() {
 fn line6_bench() -> (ScriptsDirectory, BenchSetup) {
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
     let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
-    let setup = BenchSetup {
-        endpoint: Endpoint::Sim,
-        config: directory.unit_config("sg100").expect("configuration"),
-        line: directory.line("line8").expect("line"),
-        train: TrainData::line6(),
-        faults: Vec::new(),
-        seed: 1,
-        scatter: None,
-        serial: None,
-        realtime: false,
-        slower: 1,
-        run_control: None,
-    };
+    let setup = BenchChoice::default().setup(&directory).expect("a bench");
     (directory, setup)
 }
