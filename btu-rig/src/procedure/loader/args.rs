@@ -73,6 +73,11 @@ impl Args<'_> {
             .ok_or_else(|| format!("`{name}` must be a number"))
     }
 
+    /// A number that may be left out.
+    pub(super) fn optional_number(&self, name: &str) -> Result<Option<f64>, String> {
+        self.get(name).map(|_| self.number(name)).transpose()
+    }
+
     pub(super) fn int(&self, name: &str) -> Result<i64, String> {
         match self.must(name)? {
             Item::Int(n) => Ok(*n),

@@ -8,7 +8,7 @@ use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::quantity::Dimension::{Acceleration, Distance, Frequency, Level};
-use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::verb::{Param, Verb, needs, takes};
 use crate::procedure::plan::Action;
 use crate::stimulus::{Stimulus, TachoCondition};
 
@@ -19,226 +19,141 @@ const TOP_KMH: f64 = 200.0;
 /// Time for a prompt if a script gives none.
 const PROMPT_TIME: protocol::Duration = protocol::Duration::from_ms(300_000);
 
+const ACCEL: Param = takes("accel", ParamType::Amount(Acceleration));
+const CARRIER: Param = takes("carrier", ParamType::Amount(Frequency));
+const TO: Param = needs("to", ParamType::Amount(Dimension::Speed));
+const WAIT: Param = takes("wait", ParamType::Bool);
+pub(super) const LEVEL: Param = takes("level", ParamType::Amount(Level));
+pub(super) const MARKER: Param = needs("marker", ParamType::Int(1, 4));
+/// Parameters of [`raw_signal`].
+pub(super) const RAW_SIGNAL: &[Param] =
+    &[CARRIER, needs("rate", ParamType::Amount(Frequency)), LEVEL];
+
 pub(super) static VERBS: &[Verb] = &[
-    Verb {
-        name: "antenna.code",
-        params: &[
-            needs("code", ParamType::Code),
-            takes("level", ParamType::Amount(Level)),
-        ],
-        make: |args| {
-            let (carrier_hz, rate_hz, level_mv) = code_signal(args)?;
-            at_once(Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            })
-        },
-    },
-    Verb {
-        name: "antenna.raw",
-        params: &[
-            takes("carrier", ParamType::Amount(Frequency)),
-            needs("rate", ParamType::Amount(Frequency)),
-            takes("level", ParamType::Amount(Level)),
-        ],
-        make: |args| {
-            let (carrier_hz, rate_hz, level_mv) = raw_signal(args)?;
-            at_once(Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            })
-        },
-    },
-    Verb {
-        name: "antenna.unmodulated",
-        params: &[
-            takes("carrier", ParamType::Amount(Frequency)),
-            takes("level", ParamType::Amount(Level)),
-        ],
-        make: |args| {
-            at_once(Stimulus::Code {
-                carrier_hz: carrier(args),
-                rate_hz: 0.0,
-                level_mv: level(args)?,
-            })
-        },
-    },
-    Verb {
-        name: "antenna.drift",
-        params: &[
+    stimulus!(
+        "antenna.code",
+        &[needs("code", ParamType::Code), LEVEL],
+        |args| antenna(code_signal(args)?)
+    ),
+    stimulus!("antenna.raw", RAW_SIGNAL, |args| antenna(raw_signal(args)?)),
+    stimulus!("antenna.unmodulated", &[CARRIER, LEVEL], |args| antenna((
+        carrier(args),
+        0.0,
+        level(args)?
+    ))),
+    stimulus!(
+        "antenna.drift",
+        &[
             takes("rate_per_s", ParamType::Amount(Frequency)),
-            takes("level_per_s", ParamType::Amount(Level)),
+            takes("level_per_s", ParamType::Amount(Level))
         ],
-        make: |args| {
-            at_once(Stimulus::CodeDrift {
-                rate_hz_per_s: args.amount_or("rate_per_s", 0.0),
-                level_mv_per_s: args.amount_or("level_per_s", 0.0),
-            })
-        },
-    },
-    Verb {
-        name: "antenna.along",
-        params: &[needs("on", ParamType::Bool)],
-        make: |args| {
-            at_once(Stimulus::CodesAlong {
-                on: args.flag("on", true),
-            })
-        },
-    },
-    Verb {
-        name: "antenna.off",
-        params: &[],
-        make: |_| at_once(Stimulus::CodeOff),
-    },
-    Verb {
-        name: "tacho.speed",
-        params: &[
-            needs("to", ParamType::Amount(Dimension::Speed)),
-            takes("accel", ParamType::Amount(Acceleration)),
-            takes("wait", ParamType::Bool),
-        ],
-        make: |args| motion(args, "accel", true),
-    },
-    Verb {
-        name: "tacho.ramp",
-        params: &[
-            needs("to", ParamType::Amount(Dimension::Speed)),
-            needs("rate", ParamType::Amount(Acceleration)),
-            takes("wait", ParamType::Bool),
-        ],
-        make: |args| motion(args, "rate", false),
-    },
-    Verb {
-        name: "tacho.travel",
-        params: &[
+        |args| Stimulus::CodeDrift {
+            rate_hz_per_s: args.amount_or("rate_per_s", 0.0),
+            level_mv_per_s: args.amount_or("level_per_s", 0.0)
+        }
+    ),
+    switch!("antenna.along", |on| Stimulus::CodesAlong { on }),
+    stimulus!("antenna.off", &[], |_| Stimulus::CodeOff),
+    verb!("tacho.speed", &[TO, ACCEL, WAIT], |args| motion(
+        args, "accel", true
+    )),
+    verb!(
+        "tacho.ramp",
+        &[TO, needs("rate", ParamType::Amount(Acceleration)), WAIT],
+        |args| motion(args, "rate", false)
+    ),
+    verb!(
+        "tacho.travel",
+        &[
             needs("distance", ParamType::Amount(Distance)),
             needs("speed", ParamType::Amount(Dimension::Speed)),
-            takes("accel", ParamType::Amount(Acceleration)),
-            takes("wait", ParamType::Bool),
+            ACCEL,
+            WAIT
         ],
-        make: |args| {
-            args.positive("speed")?;
-            let stimulus = Stimulus::Travel {
-                distance_m: args.positive("distance")?,
-                speed: speed(args, "speed")?,
-                accel_mps2: accel(args, "accel")?,
-            };
-            with_wait(stimulus, args.flag("wait", true))
-        },
-    },
-    Verb {
-        name: "tacho.forward",
-        params: &[],
-        make: |_| at_once(Stimulus::Direction { backward: false }),
-    },
-    Verb {
-        name: "tacho.backward",
-        params: &[],
-        make: |_| at_once(Stimulus::Direction { backward: true }),
-    },
-    Verb {
-        name: "tacho.channel",
-        params: &[
+        travel
+    ),
+    stimulus!("tacho.forward", &[], |_| Stimulus::Direction {
+        backward: false
+    }),
+    stimulus!("tacho.backward", &[], |_| Stimulus::Direction {
+        backward: true
+    }),
+    verb!(
+        "tacho.channel",
+        &[
             needs("channel", ParamType::Int(1, 2)),
             needs(
                 "condition",
-                ParamType::Choice(&["good", "dead", "noisy", "scaled"]),
+                ParamType::Choice(&["good", "dead", "noisy", "scaled"])
             ),
             takes("per_s", ParamType::Number),
             takes("factor", ParamType::Number),
         ],
-        make: channel,
-    },
-    Verb {
-        name: "train.drive",
-        params: &[needs("on", ParamType::Bool)],
-        make: |args| {
-            at_once(Stimulus::TrainDriven {
-                on: args.flag("on", true),
-            })
-        },
-    },
-    Verb {
-        name: "train.adhesion",
-        params: &[takes("coefficient", ParamType::Number)],
-        make: |args| {
-            let coefficient = match args.get("coefficient") {
-                Some(_) => Some(args.number("coefficient")?),
-                None => None,
-            };
-            at_once(Stimulus::Adhesion { coefficient })
-        },
-    },
-    Verb {
-        name: "psm.pulse",
-        params: &[needs("marker", ParamType::Int(1, 4))],
-        make: |args| {
-            at_once(Stimulus::Marker {
-                psm: marker(args, "marker")?,
-            })
-        },
-    },
-    Verb {
-        name: "psm.missing",
-        params: &[needs("marker", ParamType::Int(1, 4))],
-        make: |args| {
-            at_once(Stimulus::MarkerMoved {
-                psm: marker(args, "marker")?,
-                by_m: None,
-            })
-        },
-    },
-    Verb {
-        name: "psm.moved",
-        params: &[
-            needs("marker", ParamType::Int(1, 4)),
-            needs("by", ParamType::Amount(Distance)),
-        ],
-        make: |args| {
-            at_once(Stimulus::MarkerMoved {
-                psm: marker(args, "marker")?,
-                by_m: Some(args.amount("by")?),
-            })
-        },
-    },
-    Verb {
-        name: "psm.along",
-        params: &[takes("section", ParamType::Section)],
-        make: |args| {
-            at_once(Stimulus::MarkersAlong {
-                section: args.section("section"),
-            })
-        },
-    },
-    Verb {
-        name: "wait",
-        params: &[needs("time", ParamType::Amount(Dimension::Time))],
-        make: |args| {
+        channel
+    ),
+    switch!("train.drive", |on| Stimulus::TrainDriven { on }),
+    stimulus!(
+        "train.adhesion",
+        &[takes("coefficient", ParamType::Number)],
+        |args| Stimulus::Adhesion {
+            coefficient: args.optional_number("coefficient")?
+        }
+    ),
+    stimulus!("psm.pulse", &[MARKER], |args| Stimulus::Marker {
+        psm: marker(args)?
+    }),
+    stimulus!("psm.missing", &[MARKER], |args| Stimulus::MarkerMoved {
+        psm: marker(args)?,
+        by_m: None
+    }),
+    stimulus!(
+        "psm.moved",
+        &[MARKER, needs("by", ParamType::Amount(Distance))],
+        |args| Stimulus::MarkerMoved {
+            psm: marker(args)?,
+            by_m: Some(args.amount("by")?)
+        }
+    ),
+    stimulus!(
+        "psm.along",
+        &[takes("section", ParamType::Section)],
+        |args| Stimulus::MarkersAlong {
+            section: args.section("section")
+        }
+    ),
+    verb!(
+        "wait",
+        &[needs("time", ParamType::Amount(Dimension::Time))],
+        |args| {
             let span = args.time_or("time", protocol::Duration::ZERO)?;
             Ok(Item::Actions(vec![Action::Wait(span)]))
-        },
-    },
-    Verb {
-        name: "prompt",
-        params: &[
+        }
+    ),
+    verb!(
+        "prompt",
+        &[
             needs("text", ParamType::Text),
-            takes("within", ParamType::Amount(Dimension::Time)),
+            takes("within", ParamType::Amount(Dimension::Time))
         ],
-        make: |args| {
+        |args| {
             Ok(Item::Actions(vec![Action::Prompt {
                 text: args.text("text").unwrap_or_default().to_owned(),
                 within: args.time_or("within", PROMPT_TIME)?,
             }]))
-        },
-    },
-    Verb {
-        name: "code",
-        params: &[needs("name", ParamType::Name)],
-        make: |args| args.context.code(args.text("name").unwrap_or_default()),
-    },
+        }
+    ),
+    verb!("code", &[needs("name", ParamType::Name)], |args| args
+        .context
+        .code(args.text("name").unwrap_or_default())),
 ];
+
+fn antenna((carrier_hz, rate_hz, level_mv): (f64, f64, f64)) -> Stimulus {
+    Stimulus::Code {
+        carrier_hz,
+        rate_hz,
+        level_mv,
+    }
+}
 
 /// Carrier, code rate and level of a code of the table.
 pub(super) fn code_signal(args: &Args<'_>) -> Result<(f64, f64, f64), String> {
@@ -289,7 +204,11 @@ pub(super) fn speed(args: &Args<'_>, name: &str) -> Result<Speed, String> {
     }
 }
 
-pub(super) fn marker(args: &Args<'_>, name: &str) -> Result<u8, String> {
+pub(super) fn marker(args: &Args<'_>) -> Result<u8, String> {
+    byte(args, "marker")
+}
+
+fn byte(args: &Args<'_>, name: &str) -> Result<u8, String> {
     u8::try_from(args.int(name)?).map_err(|e| e.to_string())
 }
 
@@ -308,6 +227,16 @@ fn motion(args: &Args<'_>, rate: &str, wait: bool) -> Result<Item, String> {
         accel_mps2: accel(args, rate)?,
     };
     with_wait(stimulus, args.flag("wait", wait))
+}
+
+fn travel(args: &Args<'_>) -> Result<Item, String> {
+    args.positive("speed")?;
+    let stimulus = Stimulus::Travel {
+        distance_m: args.positive("distance")?,
+        speed: speed(args, "speed")?,
+        accel_mps2: accel(args, "accel")?,
+    };
+    with_wait(stimulus, args.flag("wait", true))
 }
 
 fn channel(args: &Args<'_>) -> Result<Item, String> {
@@ -329,7 +258,7 @@ fn channel(args: &Args<'_>) -> Result<Item, String> {
         _ => TachoCondition::Good,
     };
     at_once(Stimulus::Tacho {
-        channel: marker(args, "channel")?,
+        channel: byte(args, "channel")?,
         condition,
     })
 }

@@ -57,16 +57,16 @@ macro_rules! about {
 pub(super) static VERBS: &[Verb] = &[
     about!("is_", [], |args| Ok(Item::Condition(condition(args)?))),
     about!("when", [], |args| Ok(Item::Condition(condition(args)?))),
-    Verb {
-        name: "all_of",
-        params: &[takes("conditions", ParamType::Conditions)],
-        make: |args| Ok(Item::Condition(Condition::All(parts(args)?))),
-    },
-    Verb {
-        name: "any_of",
-        params: &[takes("conditions", ParamType::Conditions)],
-        make: |args| Ok(Item::Condition(Condition::Any(parts(args)?))),
-    },
+    verb!(
+        "all_of",
+        &[takes("conditions", ParamType::Conditions)],
+        |args| Ok(Item::Condition(Condition::All(parts(args)?)))
+    ),
+    verb!(
+        "any_of",
+        &[takes("conditions", ParamType::Conditions)],
+        |args| Ok(Item::Condition(Condition::Any(parts(args)?)))
+    ),
     about!("until", [takes("within", TIME)], |args| {
         Ok(Item::Actions(vec![Action::Until {
             condition: condition(args)?,
@@ -90,33 +90,25 @@ pub(super) static VERBS: &[Verb] = &[
             condition: condition(args)?,
         }))
     }),
-    Verb {
-        name: "logs",
-        params: &[needs("event", ParamType::Name), takes("within", TIME)],
-        make: |args| {
+    verb!(
+        "logs",
+        &[needs("event", ParamType::Name), takes("within", TIME)],
+        |args| {
             Ok(Item::Expectation(Expectation::Logs {
                 event: event(args.text("event").unwrap_or_default())?,
                 within: args.time_or("within", BECOMES_WITHIN)?,
             }))
-        },
-    },
-    Verb {
-        name: "never_logs",
-        params: &[needs("event", ParamType::Name)],
-        make: |args| {
-            Ok(Item::Expectation(Expectation::NeverLogs {
-                event: event(args.text("event").unwrap_or_default())?,
-            }))
-        },
-    },
-    Verb {
-        name: "measured",
-        params: &[needs("name", ParamType::Name)],
-        make: |args| {
-            let name = args.text("name").unwrap_or_default();
-            Ok(Item::Measured(name.to_owned(), None))
-        },
-    },
+        }
+    ),
+    verb!("never_logs", &[needs("event", ParamType::Name)], |args| {
+        Ok(Item::Expectation(Expectation::NeverLogs {
+            event: event(args.text("event").unwrap_or_default())?,
+        }))
+    }),
+    verb!("measured", &[needs("name", ParamType::Name)], |args| {
+        let name = args.text("name").unwrap_or_default();
+        Ok(Item::Measured(name.to_owned(), None))
+    }),
 ];
 
 /// The condition a verb's first parameters make.

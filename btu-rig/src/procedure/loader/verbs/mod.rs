@@ -1,5 +1,33 @@
 //! The verbs of the script language, by subject.
 
+/// A verb of the table.
+macro_rules! verb {
+    ($name:literal, $params:expr, $make:expr) => {
+        Verb {
+            name: $name,
+            params: $params,
+            make: $make,
+        }
+    };
+}
+
+/// A verb that makes a stimulus, which is done at once.
+macro_rules! stimulus {
+    ($name:literal, $params:expr, |$args:pat_param| $stimulus:expr) => {
+        verb!($name, $params, |$args| super::at_once($stimulus))
+    };
+}
+
+/// A verb that makes a stimulus to be switched on and off.
+macro_rules! switch {
+    ($name:literal, |$on:ident| $stimulus:expr) => {
+        verb!($name, &[needs("on", ParamType::Bool)], |args| {
+            let $on = args.flag("on", true);
+            super::at_once($stimulus)
+        })
+    };
+}
+
 mod bench;
 mod cab;
 mod conditions;

@@ -1,102 +1,70 @@
 //! The tester's session with the unit: arming and the TEST board. Every verb but `ptu.silent` waits
 //! for the unit's answer.
 
-use super::bench::{code_signal, marker, raw_signal, speed};
+use super::bench::{LEVEL, MARKER, RAW_SIGNAL, code_signal, marker, raw_signal, speed};
 use super::track::{Place, STATION, station};
-use super::{at_once, with_wait};
+use super::with_wait;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
-use crate::procedure::loader::quantity::Dimension::{Acceleration, Frequency, Level, Speed};
+use crate::procedure::loader::quantity::Dimension::{Acceleration, Speed};
 use crate::procedure::loader::verb::{Verb, needs, takes};
 use crate::stimulus::Stimulus;
 
+/// A verb that asks the unit for something and waits for its answer.
 macro_rules! request {
-    ($name:literal, $stimulus:expr) => {
-        Verb {
-            name: $name,
-            params: &[],
-            make: |_| with_wait($stimulus, true),
-        }
+    ($name:literal, $params:expr, |$args:pat_param| $stimulus:expr) => {
+        verb!($name, $params, |$args| with_wait($stimulus, true))
     };
 }
 
 pub(super) static VERBS: &[Verb] = &[
-    request!("ptu.arm", Stimulus::PtuArm),
-    request!("ptu.disarm", Stimulus::PtuDisarm),
-    request!("ptu.release", Stimulus::PtuRelease),
-    request!("ptu.clear_log", Stimulus::PtuClearLog),
-    Verb {
-        name: "ptu.silent",
-        params: &[needs("on", ParamType::Bool)],
-        make: |args| {
-            at_once(Stimulus::PtuSilent {
-                on: args.flag("on", true),
-            })
-        },
-    },
-    Verb {
-        name: "ptu.code",
-        params: &[
-            needs("code", ParamType::Code),
-            takes("level", ParamType::Amount(Level)),
-        ],
-        make: |args| test_code(code_signal(args)?),
-    },
-    Verb {
-        name: "ptu.raw",
-        params: &[
-            takes("carrier", ParamType::Amount(Frequency)),
-            needs("rate", ParamType::Amount(Frequency)),
-            takes("level", ParamType::Amount(Level)),
-        ],
-        make: |args| test_code(raw_signal(args)?),
-    },
-    Verb {
-        name: "ptu.speed",
-        params: &[
+    request!("ptu.arm", &[], |_| Stimulus::PtuArm),
+    request!("ptu.disarm", &[], |_| Stimulus::PtuDisarm),
+    request!("ptu.release", &[], |_| Stimulus::PtuRelease),
+    request!("ptu.clear_log", &[], |_| Stimulus::PtuClearLog),
+    switch!("ptu.silent", |on| Stimulus::PtuSilent { on }),
+    request!(
+        "ptu.code",
+        &[needs("code", ParamType::Code), LEVEL],
+        |args| test_code(code_signal(args)?)
+    ),
+    request!("ptu.raw", RAW_SIGNAL, |args| test_code(raw_signal(args)?)),
+    request!(
+        "ptu.speed",
+        &[
             needs("to", ParamType::Amount(Speed)),
             takes("channels", ParamType::Ints),
             takes("backward", ParamType::Bool),
             takes("accel", ParamType::Amount(Acceleration)),
         ],
-        make: test_speed,
-    },
-    Verb {
-        name: "ptu.marker",
-        params: &[needs("marker", ParamType::Int(1, 4))],
-        make: |args| {
-            let psm = marker(args, "marker")?;
-            with_wait(Stimulus::PtuMarker { psm }, true)
-        },
-    },
-    Verb {
-        name: "ptu.twc",
-        params: STATION,
-        make: |args| with_wait(Stimulus::PtuTwc(station(args, Place::Departure)?), true),
-    },
-    Verb {
-        name: "ptu.at_departure",
-        params: STATION,
-        make: |args| with_wait(Stimulus::PtuTwc(station(args, Place::Departure)?), true),
-    },
-    Verb {
-        name: "ptu.at_arrival",
-        params: STATION,
-        make: |args| with_wait(Stimulus::PtuTwc(station(args, Place::Arrival)?), true),
-    },
+        |args| test_speed(args)?
+    ),
+    request!("ptu.marker", &[MARKER], |args| Stimulus::PtuMarker {
+        psm: marker(args)?
+    }),
+    request!("ptu.twc", STATION, |args| Stimulus::PtuTwc(station(
+        args,
+        Place::Departure
+    )?)),
+    request!("ptu.at_departure", STATION, |args| Stimulus::PtuTwc(
+        station(args, Place::Departure)?
+    )),
+    request!("ptu.at_arrival", STATION, |args| Stimulus::PtuTwc(station(
+        args,
+        Place::Arrival
+    )?)),
 ];
 
-fn test_code((carrier_hz, rate_hz, level_mv): (f64, f64, f64)) -> Result<Item, String> {
-    let stimulus = Stimulus::PtuCode {
+fn test_code((carrier_hz, rate_hz, level_mv): (f64, f64, f64)) -> Stimulus {
+    Stimulus::PtuCode {
         carrier_hz,
         rate_hz,
         level_mv,
-    };
-    with_wait(stimulus, true)
+    }
 }
 
-fn test_speed(args: &Args<'_>) -> Result<Item, String> {
+fn test_speed(args: &Args<'_>) -> Result<Stimulus, String> {
     let mut channels = 0;
     for channel in args.flat("channels") {
         match channel {
@@ -112,11 +80,10 @@ fn test_speed(args: &Args<'_>) -> Result<Item, String> {
     if accel_mps2 < 0.0 {
         return Err("`accel` must not be negative".into());
     }
-    let stimulus = Stimulus::PtuSpeed {
+    Ok(Stimulus::PtuSpeed {
         channels,
         backward: args.flag("backward", false),
         to: speed(args, "to")?,
         accel_mps2,
-    };
-    with_wait(stimulus, true)
+    })
 }

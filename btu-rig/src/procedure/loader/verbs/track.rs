@@ -3,7 +3,6 @@
 use protocol::line::Section;
 use protocol::message::{DoorSide, RunningMode};
 
-use super::at_once;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
@@ -27,36 +26,25 @@ pub(super) const STATION: &[Param] = &[
 ];
 
 pub(super) static VERBS: &[Verb] = &[
-    Verb {
-        name: "twc.station",
-        params: STATION,
-        make: |args| at_once(Stimulus::Station(station(args, Place::Departure)?)),
-    },
-    Verb {
-        name: "twc.at_departure",
-        params: STATION,
-        make: |args| at_once(Stimulus::Station(station(args, Place::Departure)?)),
-    },
-    Verb {
-        name: "twc.at_arrival",
-        params: STATION,
-        make: |args| at_once(Stimulus::Station(station(args, Place::Arrival)?)),
-    },
-    Verb {
-        name: "twc.good",
-        params: &[],
-        make: |_| at_once(Stimulus::Wayside(WaysideCondition::Good)),
-    },
-    Verb {
-        name: "twc.silent",
-        params: &[],
-        make: |_| at_once(Stimulus::Wayside(WaysideCondition::Silent)),
-    },
-    Verb {
-        name: "twc.corrupt",
-        params: &[],
-        make: |_| at_once(Stimulus::Wayside(WaysideCondition::Corrupt)),
-    },
+    stimulus!("twc.station", STATION, |args| Stimulus::Station(station(
+        args,
+        Place::Departure
+    )?)),
+    stimulus!("twc.at_departure", STATION, |args| Stimulus::Station(
+        station(args, Place::Departure)?
+    )),
+    stimulus!("twc.at_arrival", STATION, |args| Stimulus::Station(
+        station(args, Place::Arrival)?
+    )),
+    stimulus!("twc.good", &[], |_| Stimulus::Wayside(
+        WaysideCondition::Good
+    )),
+    stimulus!("twc.silent", &[], |_| Stimulus::Wayside(
+        WaysideCondition::Silent
+    )),
+    stimulus!("twc.corrupt", &[], |_| Stimulus::Wayside(
+        WaysideCondition::Corrupt
+    )),
 ];
 
 /// Where the train stands in a section.

@@ -10,11 +10,11 @@ const NUMBER: &[Param] = &[needs("value", ParamType::Number)];
 
 macro_rules! unit {
     ($name:literal, $dimension:ident, $factor:expr) => {
-        Verb {
-            name: $name,
-            params: NUMBER,
-            make: |args| quantity(args, Dimension::$dimension, $factor),
-        }
+        verb!($name, NUMBER, |args| quantity(
+            args,
+            Dimension::$dimension,
+            $factor
+        ))
     };
 }
 
