@@ -2,12 +2,12 @@
 //!
 //! It has the parts of an SG-100 kind of unit (S2) and talks to the world through encoded frames
 //! only:
-//! * [`kernel`]: start-up self-test and event log;
-//! * [`com`]: links, input image, maintenance session;
-//! * [`atp`]: speed code, speed, overspeed supervision, brakes, doors, direction, modes;
-//! * [`twc`], [`psm`], [`ato`]: wayside data, markers and TRA, automatic operation;
-//! * [`test_board`]: test signals of an armed tester;
-//! * [`front_end`]: antennas, sensors and relays, where injected faults act.
+//! * `kernel`: start-up self-test and event log;
+//! * `com`: links, input image, maintenance session;
+//! * `atp`: speed code, speed, overspeed supervision, brakes, doors, direction, modes;
+//! * `twc`, `psm`, [`ato`]: wayside data, markers and TRA, automatic operation;
+//! * `test_board`: test signals of an armed tester;
+//! * `front_end`: antennas, sensors and relays, where injected faults act.
 //!
 //! [`Unit`] is stepped every 10 ms of virtual time; nothing here knows a clock, a thread or a file,
 //! and `no_std` keeps it so.
@@ -16,18 +16,19 @@
 extern crate alloc;
 
 pub mod ato;
-pub mod atp;
-pub mod com;
-pub mod front_end;
-pub mod kernel;
-pub mod psm;
+mod atp;
+mod com;
+mod front_end;
+mod kernel;
+mod psm;
 mod random;
 mod setup;
-pub mod signals;
-pub mod test_board;
+mod signals;
+mod test_board;
 mod timer;
-pub mod twc;
+mod twc;
 mod unit;
 
+pub use kernel::{LOG_CAPACITY, RUN_ROWS};
 pub use setup::Setup;
 pub use unit::Unit;

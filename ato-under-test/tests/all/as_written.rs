@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::common::Bench;
-use ato_under_test::kernel::{LOG_CAPACITY, RUN_ROWS};
+use ato_under_test::{LOG_CAPACITY, RUN_ROWS};
 use ato_under_test::{Setup, Unit};
 use protocol::link::{End, Link};
 use protocol::message::{

@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 
 use crate::Instant;
 use crate::frame::{self, Decoder, Header, Reject, Rejected};
-use crate::message::{Address, Channel, DecodeError, Message};
+use crate::message::{Address, Channel, Message};
 
 pub use counters::Counters;
 pub use receiver::{MAX_AHEAD, MAX_DELAY, RELAX, RESYNC};
@@ -45,7 +45,6 @@ pub struct Link {
     next_seq: [u16; CHANNELS],
     payload: Vec<u8>,
     counters: Counters,
-    last_error: Option<DecodeError>,
 }
 
 impl Link {
@@ -64,7 +63,6 @@ impl Link {
                 rejected: [[0; CHANNELS + 1]; Reject::ALL.len()],
                 garbage: 0,
             },
-            last_error: None,
         }
     }
 
@@ -126,10 +124,8 @@ impl Link {
                         return Err(rejected(reason));
                     }
                 };
-                let message = Message::decode(header.channel, payload).map_err(|error| {
-                    self.last_error = Some(error);
-                    rejected(Reject::Layout)
-                })?;
+                let message = Message::decode(header.channel, payload)
+                    .map_err(|_| rejected(Reject::Layout))?;
                 // A message that only this end may send: an echo of its own frame, or a wrong sender.
                 if message.spec().sent_by_unit() == (self.end == End::Unit) {
                     return Err(rejected(Reject::Layout));
@@ -160,11 +156,6 @@ impl Link {
     /// What was taken and refused so far.
     pub const fn counters(&self) -> &Counters {
         &self.counters
-    }
-
-    /// What was wrong with the payload of the last frame refused for [`Reject::Layout`].
-    pub const fn last_layout_error(&self) -> Option<DecodeError> {
-        self.last_error
     }
 }
 

@@ -1,13 +1,13 @@
 //! The technician's window: one frame with a connection bar, and pages below it.
 //!
 //! Drawing never waits: each unit is driven by its own bench thread ([`ptu_bench::bench_worker`]), and queries to the
-//! database and to files run on the thread of a [`QueryWorker`].
+//! database and to files run on the thread of a `QueryWorker`.
 
 mod app;
 mod data_paths;
 mod display;
 mod fonts;
-pub mod frame;
+mod frame;
 mod messages;
 mod page;
 mod page_context;
@@ -22,10 +22,8 @@ mod units;
 pub use app::{App, Options};
 pub use data_paths::DataPaths;
 pub use display::open;
-pub use messages::{Message, Messages};
+pub(crate) use messages::Messages;
 pub use page::Page;
-pub use page_context::{Destination, PageContext};
-pub use query_worker::{Pending, QueryWorker};
+pub(crate) use page_context::{Destination, PageContext};
 pub use settings::Settings;
-pub use theme::Palette;
-pub use units::{Unit, Units};
+pub(crate) use theme::Palette;
