@@ -17,13 +17,11 @@ pub struct AntennaSignal {
 /// Pulses of one tachometer input in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pulses {
-    /// How many came.
     pub count: u32,
     /// Time of the last one, on the sender's clock.
     pub edge_at: Instant,
     /// Time up to which pulses were counted, on the same clock.
     pub sampled_at: Instant,
-    /// Phase says backward.
     pub backward: bool,
 }
 
@@ -39,21 +37,16 @@ pub struct MarkerPulse {
 /// The inputs as the processors see them in one scan.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inputs {
-    /// The harness is alive.
     pub alive: bool,
     /// Signal at the receiver's output filter.
     pub signal: AntennaSignal,
-    /// Tachometer pulses.
     pub pulses: [Pulses; 2],
     /// Tachometer inputs fed by the TEST board.
     pub test_speed: [bool; 2],
-    /// Marker pulse, if one came.
     pub marker: Option<MarkerPulse>,
     /// TRA answers its test pulse.
     pub tra_answers: bool,
-    /// Train lines.
     pub lines: TrainLines,
-    /// Mode switch.
     pub mode_switch: ModeSwitch,
     /// Master controller notch.
     pub controller: i8,

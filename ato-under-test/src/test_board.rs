@@ -20,7 +20,6 @@ const OWN_ACCEL_MMS2: u16 = 3000;
 /// Period in which the TWC TEST module repeats its station data.
 const TWC_PERIOD: Duration = Duration::from_ms(250);
 
-/// The board.
 #[derive(Debug)]
 pub struct TestBoard {
     metres_per_pulse: f64,
@@ -83,7 +82,6 @@ impl TestBoard {
         }
     }
 
-    /// Makes a speed code.
     pub fn set_code(&mut self, request: TestCode) -> Answer {
         let answer = self.take(request.level_mv <= LEVEL_MAX_MV);
         if answer == Answer::Accepted {
@@ -96,7 +94,6 @@ impl TestBoard {
         answer
     }
 
-    /// Makes a speed signal.
     pub fn set_speed(&mut self, mut request: TestSpeed) -> Answer {
         let in_range = request.speed_cms <= SPEED_MAX_CMS
             && matches!(request.channels, 1..=3)
@@ -120,7 +117,6 @@ impl TestBoard {
         answer
     }
 
-    /// Makes one marker pulse.
     pub fn set_marker(&mut self, request: TestMarker) -> Answer {
         let answer = self.take(matches!(request.marker, 1..=4));
         if answer == Answer::Accepted {
@@ -129,7 +125,6 @@ impl TestBoard {
         answer
     }
 
-    /// Makes station data.
     pub fn set_twc(&mut self, now: Instant, request: TestTwc) -> Answer {
         let in_range = request.running_mode.is_known()
             && request.door_side.is_known()
@@ -153,7 +148,6 @@ impl TestBoard {
         answer
     }
 
-    /// Takes signals away.
     pub fn release(&mut self, request: TestRelease) {
         let signals = request.signals;
         if signals.contains(TestSignals::CODE) {
@@ -168,7 +162,6 @@ impl TestBoard {
         self.marker = None;
     }
 
-    /// Takes everything away.
     pub fn release_all(&mut self) {
         self.release(TestRelease {
             session: 0,
@@ -186,7 +179,6 @@ impl TestBoard {
         self.speed.as_ref().map(|generator| generator.speed)
     }
 
-    /// Signals being made.
     pub fn signals(&self) -> TestSignals {
         let mut signals = TestSignals::empty();
         signals.set(TestSignals::CODE, self.code.is_some());

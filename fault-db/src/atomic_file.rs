@@ -108,7 +108,6 @@ impl AtomicFile {
         make_private(&part.beside).map_err(|error| cannot(error.to_string()))
     }
 
-    /// Chooses a unique temporary name.
     fn of(to: &Path) -> Self {
         let mut name = to.as_os_str().to_owned();
         let random = RandomState::new().hash_one(to) as u32;

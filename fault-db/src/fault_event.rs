@@ -24,7 +24,6 @@ pub(crate) struct EventContext {
     pub parents: Vec<u8>,
     /// Lamport number: one more than the greatest of the events known.
     pub lamport: i64,
-    /// Occurrences known.
     pub occurrences_known: i64,
 }
 

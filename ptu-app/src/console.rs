@@ -32,13 +32,10 @@ pub struct Console {
     thread: JoinHandle<()>,
 }
 
-/// Something to show.
 enum Shown {
     /// What is under way, beside the bar.
     Present(String),
-    /// One more step is over.
     StepDone,
-    /// A line.
     Line(String),
 }
 

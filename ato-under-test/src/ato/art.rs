@@ -36,7 +36,6 @@ pub struct ArtInputs {
     pub arrived: bool,
 }
 
-/// The next state.
 pub fn next(state: AtoState, inputs: ArtInputs) -> AtoState {
     match state {
         _ if !inputs.fit => AtoState::Inspection,

@@ -12,7 +12,6 @@ pub struct CruiseInputs {
     pub limit: Speed,
     /// Fixed speed ordered by the wayside.
     pub fixed_speed: Option<Speed>,
-    /// Running mode.
     pub running_mode: RunningMode,
 }
 

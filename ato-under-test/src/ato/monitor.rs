@@ -94,7 +94,6 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// One cycle.
     pub fn step(
         &mut self,
         inputs: &AtoInputs<'_>,

@@ -30,7 +30,6 @@ pub struct SpeedMeasurement {
     pub pulse_m: f64,
 }
 
-/// The observer.
 #[derive(Debug)]
 pub struct Observer {
     config: ObserverConfig,

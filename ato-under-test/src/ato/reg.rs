@@ -4,13 +4,11 @@
 use protocol::CYCLE;
 use protocol::config::{AtoConfig, AtoTrainConfig};
 
-/// The regulator.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Regulator {
     accel_mps2: f64,
 }
 
-/// What it gave out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GrantedEffort {
     /// -1024 full brake .. 1023 full power.

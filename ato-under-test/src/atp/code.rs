@@ -8,7 +8,6 @@ use crate::kernel::EventLog;
 use crate::signals::AntennaSignal;
 use crate::timer::OnDelay;
 
-/// What the antenna signal means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Code {
     /// Nothing valid: the most restrictive limit holds.
@@ -45,7 +44,6 @@ impl CodeDecoder {
         }
     }
 
-    /// One scan.
     pub fn step(
         &mut self,
         now: Instant,
@@ -94,7 +92,6 @@ impl CodeDecoder {
         }
     }
 
-    /// The code in force.
     pub fn code(&self) -> Code {
         self.code
     }

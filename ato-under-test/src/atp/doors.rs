@@ -15,21 +15,15 @@ const SETTLES: Duration = Duration::from_ms(200);
 /// What the door supervision looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct DoorInputs {
-    /// Doors proved closed.
     pub closed: bool,
-    /// Standing still.
     pub standstill: bool,
-    /// At the stop point.
     pub aligned: bool,
     /// The train stands on the arrival station's loop with valid station data.
     pub at_platform: bool,
-    /// Side given by TWC.
     pub side: DoorSide,
-    /// Measured speed.
     pub speed: Speed,
 }
 
-/// The supervision.
 #[derive(Debug, Default)]
 pub struct Doors {
     open_moving: OnDelay,
@@ -70,7 +64,6 @@ impl Doors {
         open_moving
     }
 
-    /// Sides enabled.
     pub fn enable(&self) -> Outputs {
         self.enable
     }

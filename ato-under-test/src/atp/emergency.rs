@@ -14,19 +14,14 @@ use crate::timer::{Edge, OnDelay};
 pub struct BrakeInputs {
     /// A cause that holds now, `None` = none.
     pub cause: EbCause,
-    /// What the overspeed supervision measured.
     pub overspeed: Overspeed,
     /// Unit started, cab active, mode chosen, inputs alive.
     pub may_release: bool,
-    /// Standing still.
     pub standstill: bool,
-    /// Train lines.
     pub lines: TrainLines,
-    /// Inputs alive.
     pub alive: bool,
 }
 
-/// The brake.
 #[derive(Debug)]
 pub struct EmergencyBrake {
     cause: EbCause,
@@ -50,7 +45,6 @@ impl EmergencyBrake {
         }
     }
 
-    /// One scan.
     pub fn step(&mut self, now: Instant, inputs: BrakeInputs, log: &mut EventLog) {
         let acknowledged = self
             .acknowledge
@@ -106,12 +100,10 @@ impl EmergencyBrake {
         }
     }
 
-    /// Braking.
     pub fn applied(&self) -> bool {
         self.cause != EbCause::None
     }
 
-    /// Why.
     pub fn cause(&self) -> EbCause {
         self.cause
     }

@@ -32,21 +32,15 @@ pub use tachometers::Tachometers;
 pub struct ScanContext {
     /// Start-up has finished with nothing vital failed.
     pub vital_passed: bool,
-    /// Start-up has finished.
     pub started: bool,
     /// The harness has been alive at least once.
     pub ever_alive: bool,
-    /// At the stop point.
     pub aligned: bool,
     /// On the arrival station's loop with valid station data.
     pub at_platform: bool,
-    /// Door side given by TWC.
     pub door_side: DoorSide,
-    /// TWC is up.
     pub twc_up: bool,
-    /// TCMS is up.
     pub tcms_up: bool,
-    /// ATO works.
     pub ato_ready: bool,
 }
 
@@ -89,7 +83,6 @@ impl Atp {
         }
     }
 
-    /// One scan.
     pub fn scan(
         &mut self,
         now: Instant,
@@ -252,27 +245,22 @@ impl Atp {
         matches!(switch, ModeSwitch::Automatic | ModeSwitch::Driverless)
     }
 
-    /// Speed code decoder.
     pub fn decoder(&self) -> &CodeDecoder {
         &self.decoder
     }
 
-    /// Tachometers.
     pub fn tachometers(&self) -> &Tachometers {
         &self.tachometers
     }
 
-    /// Emergency brake.
     pub fn brake(&self) -> &EmergencyBrake {
         &self.brake
     }
 
-    /// Mode sequence.
     pub fn sequence(&self) -> &ModeSequence {
         &self.sequence
     }
 
-    /// Limit in force.
     pub fn limit(&self) -> Speed {
         self.limit
     }

@@ -29,28 +29,21 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
 /// Of these, what is kept until it is acknowledged: braking clears it, and driving on would make it anew.
 const KEPT: Refusals = Refusals::ATO_NOT_READY.union(Refusals::TCMS_NOT_READY);
 
-/// What the sequence looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeInputs {
     /// Start-up has finished and inputs are alive.
     pub ready: bool,
-    /// Cab active.
     pub cab_active: bool,
-    /// Mode switch.
     pub switch: ModeSwitch,
     /// Preconditions that do not hold, departure left out.
     pub lacking: Refusals,
-    /// Wayside gives departure.
     pub departure: bool,
-    /// Start button pressed.
     pub start: bool,
-    /// Acknowledge button pressed.
     pub acknowledge: bool,
     /// The train has reached the stop point and stands.
     pub arrived: bool,
 }
 
-/// The sequence.
 #[derive(Debug, Default)]
 pub struct ModeSequence {
     mode: Mode,
@@ -65,7 +58,6 @@ pub struct ModeSequence {
 }
 
 impl ModeSequence {
-    /// One cycle.
     pub fn step(&mut self, now: Instant, inputs: ModeInputs, log: &mut EventLog) {
         let pressed = self.start.rises(inputs.start);
         self.keep_failure(&inputs);
@@ -113,7 +105,6 @@ impl ModeSequence {
         self.departs_anew &= !departs;
     }
 
-    /// The mode.
     pub fn mode(&self) -> Mode {
         self.mode
     }
@@ -128,7 +119,6 @@ impl ModeSequence {
         self.failed.contains(Refusals::TCMS_NOT_READY)
     }
 
-    /// Preconditions that do not hold.
     pub fn refusals(&self) -> Refusals {
         self.refusals
     }

@@ -72,7 +72,6 @@ impl OverspeedSupervision {
         }
     }
 
-    /// One scan.
     pub fn step(
         &mut self,
         now: Instant,

@@ -18,7 +18,6 @@ const JUMP_SCANS: usize = 10;
 /// Jump allowed beyond the plausible acceleration, for the first pulses after standing, m/s.
 const JUMP_ALLOWANCE_MPS: f64 = 0.5;
 
-/// One channel.
 #[derive(Debug)]
 pub struct Speedometer {
     window: Duration,
@@ -101,7 +100,6 @@ impl Speedometer {
         }
     }
 
-    /// The speed.
     pub fn speed(&self) -> Speed {
         self.speed
     }

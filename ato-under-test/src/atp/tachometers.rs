@@ -18,7 +18,6 @@ const NOISE_SCANS: u32 = 6;
 /// Span in which they are counted.
 const NOISE_SPAN: Duration = Duration::from_ms(1000);
 
-/// The pair of tachometers.
 #[derive(Debug)]
 pub struct Tachometers {
     meters: [Speedometer; 2],
@@ -59,7 +58,6 @@ impl Tachometers {
         }
     }
 
-    /// One scan.
     pub fn step(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
         for i in 0..2 {
             if self.from_board[i] != inputs.test_speed[i] {
@@ -135,7 +133,6 @@ impl Tachometers {
         self.faulty
     }
 
-    /// Standing still.
     pub fn standstill(&self) -> bool {
         self.standstill
     }

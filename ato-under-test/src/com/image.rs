@@ -72,7 +72,6 @@ impl IoImage {
         self.latest.as_ref().map(|input| (input, self.sampled_at))
     }
 
-    /// Frames are coming.
     pub fn alive(&self) -> bool {
         self.alive
     }

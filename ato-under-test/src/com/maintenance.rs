@@ -23,18 +23,14 @@ const ENTRIES_PER_CYCLE: usize = 2;
 /// Rows of the run record sent in a cycle without log entries, for the same reason.
 const ROWS_PER_CYCLE: usize = 2;
 
-/// What arming needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArmConditions {
-    /// Start-up has finished.
     pub started: bool,
-    /// Maintenance key on.
     pub key_on: bool,
     /// Standing still by the train's own tachometers.
     pub standing: bool,
 }
 
-/// The session.
 #[derive(Debug)]
 pub struct Maintenance {
     armed: Option<u32>,
@@ -64,7 +60,6 @@ impl Maintenance {
         }
     }
 
-    /// Armed for stimuli.
     pub fn armed(&self) -> bool {
         self.armed.is_some()
     }

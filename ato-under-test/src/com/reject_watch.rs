@@ -37,7 +37,6 @@ impl RejectWatch {
         self.lost[place(channel)] += 1;
     }
 
-    /// One cycle.
     pub fn step(&mut self, now: Instant, counters: &Counters, log: &mut EventLog) {
         for channel in Channel::ALL {
             let i = place(channel);

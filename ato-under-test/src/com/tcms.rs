@@ -52,7 +52,6 @@ impl TcmsLink {
         true
     }
 
-    /// Moves on to the present.
     pub fn step(&mut self, now: Instant) {
         self.alive = self.fresh(self.counter_moved, now);
     }
@@ -61,7 +60,6 @@ impl TcmsLink {
         at.is_some_and(|at| now.since(at) < self.timeout)
     }
 
-    /// The link is up.
     pub fn alive(&self) -> bool {
         self.alive
     }

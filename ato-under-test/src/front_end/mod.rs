@@ -26,7 +26,6 @@ use crate::com::IoImage;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
 
-/// The input side.
 #[derive(Debug)]
 pub struct FrontEnd {
     sensors: [PulseSensor; 2],

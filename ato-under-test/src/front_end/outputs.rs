@@ -6,7 +6,6 @@ use protocol::{Duration, Instant};
 
 use super::{DelayQueue, Faults};
 
-/// The output side.
 #[derive(Debug, Default)]
 pub struct OutputStage {
     eb_relay: Contact,

@@ -5,7 +5,6 @@ use protocol::injection::{Effect, Place};
 use super::{Faults, one_in_scan};
 use crate::signals::Pulses;
 
-/// One tachometer input.
 #[derive(Debug, Default)]
 pub struct PulseSensor {
     last_count: Option<u16>,

@@ -19,7 +19,6 @@ pub enum Supply {
     Back,
 }
 
-/// Supply and clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PowerAndClock {
     down: bool,
@@ -37,7 +36,6 @@ impl PowerAndClock {
         }
     }
 
-    /// One scan of the supply.
     pub fn supply(&mut self, now: Instant, faults: &mut Faults) -> Supply {
         let dips = match faults.at(Place::PowerSupply) {
             Some(Effect::Dead) => true,

@@ -12,19 +12,16 @@ pub const LOG_CAPACITY: usize = protocol::event::LOG_ENTRIES;
 /// State of the unit that each entry freezes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FreezeFrame {
-    /// Measured speed.
     pub speed: Speed,
     /// Speed limit in force.
     pub limit: Speed,
     /// Position in the section, m.
     pub position_m: f64,
-    /// Operating mode.
     pub mode: Mode,
     /// Emergency brake's cause.
     pub eb_cause: EbCause,
 }
 
-/// The log.
 #[derive(Debug, Default)]
 pub struct EventLog {
     entries: Ring<LogEntry, LOG_CAPACITY>,
@@ -37,7 +34,6 @@ impl EventLog {
         self.frame = frame;
     }
 
-    /// Logs an event.
     pub fn push(&mut self, now: Instant, event: Event, parameter: i32) {
         self.entries.push(LogEntry {
             index: self.entries.next_index(),
@@ -52,7 +48,6 @@ impl EventLog {
         });
     }
 
-    /// Its entries.
     pub fn entries(&self) -> &Ring<LogEntry, LOG_CAPACITY> {
         &self.entries
     }

@@ -36,7 +36,6 @@ impl<T, const N: usize> Ring<T, N> {
         self.entries.get(skip)
     }
 
-    /// The newest entry.
     pub fn newest(&self) -> Option<&T> {
         self.entries.back()
     }

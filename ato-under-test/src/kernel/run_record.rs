@@ -21,11 +21,9 @@ pub struct RunCycle {
     pub effort: i16,
     /// Marker detected last, and how many so far.
     pub marker: (u8, u8),
-    /// Operating state.
     pub state: AtoState,
 }
 
-/// The ring.
 #[derive(Debug, Default)]
 pub struct RunRecord {
     rows: Ring<RunRow, RUN_ROWS>,
@@ -63,7 +61,6 @@ impl RunRecord {
         self.rows.push(row);
     }
 
-    /// Its rows.
     pub fn rows(&self) -> &Ring<RunRow, RUN_ROWS> {
         &self.rows
     }

@@ -17,7 +17,6 @@ const RELAY_TIME: Duration = Duration::from_ms(200);
 pub struct SelfTestInputs {
     /// The receiver decoded the test code fed into its coil.
     pub receiver_decoded: bool,
-    /// TRA answered its test pulse.
     pub tra_answered: bool,
     /// The TWC modem heard its own test frame.
     pub modem_heard: bool,
@@ -84,12 +83,10 @@ impl SelfTester {
         true
     }
 
-    /// The test has ended.
     pub fn finished(&self) -> bool {
         self.finished
     }
 
-    /// Items that failed.
     pub fn failed(&self) -> SelfTest {
         self.failed
     }

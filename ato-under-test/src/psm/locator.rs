@@ -110,7 +110,6 @@ impl Locator {
         }
     }
 
-    /// One scan.
     pub fn step(
         &mut self,
         now: Instant,
@@ -262,7 +261,6 @@ impl Locator {
         self.wheel.correction()
     }
 
-    /// Section the train is in.
     pub fn section(&self) -> Option<&Section> {
         self.section.as_ref()
     }

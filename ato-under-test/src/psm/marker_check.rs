@@ -53,7 +53,6 @@ impl Wheels {
     }
 }
 
-/// Result of the check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MarkerCheck {
     /// Its place is the train's position.
@@ -84,7 +83,6 @@ pub struct PendingDetection {
     pub unsure: bool,
 }
 
-/// Judges a detection.
 pub fn judge(
     section: &Section,
     fix: &Fix,

@@ -18,13 +18,11 @@ pub struct Movement {
     pub edge_age_s: f64,
     /// Speed by the tachometer that counts, mean over its window, m/s.
     pub speed_mps: f64,
-    /// Standing still.
     pub standstill: bool,
     /// ATO drives: the position is needed, a marker that does not come matters.
     pub driven: bool,
 }
 
-/// The odometer.
 #[derive(Debug)]
 pub struct Odometer {
     pulse_m: f64,
@@ -57,7 +55,6 @@ impl Odometer {
         }
     }
 
-    /// One scan.
     pub fn step(&mut self, movement: &Movement) {
         let before = core::mem::replace(&mut self.speeds_mps[self.at], movement.speed_mps);
         self.at = (self.at + 1) % SCANS;

@@ -8,7 +8,6 @@ use crate::kernel::EventLog;
 /// Tests in a row that must fail before TRA counts as failed.
 const FAILURES: u32 = 2;
 
-/// The periodic test.
 #[derive(Debug)]
 pub struct Tra {
     period: Duration,
@@ -17,7 +16,6 @@ pub struct Tra {
 }
 
 impl Tra {
-    /// Tests TRA every `period`.
     pub fn new(period: Duration) -> Self {
         Self {
             period,
@@ -48,7 +46,6 @@ impl Tra {
         }
     }
 
-    /// TRA passed its last tests.
     pub fn ok(&self) -> bool {
         self.failures < FAILURES
     }

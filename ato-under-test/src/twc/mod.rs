@@ -7,22 +7,15 @@ use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::EventLog;
 
-/// Train data for the answer.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrainState {
-    /// Operating mode.
     pub mode: Mode,
-    /// Doors proved closed.
     pub doors_closed: bool,
-    /// At the stop point.
     pub aligned: bool,
-    /// Standing.
     pub standstill: bool,
-    /// Measured speed.
     pub speed: Speed,
 }
 
-/// The receiving and checking side.
 #[derive(Debug)]
 pub struct Twc {
     timeout: Duration,
@@ -68,7 +61,6 @@ impl Twc {
         self.data = Some(data);
     }
 
-    /// Moves on to the present.
     pub fn step(&mut self, now: Instant, log: &mut EventLog) {
         if self.up
             && self
@@ -99,7 +91,6 @@ impl Twc {
         }
     }
 
-    /// Communication is up.
     pub fn up(&self) -> bool {
         self.up
     }
@@ -109,7 +100,6 @@ impl Twc {
         self.valid
     }
 
-    /// Station data in force.
     pub fn data(&self) -> Option<&TwcWayside> {
         self.data.as_ref()
     }

@@ -13,7 +13,6 @@ use crate::atp::{Atp, Code, ModeInputs};
 use crate::kernel::RunCycle;
 
 impl Unit {
-    /// One cycle.
     pub(super) fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
         if let Some(data) = self.board.take_twc(now) {
             self.take_station(now, None, data, out);
@@ -91,7 +90,6 @@ impl Unit {
         }
     }
 
-    /// One cycle of ATO.
     fn operate(&mut self, now: Instant) {
         let was_ready = self.ato_outputs.ready;
         let data = self.twc.data();

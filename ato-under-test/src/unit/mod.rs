@@ -182,7 +182,6 @@ impl Unit {
             .scan(now, image, board, built_in, &mut self.faults);
     }
 
-    /// One scan of ATP.
     fn protect(&mut self, now: Instant) {
         let context = ScanContext {
             vital_passed: self.self_tester.vital_passed(),

@@ -11,7 +11,6 @@ const SOFTWARE: [u8; 3] = [0, 1, 0];
 /// Index that means no code.
 const NO_CODE: u8 = 255;
 
-/// Who the unit is.
 pub fn identity(unit: &Unit, now: Instant) -> Message {
     Identity {
         serial: padded(&unit.setup.serial),
@@ -75,7 +74,6 @@ fn status_bits(unit: &Unit) -> StatusBits {
     bits
 }
 
-/// Commands and states for TCMS.
 pub fn to_tcms(unit: &Unit) -> Message {
     let ato = unit.ato_outputs;
     let mut bits = AtcToTcmsBits::empty();

@@ -10,7 +10,6 @@ use crate::rig::{Rig, TrueMotion};
 /// Rows of a usual run, so that they need not move as they come.
 const USUAL_ROWS: usize = 2_500;
 
-/// Rows and logs so far.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
     /// Rows are kept from here on.

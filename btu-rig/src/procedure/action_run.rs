@@ -57,7 +57,6 @@ impl Problem {
 pub(super) enum Progress {
     /// An action takes its time.
     Waiting,
-    /// All are done.
     Done,
     /// An action did not succeed; the list can be [resumed](ActionRun::skip) after it.
     Stuck(Problem),

@@ -94,9 +94,7 @@ impl std::fmt::Display for MissingData {
 /// Answer to a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TrueMotion {
-    /// It holds.
     Yes,
-    /// It does not.
     No,
     /// It cannot be told.
     NoData(MissingData),

@@ -2,7 +2,6 @@
 
 use protocol::event::Event;
 
-/// A set of events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct EventSet(u128);
 

@@ -37,7 +37,6 @@ impl Edge {
     }
 }
 
-/// A measurement in progress.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MeasurementRun {
     from: Edge,

@@ -17,7 +17,6 @@ const TOO_LATE: Duration = CYCLE;
 /// A step waits no longer for the unit's log; whoever reads the log gives up before.
 const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
-/// A live step.
 #[derive(Debug)]
 pub(super) struct StepRun {
     started: Instant,
@@ -44,7 +43,6 @@ pub(super) struct StepRun {
     harmed: Option<(u64, u64)>,
 }
 
-/// How a step ended.
 pub(super) struct StepEnd {
     pub verdict: Verdict,
     pub message: String,

@@ -64,7 +64,6 @@ impl Antenna {
         self.wanted.level_mv_per_s = level_mv_per_s;
     }
 
-    /// Takes the signal away.
     pub fn off(&mut self) {
         self.wanted = AntennaCommand::default();
     }

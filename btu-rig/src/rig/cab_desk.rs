@@ -16,15 +16,10 @@ const PRESSED: Duration = Duration::from_ms(500);
 /// Contacts and levers of both cabs and of the train; the unit is in the first cab.
 #[derive(Debug)]
 pub struct CabDesk {
-    /// Doors proved closed.
     pub doors_closed: bool,
-    /// Head control relay.
     pub hcr: bool,
-    /// Maintenance key.
     pub maintenance_key: bool,
-    /// Mode switch.
     pub mode_switch: ModeSwitch,
-    /// Master controller.
     pub lever: Lever,
     /// Voltage of its potentiometer, whatever its position.
     pub volts: Option<f64>,
@@ -34,9 +29,7 @@ pub struct CabDesk {
     pub reverser: i8,
     /// What is wrong with desk and train lines.
     pub faults: CabDeskFaults,
-    /// Brakes that are cut out.
     pub brakes_cut_out: CarSet,
-    /// Inverters that are cut out.
     pub inverters_cut_out: CarSet,
     switches: Switches,
     acknowledge_until: Instant,
@@ -105,12 +98,10 @@ impl CabDesk {
         };
     }
 
-    /// Presses the acknowledge button.
     pub fn press_acknowledge(&mut self, now: Instant) {
         self.acknowledge_until = now + PRESSED;
     }
 
-    /// Presses the ATO start button.
     pub fn press_start(&mut self, now: Instant) {
         self.start_until = now + PRESSED;
     }
@@ -191,7 +182,6 @@ impl CabDesk {
         [first, other]
     }
 
-    /// Train lines at this scan.
     pub fn lines(&self, now: Instant) -> TrainLines {
         let mut lines = TrainLines::empty();
         lines.set(TrainLines::DOORS_CLOSED, self.doors_proved());

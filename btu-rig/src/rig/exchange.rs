@@ -35,7 +35,6 @@ pub enum Request {
     Disarm,
     /// A message that is answered by `StimulusAnswer`.
     Stimulus {
-        /// The message.
         message: Message,
         /// What to call it.
         what: &'static str,
@@ -44,7 +43,6 @@ pub enum Request {
     },
 }
 
-/// The request under way.
 #[derive(Debug)]
 struct Current {
     request: Request,

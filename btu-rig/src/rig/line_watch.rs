@@ -46,7 +46,6 @@ impl Counts {
     }
 }
 
-/// The watch.
 #[derive(Debug)]
 pub struct LineWatch {
     /// Frames lost within [`SPAN`] that make a line bad.

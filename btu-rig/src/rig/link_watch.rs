@@ -18,7 +18,6 @@ const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 /// Channels that are watched, by their names.
 const WATCHED: [(Channel, &str); 2] = [(Channel::Io, "I/O"), (Channel::Ptu, "PTU")];
 
-/// The watch.
 #[derive(Debug, Default)]
 pub struct LinkWatch {
     begun: Option<Instant>,

@@ -57,7 +57,6 @@ impl Default for Allowance {
     }
 }
 
-/// The reader.
 #[derive(Debug, Default)]
 pub struct LogReader {
     /// Index of the next entry to take.
@@ -116,7 +115,6 @@ impl LogReader {
         self.asked_times = 0;
     }
 
-    /// Asks for what is new.
     pub fn step(&mut self, now: Instant, link: &mut Link, out: &mut Vec<u8>) {
         if !self.wants_answer() || self.events.len() >= MAX_EVENTS {
             self.pause();
@@ -139,7 +137,6 @@ impl LogReader {
         self.probes += u32::from(self.probing);
     }
 
-    /// Takes an entry.
     pub fn on_entry(&mut self, now: Instant, entry: &LogEntry) {
         self.heard = Some(now);
         if entry.index > self.next && !self.probing {

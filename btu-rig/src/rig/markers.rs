@@ -93,7 +93,6 @@ impl Markers {
         self.pending.clear();
     }
 
-    /// One scan.
     pub fn step(&mut self, motion: &Motion) {
         let scan_us = SCAN.as_us() as f64;
         self.age_us = (self.age_us + scan_us).min(MAX_AGE_US);

@@ -8,7 +8,6 @@ use crate::train::Piece;
 /// Pieces one scan can need: three segments of a travel and the rest after it.
 const MAX_PIECES: usize = 4;
 
-/// The motion of one scan.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Motion {
     pieces: [Piece; MAX_PIECES],

@@ -79,7 +79,6 @@ const STATUS_SIGNALS: [Signal; 23] = [
 /// The latest value of every signal, and when each source of the unit was last heard.
 #[derive(Debug, Default)]
 pub struct LatestSample {
-    /// The sample.
     pub sample: Sample,
     heard: [Option<Instant>; CARRIED.len()],
     outputs: Outputs,

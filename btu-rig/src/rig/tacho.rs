@@ -119,7 +119,6 @@ impl Tacho {
         }
     }
 
-    /// Its condition.
     pub fn condition(&self) -> TachoCondition {
         self.condition
     }

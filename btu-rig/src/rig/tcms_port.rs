@@ -9,14 +9,12 @@ use crate::tcms::TcmsView;
 /// Age of the last moved alive counter at which TCMS does not count as sending.
 const SILENT: Duration = Duration::from_ms(500);
 
-/// The port.
 #[derive(Debug)]
 pub struct TcmsPort {
     /// Condition of the link as the procedure wants it.
     pub condition: TcmsCondition,
     /// What is wrong with it.
     pub fault: Option<TcmsCondition>,
-    /// ATO is permitted.
     pub ato_enable: bool,
     /// Passengers, kg.
     pub load_kg: f64,

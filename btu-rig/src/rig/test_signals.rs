@@ -96,7 +96,6 @@ pub fn station(session: u32, data: &StationData) -> Request {
     repeatable("the test station data", message)
 }
 
-/// Takes every test signal away.
 pub fn release(session: u32) -> Request {
     repeatable(
         "the release of test signals",

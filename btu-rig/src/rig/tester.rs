@@ -21,7 +21,6 @@ const IDENTIFY_CHECK: Duration = Duration::from_ms(2000);
 /// An uptime that falls by more than this is a wrapped counter, not a restart.
 const UPTIME_WRAP_MS: u32 = 1 << 31;
 
-/// The tester.
 #[derive(Debug)]
 pub struct Tester {
     session: u32,
@@ -228,7 +227,6 @@ impl Tester {
         (!self.silent).then_some(self.speaks_since)
     }
 
-    /// Its session number.
     pub fn session(&self) -> u32 {
         self.session
     }

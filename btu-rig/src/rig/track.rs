@@ -40,7 +40,6 @@ impl Track {
         }
     }
 
-    /// The section.
     pub fn section(&self) -> &Section {
         &self.section
     }

@@ -46,22 +46,18 @@ impl Wayside {
         self.data = StationData::at_departure(section);
     }
 
-    /// Sets what it sends.
     pub fn set_data(&mut self, data: StationData) {
         self.data = data;
     }
 
-    /// What it sends.
     pub fn data(&self) -> &StationData {
         &self.data
     }
 
-    /// Sets its condition.
     pub fn set_condition(&mut self, condition: WaysideCondition) {
         self.condition = condition;
     }
 
-    /// Its condition.
     pub fn condition(&self) -> WaysideCondition {
         self.condition
     }

@@ -58,7 +58,6 @@ pub struct Wheel {
 }
 
 impl Wheel {
-    /// Goes to a speed.
     pub fn go_to(&mut self, to: Speed, accel_mps2: f64) {
         self.forward_at_rest = false;
         let change = to.mps() - self.speed_mps;

@@ -14,7 +14,6 @@ pub struct AtoOrder {
     pub brake: bool,
     /// Value (DRXTEBE), −1024..1023.
     pub value: i16,
-    /// Holding brake asked for.
     pub holding: bool,
     /// The unit drives, or is about to: Automatic or Automatic Run, as last heard.
     pub automatic: bool,
@@ -22,7 +21,6 @@ pub struct AtoOrder {
     pub failed: bool,
 }
 
-/// The link.
 #[derive(Clone, Debug)]
 pub struct AtcLink {
     timeout: Duration,
@@ -66,7 +64,6 @@ impl AtcLink {
         self.heard = Some((now, *frame));
     }
 
-    /// Moves on to the present.
     pub fn step(&mut self, now: Instant) -> AtoOrder {
         let fresh = self
             .heard

@@ -12,13 +12,10 @@ use super::mode::TcmsMode;
 /// Findings of a scan on which the decision about powering depends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Findings<'a> {
-    /// Mode.
     pub mode: TcmsMode,
     /// Emergency brake train line.
     pub line: &'a Line,
-    /// Full service brake.
     pub brake: &'a BrakeOutputs,
-    /// State of the equipment.
     pub found: &'a EquipmentFailures,
     /// ATO asks for the holding brake by message.
     pub holding_asked: bool,

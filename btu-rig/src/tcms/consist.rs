@@ -5,16 +5,13 @@ use crate::train::{CarSet, CarsData, MAX_CARS, PerCar, Role};
 /// Acceleration of gravity as S3 calculates with, m/s².
 pub const GRAVITY_MPS2: f64 = 9.8;
 
-/// Masses of an MT pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pair {
     /// Braking mass with the present load, kg.
     pub inertia_kg: f64,
     /// Braking mass full, kg.
     pub full_inertia_kg: f64,
-    /// Its motor cars.
     pub motors: CarSet,
-    /// Its trailers.
     pub trailers: CarSet,
 }
 

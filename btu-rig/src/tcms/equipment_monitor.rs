@@ -20,7 +20,6 @@ const FULL_DEMAND: f64 = 0.9;
 /// What it looks at in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInputs<'a> {
-    /// What the equipment reports.
     pub equipment: &'a Equipment,
     /// Air TCMS asks of each car, N.
     pub air_n: &'a PerCar,
@@ -131,7 +130,6 @@ impl EquipmentMonitor {
         self.not_released.clear();
     }
 
-    /// One scan.
     pub fn step(&mut self, now: Instant, inputs: &MonitorInputs<'_>) -> EquipmentFailures {
         let equipment = inputs.equipment;
         let (no_inverter, no_brake) = (inputs.inverters_cut_out, inputs.brakes_cut_out);

@@ -15,13 +15,9 @@ use super::view::{TcmsEvent, TcmsView};
 /// What it goes by in one scan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scan<'a> {
-    /// What TCMS was given.
     pub inputs: &'a TcmsInputs<'a>,
-    /// What it did.
     pub view: &'a TcmsView,
-    /// Cars with an inverter.
     pub motors: CarSet,
-    /// The link to the unit.
     pub atc: &'a AtcLink,
     /// The controller's voltage is in a failure range.
     pub controller_failed: bool,
@@ -68,7 +64,6 @@ impl Report {
         }
     }
 
-    /// New events.
     pub fn take(&mut self) -> Vec<TcmsEvent> {
         std::mem::take(&mut self.events)
     }

@@ -8,7 +8,6 @@ use super::data::{CarData, CarsData, IdealData, Role};
 /// Longest dead time or time constant, s.
 pub(super) const MAX_TIME_S: f64 = 5.0;
 
-/// Checks a point mass.
 pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
     for (key, value, low, high) in [
         ("mass_kg", data.mass_kg, 1e3, 1e7),
@@ -32,7 +31,6 @@ pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
     data.tcms.check()
 }
 
-/// Checks a train of cars.
 pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
     for (key, value, low, high) in ranges(data) {
         within(key, value, low, high)?;

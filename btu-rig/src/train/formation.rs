@@ -23,7 +23,6 @@ struct CutOut {
     others: bool,
 }
 
-/// A train of cars.
 #[derive(Clone, Debug)]
 pub(super) struct Formation {
     data: CarsData,

@@ -47,7 +47,6 @@ pub(super) struct Rails {
     pub inertia_kg: f64,
 }
 
-/// The wheels of all cars.
 #[derive(Clone, Debug)]
 pub(super) struct WheelSets {
     data: Wheels,

@@ -13,9 +13,7 @@ const MOST_EXPLAINING: usize = 12;
 /// Varieties of two modes of different parts, and the probability of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// The two.
     pub both: [Hypothesis; 2],
-    /// Probability.
     pub probability: f64,
 }
 

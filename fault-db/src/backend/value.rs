@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use crate::id::Id;
 
-/// A parameter of a query.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value<'a> {
     Null,

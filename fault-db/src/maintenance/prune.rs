@@ -235,7 +235,6 @@ fn seal_deleted(backend: &Backend, at_us: i64) -> SqlResult<()> {
     Ok(())
 }
 
-/// Deletes what was planned.
 fn delete(conn: &Connection) -> rusqlite::Result<()> {
     conn.execute(&format!("DELETE {RECORDINGS}"), [])?;
     let traces =

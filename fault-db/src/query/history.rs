@@ -40,7 +40,6 @@ pub struct PartRepair {
     pub came_back: bool,
 }
 
-/// An occurrence of a fault.
 struct Seen {
     run: i64,
     of_log: bool,

@@ -16,7 +16,6 @@ pub(super) const MOST_ENTRIES: i64 = 500;
 /// New rows by table.
 pub(super) type Counts = [u64; COUNT];
 
-/// Rows of all tables.
 pub(super) struct ChangeSet {
     rows: Vec<Rows>,
     /// Units, faults and channel lists that are included, by their row number in the file, and their

@@ -12,7 +12,6 @@ pub(super) struct Rows {
     for_server: bool,
     /// Reads rows from a file by the table's column for that.
     pub sql: Rc<str>,
-    /// Row by row.
     values: Vec<Value<'static>>,
     width: usize,
     /// Approximate bytes on the wire.

@@ -6,7 +6,6 @@ use sha2::{Digest as _, Sha256};
 use crate::backend::Value;
 use crate::domain::check_body;
 
-/// A replicated table.
 pub(super) struct Table {
     pub of: Of,
     pub name: &'static str,
@@ -72,7 +71,6 @@ pub(super) enum Of {
     Seal,
 }
 
-/// Number of tables.
 pub(super) const COUNT: usize = 15;
 
 impl Of {

@@ -31,7 +31,6 @@ pub(crate) fn compare_all_chains(
     origins.into_iter().map(compare).collect()
 }
 
-/// Compares a chain.
 pub(crate) fn compare_chains(
     here: &Backend,
     there: &Backend,

@@ -26,7 +26,6 @@ pub(crate) struct RunPayload {
     pub found: Option<String>,
 }
 
-/// A trace of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TracePayload {
     pub id: String,
@@ -37,7 +36,6 @@ pub(crate) struct TracePayload {
     pub recording: Option<i64>,
 }
 
-/// A recording of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RecordingPayload {
     pub ordinal: i64,
@@ -141,7 +139,6 @@ impl RunDigest {
         self.occurrences.insert(id, digest);
     }
 
-    /// Adds a trace.
     pub fn trace(&mut self, id: Id, digest: [u8; 32]) {
         self.payload.traces.push(TracePayload {
             id: id.to_string(),

@@ -83,7 +83,6 @@ pub(super) fn put_piece(directory: &mut Vec<u8>, tag: Tag, body: &[u8]) {
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub tag: Tag,
-    /// Rows of the trace.
     pub rows: Range<usize>,
     /// Bytes of the blob.
     pub bytes: Range<usize>,
@@ -102,7 +101,6 @@ impl Piece {
     }
 }
 
-/// All pieces of a blob.
 pub(crate) struct Layout {
     pieces: Vec<Piece>,
     blocks: usize,

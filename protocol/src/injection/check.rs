@@ -157,7 +157,6 @@ pub(super) fn check(fault: &FaultMode) -> Result<(), ConfigError> {
     levels(fault, *low, *high)
 }
 
-/// Checks when the mode acts.
 fn occurrence(fault: &FaultMode) -> Result<(), ConfigError> {
     match fault.occurs {
         Occurrence::Always => Ok(()),

@@ -32,7 +32,6 @@ pub(super) struct Place {
     pub item: Option<usize>,
 }
 
-/// The first rule broken.
 pub(super) fn check(line: &Line) -> Result<(), Broken> {
     if line.sections.is_empty() {
         return Err(Broken {

@@ -14,7 +14,6 @@ pub struct Counters {
     pub(super) garbage: u64,
 }
 
-/// Number of channels.
 pub(super) const CHANNELS: usize = Channel::ALL.len();
 
 impl Counters {

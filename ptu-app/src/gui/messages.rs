@@ -10,7 +10,6 @@ pub struct Messages {
     unread: Option<usize>,
 }
 
-/// One message.
 #[derive(Debug)]
 pub struct Message {
     /// In the language chosen when it happened.
@@ -32,7 +31,6 @@ impl Messages {
         self.push(text.into(), detail.into(), true);
     }
 
-    /// Adds a message for information.
     pub fn note(&mut self, text: impl Into<String>) {
         self.push(text.into(), String::new(), false);
     }
@@ -52,7 +50,6 @@ impl Messages {
         self.unread = None;
     }
 
-    /// Removes all messages.
     pub fn clear(&mut self) {
         self.all.clear();
         self.unread = None;

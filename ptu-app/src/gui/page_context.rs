@@ -10,7 +10,6 @@ use ptu_report::words::Words;
 
 /// What a page reads and changes while it is drawn.
 pub struct PageContext<'a> {
-    /// Texts in the chosen language.
     pub words: &'static Words,
     /// Queries to the database and the scripts directory.
     pub queries: &'a QueryWorker,
@@ -18,7 +17,6 @@ pub struct PageContext<'a> {
     pub units: &'a mut Units,
     /// Settings, saved when the window closes.
     pub settings: &'a mut Settings,
-    /// Messages to the user.
     pub messages: &'a mut Messages,
     /// Pages to open; done after this page is drawn.
     pub go_to: &'a mut Vec<Destination>,
@@ -27,17 +25,14 @@ pub struct PageContext<'a> {
 /// A page to open, and what it is to show.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Destination {
-    /// A recorded trace.
     Trace(Id),
     /// The test sheet of a run.
     Report(Id),
-    /// The diagnosis of a run.
     Diagnosis(Id),
     /// The procedures, running one step at once.
     RunStep {
         /// Procedure, as `atp/overspeed`.
         procedure: String,
-        /// Name of the step.
         step: String,
         /// Serial number of the unit the step is meant for.
         unit: String,

@@ -51,12 +51,10 @@ impl QueryWorker {
         Pending(receiver)
     }
 
-    /// Where the data are.
     pub fn paths(&self) -> &DataPaths {
         &self.paths
     }
 
-    /// Has the window drawn again.
     pub fn wake(&self) -> &Wake {
         &self.wake
     }

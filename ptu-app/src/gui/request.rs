@@ -5,12 +5,10 @@ use super::query_worker::Pending;
 /// The state of one request to the query worker.
 #[derive(Default)]
 pub enum Request<T> {
-    /// Nothing was requested.
     #[default]
     Idle,
     /// The query worker has not answered yet.
     Pending(Pending<T>),
-    /// The response.
     Ready(T),
     /// Why there is no response.
     Failed(String),
@@ -43,7 +41,6 @@ impl<T> Request<T> {
         }
     }
 
-    /// Whether nothing was requested.
     pub fn is_idle(&self) -> bool {
         matches!(self, Self::Idle)
     }

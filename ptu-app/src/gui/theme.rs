@@ -11,13 +11,10 @@ use ptu_bench::run::stored;
 pub struct Palette {
     /// Dark window.
     pub dark: bool,
-    /// As it should be.
     pub good: Color32,
-    /// Not as it should be.
     pub bad: Color32,
     /// Could not be told, or wants a look.
     pub warn: Color32,
-    /// Neither.
     pub quiet: Color32,
     /// What is chosen, and the first curve.
     pub accent: Color32,

@@ -13,7 +13,6 @@ use protocol::config::PssConfig;
 
 use super::{Setpoint, StopCurve};
 
-/// The descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Descent {
     curve: StopCurve,
@@ -31,7 +30,6 @@ impl Descent {
         }
     }
 
-    /// The curve itself.
     pub fn curve(&self) -> &StopCurve {
         &self.curve
     }

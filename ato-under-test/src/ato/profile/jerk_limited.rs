@@ -16,7 +16,6 @@ use protocol::config::ProfileConfig;
 
 use super::Setpoint;
 
-/// The profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JerkLimited {
     accel_mps2: f64,
@@ -33,7 +32,6 @@ struct Phase {
 }
 
 impl JerkLimited {
-    /// A profile at standstill.
     pub fn new(config: &ProfileConfig) -> Self {
         Self {
             accel_mps2: config.accel_mps2,
@@ -43,7 +41,6 @@ impl JerkLimited {
         }
     }
 
-    /// Where it stands.
     pub fn setpoint(&self) -> Setpoint {
         self.now
     }

@@ -13,7 +13,6 @@
 
 use protocol::config::PssConfig;
 
-/// The curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopCurve {
     rate_mps2: f64,
@@ -30,7 +29,6 @@ pub struct StopCurve {
 }
 
 impl StopCurve {
-    /// The curve of a configuration.
     pub fn new(config: &PssConfig) -> Self {
         let (rate, slope) = (config.brake_rate_mps2, config.slope_per_s);
         let stop_mps = config.stop_mps();

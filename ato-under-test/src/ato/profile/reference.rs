@@ -11,12 +11,10 @@ use protocol::config::AtoConfig;
 
 use super::{Descent, JerkLimited, Setpoint};
 
-/// What a reference depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceInputs {
     /// Speed to run at, m/s.
     pub cruise_mps: f64,
-    /// The train.
     pub train: Setpoint,
     /// Distance to the stop point, m; `None` = not known.
     pub to_stop_m: Option<f64>,
@@ -25,7 +23,6 @@ pub struct ReferenceInputs {
 /// Reference for the controller in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
-    /// Speed and acceleration.
     pub setpoint: Setpoint,
     /// The stop curve rules.
     pub stopping: bool,
@@ -44,7 +41,6 @@ pub struct ReferenceGenerator {
 }
 
 impl ReferenceGenerator {
-    /// A generator for a configuration.
     pub fn new(config: &AtoConfig) -> Self {
         Self {
             ramp: JerkLimited::new(&config.profile),
@@ -54,7 +50,6 @@ impl ReferenceGenerator {
         }
     }
 
-    /// One cycle.
     pub fn step(&mut self, inputs: ReferenceInputs) -> Reference {
         let command_mps = inputs.cruise_mps.max(0.0);
         self.keep_to_the_train(command_mps, inputs.train);

@@ -39,7 +39,6 @@ impl SCurve {
         }
     }
 
-    /// Holds a speed.
     pub fn hold(speed_mps: f64) -> Self {
         let from = Setpoint {
             speed_mps,
@@ -55,7 +54,6 @@ impl SCurve {
         self.to_mps
     }
 
-    /// Moves on by `dt_s`.
     pub fn step(&mut self, dt_s: f64) -> Setpoint {
         self.elapsed_s += dt_s;
         self.at(self.elapsed_s)

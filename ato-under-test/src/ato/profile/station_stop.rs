@@ -103,7 +103,6 @@ pub struct FinalStopLimits {
 }
 
 impl FinalStop {
-    /// From a setpoint.
     pub fn new(from: Setpoint, rates: FinalStopLimits) -> Self {
         Self {
             setpoint: from,

@@ -86,7 +86,6 @@ impl Context {
         }
     }
 
-    /// The code called `name`.
     pub(super) fn code(&self, name: &str) -> Result<Item, String> {
         let names = || self.unit.codes.iter().map(|code| code.name.as_str());
         match names().position(|n| n == name) {

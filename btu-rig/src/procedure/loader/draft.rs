@@ -12,7 +12,6 @@ pub(super) enum Declaration {
     Step(StepDraft),
 }
 
-/// A `procedure()` call.
 #[derive(Clone, Debug)]
 pub(super) struct ProcedureDraft {
     pub title: String,
@@ -24,7 +23,6 @@ pub(super) struct ProcedureDraft {
     pub cleanup: Vec<Action>,
 }
 
-/// A `step()` call.
 #[derive(Clone, Debug)]
 pub(super) struct StepDraft {
     pub name: String,

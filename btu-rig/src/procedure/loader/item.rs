@@ -9,7 +9,6 @@ use super::quantity::Quantity;
 use super::verb::Verb;
 use crate::procedure::plan::{Action, Condition, Expectation, Measure};
 
-/// A value of a script.
 #[derive(Clone, Debug)]
 pub(super) enum Item {
     None,
@@ -135,7 +134,6 @@ impl Item {
         Some(sum)
     }
 
-    /// `self * other`.
     pub(super) fn times(&self, other: &Self) -> Option<Result<Self, String>> {
         match (self, other) {
             (Self::Quantity(q), n) | (n, Self::Quantity(q)) if n.number().is_some() => {

@@ -10,7 +10,6 @@ const LONGEST_TEXT: usize = 2_000;
 /// Longest name of a step, a measurement or a procedure, in characters.
 const LONGEST_NAME: usize = 200;
 
-/// What a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ParamType {
     Amount(Dimension),

@@ -10,7 +10,6 @@ use super::param_type::ParamType;
 use super::suggest::hint;
 use super::verbs;
 
-/// One parameter of a verb.
 #[derive(Debug)]
 pub(super) struct Param {
     pub name: &'static str,
@@ -45,12 +44,10 @@ pub(super) struct Verb {
     pub make: fn(&Args<'_>) -> Result<Item, String>,
 }
 
-/// The verb called `name`.
 pub(super) fn find(name: &str) -> Option<&'static Verb> {
     all().find(|verb| verb.name == name)
 }
 
-/// All verbs.
 pub(super) fn all() -> impl Iterator<Item = &'static Verb> {
     verbs::TABLES.iter().flat_map(|table| table.iter())
 }
@@ -64,7 +61,6 @@ pub(super) fn members(space: &str) -> Vec<String> {
         .collect()
 }
 
-/// Something wrong with a call.
 #[derive(Debug)]
 pub(super) struct CallError {
     pub message: String,

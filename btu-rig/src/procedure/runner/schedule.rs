@@ -40,7 +40,6 @@ impl Default for RunOptions {
     }
 }
 
-/// One entry of the schedule.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScheduledStep {
     pub index: usize,

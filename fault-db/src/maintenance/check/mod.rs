@@ -153,7 +153,6 @@ impl Store {
         Ok(report)
     }
 
-    /// Checks all rows.
     fn check_rows(&self, conn: &Connection, report: &mut CheckReport) -> Result<(), StoreError> {
         let failed = |error| self.failed("checking", error);
         let problems = &mut report.problems;

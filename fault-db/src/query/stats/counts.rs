@@ -23,10 +23,8 @@ impl Key {
     }
 }
 
-/// Counts of each key.
 pub(crate) type Counted = BTreeMap<Key, Counts>;
 
-/// The counts of one key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Counts {
     pub occurrences: u64,
@@ -41,12 +39,10 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// Whether nothing is counted.
     pub fn is_nothing(&self) -> bool {
         self.occurrences == 0 && self.opened == 0 && self.closed == 0 && self.repairs.all == 0
     }
 
-    /// Adds occurrences in a bin.
     pub fn add_occurrences(&mut self, bins: &Bins, bin: usize, times: u64) {
         self.occurrences += times;
         self.course.resize(bins.len(), 0);

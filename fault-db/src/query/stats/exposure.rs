@@ -73,7 +73,6 @@ impl Exposure {
         self.since_us
     }
 
-    /// The end of the span.
     pub fn until_us(&self) -> i64 {
         self.until_us
     }

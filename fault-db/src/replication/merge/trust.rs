@@ -81,7 +81,6 @@ struct Seal {
     digest: Vec<u8>,
 }
 
-/// The seals of a run.
 fn seals(backend: &Backend, run: i64) -> SqlResult<Vec<Seal>> {
     backend.select(
         "SELECT s.covers, s.says, s.digest FROM run r JOIN seal s ON s.id = r.id AND s.what = 'run'

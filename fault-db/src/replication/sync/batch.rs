@@ -76,7 +76,6 @@ enum Known {
     Different,
 }
 
-/// The rows of one batch.
 pub(super) struct Batch {
     pub set: ChangeSet,
     /// The last entry included.

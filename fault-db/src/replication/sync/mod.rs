@@ -93,7 +93,6 @@ impl Store {
     }
 }
 
-/// One sync under way.
 struct Sync<'a> {
     file: &'a Store,
     server: &'a Store,

@@ -143,7 +143,6 @@ impl LiveState {
         *held(&self.requests) = OperatorRequests::default();
     }
 
-    /// Changes the phase.
     pub(super) fn enter(&self, phase: Phase) {
         {
             let mut live = held(&self.live);

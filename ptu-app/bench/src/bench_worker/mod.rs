@@ -46,7 +46,6 @@ pub struct RunOrder {
     pub realtime: bool,
 }
 
-/// What the bench is told.
 enum Order {
     Connect(Box<BenchSetup>, Connection, Stop),
     Disconnect,

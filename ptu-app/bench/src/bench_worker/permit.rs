@@ -62,13 +62,9 @@ mod tests {
     /// Which way a stimulus takes, and with that what it needs.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Needs {
-        /// The bench harness.
         Harness,
-        /// An armed unit.
         Armed,
-        /// The maintenance key.
         Key,
-        /// A unit, no more.
         Unit,
     }
 

@@ -13,10 +13,8 @@ use crate::run::{BenchSetup, RecordedStimuli, Session};
 use crate::run::{READY_WITHIN, settled};
 use crate::stop::Stop;
 
-/// What came of it.
 #[derive(Debug)]
 pub(super) struct Again {
-    /// The same window.
     pub trace: TraceData,
     /// How it compares with the original.
     pub rule: Rule,

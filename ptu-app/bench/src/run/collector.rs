@@ -55,7 +55,6 @@ impl Outcome {
     }
 }
 
-/// The collector.
 pub struct Collector<'a> {
     store: RunStore,
     listener: &'a mut dyn Listener,
@@ -108,7 +107,6 @@ impl<'a> Collector<'a> {
         self.faults_before = self.dates.len();
     }
 
-    /// Takes one event.
     pub fn take(&mut self, event: SessionEvent) {
         let Some(procedure) = self.procedure.clone() else {
             return;

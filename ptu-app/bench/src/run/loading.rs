@@ -59,9 +59,7 @@ struct Order<'a> {
 enum Said<'a> {
     /// It evaluates the script of this path from now on.
     Evaluates(Cow<'a, str>),
-    /// It has loaded this procedure.
     Loaded(Box<Procedure>),
-    /// That is all.
     Done {
         errors: Vec<LoadError>,
         need_cars: Vec<String>,

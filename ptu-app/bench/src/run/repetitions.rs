@@ -33,12 +33,10 @@ impl Rounds {
         self.over
     }
 
-    /// Whether any are left.
     pub(super) fn left(&self) -> bool {
         self.over < self.of
     }
 
-    /// Whether all so far passed.
     pub(super) fn passed(&self) -> bool {
         matches!(self.verdict, Verdict::Passed | Verdict::Skipped)
     }

@@ -88,7 +88,6 @@ impl<L: UnitLink> Session<L> {
         self.stop = stop.clone();
     }
 
-    /// Changes the pace.
     pub fn set_pace(&mut self, pace: Pace) {
         self.pace = pace;
     }

@@ -35,7 +35,6 @@ const PATIENCE: Patience = Patience {
     gives_up: Duration::from_secs(180),
 };
 
-/// One message to the writer.
 enum Entry {
     Step(StepRecord),
     /// A fault, numbered from 0 through the run.
@@ -125,7 +124,6 @@ impl RunStore {
         }
     }
 
-    /// Records a step.
     pub fn step(&self, step: StepRecord) {
         self.send(Entry::Step(step));
     }

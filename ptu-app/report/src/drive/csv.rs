@@ -63,7 +63,6 @@ const OF_PAIR: [PairColumn; 7] = [
     ("air_m_n", |r, pair| r.pairs[pair].air_motors_n),
 ];
 
-/// All of it.
 pub fn csv(results: &Results) -> String {
     let mut text = String::new();
     match &results.outcomes {

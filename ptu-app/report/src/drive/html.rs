@@ -17,7 +17,6 @@ use ptu_bench::drive::{Case, DriveBench, Driven};
 /// Look of the page, light and dark.
 const STYLE: &str = include_str!("style.css");
 
-/// The page.
 pub fn html(results: &Results) -> String {
     let (heading, body) = match &results.outcomes {
         Outcomes::Single(runs) => (

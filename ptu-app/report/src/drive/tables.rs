@@ -18,7 +18,6 @@ const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
 /// What stands for a value that is not known.
 const UNKNOWN: &str = "–";
 
-/// A table.
 pub struct Table {
     /// Headings in text, and on a page; a page without headings has none.
     headings: Vec<(String, String)>,
@@ -40,7 +39,6 @@ impl Table {
         }
     }
 
-    /// As text.
     pub fn text(&self) -> String {
         let headings: Vec<_> = self
             .headings
@@ -201,9 +199,7 @@ pub fn events(landmarks: &[Landmark]) -> Table {
 
 /// A step of a run by hand with what it did to MT pair 1, the pair that S3 plots.
 pub struct StepResult<'a> {
-    /// What was done.
     pub done: &'a Done,
-    /// How the brake settled.
     pub settled: Option<btu_rig::drive::manual::Settled>,
     /// MT pair 1 a few seconds later, or just before the next step.
     pub pair: Option<PairEfforts>,

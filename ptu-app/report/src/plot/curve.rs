@@ -9,7 +9,6 @@ const UNSEEN: f64 = 0.25;
 /// Share of the room between two points that a bar takes.
 const BAR: f64 = 0.96;
 
-/// The curve.
 pub fn drawn(series: &Series, x: &Scale, y: &Scale) -> Vec<Mark> {
     let known = |point: &&(f64, f64)| point.1.is_finite() && x.holds(point.0);
     let place = |point: &(f64, f64)| (x.at(point.0), y.at(y.clamp(point.1)));

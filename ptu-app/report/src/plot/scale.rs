@@ -5,7 +5,6 @@ use crate::ticks::{Ticks, round_step};
 /// Marks an axis has at least, about.
 const MARKS: f64 = 6.0;
 
-/// An axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
     low: f64,

@@ -6,7 +6,6 @@ use maud::{Markup, html};
 
 use super::mark::{Anchor, Mark, Role};
 
-/// The drawing.
 pub fn svg(title: &str, size: (f64, f64), marks: &[Mark]) -> Markup {
     html! {
         svg viewBox=(format!("0 0 {} {}", size.0, size.1)) role="img" aria-label=(title) {

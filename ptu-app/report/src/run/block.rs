@@ -21,7 +21,6 @@ pub enum Tone {
 pub enum Block {
     /// Head of the sheet and what stands below it.
     Title(String, String),
-    /// A section.
     Heading(String),
     /// A part of a section, and what stands at its end.
     Subheading(String, String),
@@ -29,9 +28,7 @@ pub enum Block {
     Verdict(Tone, String, String),
     /// Names and values.
     Facts(Vec<(String, String)>),
-    /// A paragraph.
     Text(Tone, String),
-    /// A table.
     Table(Table),
     /// A drawing.
     Plot(Box<Plot>),
@@ -48,23 +45,18 @@ pub enum Align {
     Right,
 }
 
-/// A column.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// Heading.
     pub name: String,
     /// Share of the table's width.
     pub share: f32,
-    /// Where its cells stand.
     pub align: Align,
 }
 
 /// A table whose heading is repeated on every page.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// Columns.
     pub columns: Vec<Column>,
-    /// Rows.
     pub rows: Vec<Row>,
 }
 
@@ -77,21 +69,17 @@ pub enum RowKind {
     Detail,
 }
 
-/// A row.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What it is.
     pub kind: RowKind,
     /// Its cells, each with the number of columns it covers.
     pub cells: Vec<(Cell, usize)>,
 }
 
-/// A cell.
 #[derive(Clone, Debug)]
 pub enum Cell {
     /// Words or a number.
     Text(Tone, String),
-    /// A verdict.
     Verdict(Tone, String),
     /// A value between its limits.
     Gauge(Option<Gauge>),
@@ -102,9 +90,7 @@ pub enum Cell {
 pub struct Gauge {
     /// What is allowed.
     pub band: (f64, f64),
-    /// The value.
     pub value: f64,
-    /// The value is allowed.
     pub good: bool,
 }
 
@@ -123,7 +109,6 @@ impl Gauge {
 }
 
 impl Column {
-    /// A column.
     pub fn new(name: &str, share: f32, align: Align) -> Self {
         Self {
             name: sentence(name),

@@ -12,7 +12,6 @@ use super::{Sheet, SheetTrace};
 use crate::words::{Language, Words, fill};
 use ptu_bench::clock::{local, local_zoned};
 
-/// The sheet in a language.
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);
     blocks.extend(summary(sheet, words));

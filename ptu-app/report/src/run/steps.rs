@@ -81,7 +81,6 @@ fn measured(measurement: &MeasurementRecord, words: &Words) -> Row {
     }
 }
 
-/// A verdict in its colour.
 pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
     Cell::Verdict(tone(verdict), words.common.stored_verdict(verdict).into())
 }

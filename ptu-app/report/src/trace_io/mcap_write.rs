@@ -22,7 +22,6 @@ const TOPIC: &str = "trace";
 /// Bytes of messages that are compressed together.
 const CHUNK_BYTES: u64 = 1 << 20;
 
-/// Writes all rows.
 pub(super) fn put(
     out: &mut (impl Write + Seek),
     chosen: &Chosen<'_>,

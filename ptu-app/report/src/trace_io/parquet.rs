@@ -29,7 +29,6 @@ const TIME: &str = "time_s";
 /// Heading of the column of UTC.
 const UTC: &str = "time_utc";
 
-/// Writes all rows.
 pub(super) fn put(
     out: &mut (impl Write + Send),
     chosen: &Chosen<'_>,

@@ -17,7 +17,6 @@ const MOST_SIGNALS: usize = 4096;
 pub struct Table {
     /// Time of each row, microseconds, never falling.
     pub times_us: Vec<i64>,
-    /// The signals.
     pub channels: Vec<Channel>,
     /// Samples by signal, then by row; an unknown one is NaN.
     pub columns: Vec<Vec<f64>>,

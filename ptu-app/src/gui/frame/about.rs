@@ -6,7 +6,6 @@ use super::keys::{CONNECT, STOP_ALL};
 use crate::gui::{Page, PageContext, Palette};
 use ptu_report::fonts::PRETENDARD_LICENCE;
 
-/// The window about the program.
 #[derive(Default)]
 pub struct About {
     open: bool,

@@ -11,7 +11,6 @@ use crate::gui::{Page, PageContext, Palette};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{Words, fill};
 
-/// The bar.
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
     ui.horizontal(|ui| {
         units(ui, context);

@@ -11,7 +11,6 @@ pub const STOP_ALL: Key = Key::F12;
 /// Connects the chosen unit, or lets it go.
 pub const CONNECT: Key = Key::F9;
 
-/// Acts on them.
 pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
     if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
         context.units.stop_all();

@@ -6,7 +6,6 @@ use crate::gui::messages::Message;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
 
-/// The bar.
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
     let all = context.messages.all();
     let Some(last) = all.last() else {

@@ -27,12 +27,10 @@ impl Frame {
         keys::keys(ui.ctx(), context);
     }
 
-    /// The connection bar.
     pub fn connection(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         connection::bar(ui, context, &mut self.setup);
     }
 
-    /// Pages, language, light, size.
     pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         navigation::bar(ui, context, &mut self.about);
     }

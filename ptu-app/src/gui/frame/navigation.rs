@@ -10,7 +10,6 @@ use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
 
-/// The bar.
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, about: &mut About) {
     ui.horizontal(|ui| {
         for page in Page::ALL {

@@ -13,7 +13,6 @@ use ptu_bench::link::ports;
 use ptu_bench::run::BenchChoice;
 use ptu_report::words::Words;
 
-/// Names to choose from.
 struct Names {
     ports: Vec<String>,
     lines: Vec<String>,
@@ -28,7 +27,6 @@ pub struct Setup {
     names: Request<Names>,
     find: String,
     open: bool,
-    /// It has just been opened.
     opened: bool,
 }
 
@@ -226,7 +224,6 @@ impl Setup {
     }
 }
 
-/// A row of the grid.
 fn pick(ui: &mut Ui, label: &str, chosen: &mut String, names: &[String]) {
     ui.label(label);
     let before = chosen.clone();

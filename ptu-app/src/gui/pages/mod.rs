@@ -30,7 +30,6 @@ impl Pages {
         self.procedures.poll(context);
     }
 
-    /// Shows a page.
     pub fn show(&mut self, page: Page, ui: &mut Ui, context: &mut PageContext<'_>) {
         match page {
             Page::Bench => self.bench.show(ui, context),

@@ -19,7 +19,6 @@ pub fn chip(ui: &mut Ui, text: &str, colour: Color32) -> Response {
         .inner
 }
 
-/// A verdict.
 pub fn verdict_chip(ui: &mut Ui, verdict: Verdict, words: &Words) -> Response {
     let colour = Palette::of(ui).verdict(verdict);
     chip(ui, words.common.verdict(verdict), colour)

@@ -65,7 +65,6 @@ impl Units {
         self.chosen = self.chosen.min(self.more.len());
     }
 
-    /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = &Unit> {
         std::iter::once(&self.first).chain(&self.more)
     }
@@ -75,7 +74,6 @@ impl Units {
         std::iter::once(&mut self.first).chain(&mut self.more)
     }
 
-    /// How many there are.
     pub fn count(&self) -> usize {
         1 + self.more.len()
     }
@@ -90,7 +88,6 @@ impl Units {
         self.chosen = place.min(self.more.len());
     }
 
-    /// The one the pages show.
     pub fn chosen(&self) -> &Unit {
         match self.chosen {
             0 => &self.first,

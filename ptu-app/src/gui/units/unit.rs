@@ -17,13 +17,10 @@ use ptu_report::words::{Words, fill};
 /// Entries of a unit's log that are shown.
 const LOG: usize = 500;
 
-/// One unit.
 pub struct Unit {
     /// Its own number in this window, never used again for another.
     pub id: u64,
-    /// What is chosen for it.
     pub choice: BenchChoice,
-    /// Its bench.
     pub bench: BenchWorker,
     /// What its bench is made of, once it was asked to connect.
     pub setup: Request<BenchSetup>,
@@ -31,7 +28,6 @@ pub struct Unit {
     pub log: VecDeque<UnitEvent>,
     /// Its present or last run.
     pub run: Option<Progress>,
-    /// Runs that have ended.
     pub(super) runs_ended: usize,
     /// The person knows that it cannot be reached.
     lost: bool,
@@ -73,7 +69,6 @@ impl Unit {
         self.phase() == Phase::Idle && !self.run.as_ref().is_some_and(Progress::is_running)
     }
 
-    /// Who it is.
     pub fn identity(&self) -> Option<Identity> {
         self.bench.live().identity
     }
@@ -86,7 +81,6 @@ impl Unit {
         }
     }
 
-    /// Reaches it.
     pub fn connect(&mut self, queries: &QueryWorker) {
         let choice = self.choice.clone().with_offered_faults();
         self.setup = Request::Pending(queries.run(move |paths| choice.setup(&paths.scripts)));
@@ -119,7 +113,6 @@ impl Unit {
         }
     }
 
-    /// Test signals act on it.
     pub fn is_armed(&self) -> bool {
         self.bench.live().sample.get(Signal::Armed) == Some(1.0)
     }

@@ -43,7 +43,6 @@ use super::verb::Verb;
 use crate::procedure::plan::Action;
 use crate::stimulus::Stimulus;
 
-/// All tables.
 pub(super) static TABLES: [&[Verb]; 9] = [
     units::VERBS,
     bench::VERBS,

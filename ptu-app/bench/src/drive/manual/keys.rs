@@ -7,12 +7,9 @@ use btu_rig::stimulus::{Stimulus, TrainSwitch};
 pub const HELP: &str = "up + one notch up   down - one notch down   n neutral   b full brake   \
                         e emergency   r regeneration on/off   q quit";
 
-/// What a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Do this.
     Act(Stimulus),
-    /// End the run.
     Quit,
 }
 

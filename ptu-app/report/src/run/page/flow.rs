@@ -6,7 +6,6 @@ use super::item::{BOTTOM, HEIGHT, Item, Piece, TOP};
 /// Room of a page.
 const ROOM: f32 = HEIGHT - TOP - BOTTOM;
 
-/// The items of each page.
 pub fn pages(pieces: &[Piece]) -> Vec<Vec<Item>> {
     let mut pages = vec![Vec::new()];
     let mut used = 0.0;

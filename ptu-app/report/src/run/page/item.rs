@@ -156,7 +156,6 @@ impl Item {
 pub struct Piece {
     /// What is drawn; left edges are the page's, heights the piece's own.
     pub items: Vec<Item>,
-    /// Height.
     pub height: f32,
     /// Stays on a page with at least the beginning of what follows.
     pub with_next: bool,

@@ -7,11 +7,9 @@ use ptu_bench::bench_worker::{BenchWorker, Phase};
 /// The bench as it was at the beginning of the frame.
 #[derive(Debug, Default)]
 pub struct Seen {
-    /// What its thread is at.
     pub phase: Phase,
     /// Counts benches made anew and made safe.
     pub bench_epoch: u64,
-    /// Every signal.
     pub sample: Sample,
 }
 

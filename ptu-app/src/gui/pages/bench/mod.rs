@@ -50,7 +50,6 @@ struct Sheet {
     given: Given,
 }
 
-/// The page.
 #[derive(Default)]
 pub struct BenchPage {
     /// By the unit's id.
@@ -59,7 +58,6 @@ pub struct BenchPage {
 }
 
 impl BenchPage {
-    /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.sheets
             .retain(|id, _| context.units.iter().any(|unit| unit.id == *id));

@@ -15,7 +15,6 @@ pub const MOST: usize = 12;
 pub enum Lane {
     /// Quantities of one unit of measure, on one scale.
     Quantities(Vec<usize>),
-    /// States by name.
     Choice(usize),
     /// On or off.
     Bit(usize),

@@ -16,7 +16,6 @@ pub fn value(words: &Bench, signal: Signal, seen: &Seen) -> String {
     }
 }
 
-/// A value that is known.
 pub fn known(words: &Bench, signal: Signal, value: f64) -> String {
     let definition = signal.definition();
     match definition.kind {

@@ -12,15 +12,12 @@ const AROUND_M: f64 = 60.0;
 /// The section on the track strip.
 #[derive(Debug, PartialEq)]
 pub struct Strip {
-    /// Section number.
     pub section: u16,
     /// Stations it begins and ends at.
     pub stations: (u16, u16),
-    /// The start.
     pub start: f32,
     /// PSM1 to PSM4.
     pub markers: [f32; 4],
-    /// The stop point.
     pub stop: f32,
     /// The train, if the section lies along its way.
     pub train: Option<f32>,
@@ -74,16 +71,13 @@ fn section_of_wayside<'a>(line: &'a Line, seen: &Seen) -> Option<&'a Section> {
 /// wayside still sends that, else from the line.
 #[derive(Debug, Default, PartialEq)]
 pub struct Sent {
-    /// Next station.
     pub next_station: Option<u16>,
     /// Ordered speed; the inner none = no order.
     pub fixed_speed_kmh: Option<Option<u8>>,
-    /// Train number.
     pub train_number: Option<u16>,
 }
 
 impl Sent {
-    /// Of the present frame.
     pub fn of(line: &Line, given: Option<&StationData>, seen: &Seen) -> Self {
         let still = given.filter(|data| {
             seen.is(Signal::WaysideStation, f64::from(data.station))

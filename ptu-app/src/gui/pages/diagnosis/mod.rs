@@ -14,7 +14,6 @@ use ptu_bench::clock;
 use ptu_bench::run_diagnosis::{Answer, diagnose_run};
 use ptu_report::words::{Language, Words, fill};
 
-/// The page.
 #[derive(Default)]
 pub struct DiagnosisPage {
     runs: RunList,
@@ -41,7 +40,6 @@ impl Named {
 }
 
 impl DiagnosisPage {
-    /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.answer.poll();
         let list = Panel::left("diagnosed runs").default_size(270.0);

@@ -7,14 +7,10 @@ use super::charts::DAY_US;
 /// Spans to look back, days; none = all there is.
 pub const SPANS: [Option<i64>; 5] = [Some(7), Some(30), Some(90), Some(365), None];
 
-/// Which faults are shown.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
-    /// Unit by its serial number.
     pub unit: Option<String>,
-    /// Part.
     pub lru: Option<String>,
-    /// State.
     pub state: Option<FaultState>,
     /// Days to look back.
     pub days: Option<i64>,

@@ -12,7 +12,6 @@ use ptu_report::words::{Words, fill};
 /// Widths of the columns, points.
 const COLUMNS: [f32; 6] = [156.0, 78.0, 160.0, 110.0, 70.0, 36.0];
 
-/// The filters.
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
     let faults_of = || faults.iter();
     ui.horizontal_wrapped(|ui| {

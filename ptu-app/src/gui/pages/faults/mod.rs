@@ -27,7 +27,6 @@ struct History {
     daily: Vec<DailyCount>,
 }
 
-/// The page.
 #[derive(Default)]
 pub struct FaultsPage {
     filter: Filter,
@@ -40,7 +39,6 @@ pub struct FaultsPage {
 }
 
 impl FaultsPage {
-    /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
         let list = Panel::left("fault list").default_size(640.0);
@@ -56,7 +54,6 @@ impl FaultsPage {
         });
     }
 
-    /// Shows this fault.
     pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
         self.chosen = Some(id);
         self.detail.request_other(detail_of(id, context));

@@ -23,7 +23,6 @@ use ptu_report::words::fill;
 use results::Shown;
 use selection::Selection;
 
-/// The page.
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
     /// What the suite was loaded for.
@@ -33,7 +32,6 @@ pub struct ProceduresPage {
     find: String,
     repeat: u32,
     stop_on_fail: bool,
-    /// Orders that are being made.
     orders: Vec<Ordered>,
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
@@ -74,7 +72,6 @@ impl Default for ProceduresPage {
 }
 
 impl ProceduresPage {
-    /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_loaded(context);
         Panel::left("procedures")

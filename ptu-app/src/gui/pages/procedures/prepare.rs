@@ -12,9 +12,7 @@ use ptu_bench::run_diagnosis;
 /// How what is chosen is run.
 #[derive(Clone, Debug)]
 pub struct How {
-    /// Who tests.
     pub operator: String,
-    /// So often.
     pub repeat: u32,
     /// End after the first step that does not pass.
     pub stop_on_fail: bool,
@@ -34,7 +32,6 @@ pub fn load(paths: &DataPaths, choice: &BenchChoice) -> Result<Suite, Failure> {
 /// What the page shows: a suite, and the choice of the unit it was evaluated for.
 #[derive(Clone)]
 pub struct ShownSuite {
-    /// The procedures on the page.
     pub suite: Arc<Suite>,
     /// The choice of unit configuration, line and train.
     pub loaded_for: BenchChoice,
@@ -42,7 +39,6 @@ pub struct ShownSuite {
 
 /// The result of preparing an order.
 pub enum Prepared {
-    /// The order can be run.
     Order(Box<RunOrder>),
     /// A file has changed since the suite was shown: the suite is to be loaded and shown again first.
     Changed,

@@ -12,11 +12,8 @@ use ptu_bench::run::Task;
 /// How much of something is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
-    /// Nothing of it.
     None,
-    /// A part of it.
     Some,
-    /// All of it.
     All,
 }
 
@@ -72,7 +69,6 @@ impl Selection {
         )
     }
 
-    /// Whether a step is chosen.
     pub fn has(&self, procedure: &Procedure, step: usize) -> bool {
         let name = procedure.steps.get(step).map(|step| &step.name);
         let chosen = self.0.get(&procedure.id);

@@ -17,7 +17,6 @@ use ptu_report::run::Sheet;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
 
-/// The page.
 #[derive(Default)]
 pub struct ReportPage {
     runs: RunList,
@@ -38,7 +37,6 @@ pub struct ReportPage {
     note: RunNoteForm,
 }
 
-/// A sheet.
 struct Shown {
     run: Id,
     pages: Vec<Page>,
@@ -49,7 +47,6 @@ struct Shown {
 }
 
 impl ReportPage {
-    /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
         let list = Panel::left("reported runs").default_size(270.0);
@@ -60,7 +57,6 @@ impl ReportPage {
         CentralPanel::default().show(ui, |ui| self.sheet(ui, context));
     }
 
-    /// Shows this one.
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.chosen = Some(run);
         self.ask(run, context);

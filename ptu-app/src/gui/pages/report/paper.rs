@@ -83,7 +83,6 @@ fn keys(ui: &Ui, page: f32) {
     }
 }
 
-/// Where a page is drawn.
 struct Paper<'a> {
     ui: &'a mut Ui,
     number: usize,

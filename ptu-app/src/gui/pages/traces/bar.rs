@@ -9,7 +9,6 @@ use ptu_report::words::fill;
 /// How much one press zooms.
 pub const ZOOM: f64 = 0.7;
 
-/// The bar.
 pub fn view(
     ui: &mut Ui,
     scene: &mut TracePlot,

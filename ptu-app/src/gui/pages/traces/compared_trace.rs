@@ -18,7 +18,6 @@ const OFFERED: usize = 100;
 /// Lanes shown of those that deviate.
 const DEVIATING: usize = 12;
 
-/// What was asked for.
 #[derive(Default)]
 pub struct BehindAsked {
     against: Option<Against>,

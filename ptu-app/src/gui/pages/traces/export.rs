@@ -58,7 +58,6 @@ impl Export {
         }
     }
 
-    /// Takes what has come.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let taken = self
             .picture

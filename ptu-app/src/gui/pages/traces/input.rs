@@ -13,13 +13,10 @@ const PAN: f64 = 0.1;
 /// A cursor nearer than that to the pointer is taken along.
 const NEAR: f32 = 6.0;
 
-/// What the pointer drags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Drag {
-    /// The view.
     #[default]
     View,
-    /// A cursor.
     Cursor(Cursor),
 }
 

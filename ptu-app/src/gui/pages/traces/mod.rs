@@ -29,13 +29,11 @@ use ptu_report::words::fill;
 /// Height of a row of controls.
 const ROW: f32 = 24.0;
 
-/// The page.
 #[derive(Default)]
 pub struct TracesPage {
     list: TraceList,
     opening: Option<Pending<(Opened, String)>>,
     scene: Option<TracePlot>,
-    /// Why nothing is shown.
     trouble: Option<String>,
     behind: BehindAsked,
     export: Export,
@@ -65,7 +63,6 @@ impl TracesPage {
             .show(ui, |ui| self.central(ui, context));
     }
 
-    /// Shows this one.
     pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
         self.read(id, None, context);
     }

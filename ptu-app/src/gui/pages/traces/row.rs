@@ -33,9 +33,7 @@ pub struct Sheet<'a> {
     pub places: Places,
     /// Rows whose values are told.
     pub rows: [Option<usize>; 2],
-    /// Wordings.
     pub words: &'a Words,
-    /// Colours.
     pub palette: &'a Palette,
 }
 
@@ -106,7 +104,6 @@ impl Sheet<'_> {
         usual * lane.stretch
     }
 
-    /// Paints a lane.
     pub fn lane(&self, ui: &mut Ui, number: usize, lane: &Lane, row: Rect, scratch: &mut Scratch) {
         let colours = &self.palette.curves;
         let colour = colours[number % colours.len()];

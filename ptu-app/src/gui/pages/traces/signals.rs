@@ -17,7 +17,6 @@ enum Pressed {
     Hide(usize),
 }
 
-/// The chooser.
 pub fn choose(
     ui: &mut Ui,
     scene: &mut TracePlot,

@@ -11,7 +11,6 @@ use ptu_report::words::{Words, fill};
 /// States told by share; a counter has as many as rows.
 const STATES: usize = 4;
 
-/// The table.
 pub fn statistics(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     let traces = &words.traces;
     let (rows, between) = scene.stretch_rows();

@@ -5,7 +5,6 @@ use protocol::config::{SpeedCode, UnitConfig};
 
 use super::Way;
 
-/// The ATP signal.
 #[derive(Clone, Debug)]
 pub struct CodeForm {
     /// Carrier, Hz.

@@ -3,10 +3,8 @@
 use btu_rig::stimulus::Stimulus;
 use protocol::line::Line;
 
-/// Markers along the way.
 #[derive(Clone, Debug)]
 pub struct MarkerForm {
-    /// Section whose markers are laid.
     pub section: u16,
     /// Marker that is moved, 1 to 4.
     pub psm: u8,

@@ -24,18 +24,12 @@ pub enum Way {
     TestBoard,
 }
 
-/// All fields of the page.
 #[derive(Debug)]
 pub struct Forms {
-    /// Signal in the antenna.
     pub code: CodeForm,
-    /// Tachometers.
     pub motion: MotionForm,
-    /// Markers along the way.
     pub markers: MarkerForm,
-    /// What the wayside sends.
     pub station: StationForm,
-    /// Cab and train.
     pub train: TrainForm,
     /// The TEST board's signal.
     pub test_code: CodeForm,

@@ -6,7 +6,6 @@ use protocol::Speed;
 /// Both inputs of the TEST board's speed signal.
 const BOTH_CHANNELS: u8 = 0b11;
 
-/// Speed signals.
 #[derive(Clone, Debug)]
 pub struct MotionForm {
     /// Speed to go to, km/h.
@@ -58,12 +57,10 @@ impl Default for MotionForm {
 }
 
 impl MotionForm {
-    /// To the speed filled in.
     pub fn go_to(&self) -> Stimulus {
         self.to(Speed::from_kmh(self.to_kmh))
     }
 
-    /// To standstill.
     pub fn stand(&self) -> Stimulus {
         self.to(Speed::ZERO)
     }

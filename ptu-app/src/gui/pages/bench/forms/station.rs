@@ -11,7 +11,6 @@ use super::Way;
 pub struct StationForm {
     /// Data but for the fixed speed.
     pub data: StationData,
-    /// A fixed speed is ordered.
     pub ordered: bool,
     /// The fixed speed, km/h.
     pub fixed_speed_kmh: u8,
@@ -68,7 +67,6 @@ impl StationForm {
             .unwrap_or(DoorSide::None);
     }
 
-    /// What is sent.
     pub fn station(&self) -> StationData {
         StationData {
             fixed_speed_kmh: self.ordered.then_some(self.fixed_speed_kmh),

@@ -19,7 +19,6 @@ const NAME_MOST: f32 = 118.0;
 /// Between columns.
 const BETWEEN: f32 = 14.0;
 
-/// A frame with a heading.
 pub fn card(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
     framed(ui, |ui| {
         heading(ui, title);
@@ -55,11 +54,8 @@ pub fn ground(palette: &Palette) -> Color32 {
     }
 }
 
-/// A name with its value.
 pub struct Fact {
-    /// What it is.
     pub name: &'static str,
-    /// How it is.
     pub value: String,
     /// The value's colour; none = as text is.
     pub colour: Option<Color32>,

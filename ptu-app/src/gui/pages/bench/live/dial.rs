@@ -56,7 +56,6 @@ impl Face {
     }
 }
 
-/// The dial and its legend.
 pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Palette) {
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let words = &view.words.bench;

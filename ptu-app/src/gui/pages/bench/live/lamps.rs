@@ -22,7 +22,6 @@ enum Lit {
     Unknown,
 }
 
-/// A lamp.
 struct Lamp {
     name: &'static str,
     /// What it says when it is on, and when it is off.

@@ -26,9 +26,7 @@ use card::card;
 use ptu_bench::run::BenchSetup;
 use ptu_report::words::Words;
 
-/// What the live view shows.
 pub struct View<'a> {
-    /// Wordings.
     pub words: &'static Words,
     /// The bench as it is now.
     pub seen: &'a Seen,

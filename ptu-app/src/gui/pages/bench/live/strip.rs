@@ -14,7 +14,6 @@ const HEIGHT: f32 = 70.0;
 /// Markers whose places are nearer than this have their names one above the other.
 const NEAR: f32 = 34.0;
 
-/// The strip.
 pub fn strip(ui: &mut Ui, strip: Option<&Strip>, view: &View<'_>, palette: &Palette) {
     let words = &view.words.bench;
     let size = vec2(ui.available_width(), HEIGHT);

@@ -17,7 +17,6 @@ const MAX_MV: f64 = 65_535.0;
 const MAX_DRIFT_HZ_PER_S: f64 = 100.0;
 const MAX_DRIFT_MV_PER_S: f64 = 10_000.0;
 
-/// The group.
 pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     codes(ui, form, config, Way::Harness, hand);
@@ -72,7 +71,6 @@ pub fn codes(ui: &mut Ui, form: &CodeForm, config: &UnitConfig, way: Way, hand: 
     });
 }
 
-/// Carrier, code rate and level.
 pub fn free(ui: &mut Ui, form: &mut CodeForm, words: &Bench) {
     row(ui, words.carrier, |ui, label| {
         number(ui, label, &mut form.carrier_hz, 0.0..=MAX_HZ, "Hz");

@@ -21,23 +21,17 @@ const NAME: f32 = 138.0;
 /// What the page remembers of what was given, because no signal tells it.
 #[derive(Debug, Default)]
 pub struct Given {
-    /// Section laid along the way.
     pub laid: Option<u16>,
-    /// Station data.
     pub station: Option<StationData>,
 }
 
 /// The hand that gives stimuli.
 pub struct Hand<'a> {
-    /// To the unit.
     pub bench: &'a BenchWorker,
     /// The bench at the beginning of the frame.
     pub seen: &'a Seen,
-    /// Wordings.
     pub words: &'static Words,
-    /// What the person is told.
     pub messages: &'a mut Messages,
-    /// What was given.
     pub given: &'a mut Given,
 }
 
@@ -47,7 +41,6 @@ impl Hand<'_> {
         self.bench.connection()
     }
 
-    /// Wordings.
     pub fn words(&self) -> &'static Words {
         self.words
     }

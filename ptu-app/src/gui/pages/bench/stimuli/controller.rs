@@ -12,7 +12,6 @@ use ptu_report::words::Bench;
 const MAX_VOLTS: f64 = 10.0;
 const SLIDER: f32 = 190.0;
 
-/// The group.
 pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     lever(ui, form, hand, words);

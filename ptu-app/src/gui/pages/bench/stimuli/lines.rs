@@ -25,7 +25,6 @@ fn switches(words: &Bench) -> [(TrainSwitch, &'static str); 11] {
     ]
 }
 
-/// The group.
 pub fn show(ui: &mut Ui, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     row(ui, words.doors, |ui, _| {

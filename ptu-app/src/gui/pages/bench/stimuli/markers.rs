@@ -10,7 +10,6 @@ use crate::gui::pages::bench::forms::MarkerForm;
 /// Farthest a marker can be moved, m.
 const MAX_MOVE_M: f64 = 100.0;
 
-/// The group.
 pub fn show(ui: &mut Ui, form: &mut MarkerForm, line: &Line, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     row(ui, words.marker_pulse, |ui, _| {

@@ -19,7 +19,6 @@ use super::forms::Forms;
 use ptu_bench::run::BenchSetup;
 use ptu_report::words::Bench;
 
-/// A group of stimuli.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Group {
     TestBoard,

@@ -16,7 +16,6 @@ const MAX_TRAVEL_M: f64 = 100_000.0;
 const MAX_NOISE_PER_S: f64 = 5_000.0;
 const MAX_FACTOR: f64 = 10.0;
 
-/// The group.
 pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     row(ui, words.to_speed, |ui, label| {

@@ -10,7 +10,6 @@ use crate::gui::pages::bench::forms::TrainForm;
 /// Adhesion beyond this is glue.
 const MAX_ADHESION: f64 = 1.0;
 
-/// The group.
 pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     row(ui, words.tcms_link, |ui, _| {

@@ -15,7 +15,6 @@ use ptu_report::words::Bench;
 /// Greatest acceleration the request carries, km/h/s.
 const MAX_KMHPS: f64 = 235.0;
 
-/// The group.
 pub fn show(ui: &mut Ui, forms: &mut Forms, config: &UnitConfig, line: &Line, hand: &mut Hand<'_>) {
     let words = &hand.words().bench;
     row(ui, words.maintenance, |ui, _| {

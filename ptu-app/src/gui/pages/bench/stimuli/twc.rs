@@ -37,7 +37,6 @@ pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Hand<'_
     });
 }
 
-/// All fields of a frame.
 pub fn fields(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
     const ALL: std::ops::RangeInclusive<u16> = 0..=u16::MAX;
     row(ui, words.section, |ui, label| {
