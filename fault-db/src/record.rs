@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::text_enum::text_enum;
 
 text_enum! {
-    /// The verdict of a step, a measurement or a whole run.
+    /// The verdict of a step, a measurement or a whole run: a column. This crate names no other, so the caller
+    /// converts its own verdict.
     Verdict {
         /// Every expectation held.
         Passed = "passed",
@@ -135,9 +136,9 @@ pub struct FaultRecord {
     pub code: i64,
     /// Its name.
     pub code_name: String,
-    /// Replaceable part it points at; empty if unknown.
+    /// Replaceable part it points at, or the caller's word for none. Identifies the fault, with unit and code.
     pub lru: String,
-    /// Severity, in the caller's words.
+    /// Severity, in the caller's words: a database may hold those of another program.
     pub severity: String,
     /// Time of the occurrence.
     pub at_us: i64,

@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::LruId;
 use crate::message::{AtoFailure, Channel, SelfTest};
 
 /// Entries a unit's log keeps: the oldest fall off.
 pub const LOG_ENTRIES: usize = 256;
 
-/// How bad an event is.
+/// Severity of an event or a fault, least first. The database stores its [`label`](Severity::label).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Part of normal operation; not a fault by itself.
@@ -21,6 +22,14 @@ pub enum Severity {
 }
 
 impl Severity {
+    /// Those of faults.
+    pub const OF_FAULTS: [Self; 3] = [Self::Minor, Self::Major, Self::Critical];
+
+    /// The severity of a fault by its word; `None` for any other word.
+    pub fn of_fault(label: &str) -> Option<Self> {
+        Self::OF_FAULTS.into_iter().find(|one| one.label() == label)
+    }
+
     /// The word stored and shown.
     pub const fn label(self) -> &'static str {
         match self {
@@ -33,7 +42,7 @@ impl Severity {
 }
 
 /// Definition of one event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct Definition {
     /// Number in the log.
     pub code: u16,
@@ -41,8 +50,8 @@ pub struct Definition {
     pub name: &'static str,
     /// How bad it is.
     pub severity: Severity,
-    /// Part under suspicion when only this event is known; `-` = none.
-    pub lru: &'static str,
+    /// Part under suspicion when only this event is known.
+    pub lru: Option<LruId>,
     /// What happened, in English.
     pub text: &'static str,
     /// What happened, in Korean.
@@ -65,10 +74,10 @@ macro_rules! events {
 
             /// Its definition.
             pub const fn definition(self) -> &'static Definition {
-                match self { $( Self::$variant => &Definition {
-                    code: $code, name: $name, severity: Severity::$severity, lru: $lru,
+                match self { $( Self::$variant => const { &Definition {
+                    code: $code, name: $name, severity: Severity::$severity, lru: LruId::listed($lru),
                     text: $text, text_ko: $ko, parameter: $parameter,
-                }, )* }
+                } }, )* }
             }
             /// The event of a number; `None` for one this version does not know.
             pub const fn from_code(code: u16) -> Option<Self> {
@@ -154,43 +163,43 @@ pub const COUNTER_STANDS: i32 = 1;
 pub const ALL_CARS: i32 = 0;
 
 impl Event {
-    /// The part under suspicion, given the event's parameter; `-` = none.
-    pub fn suspect(self, parameter: i32) -> &'static str {
-        match self {
-            Self::SelfTestFailed => {}
+    /// The part under suspicion, given the event's parameter.
+    pub fn suspect(self, parameter: i32) -> Option<LruId> {
+        let named = match self {
+            Self::SelfTestFailed => {
+                let failed = SelfTest::from_bits_retain(parameter as u16);
+                let parts = [
+                    (SelfTest::ATP_RECEIVER, "atp_receiver"),
+                    (SelfTest::TRA, "tra"),
+                    (SelfTest::TWC_MODEM, "fsk_board"),
+                    (SelfTest::TEST_BOARD, "test_board"),
+                    (SelfTest::EB_RELAY, "eb_relay"),
+                ];
+                let part = parts.iter().find(|(item, _)| failed.contains(*item));
+                part.map(|(_, part)| *part)
+            }
             // The parameter is the channel that loses frames.
             Self::FramesRejected if parameter == i32::from(Channel::Twc.code()) => {
-                return "fsk_board";
+                Some("fsk_board")
             }
-            Self::AtoFailed if parameter == i32::from(AtoFailure::Tra.code()) => return "tra",
+            Self::AtoFailed if parameter == i32::from(AtoFailure::Tra.code()) => Some("tra"),
             Self::AtoFailed
                 if parameter == i32::from(AtoFailure::Tachometers.code())
                     || parameter == i32::from(AtoFailure::Inputs.code())
                     || parameter == i32::from(AtoFailure::TrainWithholds.code()) =>
             {
-                return "-";
+                return None;
             }
             // The line takes nothing: no inverter's fault.
-            Self::RegenerationCutOut if parameter == ALL_CARS => return "-",
+            Self::RegenerationCutOut if parameter == ALL_CARS => return None,
             // Frames arrive: what stands is who makes them.
-            Self::TcmsLost if parameter == COUNTER_STANDS => return "tcms",
+            Self::TcmsLost if parameter == COUNTER_STANDS => Some("tcms"),
             Self::FramesRejected if parameter != i32::from(Channel::Tcms.code()) => {
-                return "io_board";
+                Some("io_board")
             }
-            _ => return self.definition().lru,
-        }
-        let failed = SelfTest::from_bits_retain(parameter as u16);
-        let parts = [
-            (SelfTest::ATP_RECEIVER, "atp_receiver"),
-            (SelfTest::TRA, "tra"),
-            (SelfTest::TWC_MODEM, "fsk_board"),
-            (SelfTest::TEST_BOARD, "test_board"),
-            (SelfTest::EB_RELAY, "eb_relay"),
-        ];
-        parts
-            .iter()
-            .find(|(item, _)| failed.contains(*item))
-            .map_or(self.definition().lru, |&(_, lru)| lru)
+            _ => None,
+        };
+        named.map_or_else(|| self.definition().lru.clone(), LruId::listed)
     }
 
     /// Whether TCMS logs it, and not the unit.

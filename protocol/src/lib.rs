@@ -8,6 +8,8 @@
 //! * [`Backlog`]: spreads bytes that waited over the scans that are made up;
 //! * [`config`], [`mod@line`], [`injection`]: unit configuration, track database and fault modes as
 //!   checked data;
+//! * [`lru`], [`Verdict`]: identifiers of replaceable parts and the verdict of a test, for the crates that
+//!   test and diagnose;
 //! * [`display_text`]: makes text from outside safe to display.
 //!
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
@@ -24,13 +26,17 @@ pub mod frame;
 pub mod injection;
 pub mod line;
 pub mod link;
+pub mod lru;
 pub mod message;
 mod pace;
 pub mod signal;
 mod speed;
 mod time;
+mod verdict;
 
 pub use backlog::Backlog;
+pub use lru::LruId;
 pub use pace::ScanDeadlines;
 pub use speed::Speed;
 pub use time::{CYCLE, Duration, Instant, SCAN};
+pub use verdict::Verdict;

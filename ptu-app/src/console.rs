@@ -9,7 +9,7 @@ use std::time::Duration;
 use btu_rig::procedure::{Procedure, RunEvent, Verdict};
 use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
-use protocol::display_text;
+use protocol::{display_text, lru};
 
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{Listener, RunPlan, SessionEvent, Speaker, steps_of};
@@ -140,7 +140,9 @@ impl Listener for Console {
             }
             SessionEvent::Fault(fault) => Some(format!(
                 "fault   {} → {}: {}",
-                fault.name, fault.lru, fault.message
+                fault.name,
+                lru::stored(fault.lru.as_ref()),
+                fault.message
             )),
             _ => None,
         }
@@ -226,7 +228,6 @@ fn procedures(run: &RunDetail) -> Table {
     table
 }
 
-/// The gravest verdict among steps.
 /// The verdict of a procedure. One that was broken off is an error, as its run is; in any other run a check
 /// that failed is said before one that could not be made.
 fn worst(steps: &[fault_db::StepDetail], run: Option<fault_db::Verdict>) -> &'static str {

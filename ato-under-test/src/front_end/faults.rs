@@ -106,7 +106,7 @@ mod tests {
     fn loose(kmh: f64) -> FaultMode {
         FaultMode {
             id: "a.b".into(),
-            lru: "a".into(),
+            lru: protocol::LruId::from_static("a"),
             mode: "m".into(),
             severity: "major".into(),
             weight: 1.0,

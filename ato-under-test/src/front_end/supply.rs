@@ -87,7 +87,7 @@ mod tests {
     fn faults(place: Place, effect: Effect) -> Faults {
         let mode = FaultMode {
             id: "a.b".into(),
-            lru: "a".into(),
+            lru: protocol::LruId::from_static("a"),
             mode: "m".into(),
             severity: "major".into(),
             weight: 1.0,

@@ -1,7 +1,7 @@
 //! Judging a measured value against its limits.
 
+use super::Verdict;
 use super::condition::{Captured, Operand};
-use super::report::Verdict;
 
 /// A limit as it stands when the value is judged.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,11 +3,12 @@
 use protocol::Instant;
 use protocol::signal::Signal;
 
+use super::Verdict;
 use super::action_run::Scan;
 use super::condition::{Captured, MissingData, TrueMotion};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
-use super::report::{Measurement, Verdict};
+use super::report::Measurement;
 
 /// Watches for a condition to *become* true: it must have been seen false first. A brake that is
 /// applied already when its time is taken has no reaction time, it must not get one of 0 ms.

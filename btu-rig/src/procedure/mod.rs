@@ -31,7 +31,8 @@ use thiserror::Error;
 pub use evidence::{Evidence, LineState, LogState};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
-pub use report::{Measurement, RunEvent, StepResult, Verdict};
+pub use protocol::Verdict;
+pub use report::{Measurement, RunEvent, StepResult};
 pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
 
 use crate::stimulus::Stimulus;

@@ -2,7 +2,7 @@
 
 use protocol::event::Event;
 use protocol::signal::Signal;
-use protocol::{Duration, Speed};
+use protocol::{Duration, LruId, Speed};
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::{Comparison, Condition, Operand};
@@ -39,8 +39,8 @@ pub struct Procedure {
     pub needs: Connection,
     /// Run only when it is asked for by name: too long for a run of everything.
     pub on_request: bool,
-    /// Part to suspect when a step fails and names none itself.
-    pub suspect: String,
+    /// Part to suspect when a step fails that names none itself.
+    pub suspect: Option<LruId>,
     /// Path of the script under the scripts folder.
     pub path: String,
     /// SHA-256 of the script text, in hex.
@@ -80,8 +80,8 @@ pub struct Step {
     pub time_limit: Duration,
     /// Longest time one repetition can take.
     pub worst_case: Duration,
-    /// Part to suspect when it fails.
-    pub suspect: Option<String>,
+    /// Part to suspect when it fails: its own, else the procedure's.
+    pub suspect: Option<LruId>,
     /// A remark for the technician.
     pub note: Option<String>,
 }

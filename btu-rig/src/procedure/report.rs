@@ -1,65 +1,8 @@
-//! Results of a run: verdicts, measurements, step results, and the one stream of events.
+//! Results of a run: measurements, step results, and the one stream of events.
 
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, LruId, Verdict};
 
 use super::UnitEvent;
-
-/// Outcome of a step, a measurement or a procedure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Verdict {
-    /// As it should be.
-    Passed,
-    /// The unit does not do what it should.
-    Failed,
-    /// Could not be tested.
-    Error,
-    /// Not run.
-    Skipped,
-    /// Stopped by the operator.
-    Aborted,
-}
-
-impl Verdict {
-    /// The word stored and shown.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Error => "error",
-            Self::Skipped => "skipped",
-            Self::Aborted => "aborted",
-        }
-    }
-
-    /// The verdict over two steps or procedures: aborted, then failed, then error outrank passed.
-    ///
-    /// A check that failed is said before one that could not be made: a faulty unit makes both, and the
-    /// first is the finding. A skipped part changes nothing, and only parts that are all skipped give
-    /// `Skipped`.
-    pub const fn and(self, other: Self) -> Self {
-        if self.rank() >= other.rank() {
-            self
-        } else {
-            other
-        }
-    }
-
-    const fn rank(self) -> u8 {
-        match self {
-            Self::Skipped => 0,
-            Self::Passed => 1,
-            Self::Error => 2,
-            Self::Failed => 3,
-            Self::Aborted => 4,
-        }
-    }
-}
-
-impl std::fmt::Display for Verdict {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.label())
-    }
-}
 
 /// A measured value with its limits and verdict.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,8 +34,8 @@ pub struct StepResult {
     pub verdict: Verdict,
     /// Why, when it did not pass; may also be a note.
     pub message: String,
-    /// Part the script suspects when it fails.
-    pub suspect: String,
+    /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
+    pub suspect: Option<LruId>,
     /// When it began.
     pub started: Instant,
     /// How long it took on the bench.

@@ -1,7 +1,7 @@
 //! One repetition of one step, from its first scan to its verdict.
 
 use protocol::event::Event;
-use protocol::{CYCLE, Duration, Instant};
+use protocol::{CYCLE, Duration, Instant, LruId};
 
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
 use super::event_set::EventSet;
@@ -9,8 +9,8 @@ use super::evidence::{Evidence, LogState, counted};
 use super::expectation_run::ExpectationRun;
 use super::measure_run::MeasurementRun;
 use super::plan::Step;
-use super::report::{Measurement, RunEvent, Verdict};
-use super::{Driver, UnitEvent};
+use super::report::{Measurement, RunEvent};
+use super::{Driver, UnitEvent, Verdict};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
 const TOO_LATE: Duration = CYCLE;
@@ -28,7 +28,7 @@ pub(super) struct StepRun {
     problems: Vec<(Problem, u32)>,
     logged: EventSet,
     /// Suspected part of the first event that no step provoked.
-    blamed: Option<&'static str>,
+    named_part: Option<LruId>,
     /// The step was given up: its remaining expectations are not judged.
     given_up: bool,
     /// Nothing is measured any more: what is seen now is not the unit's doing.
@@ -49,7 +49,7 @@ pub(super) struct StepEnd {
     pub bench_time: Duration,
     pub measurements: Vec<Measurement>,
     /// Suspected part of an event that no step provoked.
-    pub blamed: Option<&'static str>,
+    pub named_part: Option<LruId>,
 }
 
 impl StepRun {
@@ -62,7 +62,7 @@ impl StepRun {
             measurements: vec![MeasurementRun::default(); step.measures.len()],
             problems: Vec::new(),
             logged: EventSet::default(),
-            blamed: None,
+            named_part: None,
             given_up: false,
             broken_off: false,
             behind: Duration::ZERO,
@@ -88,9 +88,9 @@ impl StepRun {
 
     /// Holds an event nobody asked for against the step. Whoever logged it saw what happened, so the
     /// part it names counts for more than the one a failure of the step would point at.
-    pub(super) fn blame_event(&mut self, entry: &UnitEvent) {
-        let part = Event::from_code(entry.code).map(|event| event.suspect(entry.parameter));
-        self.blamed = self.blamed.or(part.filter(|part| *part != "-"));
+    pub(super) fn fail_by_event(&mut self, entry: &UnitEvent) {
+        let part = || Event::from_code(entry.code)?.suspect(entry.parameter);
+        self.named_part = self.named_part.take().or_else(part);
         self.hold(Problem::Failed(format!(
             "{}, which no step provoked",
             logged(entry)
@@ -99,7 +99,7 @@ impl StepRun {
 
     /// Something that frames lost between tester and unit may have caused: the step says nothing about
     /// the unit.
-    pub(super) fn blame_line(&mut self, what: &str) {
+    pub(super) fn hold_against_line(&mut self, what: &str) {
         self.hold(Problem::Bench(format!(
             "{what} while frames between tester and unit did not come through: check the line and run this \
              again"
@@ -107,7 +107,7 @@ impl StepRun {
     }
 
     /// Fails the step for an emergency brake that it did not provoke.
-    pub(super) fn blame_brake(&mut self) {
+    pub(super) fn fail_by_brake(&mut self) {
         self.hold(Problem::Failed(
             "the emergency brake was applied, which this step does not ask for".into(),
         ));
@@ -224,7 +224,7 @@ impl StepRun {
     pub(super) fn finish(mut self, step: &Step, scan: Scan<'_>, aborted: bool) -> StepEnd {
         let bench_time = scan.now.since(self.started);
         let complete = !self.given_up && !aborted;
-        let blamed = self.has_failed();
+        let failed_before = self.has_failed();
         for (run, expectation) in std::mem::take(&mut self.expectations)
             .into_iter()
             .zip(&step.expectations)
@@ -253,7 +253,7 @@ impl StepRun {
         }
         // Events and brakes are as they are; what was judged by the bench's clock may be its delay, and what
         // did not come about a frame that did not come through.
-        if !blamed && self.has_failed() {
+        if !failed_before && self.has_failed() {
             if self.behind > TOO_LATE {
                 self.hold(Problem::Bench(format!(
                     "the tester was {:.2} s behind, held up by its own computer: run this again",
@@ -275,7 +275,7 @@ impl StepRun {
             message: message(&self.problems, step, aborted),
             bench_time,
             measurements,
-            blamed: self.blamed,
+            named_part: self.named_part,
         }
     }
 

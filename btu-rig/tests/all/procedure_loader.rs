@@ -10,6 +10,7 @@ use btu_rig::train::TrainData;
 use proptest::prelude::*;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
+use protocol::lru::shown;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -96,6 +97,26 @@ fn a_plan_is_the_same_after_it_was_written_down() {
             procedure.id,
             written.len()
         );
+    }
+}
+
+#[test]
+fn a_step_suspects_the_procedures_part_unless_it_says_otherwise() {
+    let suspects = |head: &str, step: &str| {
+        let script = format!("procedure(title = 'x'{head})\nstep('a', do = wait(s(1)){step})");
+        let loaded = load_all(&Scripts::from([("a.star".to_owned(), script)]));
+        let errors: Vec<_> = loaded.errors.iter().map(ToString::to_string).collect();
+        assert_eq!(errors, [""; 0]);
+        shown(loaded.procedures[0].steps[0].suspect.as_ref()).to_owned()
+    };
+    for (head, step, expected) in [
+        ("", "", "-"),
+        (", suspect = '-'", ", suspect = 'tra'", "tra"),
+        (", suspect = 'ato_cpu'", "", "ato_cpu"),
+        (", suspect = 'ato_cpu'", ", suspect = 'tra'", "tra"),
+        (", suspect = 'ato_cpu'", ", suspect = '-'", "-"),
+    ] {
+        assert_eq!(suspects(head, step), expected, "{head}{step}");
     }
 }
 

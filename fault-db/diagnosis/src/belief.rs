@@ -1,7 +1,18 @@
 //! The posterior probability of each hypothesis, updated step by step with Bayes' rule.
 
+use protocol::LruId;
+
 use super::model::{Model, NO_FAULT};
 use super::observation::{Observation, StepSeen};
+
+/// What the evidence has settled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settled<'d> {
+    /// Nothing is wrong with the unit.
+    Healthy,
+    /// This part has failed.
+    Part(&'d LruId),
+}
 
 /// The probabilities of all hypotheses, and the evidence they rest on.
 #[derive(Clone, Debug)]
@@ -78,17 +89,19 @@ impl<'m, 'd> Belief<'m, 'd> {
         &self.ln
     }
 
-    /// The part that is found, `Some("")` when the unit is healthy, `None` when the question is open.
-    pub fn answer(&self) -> Option<&'d str> {
+    /// What is settled; `None` while the question is open.
+    pub fn answer(&self) -> Option<Settled<'d>> {
         let model = self.model;
         let probabilities = self.probabilities();
         if probabilities[NO_FAULT] >= model.settings.healthy_at {
-            return Some("");
+            return Some(Settled::Healthy);
         }
         let probability = |part: &[usize]| part.iter().map(|i| probabilities[*i]).sum::<f64>();
         let mut parts = model.parts().iter();
         let found = parts.find(|part| probability(part) >= model.settings.found_at)?;
-        model.lru(model.hypotheses[*found.first()?])
+        model
+            .lru(model.hypotheses[*found.first()?])
+            .map(Settled::Part)
     }
 
     /// Whether one part is found, or the unit is healthy.

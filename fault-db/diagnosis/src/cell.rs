@@ -2,15 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use protocol::Verdict;
 use serde::{Deserialize, Serialize};
 
-use super::observation::{CheckResult, Sign, StepSeen};
+use super::observation::{Sign, StepSeen, observed};
 
 /// The result of a step with the signs that showed: what can be compared as equal or not.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Signature {
-    /// The step's result.
-    pub result: CheckResult,
+    /// The step's verdict.
+    #[serde(deserialize_with = "observed")]
+    pub result: Verdict,
     /// The signs that showed.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub signs: BTreeSet<Sign>,
@@ -115,7 +117,7 @@ impl Cell {
     }
 
     /// How often it had this result.
-    pub fn count(&self, result: CheckResult) -> u32 {
+    pub fn count(&self, result: Verdict) -> u32 {
         let of = self.signatures.iter().filter(|(s, _)| s.result == result);
         of.map(|(_, count)| count).sum()
     }
@@ -133,7 +135,7 @@ impl Cell {
     pub fn not_passed(&self) -> f64 {
         match self.runs() {
             0 => 0.0,
-            runs => 1.0 - f64::from(self.count(CheckResult::Passed)) / f64::from(runs),
+            runs => 1.0 - f64::from(self.count(Verdict::Passed)) / f64::from(runs),
         }
     }
 

@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read as _};
 
+use protocol::LruId;
 use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
@@ -39,7 +40,7 @@ pub struct ModeName {
     /// `part.mode`.
     pub id: String,
     /// Part to replace.
-    pub lru: String,
+    pub lru: LruId,
     /// Description for users.
     pub text: String,
     /// `permanent`, `intermittent` or `degraded`.
@@ -209,12 +210,8 @@ impl Dictionary {
     }
 
     /// The parts of its modes, each once, in order.
-    pub fn lrus(&self) -> Vec<&str> {
-        let all: BTreeSet<_> = self
-            .modes
-            .iter()
-            .map(|mode| mode.name.lru.as_str())
-            .collect();
+    pub fn lrus(&self) -> Vec<&LruId> {
+        let all: BTreeSet<_> = self.modes.iter().map(|mode| &mode.name.lru).collect();
         all.into_iter().collect()
     }
 }
@@ -247,7 +244,7 @@ mod tests {
     fn any_bytes_can_be_decompressed_or_are_refused() {
         let mode = ModeName {
             id: "eb_relay.slow".into(),
-            lru: "eb_relay".into(),
+            lru: LruId::from_static("eb_relay"),
             text: "drops late".into(),
             kind: "degraded".into(),
             unsafe_: true,

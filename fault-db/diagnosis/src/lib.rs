@@ -8,7 +8,8 @@
 //!
 //! [`process`] is statistical process control of measured values over time, and forecasts.
 //!
-//! The crate knows no database and no bench. No function here is given the faults that were injected.
+//! The crate knows no database and no bench; of `protocol` it uses the identifiers of parts and the
+//! verdict. No function here is given the faults that were injected.
 
 mod belief;
 mod cell;
@@ -25,12 +26,12 @@ mod settings;
 mod strategy;
 mod verdict;
 
-pub use belief::Belief;
+pub use belief::{Belief, Settled};
 pub use cell::{Cell, Signature, Values};
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
-pub use observation::{CheckName, CheckResult, Observation, Sign, StepSeen};
+pub use observation::{CheckName, Observation, Sign, StepSeen, is_observed};
 pub use settings::Settings;
 pub use strategy::{Effort, Strategy, fixed_order, replayed};
 pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

@@ -4,17 +4,22 @@
 //! surprise refutes no hypothesis for good. Values follow Student's t (four degrees of freedom, tolerant
 //! of outliers), scaled to the range that the measurement has under all hypotheses.
 
+use protocol::Verdict;
+
 use super::cell::{Cell, Signature, Values};
-use super::observation::{CheckResult, Sign, StepSeen};
+use super::observation::{Sign, StepSeen};
 
 /// Greatest number of runs that count: more would pretend that all benches are alike.
 const MOST_RUNS: f64 = 50.0;
-/// Probability of each result if nothing is known.
-const NOTHING_KNOWN: [(CheckResult, f64); 3] = [
-    (CheckResult::Passed, 0.50),
-    (CheckResult::Failed, 0.35),
-    (CheckResult::Error, 0.15),
-];
+/// Probability of each verdict if nothing is known.
+const fn nothing_known(verdict: Verdict) -> f64 {
+    match verdict {
+        Verdict::Passed => 0.50,
+        Verdict::Failed => 0.35,
+        Verdict::Error => 0.15,
+        Verdict::Skipped | Verdict::Aborted => 0.0,
+    }
+}
 /// Probability of a sign if nothing is known.
 const SIGN_UNKNOWN: f64 = 0.05;
 /// Probability of a missing value if nothing is known.
@@ -90,10 +95,8 @@ impl Expected<'_> {
     }
 
     /// Probability of a result.
-    pub fn result(&self, result: CheckResult) -> f64 {
-        let nothing_known = NOTHING_KNOWN.iter().find(|(r, _)| *r == result);
-        let nothing_known = nothing_known.map_or(0.0, |(_, p)| *p);
-        self.smoothed(self.share(self.cell.count(result)), nothing_known)
+    pub fn result(&self, result: Verdict) -> f64 {
+        self.smoothed(self.share(self.cell.count(result)), nothing_known(result))
     }
 
     /// Probability of a sign.
@@ -167,11 +170,9 @@ pub fn likelihood_of_anything<'s>(
     step: &StepSeen,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
-    let of_result = NOTHING_KNOWN.iter().find(|(r, _)| *r == step.result);
-    let result = of_result.map_or(0.0, |(_, p)| *p);
     let signs = SIGN_UNKNOWN.powi(step.signs.len() as i32);
     let measured = step.values.iter().filter(|(name, _)| scale(name).is_some());
-    result * signs * ANYWHERE.powi(measured.count() as i32)
+    nothing_known(step.result) * signs * ANYWHERE.powi(measured.count() as i32)
 }
 
 #[cfg(test)]
@@ -181,7 +182,7 @@ mod tests {
     use super::*;
     use crate::observation::CheckName;
 
-    fn step(result: CheckResult, value: Option<f64>) -> StepSeen {
+    fn step(result: Verdict, value: Option<f64>) -> StepSeen {
         StepSeen {
             check: CheckName {
                 procedure: "p".into(),
@@ -211,29 +212,29 @@ mod tests {
     #[test]
     fn results_are_probabilities_and_nothing_is_impossible() {
         let cell = cell(&[
-            step(CheckResult::Passed, Some(1.0)),
-            step(CheckResult::Passed, Some(1.1)),
+            step(Verdict::Passed, Some(1.0)),
+            step(Verdict::Passed, Some(1.1)),
         ]);
-        let sum: f64 = CheckResult::ALL
+        let sum: f64 = Verdict::ALL
             .iter()
             .map(|r| expected(&cell).result(*r))
             .sum();
         assert!((sum - 1.0).abs() < 1e-12);
-        assert!(expected(&cell).result(CheckResult::Failed) > 0.01);
-        assert!(expected(&cell).result(CheckResult::Passed) > 0.85);
+        assert!(expected(&cell).result(Verdict::Failed) > 0.01);
+        assert!(expected(&cell).result(Verdict::Passed) > 0.85);
     }
 
     /// A reaction time of 640 ms with a limit of 600 ms is weaker evidence than none at all: under a slow
     /// relay 640 ms is likely, a missing value is not.
     #[test]
     fn a_measured_value_is_stronger_evidence_than_its_verdict() {
-        let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(CheckResult::Passed, Some(v))));
-        let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(CheckResult::Failed, Some(v))));
-        let dead = cell(&[None, None, None].map(|v| step(CheckResult::Failed, v)));
+        let healthy = cell(&[240.0, 244.0, 250.0].map(|v| step(Verdict::Passed, Some(v))));
+        let slow = cell(&[636.0, 640.0, 652.0].map(|v| step(Verdict::Failed, Some(v))));
+        let dead = cell(&[None, None, None].map(|v| step(Verdict::Failed, v)));
         let mut scale = Scale::of_healthy(&healthy.values["t"]);
         scale.widen(&slow.values["t"]);
         let ln = |cell: &Cell, value| {
-            let step = step(CheckResult::Failed, value);
+            let step = step(Verdict::Failed, value);
             likelihood(expected(cell), &step, |_| Some(&scale)).ln()
         };
         assert!(ln(&slow, Some(643.0)) > ln(&dead, Some(643.0)) + 3.0);

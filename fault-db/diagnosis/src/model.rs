@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use protocol::LruId;
+
 use super::cell::Cell;
 use super::dictionary::{Column, Dictionary};
 use super::likelihood::{Expected, Scale, likelihood, likelihood_of_anything};
@@ -53,7 +55,7 @@ impl<'a> Model<'a> {
     pub fn new(
         dictionary: &'a Dictionary,
         settings: &'a Settings,
-        lru_factor: &BTreeMap<String, f64>,
+        lru_factor: &BTreeMap<LruId, f64>,
     ) -> Self {
         let mut hypotheses = vec![Hypothesis::NoFault, Hypothesis::Unknown];
         let weight = |mode: usize| {
@@ -69,7 +71,7 @@ impl<'a> Model<'a> {
                 priors.push(known * weight(mode) / all / entry.columns.len() as f64);
             }
         }
-        let mut parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        let mut parts: BTreeMap<&LruId, Vec<usize>> = BTreeMap::new();
         for (i, hypothesis) in hypotheses.iter().enumerate() {
             if let Hypothesis::Mode { mode, .. } = hypothesis {
                 let part = &dictionary.modes[*mode].name.lru;
@@ -94,8 +96,8 @@ impl<'a> Model<'a> {
         self.hypotheses.binary_search(&sought).ok()
     }
 
-    /// Part that a hypothesis blames.
-    pub fn lru(&self, hypothesis: Hypothesis) -> Option<&'a str> {
+    /// Part that has failed under a hypothesis; none of a healthy unit and of an unknown fault.
+    pub fn lru(&self, hypothesis: Hypothesis) -> Option<&'a LruId> {
         match hypothesis {
             Hypothesis::Mode { mode, .. } => Some(&self.dictionary.modes[mode].name.lru),
             _ => None,
@@ -250,7 +252,7 @@ fn mixed(one: f64, other: f64, share: f64) -> f64 {
 fn false_alarms(dictionary: &Dictionary) -> f64 {
     let cells = dictionary.healthy.cells.values();
     let (wrong, all) = cells.fold((0, 0), |(wrong, all), cell| {
-        let passed = cell.count(super::CheckResult::Passed);
+        let passed = cell.count(protocol::Verdict::Passed);
         (wrong + cell.runs() - passed, all + cell.runs())
     });
     (f64::from(wrong) + 0.5) / (f64::from(all) + 1.0)

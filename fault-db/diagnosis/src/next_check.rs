@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
@@ -95,7 +96,7 @@ impl Belief<'_, '_> {
     }
 
     fn classes(&self) -> Classes {
-        let mut names: BTreeMap<Option<&str>, usize> = BTreeMap::new();
+        let mut names: BTreeMap<Option<&LruId>, usize> = BTreeMap::new();
         let mut of_hypothesis = Vec::new();
         let probabilities = self.probabilities();
         for (i, hypothesis) in self.model.hypotheses.iter().enumerate() {

@@ -1,32 +1,29 @@
 //! What a run showed: its steps with their measured values, and the fault events of the unit.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
+use protocol::Verdict;
+use protocol::lru::{self, LruId};
+use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-/// The result of a step. Skipped and aborted steps are not observed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CheckResult {
-    /// Every expectation held.
-    Passed,
-    /// An expectation did not hold.
-    Failed,
-    /// It could not be tested.
-    Error,
+/// Whether a step with this verdict is evidence. One that was not run to its end shows nothing.
+pub const fn is_observed(verdict: Verdict) -> bool {
+    match verdict {
+        Verdict::Passed | Verdict::Failed | Verdict::Error => true,
+        Verdict::Skipped | Verdict::Aborted => false,
+    }
 }
 
-impl CheckResult {
-    /// All there are.
-    pub const ALL: [Self; 3] = [Self::Passed, Self::Failed, Self::Error];
-
-    /// The word for it.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Error => "error",
-        }
+/// Reads the verdict of an observed step.
+pub(crate) fn observed<'de, D: Deserializer<'de>>(from: D) -> Result<Verdict, D::Error> {
+    let verdict = Verdict::deserialize(from)?;
+    match is_observed(verdict) {
+        true => Ok(verdict),
+        false => Err(D::Error::custom(format!(
+            "a step that is {verdict} is no evidence"
+        ))),
     }
 }
 
@@ -46,18 +43,38 @@ impl std::fmt::Display for CheckName {
 }
 
 /// A fault event of the unit or the train: the fault's name and the part it points at.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Sign {
     /// Name of the fault.
     pub fault: String,
-    /// Part it points at; may be `unknown`.
-    pub lru: String,
+    /// Part it points at.
+    pub lru: Option<LruId>,
+}
+
+impl Sign {
+    /// The part's word in the dictionary.
+    pub(crate) fn part(&self) -> &str {
+        lru::stored(self.lru.as_ref())
+    }
+}
+
+// By the words: the order of signs in stored dictionaries.
+impl Ord for Sign {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (&self.fault, self.part()).cmp(&(&other.fault, other.part()))
+    }
+}
+
+impl PartialOrd for Sign {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 impl From<Sign> for String {
     fn from(sign: Sign) -> Self {
-        format!("{}/{}", sign.fault, sign.lru)
+        format!("{}/{}", sign.fault, sign.part())
     }
 }
 
@@ -66,11 +83,11 @@ impl TryFrom<String> for Sign {
 
     fn try_from(text: String) -> Result<Self, String> {
         let parts = text.split_once('/');
-        let (fault, lru) =
+        let (fault, part) =
             parts.ok_or_else(|| format!("\"{text}\" is no sign: write fault/part"))?;
         Ok(Self {
             fault: fault.to_owned(),
-            lru: lru.to_owned(),
+            lru: lru::from_stored(part),
         })
     }
 }
@@ -80,8 +97,9 @@ impl TryFrom<String> for Sign {
 pub struct StepSeen {
     /// Which.
     pub check: CheckName,
-    /// Its result.
-    pub result: CheckResult,
+    /// Its verdict, one that [`is_observed`].
+    #[serde(deserialize_with = "observed")]
+    pub result: Verdict,
     /// Bench time it took, s.
     pub time_s: f64,
     /// Its measured values by name; `None` where nothing could be measured.
@@ -111,6 +129,33 @@ impl Observation {
             || self
                 .steps
                 .iter()
-                .any(|step| step.result != CheckResult::Passed || !step.signs.is_empty())
+                .any(|step| step.result != Verdict::Passed || !step.signs.is_empty())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_are_stored_and_ordered_by_their_words() {
+        let words = [
+            "ato_failed/ato_cpu",
+            "ato_failed/unknown",
+            "ato_failed/wheel",
+        ];
+        let signs = words.map(|word| Sign::try_from(word.to_owned()).expect("a sign"));
+        assert_eq!(signs[1].lru, None);
+        assert!(signs.is_sorted());
+        assert_eq!(signs.map(String::from), words);
+    }
+
+    #[test]
+    fn a_step_that_was_not_run_to_its_end_cannot_be_read_as_evidence() {
+        for verdict in Verdict::ALL {
+            let json = format!(r#"{{"result":"{verdict}"}}"#);
+            let read = serde_json::from_str::<crate::Signature>(&json);
+            assert_eq!(read.is_ok(), is_observed(verdict), "{verdict}");
+        }
     }
 }

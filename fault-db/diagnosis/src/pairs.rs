@@ -3,9 +3,11 @@
 //! A check passes under two faults only if it passes under each, and fails if either makes it fail. So the
 //! likelihood of a passed check is the lesser of the two, of any other result the greater.
 
+use protocol::Verdict;
+
 use super::belief::{Belief, normalised};
 use super::model::{Hypothesis, NO_FAULT};
-use super::observation::{CheckResult, Observation, StepSeen};
+use super::observation::{Observation, StepSeen};
 
 /// Number of best explaining modes that are combined to pairs.
 const MOST_EXPLAINING: usize = 12;
@@ -52,7 +54,7 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, f64) {
 }
 
 fn is_strange(step: &StepSeen) -> bool {
-    step.result != CheckResult::Passed || !step.signs.is_empty()
+    step.result != Verdict::Passed || !step.signs.is_empty()
 }
 
 /// Permanent modes that explain the failures better than a healthy unit, with their best variety, the best

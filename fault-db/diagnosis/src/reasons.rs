@@ -1,8 +1,10 @@
 //! The steps that speak for a fault mode and those that speak against it.
 
+use protocol::Verdict;
+
 use super::belief::Belief;
 use super::model::{Hypothesis, Model, NO_FAULT};
-use super::observation::{CheckResult, Observation, StepSeen};
+use super::observation::{Observation, StepSeen};
 
 /// Most reasons in each direction.
 const MOST: usize = 6;
@@ -52,7 +54,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: usize, seen: &Observation) -
     for sign in &seen.signs {
         let alone = std::collections::BTreeSet::from([sign.clone()]);
         let gain = model.ln_log(hypothesis, &alone) - model.ln_log(Hypothesis::NoFault, &alone);
-        let text = format!("the unit's log: {} names {}", sign.fault, sign.lru);
+        let text = format!("the unit's log: {} names {}", sign.fault, sign.part());
         if gain > SPEAKS_AT {
             reasons.for_it.push(text);
         } else if gain < -SPEAKS_AT {
@@ -62,7 +64,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: usize, seen: &Observation) -
     reasons
 }
 
-/// The likeliest hypotheses that blame another part, by index.
+/// The likeliest hypotheses of another part, by index.
 fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
     let model = belief.model;
     let own = model.lru(model.hypotheses[hypothesis]);
@@ -95,7 +97,7 @@ fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen
         share(healthy)
     );
     for sign in &step.signs {
-        text += &format!(", {} names {}", sign.fault, sign.lru);
+        text += &format!(", {} names {}", sign.fault, sign.part());
     }
     for (name, value) in &step.values {
         let (Some(of_own), Some(of_healthy)) =
@@ -108,7 +110,7 @@ fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen
             _ => format!("{} to {}", rounded(v.low), rounded(v.high)),
         };
         let differs = range(of_own) != range(of_healthy);
-        if differs || (step.result != CheckResult::Passed && value.is_none()) {
+        if differs || (step.result != Verdict::Passed && value.is_none()) {
             let value = value.map_or_else(|| "none".to_owned(), rounded);
             text += &format!(
                 "; {name} = {value} (under this fault {}, healthy {})",

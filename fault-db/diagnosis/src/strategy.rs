@@ -5,10 +5,12 @@
 
 use std::collections::BTreeSet;
 
+use protocol::Verdict;
+
 use super::belief::Belief;
 use super::model::Model;
 use super::next_check::NextCheck;
-use super::observation::{CheckName, CheckResult, Observation, StepSeen};
+use super::observation::{CheckName, Observation, StepSeen};
 
 /// Isolates a fault, check by check.
 #[derive(Debug)]
@@ -46,7 +48,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
             self.belief.see(self.seen.steps.len(), step);
             self.seen.steps.push(step.clone());
         }
-        let surprising = new && (step.result != CheckResult::Passed || !step.signs.is_empty());
+        let surprising = new && (step.result != Verdict::Passed || !step.signs.is_empty());
         let reached = self.target.as_ref().is_none_or(|t| t.check == step.check);
         if surprising || reached {
             self.aim(Some(&step.check.procedure));

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
@@ -21,7 +22,7 @@ const MOST_SHOWN: usize = 10;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     /// Part to replace.
-    pub lru: String,
+    pub lru: LruId,
     /// Fault mode.
     pub fault: String,
     /// What is wrong, for people.
@@ -39,7 +40,7 @@ pub struct Candidate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartProbability {
     /// The part.
-    pub lru: String,
+    pub lru: LruId,
     /// Probability that it has failed.
     pub probability: f64,
 }
@@ -129,7 +130,7 @@ impl Diagnosis {
     }
 
     /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
-    pub fn credible_parts(&self, sure: f64) -> Vec<&str> {
+    pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
         let mut sum = 0.0;
         let mut parts = Vec::new();
         for part in &self.lrus {
@@ -137,7 +138,7 @@ impl Diagnosis {
                 break;
             }
             sum += part.probability;
-            parts.push(part.lru.as_str());
+            parts.push(&part.lru);
         }
         parts
     }
@@ -160,7 +161,7 @@ impl Weights {
         let count = model.dictionary.modes.len();
         let mut modes = vec![0.0; count];
         let mut varieties = vec![(0, 0.0); count];
-        let mut parts: BTreeMap<&str, f64> = BTreeMap::new();
+        let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
         let (mut no_fault, mut unknown) = (0.0, 0.0);
         for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
             let p = p * single;
@@ -194,7 +195,7 @@ impl Weights {
         let mut lrus: Vec<_> = parts
             .into_iter()
             .map(|(lru, probability)| PartProbability {
-                lru: lru.to_owned(),
+                lru: lru.clone(),
                 probability: probability.min(1.0),
             })
             .collect();
@@ -210,7 +211,7 @@ impl Weights {
 
     fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
         let names = &belief.model.dictionary.modes;
-        let rank = |lru: &str| self.lrus.iter().position(|part| part.lru == lru);
+        let rank = |lru: &LruId| self.lrus.iter().position(|part| part.lru == *lru);
         let mut places: Vec<usize> = (0..names.len()).collect();
         places.sort_by(|a, b| {
             let key = |i: usize| rank(&names[i].name.lru);

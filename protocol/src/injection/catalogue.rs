@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::FaultMode;
 use super::check::check;
+use crate::LruId;
 use crate::config::{ConfigError, conflict};
 
 /// A part that can be replaced.
@@ -15,7 +16,7 @@ use crate::config::{ConfigError, conflict};
 #[serde(deny_unknown_fields)]
 pub struct Lru {
     /// Name used in faults.
-    pub id: String,
+    pub id: LruId,
     /// Name people use, English.
     pub name: String,
     /// Name people use, Korean.

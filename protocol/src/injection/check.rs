@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use super::{Effect, FaultMode, Occurrence, Place};
 use crate::config::{ConfigError, conflict, within};
+use crate::event::Severity;
 
 /// Cars a train may have.
 pub const MAX_CARS: u8 = 12;
@@ -111,7 +112,7 @@ fn parts(effect: Effect) -> (&'static str, Option<(&'static str, f64)>) {
 /// A number out of its range, an effect that does nothing at its place, a car where there is none.
 pub(super) fn check(fault: &FaultMode) -> Result<(), ConfigError> {
     let wrong = |what: String| conflict(&format!("fault {}: {what}", fault.id));
-    if !matches!(fault.severity.as_str(), "minor" | "major" | "critical") {
+    if Severity::of_fault(&fault.severity).is_none() {
         let severity = &fault.severity;
         return Err(wrong(format!(
             "severity must be minor, major or critical, not {severity}"

@@ -15,6 +15,8 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use crate::LruId;
+
 pub use catalogue::{FaultCatalogue, Lru};
 pub use check::MAX_CARS;
 pub use occurrence::{Occurrence, OccurrenceState};
@@ -183,10 +185,10 @@ pub struct FaultMode {
     /// Name, `part.mode`.
     pub id: String,
     /// Part to replace.
-    pub lru: String,
+    pub lru: LruId,
     /// What is wrong, for people.
     pub mode: String,
-    /// `minor`, `major` or `critical`.
+    /// Label of a [`Severity`](crate::event::Severity) of faults.
     pub severity: String,
     /// Relative prior weight, a bench default.
     pub weight: f64,

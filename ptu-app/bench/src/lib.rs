@@ -8,6 +8,7 @@
 //! * [`field`]: imports a unit's own event log into the fault history;
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
+//! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; [`clock`]: the computer's time; [`failure`]: what a person is told;
 //!   [`stop`]: interruption by a signal.
 
@@ -29,4 +30,5 @@ pub mod run;
 pub mod run_diagnosis;
 pub mod stdio;
 pub mod stop;
+pub mod stored;
 pub mod table;

@@ -22,7 +22,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         .map(|c| {
             json!({
                 "lru": c.lru, "fault": c.fault, "probability": c.probability,
-                "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(&c.lru),
+                "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(c.lru.as_str()),
             })
         })
         .collect();

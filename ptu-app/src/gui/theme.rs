@@ -4,7 +4,7 @@
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Context, TextStyle, Theme, Ui};
 
-use ptu_bench::run::stored;
+use ptu_bench::stored::from_stored;
 
 /// Colours of meaning.
 #[derive(Clone, Copy, Debug)]
@@ -108,16 +108,16 @@ impl Palette {
 
     /// A verdict's colour.
     pub fn verdict(&self, verdict: Verdict) -> Color32 {
-        self.stored_verdict(stored(verdict))
+        match verdict {
+            Verdict::Passed => self.good,
+            Verdict::Failed => self.bad,
+            Verdict::Error | Verdict::Aborted => self.warn,
+            Verdict::Skipped => self.quiet,
+        }
     }
 
     /// A stored verdict's colour.
     pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> Color32 {
-        match verdict {
-            fault_db::Verdict::Passed => self.good,
-            fault_db::Verdict::Failed => self.bad,
-            fault_db::Verdict::Error | fault_db::Verdict::Aborted => self.warn,
-            fault_db::Verdict::Skipped => self.quiet,
-        }
+        self.verdict(from_stored(verdict))
     }
 }

@@ -20,7 +20,7 @@ use protocol::{Instant, SCAN};
 pub fn fault(place: Place, effect: Effect) -> FaultMode {
     FaultMode {
         id: "part.mode".into(),
-        lru: "part".into(),
+        lru: protocol::LruId::from_static("part"),
         mode: String::new(),
         severity: "major".into(),
         weight: 1.0,

@@ -37,6 +37,8 @@ pub(super) fn assemble(
     let mut errors = Vec::new();
     let mut head: Option<ProcedureDraft> = None;
     let mut steps: Vec<Step> = Vec::new();
+    // Those that leave the part to suspect to the procedure.
+    let mut without_suspect = Vec::new();
     let mut known: Vec<NamedMeasurement> = Vec::new();
     for (declaration, places) in declared {
         // The place in this file; a step may be declared by a function of a library.
@@ -58,6 +60,9 @@ pub(super) fn assemble(
                     errors.push(fail(format!("two steps are called \"{}\"", draft.name)));
                 }
                 let line = place.map_or(0, |p| p.resolve_span().begin.line as u32 + 1);
+                if draft.suspect.is_none() {
+                    without_suspect.push(steps.len());
+                }
                 match step(draft, line, &mut known) {
                     Ok(step) => steps.push(step),
                     Err(message) => errors.push(fail(message)),
@@ -79,6 +84,9 @@ pub(super) fn assemble(
     };
     no_earlier(&mut head.setup)?;
     no_earlier(&mut head.cleanup)?;
+    for index in without_suspect {
+        steps[index].suspect.clone_from(&head.suspect);
+    }
     let procedure = Procedure {
         id: path.strip_suffix(".star").unwrap_or(path).to_owned(),
         title: head.title,
@@ -117,7 +125,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
         on_fail: draft.on_fail,
         time_limit: Duration::ZERO,
         worst_case: Duration::ZERO,
-        suspect: draft.suspect,
+        suspect: draft.suspect.flatten(),
         note: draft.note,
     };
     step.worst_case = step.compute_worst_case(draft.limit);

@@ -1,7 +1,7 @@
 //! What `procedure()` and `step()` declare, before names are resolved and times computed.
 
-use protocol::Duration;
 use protocol::event::Event;
+use protocol::{Duration, LruId};
 
 use crate::procedure::plan::{Action, Condition, Connection, Expectation, Measure, OnFail};
 
@@ -18,7 +18,7 @@ pub(super) struct ProcedureDraft {
     pub title_ko: Option<String>,
     pub needs: Connection,
     pub on_request: bool,
-    pub suspect: String,
+    pub suspect: Option<LruId>,
     pub setup: Vec<Action>,
     pub cleanup: Vec<Action>,
 }
@@ -34,6 +34,7 @@ pub(super) struct StepDraft {
     pub repeat: u32,
     pub on_fail: OnFail,
     pub limit: Option<Duration>,
-    pub suspect: Option<String>,
+    /// `Some(None)`: the call says that the step suspects no part.
+    pub suspect: Option<Option<LruId>>,
     pub note: Option<String>,
 }

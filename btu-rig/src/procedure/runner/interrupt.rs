@@ -4,8 +4,8 @@ use protocol::Instant;
 use protocol::signal::Sample;
 
 use super::{Phase, Runner, Stop};
+use crate::procedure::Verdict;
 use crate::procedure::action_run::Problem;
-use crate::procedure::report::Verdict;
 
 impl Runner {
     pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {

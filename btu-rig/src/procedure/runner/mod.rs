@@ -16,7 +16,7 @@ use std::sync::Arc;
 use protocol::event::{Event, LOG_ENTRIES, Severity};
 use protocol::message::SelfTest;
 use protocol::signal::Sample;
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, LruId};
 
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
 use pause::Pause;
@@ -28,9 +28,9 @@ use super::describe::meanings;
 use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::plan::{Procedure, Step};
-use super::report::{RunEvent, Verdict};
+use super::report::RunEvent;
 use super::step_run::StepRun;
-use super::{Driver, UnitEvent};
+use super::{Driver, UnitEvent, Verdict};
 
 /// Whether a runner needs more scans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ pub struct Runner {
     provoked: EventSet,
     brake_applied: Option<bool>,
     /// Part of the train that TCMS reported first, in a step that did not provoke it.
-    train_part: Option<&'static str>,
+    train_part: Option<LruId>,
     stop: Stop,
     answer: Option<bool>,
     link_lost: bool,
@@ -327,9 +327,8 @@ impl Runner {
 
     /// Part to suspect when a step fails: what TCMS has reported of the train, if anything, stays broken and shows in
     /// every step after that, too.
-    fn suspect(&self, step: &Step) -> String {
-        let own = step.suspect.as_ref().unwrap_or(&self.procedure.suspect);
-        self.train_part.map_or_else(|| own.clone(), str::to_owned)
+    fn suspect(&self, step: &Step) -> Option<LruId> {
+        self.train_part.clone().or_else(|| step.suspect.clone())
     }
 
     fn operator(&self) -> Operator {

@@ -7,12 +7,12 @@ use protocol::{Duration, Instant};
 
 use super::schedule::ScheduledStep;
 use super::{Phase, Runner};
-use crate::procedure::Driver;
 use crate::procedure::action_run::{ActionRun, Scan};
 use crate::procedure::condition::TrueMotion;
 use crate::procedure::plan::{OnFail, Step};
-use crate::procedure::report::{RunEvent, StepResult, Verdict};
+use crate::procedure::report::{RunEvent, StepResult};
 use crate::procedure::step_run::StepRun;
+use crate::procedure::{Driver, Verdict};
 
 /// Steps that need no time are run one after the other in one scan, up to this many.
 const STEPS_PER_SCAN: usize = 32;
@@ -132,7 +132,7 @@ impl Runner {
             line: step.line,
             verdict: end.verdict,
             message: end.message,
-            suspect: end.blamed.map_or_else(|| self.suspect(step), str::to_owned),
+            suspect: end.named_part.or_else(|| self.suspect(step)),
             started,
             bench_time: end.bench_time,
             measurements: end.measurements,

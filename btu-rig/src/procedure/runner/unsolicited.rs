@@ -6,9 +6,10 @@ use protocol::signal::{Sample, Signal};
 
 use super::{Phase, Runner};
 use crate::procedure::UnitEvent;
+use crate::procedure::Verdict;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::plan::Step;
-use crate::procedure::report::{RunEvent, Verdict};
+use crate::procedure::report::RunEvent;
 use crate::procedure::step_run::logged;
 
 /// Events after which the emergency brake is applied.
@@ -50,7 +51,7 @@ impl Runner {
             });
             if !asked && self.evidence.explains(known, entry.parameter) {
                 if let Some(step) = live.as_mut() {
-                    step.blame_line(&logged(entry));
+                    step.hold_against_line(&logged(entry));
                 }
             } else if !asked {
                 self.verdict = self.verdict.and(Verdict::Failed);
@@ -61,11 +62,11 @@ impl Runner {
                     self.not_reported += 1;
                 }
                 if let Some(event) = known.filter(|event| event.about_train()) {
-                    let part = Some(event.suspect(entry.parameter));
-                    self.train_part = self.train_part.or(part.filter(|part| *part != "-"));
+                    let part = || event.suspect(entry.parameter);
+                    self.train_part = self.train_part.take().or_else(part);
                 }
                 if let Some(step) = live.as_mut() {
-                    step.blame_event(entry);
+                    step.fail_by_event(entry);
                 }
             }
         }
@@ -88,11 +89,11 @@ impl Runner {
                 return;
             }
             if self.evidence.line.harmed_lately > 0 {
-                live.blame_line("the emergency brake was applied");
+                live.hold_against_line("the emergency brake was applied");
                 return;
             }
             self.verdict = self.verdict.and(Verdict::Failed);
-            live.blame_brake();
+            live.fail_by_brake();
             self.out.push(RunEvent::UnsolicitedBrake { at: now });
         }
     }

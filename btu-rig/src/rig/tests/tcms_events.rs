@@ -1,8 +1,8 @@
 //! What TCMS logs, as the bench hands it on.
 
-use protocol::Instant;
 use protocol::event::Event;
 use protocol::injection::FaultCatalogue;
+use protocol::{Instant, LruId};
 
 use super::{FakeUnit, bench};
 use crate::rig::Bench;
@@ -16,7 +16,7 @@ fn a_line_that_takes_no_power_is_told_from_an_inverter_that_gives_none() {
         switch: TrainSwitch::Regeneration,
         on,
     };
-    let told = |bench: &mut Bench<FakeUnit>| -> Vec<(i32, &str)> {
+    let parts = |bench: &mut Bench<FakeUnit>| -> Vec<(i32, Option<LruId>)> {
         let code = Event::RegenerationCutOut.definition().code;
         let events = bench.rig_mut().take_events().into_iter();
         events
@@ -28,12 +28,12 @@ fn a_line_that_takes_no_power_is_told_from_an_inverter_that_gives_none() {
     let catalogue =
         FaultCatalogue::from_toml(include_str!("../../../../scripts/units/faults.toml")).unwrap();
     for (mode, begins, line) in [
-        (None, vec![], vec![(0, "-")]),
-        (Some("inverter.dead"), vec![], vec![(0, "-")]),
+        (None, vec![], vec![(0, None)]),
+        (Some("inverter.dead"), vec![], vec![(0, None)]),
         (
             Some("inverter.regeneration_lost"),
-            vec![(3, "inverter")],
-            vec![(0, "-")],
+            vec![(3, Some(LruId::from_static("inverter")))],
+            vec![(0, None)],
         ),
     ] {
         let mut bench = bench(FakeUnit::default());
@@ -45,14 +45,14 @@ fn a_line_that_takes_no_power_is_told_from_an_inverter_that_gives_none() {
         bench.rig_mut().inject(&faults, Instant::ZERO);
         bench.apply(Stimulus::TrainDriven { on: true });
         bench.run_ms(500);
-        assert_eq!(told(&mut bench), begins, "{mode:?}");
+        assert_eq!(parts(&mut bench), begins, "{mode:?}");
         for _ in 0..2 {
             bench.apply(regeneration(false));
             bench.run_ms(500);
-            assert_eq!(told(&mut bench), line, "{mode:?}");
+            assert_eq!(parts(&mut bench), line, "{mode:?}");
             bench.apply(regeneration(true));
             bench.run_ms(500);
-            assert_eq!(told(&mut bench), [], "{mode:?}");
+            assert_eq!(parts(&mut bench), [], "{mode:?}");
         }
     }
 }

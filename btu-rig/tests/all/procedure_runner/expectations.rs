@@ -2,6 +2,7 @@
 
 use btu_rig::procedure::{EventSource, RunEvent, Verdict};
 use protocol::event::{Event, LOG_ENTRIES};
+use protocol::lru::shown;
 use protocol::signal::Signal;
 
 use super::stand_in::{HEAD, OFF, World, run};
@@ -159,7 +160,10 @@ fn an_event_nobody_asked_for_names_the_part() {
                 world.log_by(source, event);
             }
         });
-        let suspects = outcome.steps().into_iter().map(|step| step.suspect.clone());
+        let suspects = outcome
+            .steps()
+            .into_iter()
+            .map(|step| shown(step.suspect.as_ref()).to_owned());
         suspects.collect::<Vec<_>>()
     };
     let (unit, tcms) = (EventSource::Unit, EventSource::Tcms);

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{Diagnosis, Dictionary, Effort, Finding, Model, Settings, fixed_order, replayed};
 
+use protocol::LruId;
+
 use super::samples::{Purpose, Sample};
 use super::suite::SuiteRun;
 use crate::drive::monte_carlo::percentile;
@@ -21,7 +23,7 @@ pub struct Assessment {
     /// Fault mode.
     pub fault: String,
     /// Its part.
-    pub lru: String,
+    pub lru: LruId,
     /// `permanent`, `intermittent` or `degraded`.
     pub kind: &'static str,
     /// It can leave the train less protected.
@@ -33,7 +35,7 @@ pub struct Assessment {
     /// A step did not pass, or a fault was found.
     pub detected: bool,
     /// Parts that diagnosis is sure are the one, the likeliest first.
-    pub parts: Vec<String>,
+    pub parts: Vec<LruId>,
     /// What diagnosis says.
     pub finding: Finding,
     /// In words.
@@ -43,7 +45,7 @@ pub struct Assessment {
     /// The same, step after step as diagnosis asks for them.
     pub adaptive: Effort,
     /// Part the adaptive run finds.
-    pub adaptive_part: Option<String>,
+    pub adaptive_part: Option<LruId>,
 }
 
 impl Assessment {
@@ -91,7 +93,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         Finding::TwoFound => {
             let found = diagnosis.lrus.iter();
             let found = found.filter(|part| part.probability >= model.settings.found_at);
-            found.map(|part| part.lru.as_str()).collect()
+            found.map(|part| &part.lru).collect()
         }
         _ => diagnosis.credible_parts(SURE),
     };
@@ -103,7 +105,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         level: sample.level,
         seed: sample.seed,
         detected: !run.passed,
-        parts: parts.into_iter().map(str::to_owned).collect(),
+        parts: parts.into_iter().cloned().collect(),
         fixed: fixed_order(model, &run.seen),
         adaptive,
         adaptive_part: (after.finding == Finding::Found)
@@ -235,7 +237,7 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
         wrong: Share::over(all(), |run| {
             let certain = matches!(run.finding, Finding::Found | Finding::TwoFound);
-            certain && run.parts != [run.lru.as_str()]
+            certain && run.parts != [run.lru.clone()]
         }),
         undetected: lacking(&|run| run.detected),
         not_isolated: lacking(&|run| run.isolated(1)),
@@ -252,7 +254,7 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     let mut taken_for: BTreeMap<String, usize> = BTreeMap::new();
     for run in runs.iter().filter(|run| !has(run)) {
         let what = match run.finding {
-            Finding::Found | Finding::TwoFound | Finding::CannotTell => run.parts.join(" or "),
+            Finding::Found | Finding::TwoFound | Finding::CannotTell => joined(&run.parts),
             _ => run
                 .conclusion
                 .split(';')
@@ -271,6 +273,11 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     }
 }
 
+fn joined(parts: &[LruId]) -> String {
+    let parts: Vec<_> = parts.iter().map(LruId::as_str).collect();
+    parts.join(" or ")
+}
+
 /// Parts that stand together in an answer of several, joined as far as answers overlap.
 fn ambiguous(assessments: &[Assessment]) -> Vec<Vec<String>> {
     let mut groups: Vec<BTreeSet<String>> = Vec::new();
@@ -278,7 +285,7 @@ fn ambiguous(assessments: &[Assessment]) -> Vec<Vec<String>> {
         .iter()
         .filter(|run| run.detected && run.parts.len() > 1);
     for run in open.filter(|run| run.parts.len() <= MOST_PARTS) {
-        let mut group: BTreeSet<String> = run.parts.iter().cloned().collect();
+        let mut group: BTreeSet<_> = run.parts.iter().map(LruId::to_string).collect();
         let (touching, apart): (Vec<_>, Vec<_>) = groups
             .into_iter()
             .partition(|known| !known.is_disjoint(&group));

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use diagnosis::{CheckName, Dictionary};
+use protocol::LruId;
 
 /// A step tells two hypotheses apart when one fails it at least this much more often.
 const APART: f64 = 0.8;
@@ -26,12 +27,12 @@ pub fn redundancy(dictionary: &Dictionary) -> Redundancy {
         columns.extend(
             mode.columns
                 .iter()
-                .map(|column| (Some(mode.name.lru.as_str()), column)),
+                .map(|column| (Some(&mode.name.lru), column)),
         );
     }
     let fails: Vec<Vec<f64>> = (0..dictionary.checks.len())
         .map(|place| {
-            let of = |(_, column): &(Option<&str>, &diagnosis::Column)| {
+            let of = |(_, column): &(Option<&LruId>, &diagnosis::Column)| {
                 column
                     .cells
                     .get(&place)

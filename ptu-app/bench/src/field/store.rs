@@ -12,6 +12,7 @@ use protocol::signal::{Sample, Signal};
 
 use super::read::Entry;
 use crate::run::of_event;
+use crate::stored::fault_record;
 
 /// What is stored of a reading beside its entries.
 #[derive(Clone, Debug)]
@@ -113,8 +114,8 @@ fn run_record(source: &Source) -> RunRecord {
 fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
     let event = &entry.event;
     let at = Instant::from_ms(u64::from(event.at_ms));
-    let fault = of_event(event, at, &frozen(event));
-    let mut freeze = fault.freeze;
+    let mut fault = of_event(event, at, &frozen(event));
+    let freeze = &mut fault.freeze;
     freeze.retain(|sample| sample.value.is_some());
     let number = |name: &str, value: f64, unit: &str| FreezeSample {
         name: name.into(),
@@ -137,17 +138,9 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
             label: Some(dated_by.into()),
         },
     ]);
-    FaultRecord {
-        code: i64::from(fault.code),
-        code_name: fault.name,
-        lru: fault.lru,
-        severity: fault.severity.into(),
-        at_us: entry.at_us.unwrap_or(read_at_us),
-        bench_us: fault.at.as_us() as i64,
-        step_index: None,
-        message: fault.message,
-        freeze,
-    }
+    let at_us = entry.at_us.unwrap_or(read_at_us);
+    let bench_us = fault.at.as_us() as i64;
+    fault_record(fault, at_us, bench_us, None)
 }
 
 /// The signals an entry tells of.

@@ -1,5 +1,5 @@
 //! A run that isolates a fault by itself: after every step it knows what would tell the most, and does
-//! that next. Dictionary and strategy are `fault-db`'s; here they meet a bench.
+//! that next. Dictionary and strategy are of `diagnosis`; here they drive a bench.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,6 +8,7 @@ use std::thread::Scope;
 
 use btu_rig::procedure::RunOptions;
 use diagnosis::{Dictionary, Model, Settings, Strategy};
+use protocol::LruId;
 
 use super::bench_setup::Connected;
 use super::observe::ObservationBuilder;
@@ -22,7 +23,7 @@ pub struct Adaptive {
     /// Priors and thresholds.
     pub settings: Settings,
     /// What the unit's history says of its parts.
-    pub lru_factors: BTreeMap<String, f64>,
+    pub lru_factors: BTreeMap<LruId, f64>,
 }
 
 /// Starts the worker; procedures come as it chooses them.

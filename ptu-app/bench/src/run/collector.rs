@@ -3,7 +3,7 @@
 
 use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::Cut;
-use fault_db::{FaultRecord, Id, MeasurementRecord, RecordingRecord, StepRecord};
+use fault_db::{Id, MeasurementRecord, RecordingRecord, StepRecord};
 use protocol::Duration;
 
 use super::bench_contents::BenchContents;
@@ -13,6 +13,7 @@ use super::trace_data::trace_data;
 use super::{FaultSeen, Task};
 use crate::clock;
 use crate::failure::Exit;
+use crate::stored::{fault_record, stored};
 
 /// Receives the events of a run while it goes on.
 pub trait Listener {
@@ -46,13 +47,6 @@ pub struct Outcome {
     pub bench_time: Duration,
     /// Exit code that goes with it.
     pub exit: Exit,
-}
-
-impl Outcome {
-    /// Its verdict in the words of the store.
-    pub fn stored_verdict(&self) -> fault_db::Verdict {
-        stored(self.verdict)
-    }
 }
 
 pub struct Collector<'a> {
@@ -173,17 +167,9 @@ impl<'a> Collector<'a> {
         // The bench's virtual time runs ahead of the day; a fault is dated when it is found.
         let at_us = clock::now_us();
         self.dates.push((bench_us, at_us));
-        self.store.fault(FaultRecord {
-            code: i64::from(fault.code),
-            code_name: fault.name,
-            lru: fault.lru,
-            severity: fault.severity.into(),
-            at_us,
-            bench_us,
-            step_index: fault.step.map(|turn| self.steps_before + turn as u32),
-            message: fault.message,
-            freeze: fault.freeze,
-        });
+        let step_index = fault.step.map(|turn| self.steps_before + turn as u32);
+        let record = fault_record(fault, at_us, bench_us, step_index);
+        self.store.fault(record);
     }
 
     fn trace(&mut self, cut: &Cut) {
@@ -236,17 +222,6 @@ impl<'a> Collector<'a> {
                 exit,
             },
         )
-    }
-}
-
-/// A verdict in the words of the store.
-pub fn stored(verdict: Verdict) -> fault_db::Verdict {
-    match verdict {
-        Verdict::Passed => fault_db::Verdict::Passed,
-        Verdict::Failed => fault_db::Verdict::Failed,
-        Verdict::Error => fault_db::Verdict::Error,
-        Verdict::Skipped => fault_db::Verdict::Skipped,
-        Verdict::Aborted => fault_db::Verdict::Aborted,
     }
 }
 

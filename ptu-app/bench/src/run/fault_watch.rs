@@ -3,10 +3,10 @@
 
 use btu_rig::procedure::describe::meanings;
 use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
-use protocol::Instant;
 use protocol::event::{Event, Severity};
 use protocol::message::SelfTest;
 use protocol::signal::Sample;
+use protocol::{Instant, LruId};
 
 use super::trace_data::freeze_frame;
 
@@ -14,8 +14,6 @@ use super::trace_data::freeze_frame;
 pub const CHECK_FAILED: u16 = 9000;
 /// Code of an emergency brake that was not requested.
 pub const EB_UNREQUESTED: u16 = 9001;
-/// Part named when nothing points at one.
-const UNKNOWN_PART: &str = "unknown";
 
 /// A fault as a procedure finds it.
 #[derive(Clone, Debug)]
@@ -25,9 +23,9 @@ pub struct FaultSeen {
     /// Its name.
     pub name: String,
     /// Part it points at.
-    pub lru: String,
-    /// How bad it is.
-    pub severity: &'static str,
+    pub lru: Option<LruId>,
+    /// Its severity.
+    pub severity: Severity,
     /// When, on the procedure's bench.
     pub at: Instant,
     /// Step under way, by its turn in the procedure.
@@ -47,7 +45,6 @@ pub fn is_fault(entry: &UnitEvent) -> bool {
 /// not have to do with it.
 pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
     let event = Event::from_code(entry.code);
-    let part = event.map_or("-", |event| event.suspect(entry.parameter));
     let (name, severity, text) = match event.map(Event::definition) {
         Some(known) => (known.name.to_owned(), known.severity, known.text.to_owned()),
         None => {
@@ -58,8 +55,8 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
     FaultSeen {
         code: entry.code,
         name,
-        lru: part_or_unknown(part),
-        severity: severity.label(),
+        lru: event.and_then(|event| event.suspect(entry.parameter)),
+        severity,
         at,
         step: None,
         message: format!(
@@ -82,8 +79,8 @@ pub fn of_self_test(failed: SelfTest, at: Instant, sample: &Sample) -> FaultSeen
     FaultSeen {
         code: known.code,
         name: known.name.to_owned(),
-        lru: part_or_unknown(event.suspect(i32::from(failed.bits()))),
-        severity: known.severity.label(),
+        lru: event.suspect(i32::from(failed.bits())),
+        severity: known.severity,
         at,
         step: None,
         message: format!("the unit says its self-test failed: {items}"),
@@ -102,8 +99,8 @@ pub fn of_brake(at: Instant, sample: &Sample) -> FaultSeen {
     FaultSeen {
         code: EB_UNREQUESTED,
         name: "eb_unrequested".into(),
-        lru: UNKNOWN_PART.into(),
-        severity: Severity::Critical.label(),
+        lru: None,
+        severity: Severity::Critical,
         at,
         step: None,
         message: "emergency brake applied in a step that did not ask for it".into(),
@@ -124,20 +121,11 @@ pub fn of_step(
     Some(FaultSeen {
         code: CHECK_FAILED,
         name: "check_failed".into(),
-        lru: part_or_unknown(&result.suspect),
-        severity: Severity::Major.label(),
+        lru: result.suspect.clone(),
+        severity: Severity::Major,
         at: result.started + result.bench_time,
         step: None,
         message: format!("{}, {}: {}", procedure.id, result.name, result.message),
         freeze: freeze_frame(sample),
     })
-}
-
-fn part_or_unknown(part: &str) -> String {
-    if matches!(part, "" | "-") {
-        UNKNOWN_PART
-    } else {
-        part
-    }
-    .to_owned()
 }

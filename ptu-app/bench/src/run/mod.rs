@@ -44,7 +44,7 @@ pub use adaptive::Adaptive;
 pub use bench_contents::{BenchContents, BenchFile, Stimuli};
 pub use bench_setup::{BenchSetup, Connected};
 pub use choice::{BenchChoice, check_serial};
-pub use collector::{Listener, Outcome, steps_of, stored};
+pub use collector::{Listener, Outcome, steps_of};
 pub use event::{RecordedStimuli, SessionEvent};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
@@ -59,6 +59,7 @@ pub use workers::run_here;
 use crate::clock;
 use crate::failure::{Exit, Failure};
 use crate::stop::Stop;
+use crate::stored::stored;
 use collector::Collector;
 use first_failure::FirstFailure;
 use store_thread::RunStore;
@@ -157,7 +158,7 @@ pub fn run_on(
         });
     }));
     let (run_store, outcome) = collector.finish(id, left_out(stop));
-    let end = began.end(outcome.stored_verdict(), outcome.bench_time.as_us() as i64);
+    let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
         run_store.finish(began.end(Verdict::Error, outcome.bench_time.as_us() as i64))?;

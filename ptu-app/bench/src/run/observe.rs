@@ -3,11 +3,13 @@
 
 use std::collections::BTreeSet;
 
-use btu_rig::procedure::{RunEvent, StepResult, Verdict};
-use diagnosis::{CheckName, CheckResult, Observation, Sign, StepSeen};
+use btu_rig::procedure::{RunEvent, StepResult};
+use diagnosis::{CheckName, Observation, Sign, StepSeen, is_observed};
 use fault_db::{RunDetail, RunOccurrence, StepDetail};
+use protocol::lru;
 
 use super::{CHECK_FAILED, FaultSeen, SessionEvent};
+use crate::stored::from_stored;
 
 /// Gathers the steps of a procedure, each with the signs that showed since the one before.
 #[derive(Debug)]
@@ -40,19 +42,16 @@ impl ObservationBuilder {
     }
 
     fn step(&mut self, result: &StepResult) -> Option<&StepSeen> {
-        let seen = match result.verdict {
-            Verdict::Passed => CheckResult::Passed,
-            Verdict::Failed => CheckResult::Failed,
-            Verdict::Error => CheckResult::Error,
-            Verdict::Skipped | Verdict::Aborted => return None,
-        };
+        if !is_observed(result.verdict) {
+            return None;
+        }
         let values = result.measurements.iter();
         self.steps.push(StepSeen {
             check: CheckName {
                 procedure: self.procedure.clone(),
                 step: result.name.clone(),
             },
-            result: seen,
+            result: result.verdict,
             time_s: result.bench_time.as_secs(),
             values: values.map(|m| (m.name.clone(), m.value)).collect(),
             signs: std::mem::take(&mut self.waiting),
@@ -92,7 +91,7 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
         }
         let sign = Sign {
             fault: occurrence.code_name.clone(),
-            lru: occurrence.lru.clone(),
+            lru: lru::from_stored(&occurrence.lru),
         };
         let after = |step: &StepDetail| match occurrence.step_index {
             Some(index) => step.index >= index,
@@ -109,12 +108,7 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
 }
 
 fn of_step(step: &StepDetail) -> Option<StepSeen> {
-    let result = match step.verdict {
-        fault_db::Verdict::Passed => CheckResult::Passed,
-        fault_db::Verdict::Failed => CheckResult::Failed,
-        fault_db::Verdict::Error => CheckResult::Error,
-        fault_db::Verdict::Skipped | fault_db::Verdict::Aborted => return None,
-    };
+    let result = Some(from_stored(step.verdict)).filter(|verdict| is_observed(*verdict))?;
     let values = step.measurements.iter();
     Some(StepSeen {
         check: CheckName {

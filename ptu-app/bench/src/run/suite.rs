@@ -92,19 +92,18 @@ fn wrong_suspects(procedures: &[Arc<Procedure>], catalogue: &FaultCatalogue) -> 
     let known = || catalogue.lrus.iter().map(|lru| lru.id.as_str());
     let mut errors = Vec::new();
     for procedure in procedures {
+        let of_procedure = procedure.suspect.as_ref();
         let of_steps = procedure
             .steps
             .iter()
-            .map(|s| (s.line, s.suspect.as_deref()));
-        let of_procedure = (1, Some(procedure.suspect.as_str()));
-        for (line, suspect) in std::iter::once(of_procedure).chain(of_steps) {
-            // "-" is a procedure that suspects none.
-            let named = suspect.filter(|part| !matches!(*part, "" | "-"));
-            if let Some(part) = named.filter(|p| !known().any(|k| k == *p)) {
+            .map(|step| (step.line, step.suspect.as_ref()))
+            .filter(|(_, part)| *part != of_procedure);
+        for (line, part) in std::iter::once((1, of_procedure)).chain(of_steps) {
+            if let Some(part) = part.filter(|part| !known().any(|known| **part == known)) {
                 errors.push(format!(
                     "{}:{line}:1: no part \"{part}\" to suspect{}; `ptu catalog lrus` lists them",
                     procedure.path,
-                    did_you_mean(part, known())
+                    did_you_mean(part.as_str(), known())
                 ));
             }
         }

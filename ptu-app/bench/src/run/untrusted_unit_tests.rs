@@ -168,7 +168,7 @@ impl Bed {
                 (came_to.verdict, came_to.message) = (verdict, message);
             }
             SessionEvent::Fault(fault) => {
-                let told = format!("{} {}: {}", fault.name, fault.lru, fault.message);
+                let told = format!("{} {:?}: {}", fault.name, fault.lru, fault.message);
                 came_to.faults.push(told);
             }
             _ => {}

@@ -145,7 +145,7 @@ mod tests {
     fn a_saved_dictionary_is_read_back() {
         let mode = ModeName {
             id: "eb_relay.slow".into(),
-            lru: "eb_relay".into(),
+            lru: protocol::LruId::from_static("eb_relay"),
             text: "drops late".into(),
             kind: "degraded".into(),
             unsafe_: true,

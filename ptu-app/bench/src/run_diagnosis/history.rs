@@ -5,6 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use diagnosis::{Diagnosis, Settings};
 use fault_db::{PartHistory, PartRepair, RunDetail, RunOccurrence, Store};
 
+use protocol::lru::{LruId, from_stored};
+
 use crate::clock::{local_day, now_us};
 use crate::failure::Failure;
 
@@ -16,9 +18,9 @@ const DAY_US: i64 = 86_400_000_000;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OwnHistory {
     /// Factor on the prior of a part.
-    pub factors: BTreeMap<String, f64>,
-    for_it: BTreeMap<String, String>,
-    against: BTreeMap<String, String>,
+    pub factors: BTreeMap<LruId, f64>,
+    for_it: BTreeMap<LruId, String>,
+    against: BTreeMap<LruId, String>,
 }
 
 impl OwnHistory {
@@ -55,6 +57,10 @@ impl OwnHistory {
     ) -> Self {
         let mut history = Self::default();
         for (part, known) in parts {
+            // Faults that name no part say nothing of any.
+            let Some(part) = from_stored(part) else {
+                continue;
+            };
             let in_vain = known.repair.as_ref().filter(|repair| {
                 repair.came_back || repair.faults.intersection(seen).next().is_some()
             });
@@ -70,7 +76,7 @@ impl OwnHistory {
             } else {
                 continue;
             };
-            history.factors.insert(part.clone(), factor);
+            history.factors.insert(part, factor);
         }
         history
     }
@@ -119,9 +125,9 @@ fn repaired(repair: &PartRepair) -> String {
 
 #[cfg(test)]
 mod tests {
-    use diagnosis::{
-        Basis, CheckName, CheckResult, Dictionary, ModeName, Model, Observation, StepSeen,
-    };
+    use diagnosis::{Basis, CheckName, Dictionary, ModeName, Model, Observation, StepSeen};
+
+    use btu_rig::procedure::Verdict;
 
     use super::*;
 
@@ -159,11 +165,11 @@ mod tests {
             signs: BTreeSet::new(),
         };
         let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], vec![check.clone()]);
-        dictionary.set_healthy(&[came(CheckResult::Passed), came(CheckResult::Passed)]);
+        dictionary.set_healthy(&[came(Verdict::Passed), came(Verdict::Passed)]);
         for part in ["eb_relay", "io_board"] {
             let mode = ModeName {
                 id: format!("{part}.slow"),
-                lru: part.into(),
+                lru: LruId::from_static(part),
                 text: String::new(),
                 kind: "permanent".into(),
                 unsafe_: false,
@@ -172,11 +178,11 @@ mod tests {
             dictionary.add(
                 &mode,
                 String::new(),
-                &[came(CheckResult::Failed), came(CheckResult::Failed)],
+                &[came(Verdict::Failed), came(Verdict::Failed)],
             );
         }
         let model = Model::new(&dictionary, &settings, &history.factors);
-        let mut diagnosis = Diagnosis::of(&model, &came(CheckResult::Failed));
+        let mut diagnosis = Diagnosis::of(&model, &came(Verdict::Failed));
         history.explain(&mut diagnosis);
         let relay = diagnosis.lrus.iter().find(|part| part.lru == "eb_relay");
         let probability = relay.expect("the relay").probability;

@@ -37,7 +37,7 @@ fn concluded(sheet: &Sheet, answer: &Answer, words: &Words) -> Vec<(String, Stri
     let parts: Vec<_> = likely
         .map(|part| {
             let percent = 100.0 * part.probability;
-            format!("{} ({percent:.1} %)", sheet.part(&part.lru, words))
+            format!("{} ({percent:.1} %)", sheet.part(part.lru.as_str(), words))
         })
         .collect();
     let parts = if parts.is_empty() {
@@ -70,7 +70,7 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
     let rows = likely.map(|candidate| {
         let cells = [
             format!("{:.1} %", 100.0 * candidate.probability),
-            sheet.part(&candidate.lru, words),
+            sheet.part(candidate.lru.as_str(), words),
             format!("{}: {}", candidate.fault, candidate.text),
             candidate.for_it.join("\n"),
         ];

@@ -51,7 +51,7 @@ impl Sheet {
             diagnosis,
             parts: parts
                 .into_iter()
-                .map(|part| (part.id, [part.name, part.name_ko]))
+                .map(|part| (part.id.to_string(), [part.name, part.name_ko]))
                 .collect::<BTreeMap<_, _>>(),
             run,
         })

@@ -4,7 +4,7 @@ use btu_rig::procedure::Verdict;
 use fault_db::FaultState;
 
 use super::wordings;
-use ptu_bench::run::stored;
+use ptu_bench::stored::from_stored;
 
 wordings! {
     /// Verdicts, states and what every page says.
@@ -53,18 +53,18 @@ wordings! {
 impl Common {
     /// A verdict.
     pub fn verdict(&self, verdict: Verdict) -> &'static str {
-        self.stored_verdict(stored(verdict))
+        match verdict {
+            Verdict::Passed => self.passed,
+            Verdict::Failed => self.failed,
+            Verdict::Error => self.error,
+            Verdict::Skipped => self.skipped,
+            Verdict::Aborted => self.aborted,
+        }
     }
 
     /// A stored verdict.
     pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> &'static str {
-        match verdict {
-            fault_db::Verdict::Passed => self.passed,
-            fault_db::Verdict::Failed => self.failed,
-            fault_db::Verdict::Error => self.error,
-            fault_db::Verdict::Skipped => self.skipped,
-            fault_db::Verdict::Aborted => self.aborted,
-        }
+        self.verdict(from_stored(verdict))
     }
 
     /// A fault's state.

@@ -1,6 +1,7 @@
 //! Test sheet.
 
 use diagnosis::Finding;
+use protocol::event::Severity;
 
 use super::wordings;
 use ptu_bench::run_diagnosis::Origin;
@@ -120,13 +121,13 @@ wordings! {
 }
 
 impl Report {
-    /// How bad a fault is; a word that is not known stays as it is.
+    /// The severity of a stored fault; a word of another program stays as it is.
     pub fn severity<'a>(&self, severity: &'a str) -> &'a str {
-        match severity {
-            "minor" => self.minor,
-            "major" => self.major,
-            "critical" => self.critical,
-            other => other,
+        match Severity::of_fault(severity) {
+            Some(Severity::Minor) => self.minor,
+            Some(Severity::Major) => self.major,
+            Some(Severity::Critical) => self.critical,
+            Some(Severity::Info) | None => severity,
         }
     }
 

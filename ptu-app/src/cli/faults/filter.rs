@@ -8,9 +8,6 @@ use crate::cli::{since_argument, unknown_unit};
 use ptu_bench::clock::Span;
 use ptu_bench::failure::{Failure, did_you_mean, did_you_mean_number};
 
-/// How bad a fault is; what is less is none.
-const SEVERITIES: [Severity; 3] = [Severity::Minor, Severity::Major, Severity::Critical];
-
 /// Which faults.
 #[derive(Debug, Args)]
 pub struct FilterArguments {
@@ -30,7 +27,7 @@ pub struct FilterArguments {
     #[arg(long)]
     lru: Option<String>,
     /// Only this severity
-    #[arg(long, ignore_case = true, value_parser = SEVERITIES.map(Severity::label))]
+    #[arg(long, ignore_case = true, value_parser = Severity::OF_FAULTS.map(Severity::label))]
     severity: Option<String>,
     /// Only in this state: open, acknowledged, repaired, verified, closed; several with commas between
     #[arg(long, value_name = "STATE[,STATE]", value_delimiter = ',')]

@@ -226,7 +226,7 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
 /// Diagnosis puts the broken part first, whatever the stored faults name.
 fn check_diagnosis(mode: &FaultMode, run: &FaultRun) -> Option<String> {
     let excused = NOT_DIAGNOSED.iter().find(|(id, _)| *id == mode.id);
-    match (run.first_candidate == mode.lru, excused) {
+    match (run.first_candidate == mode.lru.as_str(), excused) {
         (false, None) => Some(format!("diagnosed as {}", run.first_candidate)),
         (true, Some((_, reason))) => {
             Some(format!("diagnosed now; strike out of the table: {reason}"))
@@ -258,7 +258,7 @@ fn check_steps(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
 
 fn check_parts(mode: &FaultMode, run: &FaultRun) -> Option<String> {
     let faults = list(&run.report["faults"]);
-    let named = faults.iter().any(|fault| fault["lru"] == *mode.lru);
+    let named = faults.iter().any(|fault| fault["lru"] == mode.lru.as_str());
     let excused = PART_NOT_NAMED.iter().find(|(id, _)| *id == mode.id);
     match (named, excused) {
         _ if faults.is_empty() => Some("no fault stored".into()),
@@ -280,7 +280,7 @@ fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
         return Vec::new();
     }
     let of_train = |part: &str| TRAIN_PARTS.contains(&part);
-    let train_is_broken = of_train(&mode.lru);
+    let train_is_broken = of_train(mode.lru.as_str());
     let blamed = list(&run.report["faults"])
         .iter()
         .filter(|fault| of_train(text(&fault["lru"])) != train_is_broken)

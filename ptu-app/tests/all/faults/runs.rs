@@ -95,7 +95,7 @@ impl TestBench {
         FaultRun {
             exit: outcome.exit.code(),
             report: run_json(&detail),
-            first_candidate: first.map_or(String::new(), |first| first.lru.clone()),
+            first_candidate: first.map_or(String::new(), |first| first.lru.to_string()),
             traces: ids
                 .map(|id| Window::of(id.to_string(), &store.trace(id).expect("a trace")))
                 .collect(),

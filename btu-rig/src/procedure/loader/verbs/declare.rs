@@ -1,5 +1,7 @@
 //! `procedure()` and `step()`.
 
+use protocol::{LruId, lru};
+
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::draft::{Declaration, ProcedureDraft, StepDraft};
 use crate::procedure::loader::item::Item;
@@ -32,7 +34,7 @@ pub(super) static VERBS: &[Verb] = &[
                     _ => Connection::Btu,
                 },
                 on_request: args.flag("on_request", false),
-                suspect: args.text("suspect").unwrap_or("-").to_owned(),
+                suspect: suspect(args)?.flatten(),
                 setup: args.actions("setup"),
                 cleanup: args.actions("cleanup"),
             }))
@@ -92,9 +94,15 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
             _ => OnFail::Continue,
         },
         limit: args.time("limit")?,
-        suspect: args.text("suspect").map(str::to_owned),
+        suspect: suspect(args)?,
         note: args.text("note").map(str::to_owned),
     }))
+}
+
+/// The part to suspect, if the call says which, or that there is none.
+fn suspect(args: &Args<'_>) -> Result<Option<Option<LruId>>, String> {
+    let read = |text| lru::from_shown(text).map_err(|error| format!("`suspect`: {error}"));
+    args.text("suspect").map(read).transpose()
 }
 
 fn named(args: &Args<'_>, name: &str) -> Result<String, String> {

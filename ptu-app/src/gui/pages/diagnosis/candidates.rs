@@ -55,8 +55,8 @@ fn show(
     let words = &context.words.diagnosis;
     ui.horizontal(|ui| {
         share_bar(ui, candidate.probability, Palette::of(ui).accent);
-        ui.label(RichText::new(&candidate.lru).strong().size(17.0));
-        ui.label(RichText::new(named.part(&candidate.lru, context.words)).strong());
+        ui.label(RichText::new(candidate.lru.as_str()).strong().size(17.0));
+        ui.label(RichText::new(named.part(candidate.lru.as_str(), context.words)).strong());
         ui.label(format!("{}: {}", candidate.fault, candidate.text));
     });
     CollapsingHeader::new(words.reasons)
@@ -80,7 +80,7 @@ fn show(
             let traces = named
                 .answer
                 .traces
-                .get(&candidate.lru)
+                .get(candidate.lru.as_str())
                 .into_iter()
                 .flatten();
             let traces: Vec<_> = traces.collect();

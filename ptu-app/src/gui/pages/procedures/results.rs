@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, ScrollArea, Ui, UiBuilder};
+use protocol::lru;
 
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
 use crate::gui::query_worker::QueryWorker;
@@ -139,8 +140,9 @@ fn details(
     if !result.message.is_empty() {
         ui.label(&result.message);
     }
-    if result.verdict == Verdict::Failed && !result.suspect.is_empty() {
-        ui.label(fill(words.procedures.suspect, &[("part", &result.suspect)]));
+    if result.verdict == Verdict::Failed {
+        let part = lru::shown(result.suspect.as_ref());
+        ui.label(fill(words.procedures.suspect, &[("part", &part)]));
     }
     if let Some(note) = procedure
         .steps
@@ -223,7 +225,8 @@ fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
                 let bad = Palette::of(ui).bad;
                 ui.horizontal(|ui| {
                     ui.colored_label(bad, format!("{} {}", fault.code, fault.name));
-                    ui.label(fill(words.procedures.suspect, &[("part", &fault.lru)]));
+                    let part = lru::stored(fault.lru.as_ref());
+                    ui.label(fill(words.procedures.suspect, &[("part", &part)]));
                     ui.label(&fault.message);
                 });
             }

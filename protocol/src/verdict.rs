@@ -1,0 +1,73 @@
+//! The verdict of a test.
+
+use serde::{Deserialize, Serialize};
+
+/// Outcome of a step, a measurement, a procedure or a run.
+///
+/// The database has a column type of the same five words: `fault-db` names no other crate, and
+/// `ptu_bench::stored` converts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Every expectation held.
+    Passed,
+    /// The unit does not do what it should.
+    Failed,
+    /// It could not be tested, which says nothing about the unit.
+    Error,
+    /// Not run, by choice or condition.
+    Skipped,
+    /// Stopped by the operator.
+    Aborted,
+}
+
+impl Verdict {
+    /// All five, in order.
+    pub const ALL: [Self; 5] = [
+        Self::Passed,
+        Self::Failed,
+        Self::Error,
+        Self::Skipped,
+        Self::Aborted,
+    ];
+
+    /// The word in files, JSON and on the command line.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Error => "error",
+            Self::Skipped => "skipped",
+            Self::Aborted => "aborted",
+        }
+    }
+
+    /// The verdict over two steps or procedures: aborted, then failed, then error outrank passed.
+    ///
+    /// A check that failed outranks one that could not be made: a faulty unit causes both, and the
+    /// first is the finding. A skipped part changes nothing, and only parts that are all skipped give
+    /// `Skipped`.
+    pub const fn and(self, other: Self) -> Self {
+        if self.rank() >= other.rank() {
+            self
+        } else {
+            other
+        }
+    }
+
+    const fn rank(self) -> u8 {
+        match self {
+            Self::Skipped => 0,
+            Self::Passed => 1,
+            Self::Error => 2,
+            Self::Failed => 3,
+            Self::Aborted => 4,
+        }
+    }
+}
+
+impl core::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.label())
+    }
+}

@@ -1,0 +1,67 @@
+//! Values of the program as columns of the database, and back. `fault-db` names no other crate, so that its
+//! verdict is a type of its own; parts and severities are text there, since a database may hold those of another
+//! program.
+
+use btu_rig::procedure::Verdict;
+use fault_db::FaultRecord;
+use protocol::lru;
+
+use crate::run::FaultSeen;
+
+/// A verdict as the database stores it.
+pub fn stored(verdict: Verdict) -> fault_db::Verdict {
+    match verdict {
+        Verdict::Passed => fault_db::Verdict::Passed,
+        Verdict::Failed => fault_db::Verdict::Failed,
+        Verdict::Error => fault_db::Verdict::Error,
+        Verdict::Skipped => fault_db::Verdict::Skipped,
+        Verdict::Aborted => fault_db::Verdict::Aborted,
+    }
+}
+
+/// A verdict that the database stores.
+pub fn from_stored(verdict: fault_db::Verdict) -> Verdict {
+    match verdict {
+        fault_db::Verdict::Passed => Verdict::Passed,
+        fault_db::Verdict::Failed => Verdict::Failed,
+        fault_db::Verdict::Error => Verdict::Error,
+        fault_db::Verdict::Skipped => Verdict::Skipped,
+        fault_db::Verdict::Aborted => Verdict::Aborted,
+    }
+}
+
+/// An occurrence of a fault as the database stores it, dated `at_us` (UTC), at `bench_us` on the bench's clock.
+pub fn fault_record(
+    fault: FaultSeen,
+    at_us: i64,
+    bench_us: i64,
+    step_index: Option<u32>,
+) -> FaultRecord {
+    FaultRecord {
+        code: i64::from(fault.code),
+        code_name: fault.name,
+        lru: lru::stored(fault.lru.as_ref()).into(),
+        severity: fault.severity.label().into(),
+        at_us,
+        bench_us,
+        step_index,
+        message: fault.message,
+        freeze: fault.freeze,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_verdict_is_stored_and_read_back_by_the_same_word() {
+        for verdict in Verdict::ALL {
+            assert_eq!(from_stored(stored(verdict)), verdict);
+            assert_eq!(stored(verdict).as_str(), verdict.label());
+        }
+        for verdict in fault_db::Verdict::ALL {
+            assert_eq!(stored(from_stored(*verdict)), *verdict);
+        }
+    }
+}
