@@ -6,7 +6,7 @@ pub const MAX_DELAY_FACTOR: f64 = 5.0;
 /// A force that works against the train besides its resistance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Disturbance {
-    /// None.
+    /// The track's and the train's own resistance alone.
     #[default]
     None,
     /// `f_d·v` with `f_d = amplitude·sin(2π·hz·t)` [S1: 2e4 N·s/m at 1 Hz].
@@ -34,7 +34,7 @@ pub struct Conditions {
     pub wheel_factor: f64,
     /// Where each marker really lies, relative to the track database, m.
     pub marker_offsets_m: [f64; 4],
-    /// Disturbing force.
+    /// Force besides resistance and gradient.
     pub disturbance: Disturbance,
 }
 

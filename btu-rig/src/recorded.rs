@@ -19,7 +19,7 @@ pub enum BenchAction {
     Apply(Stimulus),
     /// The bench was made safe in so many scans one after the other.
     MakeSafe {
-        /// Scans.
+        /// Number of scans of 10 ms.
         scans: u32,
     },
 }
@@ -29,7 +29,7 @@ pub enum BenchAction {
 pub struct RecordedStimulus {
     /// Time of the scan after which it was done, µs.
     pub at_us: u64,
-    /// The action.
+    /// What was done; `act` in stored recordings.
     #[serde(rename = "act")]
     pub action: BenchAction,
 }

@@ -18,9 +18,9 @@ const LONGEST_WINDOW: Duration = Duration::from_ms(180_000);
 /// Every signal at the end of one cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Bench time.
+    /// Bench time at the end of the cycle.
     pub at: Instant,
-    /// The signals.
+    /// Value of every signal at that time.
     pub sample: Sample,
 }
 
@@ -54,7 +54,7 @@ impl<const ROWS: usize> Ring<ROWS> {
         self.rows.push_back(row);
     }
 
-    /// The rows.
+    /// At most `ROWS`, oldest first, one a cycle.
     pub fn rows(&self) -> &VecDeque<Row> {
         &self.rows
     }

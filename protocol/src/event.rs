@@ -72,7 +72,7 @@ macro_rules! events {
             /// All events by number.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
-            /// Its definition.
+            /// Code, name, severity, part and texts.
             pub const fn definition(self) -> &'static Definition {
                 match self { $( Self::$variant => const { &Definition {
                     code: $code, name: $name, severity: Severity::$severity, lru: LruId::listed($lru),

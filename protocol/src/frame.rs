@@ -16,7 +16,7 @@ pub const VERSION: u8 = 1;
 pub const HEADER_LEN: usize = 10;
 /// Bytes of the frame check sequence.
 pub const FCS_LEN: usize = 4;
-/// Longest payload.
+/// Longest payload, bytes; every message of the catalogue is shorter or as long.
 pub const MAX_PAYLOAD: usize = 240;
 /// Longest body, before stuffing.
 pub const MAX_BODY: usize = HEADER_LEN + MAX_PAYLOAD + FCS_LEN;
@@ -48,7 +48,7 @@ static FCS: Crc<u32, Table<16>> = Crc::<u32, Table<16>>::new(&CRC_32_ISO_HDLC);
 /// What precedes the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// Channel.
+    /// Kind of traffic; each has its own sequence numbers.
     pub channel: Channel,
     /// Who sent it.
     pub source: Address,
@@ -60,7 +60,7 @@ pub struct Header {
     pub stamp_ms: u32,
 }
 
-/// Why a frame is refused. Each frame is counted under the first reason that applies.
+/// Why a frame is rejected. Each frame is counted under the first reason that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reject {
     /// Fewer bytes between two flags than header and FCS take.
@@ -117,10 +117,10 @@ impl Reject {
     }
 }
 
-/// A refused frame.
+/// A rejected frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rejected {
-    /// Why.
+    /// First reason that applies.
     pub reason: Reject,
     /// The channel it claims to be of, if it got that far. With a wrong FCS this is a hint for
     /// whoever counts, not a fact.
@@ -240,7 +240,7 @@ impl Decoder {
         self.state = State::Hunt;
     }
 
-    /// The next whole frame, good or refused, or `None` until more bytes arrive.
+    /// The next whole frame, good or rejected, or `None` until more bytes arrive.
     ///
     /// A frame that is returned has a right FCS and known version, channel and addresses.
     pub fn next_frame(&mut self) -> Option<Result<(Header, &[u8]), Rejected>> {

@@ -63,7 +63,7 @@ pub struct AtoInputs<'a> {
     pub aligned_m: f64,
     /// Measured speed.
     pub speed: Speed,
-    /// Standing still.
+    /// Standstill as ATP means it, below 0.3 m/s.
     pub standstill: bool,
     /// ATP or TCMS cuts powering.
     pub power_cut: bool,
@@ -78,13 +78,13 @@ pub struct AtoInputs<'a> {
 /// What ATO commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AtoOutputs {
-    /// Ready to drive.
+    /// ATO is out of inspection ([`AtoState::Inspection`]).
     pub ready: bool,
-    /// Target speed.
+    /// Speed that the speed controller tracks.
     pub target: Speed,
     /// Effort, -1024 full brake .. 1023 full power.
     pub effort: i16,
-    /// Holding brake.
+    /// The holding brake is requested of TCMS.
     pub holding_brake: bool,
     /// Distance run in this cycle that sliding wheels did not tell, m.
     pub slid_m: f64,
@@ -94,7 +94,7 @@ pub struct AtoOutputs {
     pub findings: Findings,
 }
 
-/// The automatic operation.
+/// Automatic operation of one unit, stepped once a cycle.
 #[derive(Debug)]
 pub struct Ato {
     state: AtoState,

@@ -87,10 +87,11 @@ pub struct Monitor {
     sent_mps2: f64,
     /// Speed that the train's own effort did not make of it, m/s.
     withheld_mps: f64,
-    told_withheld: bool,
+    withheld_reported: bool,
     frozen_s: f64,
     stands_s: f64,
-    told: bool,
+    /// A stop error of this run is reported, or there was none.
+    stop_reported: bool,
 }
 
 impl Monitor {
@@ -109,7 +110,7 @@ impl Monitor {
             self.deviation_mps = 0.0;
             self.sent_mps2 = 0.0;
             self.withheld_mps = 0.0;
-            self.told_withheld = false;
+            self.withheld_reported = false;
             self.frozen_s = 0.0;
             return Findings {
                 absurd,
@@ -187,15 +188,15 @@ impl Monitor {
     /// A deviation as ATO's own, or as the train's when at least half of it is what that withheld.
     fn whose(&mut self, deviation_mps: Option<f64>) -> (Option<f64>, Option<f64>) {
         let Some(deviation_mps) = deviation_mps else {
-            self.told_withheld = false;
+            self.withheld_reported = false;
             return (None, None);
         };
         let left_mps = deviation_mps + self.withheld_mps;
         if libm::fabs(left_mps) > 0.5 * libm::fabs(deviation_mps) {
             return (Some(deviation_mps), None);
         }
-        let first = !self.told_withheld;
-        self.told_withheld = true;
+        let first = !self.withheld_reported;
+        self.withheld_reported = true;
         (None, first.then_some(deviation_mps))
     }
 
@@ -208,7 +209,7 @@ impl Monitor {
     ) -> (Option<f64>, Option<f64>) {
         let running = inputs.section.filter(|_| on.state == AtoState::Run);
         let Some(section) = running else {
-            (self.stands_s, self.told) = (0.0, false);
+            (self.stands_s, self.stop_reported) = (0.0, false);
             return (None, None);
         };
         self.stands_s = if on.stands && on.may_go {
@@ -221,8 +222,8 @@ impl Monitor {
         let ended = on.stands && on.arrived || self.stands_s > STANDS_S;
         let overrun = past_m > config.watch.overrun_m && (ended || past_m > FAR_PAST_M);
         let short = to_stop_m > inputs.aligned_m && ended;
-        let first = !self.told;
-        self.told |= ended || overrun;
+        let first = !self.stop_reported;
+        self.stop_reported |= ended || overrun;
         (
             (first && overrun).then_some(past_m),
             (first && short).then_some(to_stop_m),

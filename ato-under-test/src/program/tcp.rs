@@ -47,7 +47,8 @@ struct SecondClient {
     stream: TcpStream,
     address: SocketAddr,
     since: Instant,
-    told: bool,
+    /// It was sent who has the unit.
+    answered: bool,
 }
 
 impl Server {
@@ -106,14 +107,14 @@ impl Server {
                 stream,
                 address,
                 since: now,
-                told: false,
+                answered: false,
             });
         }
         Ok(())
     }
 
     fn take_first(&mut self, now: Instant, accepted: u64) -> bool {
-        let Some(place) = self.coming.iter().position(|waiting| !waiting.told) else {
+        let Some(place) = self.coming.iter().position(|waiting| !waiting.answered) else {
             return false;
         };
         let first = self.coming.remove(place);
@@ -139,12 +140,12 @@ impl Server {
         let client = self.client.as_ref();
         self.coming.retain_mut(|waiting| {
             let waited = now.since(waiting.since);
-            if let Some(client) = client.filter(|_| !waiting.told && waited >= HANDS_OVER) {
-                waiting.told = true;
+            if let Some(client) = client.filter(|_| !waiting.answered && waited >= HANDS_OVER) {
+                waiting.answered = true;
                 let _ = waiting.stream.write(&client.taken(now));
                 let _ = waiting.stream.shutdown(std::net::Shutdown::Write);
             }
-            !waiting.told
+            !waiting.answered
                 || (waited < HANDS_OVER + LEAVES_WITHIN && drain(&mut waiting.stream, unheard))
         });
     }

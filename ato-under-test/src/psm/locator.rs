@@ -256,7 +256,7 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m())
     }
 
-    /// What is added to the distance the wheels tell, as a share.
+    /// What is added to the odometer's distance, as a share.
     pub fn wheel_correction(&self) -> f64 {
         self.wheel.correction()
     }
@@ -267,8 +267,8 @@ impl Locator {
 
     /// Position, m.
     pub fn position_m(&self) -> f64 {
-        let told_m = self.odometer.distance_m() - self.fix.distance_m;
-        self.fix.place_m + self.wheels().run_m(told_m)
+        let odometer_m = self.odometer.distance_m() - self.fix.distance_m;
+        self.fix.place_m + self.wheels().run_m(odometer_m)
     }
 
     /// Wheels have slid: the distance run that they did not count, m.

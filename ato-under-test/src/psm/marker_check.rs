@@ -27,18 +27,18 @@ pub struct Fix {
 /// A marker pulse and the odometer's distance at that moment.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerDetection {
-    /// 1 to 4.
+    /// Number of the PSM, 1 to 4.
     pub marker: u8,
-    /// m.
+    /// Odometer's distance, m.
     pub distance_m: f64,
     /// Distance run on sliding wheels from the fix until then, m.
     pub slid_m: f64,
 }
 
-/// How the distance told is related to the distance run since the last fix.
+/// How the odometer's distance is related to the distance run since the last fix.
 #[derive(Clone, Copy, Debug)]
 pub struct Wheels {
-    /// Distance run for a distance told.
+    /// Distance run over the odometer's.
     pub scale: f64,
     /// Share of the distance run by which that may be wrong.
     pub uncertainty: f64,
@@ -47,9 +47,9 @@ pub struct Wheels {
 }
 
 impl Wheels {
-    /// Distance run for a distance told, m.
-    pub fn run_m(&self, told_m: f64) -> f64 {
-        told_m * self.scale + self.slid_m
+    /// Distance run for a distance of the odometer, m.
+    pub fn run_m(&self, odometer_m: f64) -> f64 {
+        odometer_m * self.scale + self.slid_m
     }
 }
 
@@ -145,13 +145,13 @@ fn agree(
     config: &MarkerConfig,
 ) -> bool {
     let places = place_m(section, first.marker).zip(place_m(section, second.marker));
-    let told_m = second.distance_m - first.distance_m;
+    let odometer_m = second.distance_m - first.distance_m;
     let slid_m = second.slid_m - first.slid_m;
     first.marker < second.marker
-        && libm::fabs(told_m) <= REMEMBERED_M
+        && libm::fabs(odometer_m) <= REMEMBERED_M
         && places.is_some_and(|(from_m, to_m)| {
             let apart_m = to_m - from_m;
-            let run_m = told_m * wheels.scale + slid_m;
+            let run_m = odometer_m * wheels.scale + slid_m;
             libm::fabs(run_m - apart_m) <= config.window_m + WRONG_WHEEL * apart_m + slid_m
         })
 }

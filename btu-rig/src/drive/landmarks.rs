@@ -16,14 +16,14 @@ const APPROACH_KMH: f64 = 10.0;
 /// Difference of speeds that is more than how frames round, km/h.
 const DIFFERS_KMH: f64 = 0.1;
 
-/// Something that happened.
+/// An event of a run with time and place, as reports list it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmark {
     /// Time since the train began to move, s.
     pub t_s: f64,
     /// Head of the train in the section, m.
     pub x_m: f64,
-    /// What.
+    /// What happened, in English.
     pub what: String,
 }
 

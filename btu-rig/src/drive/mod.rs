@@ -137,20 +137,24 @@ pub struct Outcome {
 /// Where the run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Nothing done yet.
     Begin,
     /// The cab is ready; ATP is to set Automatic.
-    Preparing { since: Instant },
+    Preparing {
+        since: Instant,
+    },
     /// Start was pressed; ATP is to set Automatic Run.
-    Starting { since: Instant },
+    Starting {
+        since: Instant,
+    },
     /// Automatic Run; the train is to move.
-    Leaving { since: Instant },
+    Leaving {
+        since: Instant,
+    },
     /// It moves, or stands after having moved.
     Running {
         since: Instant,
         stands: Option<Instant>,
     },
-    /// Over.
     Over,
 }
 

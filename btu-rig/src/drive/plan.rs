@@ -16,21 +16,21 @@ pub enum PlanError {
     /// The line has no such section.
     #[error("line {line} has no section {section}; it has {known}")]
     NoSection {
-        /// The line.
+        /// Name of the line.
         line: String,
-        /// Section asked for.
+        /// Number that was asked for.
         section: u16,
-        /// Sections there are.
+        /// Numbers of its sections, with commas.
         known: String,
     },
     /// A code is not in the unit's code table.
     #[error("section {section}: code \"{code}\" is not in the code table; it has {known}")]
     NoCode {
-        /// The section.
+        /// Number of the section.
         section: u16,
-        /// Code asked for.
+        /// Name that the track database has.
         code: String,
-        /// Codes there are.
+        /// Names of the unit's codes, with commas.
         known: String,
     },
 }
@@ -49,10 +49,10 @@ impl PlanError {
 /// Passengers aboard.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Load {
-    /// Nobody.
+    /// 0 kg.
     #[default]
     Empty,
-    /// As many as the train carries.
+    /// Full load of the train's data, kg.
     Full,
     /// So many, kg.
     Passengers(f64),
@@ -82,10 +82,10 @@ pub enum Codes {
     Fixed(Stimulus),
 }
 
-/// A run.
+/// An automatic run from station to station.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrivePlan {
-    /// The section.
+    /// Section of the track database that is run through.
     pub section: Section,
     /// Station after the arrival station, as the arrival loop says.
     pub onward_station: u16,
@@ -93,7 +93,7 @@ pub struct DrivePlan {
     pub codes: Codes,
     /// ATO's target below the limit, km/h, from the unit's configuration.
     pub below_limit_kmh: f64,
-    /// The train.
+    /// Train on the track: cars, or one point mass.
     pub train: TrainData,
     /// Passengers, kg.
     pub load_kg: f64,

@@ -14,16 +14,16 @@ use crate::rig::random::{Random, standard_normal};
 pub enum Spread {
     /// Any value of a range as likely as any other.
     Uniform {
-        /// Least value.
+        /// Least value, in the quantity's unit.
         low: f64,
-        /// Greatest value.
+        /// Greatest value, in the quantity's unit.
         high: f64,
     },
     /// Normal distribution.
     Normal {
-        /// Mean.
+        /// Mean, in the quantity's unit.
         mean: f64,
-        /// Standard deviation.
+        /// Standard deviation, in the quantity's unit.
         sigma: f64,
     },
 }

@@ -57,14 +57,14 @@ impl Comparison {
 pub enum Condition {
     /// One signal against one operand.
     Compare {
-        /// The signal.
+        /// Signal of the present sample.
         signal: Signal,
-        /// How.
+        /// By value, or by bits ([`Comparison::is_bits`]).
         comparison: Comparison,
-        /// With what.
+        /// Right-hand side, in the signal's unit.
         operand: Operand,
     },
-    /// All of them.
+    /// Every one of them.
     All(Vec<Condition>),
     /// At least one of them.
     Any(Vec<Condition>),

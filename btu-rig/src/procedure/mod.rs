@@ -73,7 +73,7 @@ pub struct Refusal(pub String);
 pub enum EventSource {
     /// The unit under test.
     Unit,
-    /// TCMS.
+    /// Train control and monitoring system: its events are of the train.
     Tcms,
 }
 
@@ -96,7 +96,7 @@ pub struct UnitEvent {
     pub limit: Speed,
     /// Position in the section, m.
     pub position_m: f64,
-    /// Operating mode.
+    /// Operating mode at that time.
     pub mode: Mode,
     /// Why the emergency brake was applied.
     pub eb_cause: EbCause,

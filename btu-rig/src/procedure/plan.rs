@@ -104,7 +104,7 @@ pub enum Action {
     Wait(Duration),
     /// Waits until a condition holds; not in time = failed.
     Until {
-        /// The condition.
+        /// Looked at in each scan.
         condition: Condition,
         /// Time allowed.
         within: Duration,
@@ -128,33 +128,33 @@ pub enum Action {
 pub enum Expectation {
     /// True at the end of the actions or at some time after.
     Becomes {
-        /// The condition.
+        /// True in one scan is enough.
         condition: Condition,
         /// Time allowed from the end of the actions.
         within: Duration,
     },
     /// True from the end of the actions on, without a break.
     Holds {
-        /// The condition.
+        /// False in one scan fails the step.
         condition: Condition,
-        /// How long.
+        /// From the end of the actions.
         duration: Duration,
     },
     /// Not true at any time from the beginning to the end of the step.
     Never {
-        /// The condition.
+        /// True in one scan fails the step.
         condition: Condition,
     },
     /// The unit logs this event in this step.
     Logs {
-        /// The event.
+        /// Event of the dictionary, of the unit or of TCMS.
         event: Event,
         /// Time allowed from the end of the actions.
         within: Duration,
     },
     /// The unit does not log this event in this step.
     NeverLogs {
-        /// The event.
+        /// Event of the dictionary, of the unit or of TCMS.
         event: Event,
     },
 }
@@ -175,18 +175,18 @@ pub enum TimeFrom {
 pub enum What {
     /// Time to the first scan in which a condition holds, ms.
     Time {
-        /// From when.
+        /// Beginning of the measured time.
         from: TimeFrom,
-        /// To when.
+        /// Its end: the first scan in which this holds.
         to: Condition,
     },
     /// Value at the end of the step.
     Value(Signal),
     /// Value in the first scan in which a condition holds.
     At {
-        /// The signal.
+        /// Signal whose value is taken.
         signal: Signal,
-        /// The condition.
+        /// Looked at in each scan of the step.
         when: Condition,
     },
     /// Greatest value in the step.
@@ -206,9 +206,9 @@ pub struct Measure {
     pub slot: usize,
     /// What is measured.
     pub what: What,
-    /// Least value allowed.
+    /// Least value allowed, in the unit of [`unit`](Self::unit).
     pub low: Option<Operand>,
-    /// Greatest value allowed.
+    /// Greatest value allowed, in the same unit.
     pub high: Option<Operand>,
     /// Time allowed from the end of the actions; unused by values taken at the step's end.
     pub within: Duration,

@@ -13,9 +13,9 @@ pub struct Measurement {
     pub value: Option<f64>,
     /// Its unit; empty for counts and states.
     pub unit: &'static str,
-    /// Least value allowed.
+    /// Least value allowed, in `unit`.
     pub low: Option<f64>,
-    /// Greatest value allowed.
+    /// Greatest value allowed, in `unit`.
     pub high: Option<f64>,
     /// Passed, failed or error.
     pub verdict: Verdict,
@@ -28,15 +28,15 @@ pub struct StepResult {
     pub index: usize,
     /// Name, with ` (2/3)` when it is repeated.
     pub name: String,
-    /// Source line.
+    /// Line of the `step()` call in the script, from 1.
     pub line: u32,
-    /// Its verdict.
+    /// Over its expectations and measurements.
     pub verdict: Verdict,
     /// Why, when it did not pass; may also be a note.
     pub message: String,
     /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
     pub suspect: Option<LruId>,
-    /// When it began.
+    /// Bench time at which it began.
     pub started: Instant,
     /// How long it took on the bench.
     pub bench_time: Duration,
@@ -51,7 +51,7 @@ pub enum RunEvent {
     ProcedureStarted {
         /// Steps to be run, repetitions counted.
         steps: usize,
-        /// When.
+        /// Bench time.
         at: Instant,
     },
     /// A step begins.
@@ -60,19 +60,19 @@ pub enum RunEvent {
         index: usize,
         /// Name, with ` (2/3)` when it is repeated.
         name: String,
-        /// When.
+        /// Bench time.
         at: Instant,
     },
     /// The run is paused and the next step waits.
     Paused {
         /// Its name.
         next: String,
-        /// When.
+        /// Bench time.
         at: Instant,
     },
     /// Something is being waited for; repeated twice a second.
     Waiting {
-        /// What.
+        /// Condition, request or event that is waited for, in English.
         what: String,
         /// How long it may still take.
         left: Duration,
@@ -88,7 +88,7 @@ pub enum RunEvent {
     Measured {
         /// Step's place in the procedure.
         index: usize,
-        /// The measurement.
+        /// Value, limits and verdict.
         measurement: Measurement,
     },
     /// A step is done.
@@ -97,16 +97,16 @@ pub enum RunEvent {
     UnsolicitedEvent(UnitEvent),
     /// The emergency brake was applied in a step that did not ask for it.
     UnsolicitedBrake {
-        /// When.
+        /// Bench time.
         at: Instant,
     },
     /// The procedure is over and outputs are safe, or could not be made so, which is an error.
     ProcedureFinished {
-        /// Its verdict.
+        /// Over its steps and what stands beside them.
         verdict: Verdict,
         /// What went wrong outside steps; empty if nothing did.
         message: String,
-        /// When.
+        /// Bench time.
         at: Instant,
     },
 }

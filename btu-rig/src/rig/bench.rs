@@ -11,7 +11,7 @@ use super::Rig;
 pub struct LinkFailure {
     /// What it is connected by, as the user named it.
     pub link: String,
-    /// What went wrong.
+    /// Error of the operating system, or why the unit turned the tester away.
     pub reason: String,
 }
 
@@ -76,7 +76,7 @@ impl<L: UnitLink> Bench<L> {
         self.now
     }
 
-    /// The rig.
+    /// The rig, to be looked at: sample, events, tester session.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }

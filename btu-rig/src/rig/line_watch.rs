@@ -56,8 +56,8 @@ pub struct LineWatch {
     /// What had been counted by then.
     base: Counts,
     counts: Counts,
-    /// Frames refused as the unit told last.
-    told: Option<u16>,
+    /// Count of rejected frames in the unit's last status.
+    rejected_by_unit: Option<u16>,
     /// When the line had settled, and the unit's clock then, ms.
     clock: Option<(Instant, u32)>,
     /// Whether the unit's clock goes as the bench's does.
@@ -77,7 +77,7 @@ impl LineWatch {
             before: Counters::default(),
             base: Counts::default(),
             counts: Counts::default(),
-            told: None,
+            rejected_by_unit: None,
             clock: None,
             clock_is_right: true,
             on_purpose_until: Instant::ZERO,
@@ -93,7 +93,7 @@ impl LineWatch {
     /// The unit was started again.
     pub fn note_restart(&mut self, now: Instant) {
         self.settles_until = Some(now + SETTLES);
-        self.told = None;
+        self.rejected_by_unit = None;
         self.clock = None;
     }
 
@@ -121,7 +121,7 @@ impl LineWatch {
     /// Takes the unit's own count, which wraps.
     pub fn on_refused(&mut self, now: Instant, refused: u16) {
         let more = self
-            .told
+            .rejected_by_unit
             .replace(refused)
             .map_or(0, |before| refused.wrapping_sub(before));
         // A count that falls is of a unit that was started again.

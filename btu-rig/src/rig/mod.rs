@@ -109,7 +109,7 @@ pub struct Rig {
     wayside: Wayside,
     tcms: Tcms,
     /// What TCMS told the train last.
-    told: TrainInputs,
+    train_orders: TrainInputs,
     tcms_port: TcmsPort,
     pair_cars: PairCars,
     /// Events of TCMS that were not taken yet, and how many there were.
@@ -166,7 +166,7 @@ impl Rig {
             cars: weight_shares(&train_data, 0.0),
             cars_load_kg: 0.0,
             tcms: Tcms::new(&train_data),
-            told: TrainInputs::default(),
+            train_orders: TrainInputs::default(),
             tcms_port: TcmsPort::default(),
             pair_cars: pair_cars(&train_data),
             tcms_events: Vec::new(),
@@ -218,8 +218,8 @@ impl Rig {
             // of it.
             self.tcms.unlatch();
         }
-        let told = self.orders_of_tcms();
-        self.roll(told);
+        let orders = self.orders_of_tcms();
+        self.roll(orders);
         self.follow_codes();
         self.antenna.step();
         for tacho in &mut self.tachos {

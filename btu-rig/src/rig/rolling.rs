@@ -23,7 +23,7 @@ impl Rig {
         self.train = train;
         self.cars = weight_shares(&data, self.cars_load_kg);
         self.tcms = Tcms::new(&data);
-        self.told = TrainInputs::default();
+        self.train_orders = TrainInputs::default();
         self.pair_cars = pair_cars(&data);
         self.train_data = data;
     }
@@ -95,8 +95,8 @@ impl Rig {
     }
 
     /// Turns the wheels through one scan.
-    pub(super) fn roll(&mut self, told: TrainInputs) {
-        let inputs = self.on_track(told);
+    pub(super) fn roll(&mut self, orders: TrainInputs) {
+        let inputs = self.on_track(orders);
         if self.train_driven {
             let dt = TRAIN_STEP.as_secs();
             // Written out: each state is then made where it stays, which is worth a twentieth of a

@@ -41,9 +41,9 @@ impl Rig {
     /// What the train is told in this scan; TCMS is stepped when its cycle is due.
     pub(super) fn orders_of_tcms(&mut self) -> TrainInputs {
         if self.now.as_us().is_multiple_of(TCMS_CYCLE.as_us()) {
-            self.told = self.step_tcms();
+            self.train_orders = self.step_tcms();
         }
-        self.told
+        self.train_orders
     }
 
     fn step_tcms(&mut self) -> TrainInputs {
@@ -74,12 +74,12 @@ impl Rig {
             speed_mps: self.wheel.velocity_mps().abs(),
             frames_refused: u32::try_from(refused).unwrap_or(u32::MAX),
         };
-        let mut told = self.tcms.step(self.now, &inputs);
-        told.regeneration_refused = !on(TrainSwitch::Regeneration);
+        let mut orders = self.tcms.step(self.now, &inputs);
+        orders.regeneration_refused = !on(TrainSwitch::Regeneration);
         self.log_tcms();
         let line = self.tcms.view().line;
         self.desk.set_loop(line.energised, line.fed);
-        told
+        orders
     }
 
     /// Keeps TCMS's new events with what stood around them.

@@ -294,7 +294,7 @@ impl Tester {
 
 /// What tells two units apart, in words.
 fn difference(first: &Identity, now: &Identity) -> Option<String> {
-    let told = |what: &str, was: String, is: String| {
+    let changed = |what: &str, was: String, is: String| {
         (was != is).then(|| format!("its {what} was {was} and is {is}"))
     };
     let name = |field: &[u8; 16]| {
@@ -302,15 +302,15 @@ fn difference(first: &Identity, now: &Identity) -> Option<String> {
         format!("\"{}\"", field[..end].escape_ascii())
     };
     let checksum = |crc: u32| format!("{crc:08x}");
-    let told: Vec<_> = [
-        told("serial number", name(&first.serial), name(&now.serial)),
-        told("unit configuration", name(&first.config), name(&now.config)),
-        told(
+    let changes: Vec<_> = [
+        changed("serial number", name(&first.serial), name(&now.serial)),
+        changed("unit configuration", name(&first.config), name(&now.config)),
+        changed(
             "configuration's checksum",
             checksum(first.config_crc),
             checksum(now.config_crc),
         ),
-        told(
+        changed(
             "track database's checksum",
             checksum(first.tdb_crc),
             checksum(now.tdb_crc),
@@ -319,5 +319,5 @@ fn difference(first: &Identity, now: &Identity) -> Option<String> {
     .into_iter()
     .flatten()
     .collect();
-    (!told.is_empty()).then(|| format!("another unit answers: {}", told.join(", ")))
+    (!changes.is_empty()).then(|| format!("another unit answers: {}", changes.join(", ")))
 }

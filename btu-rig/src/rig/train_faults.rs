@@ -120,25 +120,25 @@ pub enum Misplaced {
         "fault {fault} is on a car, and this train is one point mass; choose another with --train"
     )]
     PointMass {
-        /// Its name.
+        /// Identifier of the fault mode, `part.mode`.
         fault: String,
     },
     /// The train is shorter.
     #[error("fault {fault} is on car {car}, and this train has {cars}")]
     NoSuchCar {
-        /// Its name.
+        /// Identifier of the fault mode, `part.mode`.
         fault: String,
-        /// Car it names.
+        /// Car that the mode names, from 1.
         car: u8,
-        /// Cars there are.
+        /// Number of cars of the train.
         cars: usize,
     },
     /// A trailer has no inverter.
     #[error("fault {fault} is on the inverter of car {car}, and that is a trailer")]
     Trailer {
-        /// Its name.
+        /// Identifier of the fault mode, `part.mode`.
         fault: String,
-        /// Car it names.
+        /// Car that the mode names, from 1.
         car: u8,
     },
 }

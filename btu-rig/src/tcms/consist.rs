@@ -35,14 +35,14 @@ impl Pair {
     }
 }
 
-/// A train's cars.
+/// The cars of a train with the forces they can give at the present load.
 #[derive(Clone, Debug)]
 pub struct Consist {
-    /// Its data.
+    /// Data of the train's file.
     pub data: CarsData,
     /// MT pairs from the head.
     pub pairs: Vec<Pair>,
-    /// Motor cars.
+    /// Cars with inverters (M), which power and brake electrically.
     pub motors: CarSet,
     /// Greatest electric brake of each car at the present load, N [S3 eq. 6].
     pub electric_n: PerCar,
@@ -59,7 +59,7 @@ pub struct Consist {
 }
 
 impl Consist {
-    /// An empty train.
+    /// A train without passengers.
     pub fn new(data: &CarsData) -> Self {
         let count = data.cars.iter().map(|car| car.pair).max().unwrap_or(0);
         let mut consist = Self {

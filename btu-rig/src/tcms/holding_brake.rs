@@ -10,7 +10,7 @@ use super::timer::OnDelay;
 pub struct HoldingInputs {
     /// Automatic or driverless mode.
     pub by_ato: bool,
-    /// Driverless mode.
+    /// Driverless mode, which orders it when it begins at standstill.
     pub driverless: bool,
     /// ATO asks for it, by contact or by message.
     pub requested: bool,
@@ -25,7 +25,7 @@ pub struct HoldingInputs {
     pub turn_back: bool,
 }
 
-/// The holding brake.
+/// Conditions of the holding brake from scan to scan (S4).
 #[derive(Clone, Debug)]
 pub struct HoldingBrake {
     below_mps: f64,

@@ -13,9 +13,9 @@ pub struct CabInputs {
     pub hcr: bool,
     /// Reverser: 1, 0 or −1.
     pub reverser: i8,
-    /// Mode switch.
+    /// Position of the mode switch.
     pub mode_switch: ModeSwitch,
-    /// Master controller.
+    /// Contacts and potentiometer of the master controller.
     pub controller: ControllerInputs,
     /// The dead man is held.
     pub dead_man: bool,
@@ -36,9 +36,9 @@ pub struct TcmsInputs<'a> {
     pub main_reservoir_low: bool,
     /// The emergency brake is cut out.
     pub eb_cut_out: bool,
-    /// Security brake, hard-wired.
+    /// Security brake applied: hard-wired; TCMS takes electric effort to 0, cuts powering and lights the lamp (S3, S4).
     pub security_brake: bool,
-    /// Parking brake.
+    /// Parking brake applied, by springs: TCMS cuts powering and lights the lamp (S4).
     pub parking_brake: bool,
     /// Driverless initialisation or turn-back.
     pub turn_back: bool,

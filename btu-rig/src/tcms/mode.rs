@@ -32,15 +32,15 @@ pub enum TcmsMode {
     /// None: no cab counts, or its mode switch is off.
     #[default]
     None,
-    /// Emergency.
+    /// Mode switch at emergency: the driver has the train.
     Emergency,
-    /// Yard.
+    /// Mode switch at yard: the driver has the train.
     Yard,
-    /// Manual.
+    /// The driver has the train; also with the switch at automatic or driverless until the unit is in automatic.
     Manual,
-    /// Automatic.
+    /// ATO drives, a driver in the cab.
     Automatic,
-    /// Driverless.
+    /// ATO drives, nobody in the cab.
     Driverless,
 }
 
@@ -63,7 +63,7 @@ impl TcmsMode {
         self as u8
     }
 
-    /// ATO drives.
+    /// Whether P, B and effort are ATO's.
     pub fn by_ato(self) -> bool {
         matches!(self, Self::Automatic | Self::Driverless)
     }

@@ -26,7 +26,7 @@ use super::view::{TcmsEvent, TcmsView};
 /// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
 const LONGEST_STEP_S: f64 = 0.05;
 
-/// The system.
+/// Train control and monitoring system of one train, stepped every 20 ms of virtual time.
 #[derive(Clone, Debug)]
 pub struct Tcms {
     data: TcmsData,
@@ -89,7 +89,7 @@ impl Tcms {
         }
     }
 
-    /// Its data.
+    /// Times and thresholds of the train's file.
     pub fn data(&self) -> &TcmsData {
         &self.data
     }
@@ -119,7 +119,7 @@ impl Tcms {
         &self.view
     }
 
-    /// Its new events.
+    /// Events since the last call, oldest first.
     pub fn take_events(&mut self) -> Vec<TcmsEvent> {
         self.report.take()
     }

@@ -13,19 +13,19 @@ use super::mode::TcmsMode;
 /// What TCMS did in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TcmsView {
-    /// Mode.
+    /// Mode TCMS drives in.
     pub mode: TcmsMode,
     /// Outputs of the driving-control module; P and value masked while the emergency brake is applied.
     pub driving: DrivingOutputs,
     /// Outputs of the full-service-brake module.
     pub brake: BrakeOutputs,
-    /// Holding brake ordered.
+    /// The holding brake is ordered.
     pub holding: bool,
     /// Emergency brake train line.
     pub line: Line,
     /// Why powering is cut.
     pub power_cuts: PowerCuts,
-    /// Lamps.
+    /// Lamps that are lit.
     pub lamps: Lamps,
     /// What is wrong with the equipment.
     pub found: EquipmentFailures,
@@ -44,8 +44,8 @@ pub struct TcmsView {
 /// An event TCMS logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TcmsEvent {
-    /// What.
+    /// Entry of the event dictionary, 800 to 899.
     pub event: Event,
-    /// Its parameter.
+    /// Meaning as in the dictionary: for most events the car.
     pub parameter: i32,
 }

@@ -102,7 +102,7 @@ pub struct TrainState {
     pub sliding: bool,
 }
 
-/// A train.
+/// The motion of a train: one point mass, or cars with wheels that slip and slide.
 #[derive(Clone, Debug)]
 pub struct Train {
     model: Model,

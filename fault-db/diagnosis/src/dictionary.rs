@@ -1,6 +1,6 @@
 //! The fault dictionary: what each fault mode does to each check, counted in a campaign.
 //!
-//! A mode is counted by its varieties (how bad it is); a variety's cells that are like those of a
+//! A mode is counted at each of its levels (the number of its effect); a level's cells that are like those of a
 //! healthy unit are left out, so that the dictionary holds what differs.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,10 +52,10 @@ pub struct ModeName {
     pub weight: f64,
 }
 
-/// Counts of one variety.
+/// Counts of a fault mode at one level.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Column {
-    /// Severity of the fault: `nominal`, or the number of the effect.
+    /// `nominal`, or the number of the effect.
     pub level: String,
     /// Number of runs of the suite.
     pub runs: u32,
@@ -65,12 +65,12 @@ pub struct Column {
     pub signs: Vec<(Sign, u32)>,
 }
 
-/// A fault mode with its varieties.
+/// A fault mode with its levels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
     /// Which.
     pub name: ModeName,
-    /// Its varieties.
+    /// Its levels.
     pub columns: Vec<Column>,
 }
 
@@ -166,7 +166,7 @@ impl Dictionary {
         self.healthy = self.count("nominal".into(), runs);
     }
 
-    /// Adds runs of one variety of a mode.
+    /// Adds runs of one level of a mode.
     pub fn add(&mut self, mode: &ModeName, level: String, runs: &[Observation]) {
         let mut column = self.count(level, runs);
         let healthy = &self.healthy.cells;

@@ -15,18 +15,18 @@ pub const NO_FAULT: usize = 0;
 /// Index of [`Hypothesis::Unknown`] in every model.
 const UNKNOWN: usize = 1;
 
-/// A hypothesis. Modes and varieties are given by index.
+/// A hypothesis. Modes and levels are given by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hypothesis {
     /// Nothing is wrong.
     NoFault,
     /// A fault that is not in the dictionary.
     Unknown,
-    /// One variety of a fault mode.
+    /// One level of a fault mode.
     Mode {
         /// The mode.
         mode: usize,
-        /// Its variety.
+        /// Its level.
         column: usize,
     },
 }
@@ -90,7 +90,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Index of a variety of a mode among the hypotheses.
+    /// Index of a level of a mode among the hypotheses.
     pub fn position(&self, mode: usize, column: usize) -> Option<usize> {
         let sought = Hypothesis::Mode { mode, column };
         self.hypotheses.binary_search(&sought).ok()

@@ -12,7 +12,7 @@ use super::observation::{Observation, StepSeen};
 /// Number of best explaining modes that are combined to pairs.
 const MOST_EXPLAINING: usize = 12;
 
-/// Varieties of two modes of different parts, and the probability of both.
+/// Levels of two modes of different parts, and the probability of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     pub both: [Hypothesis; 2],
@@ -57,7 +57,7 @@ fn is_strange(step: &StepSeen) -> bool {
     step.result != Verdict::Passed || !step.signs.is_empty()
 }
 
-/// Permanent modes that explain the failures better than a healthy unit, with their best variety, the best
+/// Permanent modes that explain the failures better than a healthy unit, with their best level, the best
 /// first; by index in the model.
 fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
     let steps = belief.steps().iter();

@@ -149,8 +149,8 @@ struct Weights {
     lrus: Vec<PartProbability>,
     /// By the mode's place.
     modes: Vec<f64>,
-    /// Likeliest variety of each mode.
-    varieties: Vec<usize>,
+    /// Likeliest level of each mode.
+    levels: Vec<usize>,
     no_fault: f64,
     unknown: f64,
 }
@@ -160,7 +160,7 @@ impl Weights {
         let model = belief.model;
         let count = model.dictionary.modes.len();
         let mut modes = vec![0.0; count];
-        let mut varieties = vec![(0, 0.0); count];
+        let mut levels = vec![(0, 0.0); count];
         let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
         let (mut no_fault, mut unknown) = (0.0, 0.0);
         for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
@@ -170,8 +170,8 @@ impl Weights {
                 Hypothesis::Unknown => unknown = p,
                 Hypothesis::Mode { mode, column } => {
                     modes[mode] += p;
-                    if p >= varieties[mode].1 {
-                        varieties[mode] = (column, p);
+                    if p >= levels[mode].1 {
+                        levels[mode] = (column, p);
                     }
                     *parts
                         .entry(&model.dictionary.modes[mode].name.lru)
@@ -183,8 +183,8 @@ impl Weights {
             for hypothesis in pair.both {
                 if let Hypothesis::Mode { mode, column } = hypothesis {
                     modes[mode] += pair.probability;
-                    if pair.probability > varieties[mode].1 {
-                        varieties[mode] = (column, pair.probability);
+                    if pair.probability > levels[mode].1 {
+                        levels[mode] = (column, pair.probability);
                     }
                     *parts
                         .entry(&model.dictionary.modes[mode].name.lru)
@@ -203,7 +203,7 @@ impl Weights {
         Self {
             lrus,
             modes,
-            varieties: varieties.into_iter().map(|(column, _)| column).collect(),
+            levels: levels.into_iter().map(|(column, _)| column).collect(),
             no_fault,
             unknown,
         }
@@ -228,7 +228,7 @@ impl Weights {
             .take(MOST_SHOWN);
         places
             .map(|(_, mode)| {
-                let column = self.varieties[mode];
+                let column = self.levels[mode];
                 let place = belief.model.position(mode, column);
                 let why = place.map_or_else(Reasons::default, |place| reasons(belief, place, seen));
                 let name = &names[mode].name;

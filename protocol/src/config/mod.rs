@@ -25,9 +25,9 @@ pub enum ConfigError {
     /// A value is out of its range.
     #[error("{key} = {value} is outside {low} .. {high}")]
     Range {
-        /// Key path.
+        /// Path of the key in the file, as `tacho.window_ms`.
         key: String,
-        /// Value found.
+        /// Value in the file.
         value: String,
         /// Least value allowed.
         low: String,
@@ -128,7 +128,7 @@ pub struct OverspeedConfig {
     pub emergency_kmh: f64,
 }
 
-/// Doors.
+/// Supervision of the doors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DoorConfig {
@@ -138,15 +138,15 @@ pub struct DoorConfig {
     pub open_moving_ms: u32,
 }
 
-/// Communication.
+/// Silence that each channel is allowed, and frames rejected on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinkConfig {
     /// I/O silence that applies the emergency brake, ms.
     pub io_timeout_ms: u32,
-    /// TCMS silence or a standing alive counter, ms.
+    /// TCMS silence, or a standing alive counter, that counts as lost, ms.
     pub tcms_timeout_ms: u32,
-    /// TWC silence, ms.
+    /// TWC silence that counts as lost, ms.
     pub twc_timeout_ms: u32,
     /// Tester silence that ends arming, ms (design: 1 s).
     pub tester_timeout_ms: u32,
@@ -154,7 +154,7 @@ pub struct LinkConfig {
     pub rejected_per_10s: u32,
 }
 
-/// Markers.
+/// Supervision of markers and TRA.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerConfig {
@@ -172,7 +172,7 @@ pub struct MarkerConfig {
     pub tra_test_ms: u32,
 }
 
-/// Start-up.
+/// Start after power-up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StartConfig {
@@ -194,15 +194,15 @@ pub struct UnitConfig {
     pub tacho: TachoConfig,
     /// Overspeed supervision.
     pub overspeed: OverspeedConfig,
-    /// Doors.
+    /// Supervision of the doors.
     pub doors: DoorConfig,
-    /// Communication.
+    /// Time-outs of the channels.
     pub link: LinkConfig,
-    /// Markers.
+    /// Supervision of markers and TRA.
     pub marker: MarkerConfig,
-    /// ATO.
+    /// Automatic operation.
     pub ato: AtoConfig,
-    /// Start-up.
+    /// Start after power-up.
     pub start: StartConfig,
 }
 

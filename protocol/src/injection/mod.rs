@@ -1,5 +1,5 @@
 //! Fault modes as data: the place in the signal path, the effect there (`check` has the permitted ones), when
-//! it acts ([`Occurrence`]) and how strongly (`severity`). The [`FaultCatalogue`] lists them with their
+//! it acts ([`Occurrence`]) and how strongly (`levels`). The [`FaultCatalogue`] lists them with their
 //! parts.
 //!
 //! The unit applies fault modes at its own places, the rig those of the train and its wiring. Nothing that
@@ -7,8 +7,8 @@
 
 mod catalogue;
 mod check;
+mod levels;
 mod occurrence;
-mod severity;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -19,8 +19,8 @@ use crate::LruId;
 
 pub use catalogue::{FaultCatalogue, Lru};
 pub use check::MAX_CARS;
+pub use levels::FaultKind;
 pub use occurrence::{Occurrence, OccurrenceState};
-pub use severity::FaultKind;
 
 /// A place in the signal path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -141,12 +141,12 @@ pub enum Effect {
     StuckOn,
     /// Stays off, de-energised or low.
     StuckOff,
-    /// Multiplied.
+    /// The value is multiplied.
     Gain {
-        /// By this.
+        /// 1 = no effect.
         factor: f64,
     },
-    /// Moved.
+    /// The value is moved.
     Offset {
         /// By this, in the place's own unit (Hz, km/h, m, effort …).
         by: f64,
@@ -156,7 +156,7 @@ pub enum Effect {
         /// Greatest size that comes through.
         to: f64,
     },
-    /// Late.
+    /// The value, contact or frame comes late.
     Delay {
         /// By this, ms.
         ms: u32,
@@ -171,7 +171,7 @@ pub enum Effect {
         /// Mean events per second.
         per_s: f64,
     },
-    /// Bit errors.
+    /// Frames are sent or received with wrong bits.
     BitErrors {
         /// Share of frames hit, 0..1.
         rate: f64,
@@ -182,7 +182,7 @@ pub enum Effect {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaultMode {
-    /// Name, `part.mode`.
+    /// Identifier, `part.mode`.
     pub id: String,
     /// Part to replace.
     pub lru: LruId,

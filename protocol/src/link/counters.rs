@@ -1,9 +1,9 @@
-//! What one end of the wire has accepted and refused, by channel and by reason.
+//! What one end of the wire has accepted and rejected, by channel and by reason.
 
 use crate::frame::{Reject, Rejected};
 use crate::message::Channel;
 
-/// What one end has taken and refused since it was made.
+/// What one end has taken and rejected since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     pub(super) accepted: [u64; CHANNELS],
@@ -22,29 +22,29 @@ impl Counters {
         self.accepted[channel as usize]
     }
 
-    /// Sequence numbers on a channel that were passed over: frames lost or refused.
+    /// Sequence numbers on a channel that were passed over: frames lost or rejected.
     pub const fn gaps(&self, channel: Channel) -> u64 {
         self.gaps[channel as usize]
     }
 
-    /// Frames accepted.
+    /// Frames accepted on all channels.
     pub fn accepted_total(&self) -> u64 {
         self.accepted.iter().sum()
     }
 
-    /// Frames refused on a channel for their sequence number or time stamp although the frames before and
+    /// Frames rejected on a channel for their sequence number or time stamp although the frames before and
     /// after them are consecutive: repeated, delayed or reordered by the line. Frames of a restarted sender
     /// are not counted.
     pub const fn out_of_place(&self, channel: Channel) -> u64 {
         self.out_of_place[channel as usize]
     }
 
-    /// Frames refused for a reason.
+    /// Frames rejected for a reason.
     pub fn rejected(&self, reason: Reject) -> u64 {
         self.rejected[reason as usize].iter().sum()
     }
 
-    /// Frames refused on a channel, for any reason; those with a wrong FCS count for the channel
+    /// Frames rejected on a channel, for any reason; those with a wrong FCS count for the channel
     /// they claim to be of.
     pub fn rejected_on(&self, channel: Channel) -> u64 {
         self.rejected
@@ -53,12 +53,12 @@ impl Counters {
             .sum()
     }
 
-    /// Frames refused on a channel (`None` = no known one) for a reason.
+    /// Frames rejected on a channel (`None` = no known one) for a reason.
     pub fn rejected_for(&self, reason: Reject, channel: Option<Channel>) -> u64 {
         self.rejected[reason as usize][channel.map_or(CHANNELS, |c| c as usize)]
     }
 
-    /// Frames refused.
+    /// Frames rejected on all channels, for any reason.
     pub fn rejected_total(&self) -> u64 {
         self.rejected.iter().flatten().sum()
     }

@@ -30,9 +30,9 @@ pub enum End {
 /// An accepted frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received {
-    /// Its header.
+    /// Addresses, sequence number and time stamp, checked.
     pub header: Header,
-    /// Its message.
+    /// Decoded payload.
     pub message: Message,
 }
 
@@ -99,7 +99,7 @@ impl Link {
         self.receivers = [None; CHANNELS];
     }
 
-    /// The next accepted frame. Frames refused before it are counted.
+    /// The next accepted frame. Frames rejected before it are counted.
     pub fn poll(&mut self, now: Instant) -> Option<Received> {
         let accepted = loop {
             let Some(next) = self.decoder.next_frame() else {
@@ -153,7 +153,7 @@ impl Link {
         self.receivers[channel as usize].map(|receiver| receiver.heard_at)
     }
 
-    /// What was taken and refused so far.
+    /// What was accepted and rejected so far.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }

@@ -25,11 +25,11 @@ pub(super) struct Receiver {
     relaxed_at: Instant,
     /// When the first frame since the last accepted one came too late.
     late_since: Option<Instant>,
-    /// Frames refused for sequence or stamp since the last accepted one.
+    /// Frames rejected for sequence or stamp since the last accepted one.
     pub(super) out_of_place: u32,
 }
 
-/// What accepting a frame changes: the new state, the sequence numbers it skipped, and the frames refused
+/// What accepting a frame changes: the new state, the sequence numbers it skipped, and the frames rejected
 /// since the last accepted one.
 pub(super) struct Acceptance {
     pub(super) receiver: Receiver,
@@ -71,7 +71,7 @@ impl Receiver {
         let quickest_ms = last.quickest_ms.wrapping_add(steps as u32);
         let delay_ms = transit_ms.wrapping_sub(quickest_ms) as i32;
         if delay_ms > MAX_DELAY.as_ms() as i32 {
-            // After a blockage old frames arrive in one burst, followed by new ones: they stay refused. A
+            // After a blockage old frames arrive in one burst, followed by new ones: they stay rejected. A
             // sender whose clock had stopped stays late for good: it is accepted as a new start.
             let since = *last.late_since.get_or_insert(now);
             let restarted = silent && now.since(since) >= RESYNC;

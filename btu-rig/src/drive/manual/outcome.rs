@@ -23,7 +23,7 @@ pub enum Ending {
     /// The unit did not let the train be driven.
     #[error("never ready: {0}")]
     NeverReady(String),
-    /// ATP braked.
+    /// ATP applied a brake.
     #[error("{0}")]
     Atp(AtpBrake),
     /// What a step waited for did not come.
@@ -48,17 +48,17 @@ pub enum Ending {
 /// A brake ATP applied, with the unit's cause if it said one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum AtpBrake {
-    /// Full service.
-    #[error("ATP applied the full service brake{}", told(*.0, FsbCause::label))]
+    /// Full service brake (FSB).
+    #[error("ATP applied the full service brake{}", behind_colon(*.0, FsbCause::label))]
     FullService(Option<FsbCause>),
-    /// Emergency.
-    #[error("ATP applied the emergency brake{}", told(*.0, EbCause::label))]
+    /// Emergency brake (EB).
+    #[error("ATP applied the emergency brake{}", behind_colon(*.0, EbCause::label))]
     Emergency(Option<EbCause>),
 }
 
 impl AtpBrake {
     /// The other is graver, or has a cause where this has none.
-    pub(super) fn told_less_than(self, other: Self) -> bool {
+    pub(super) fn is_outranked_by(self, other: Self) -> bool {
         let rank = |brake: Self| match brake {
             Self::FullService(None) => 0,
             Self::FullService(Some(_)) => 1,
@@ -70,7 +70,7 @@ impl AtpBrake {
 }
 
 /// A cause behind a colon, or nothing.
-pub(super) fn told<C>(cause: Option<C>, label: fn(C) -> &'static str) -> String {
+pub(super) fn behind_colon<C>(cause: Option<C>, label: fn(C) -> &'static str) -> String {
     cause.map_or_else(String::new, |cause| {
         format!(": {}", label(cause).replace('_', " "))
     })
@@ -120,7 +120,7 @@ pub struct Outcome {
     pub done: Vec<Done>,
     /// Those, and what unit and TCMS logged, in order.
     pub landmarks: Vec<Landmark>,
-    /// Figures.
+    /// Speeds, efforts and brake work over the run, of the rows and steps.
     pub figures: Figures,
 }
 

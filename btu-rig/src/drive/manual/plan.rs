@@ -32,15 +32,15 @@ pub struct Plan {
     pub sequence: Sequence,
     /// Somebody drives: the sequence is what was done so far.
     pub by_hand: bool,
-    /// The section.
+    /// Section of the track database that is driven.
     pub section: Section,
     /// Name of the speed code.
     pub code: String,
-    /// Its limit, km/h.
+    /// Limit that the code stands for, km/h.
     pub limit_kmh: f64,
-    /// It in the antenna.
+    /// Stimulus that puts the code into the antenna.
     pub antenna: Stimulus,
-    /// The train.
+    /// Train of cars; a run by hand needs TCMS' sharing of effort, which a point mass has not.
     pub train: CarsData,
     /// Passengers, kg.
     pub load_kg: f64,

@@ -7,7 +7,7 @@ use protocol::{CYCLE, Duration, Instant};
 
 use super::file::MAX_STEPS;
 use super::keys::powers;
-use super::outcome::told;
+use super::outcome::behind_colon;
 use super::{AtpBrake, Done, Ending, Figures, Outcome, Plan, When};
 use crate::drive::recording::Recording;
 use crate::drive::{Landmark, Row, watch};
@@ -36,13 +36,15 @@ pub(super) const LONGEST: Duration = Duration::from_ms(3_600_000);
 /// Where the run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Nothing done yet.
     Begin,
     /// The cab is ready; the unit is to let it drive.
-    Preparing { since: Instant },
+    Preparing {
+        since: Instant,
+    },
     /// The sequence is played.
-    Playing { since: Instant },
-    /// Over.
+    Playing {
+        since: Instant,
+    },
     Over,
 }
 
@@ -349,7 +351,7 @@ impl Player {
             released: None,
         });
         braked.released = None;
-        if braked.brake.told_less_than(found) {
+        if braked.brake.is_outranked_by(found) {
             braked.brake = found;
         }
     }
@@ -368,7 +370,7 @@ fn refusal(rig: &Rig) -> Option<String> {
         return Some("TCMS does not drive by hand".into());
     }
     if !is(Signal::Eb, 0.0) {
-        let cause = told(watch::eb_cause(sample), EbCause::label);
+        let cause = behind_colon(watch::eb_cause(sample), EbCause::label);
         return Some(format!("the unit keeps the emergency brake applied{cause}"));
     }
     if !is(Signal::Fsb, 0.0) {

@@ -28,7 +28,7 @@ impl fmt::Display for When {
     }
 }
 
-/// A step.
+/// A step: a condition, and what the driver does once it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// Line of its file, counted from 1; 0 = driven by hand.
@@ -42,13 +42,13 @@ pub struct Step {
 /// A sequence, checked as far as it can be without train and unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sequence {
-    /// What it shows.
+    /// Title of the report.
     pub title: String,
     /// Line it is made for; none = any.
     pub line: Option<String>,
     /// Section of that line.
     pub section: Option<u16>,
-    /// Passengers.
+    /// Passengers aboard.
     pub load: Load,
     /// Speed code in the antenna; none = the highest.
     pub code: Option<String>,

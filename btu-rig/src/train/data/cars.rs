@@ -19,7 +19,7 @@ pub struct CarsData {
     pub tachometer_car: usize,
     /// Powering.
     pub traction: Traction,
-    /// Electric brake.
+    /// Electric brake of the motor cars.
     pub electric_brake: ElectricBrake,
     /// Service brake, and the air brake that makes up for what is not electric.
     pub service_brake: AirBrake,
@@ -29,7 +29,7 @@ pub struct CarsData {
     pub resistance: Resistance,
     /// Slip, slide and the protection against it.
     pub wheels: Wheels,
-    /// Its TCMS.
+    /// Times and thresholds of its TCMS.
     pub tcms: TcmsData,
     /// The cars from the head.
     pub cars: Vec<CarData>,

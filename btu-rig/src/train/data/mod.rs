@@ -53,7 +53,7 @@ pub struct IdealData {
     pub parking_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
-    /// Its TCMS.
+    /// Times and thresholds of its TCMS.
     pub tcms: TcmsData,
 }
 
@@ -118,7 +118,7 @@ impl TrainData {
         }
     }
 
-    /// Its TCMS.
+    /// Times and thresholds of its TCMS.
     pub fn tcms(&self) -> &TcmsData {
         match self {
             Self::Ideal(data) => &data.tcms,

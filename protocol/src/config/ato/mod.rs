@@ -54,7 +54,7 @@ pub struct AtoTrainConfig {
     pub empty_kg: f64,
     /// Rotating parts as mass, kg (S3).
     pub rotating_kg: f64,
-    /// Length, m.
+    /// Length over all cars, m.
     pub length_m: f64,
     /// Acceleration at full powering effort up to the base speed, km/h/s [S1, S3: 3.0].
     pub power_kmh_per_s: f64,
@@ -68,9 +68,9 @@ pub struct AtoTrainConfig {
     pub dead_time_ms: f64,
     /// Time constant with which they follow, ms.
     pub lag_ms: f64,
-    /// The same of the air brake, ms.
+    /// Time from a command until the air brake begins to follow it, ms.
     pub air_dead_time_ms: f64,
-    /// The same of the air brake, ms.
+    /// Time constant with which the air brake follows, ms.
     pub air_lag_ms: f64,
     /// Speed below which the electric brake hands over to air, km/h [S3: 15].
     pub air_from_kmh: f64,
@@ -98,7 +98,7 @@ pub struct AtoWatchConfig {
     pub wheel_error: f64,
 }
 
-/// ATO.
+/// Parameters of automatic operation: limits of the run, the train, each speed controller.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AtoConfig {
@@ -110,23 +110,23 @@ pub struct AtoConfig {
     pub normal_lowering_kmh: f64,
     /// Distance before the stop point at which a train that stands has arrived, m.
     pub arrived_m: f64,
-    /// Acceleration and deceleration ATO asks for at most, km/h/s [S0 §4: 3.0 and 3.5].
+    /// Acceleration that ATO asks for at most, km/h/s [S0 §4: 3.0].
     pub accel_kmh_per_s: f64,
-    /// See `accel_kmh_per_s`.
+    /// Deceleration that ATO asks for at most, km/h/s [S0 §4: 3.5].
     pub decel_kmh_per_s: f64,
     /// Acceleration at which a train is moved up from beyond PSM2 at most, m/s².
     pub gently_mps2: f64,
     /// What the unit knows of its train.
     pub train: AtoTrainConfig,
-    /// Observer.
+    /// How far the observer trusts a measured speed.
     pub observer: ObserverConfig,
-    /// Servo.
+    /// Poles and profile of the `servo` controller (S0).
     pub servo: ServoConfig,
     /// Jerk-limited profile of `pi` and `fuzzy`.
     pub profile: ProfileConfig,
-    /// PI.
+    /// Gains of the `pi` controller (S1).
     pub pi: PiConfig,
-    /// Fuzzy.
+    /// Peaks of the sets of the `fuzzy` controller (S1).
     pub fuzzy: FuzzyConfig,
     /// Station stop by distance, also of `pi` and `fuzzy`.
     pub pss: PssConfig,

@@ -31,9 +31,9 @@ use crate::stop::Stop;
 pub struct Request {
     /// Fault modes, by glob.
     pub faults: Option<Pattern>,
-    /// Seeds of each variety of a mode, for the dictionary.
+    /// Seeds of each level of a mode, for the dictionary.
     pub seeds: u32,
-    /// Seeds of each variety of a mode, to assess it.
+    /// Seeds of each level of a mode, to assess it.
     pub held_out: u32,
     /// Runs of good units to assess it.
     pub good: u32,

@@ -15,8 +15,8 @@ const INTERMITTENT_SEEDS: u32 = 4;
 const LATEST_ONSET_S: f64 = 20.0;
 /// Seeds of one purpose are this far from those of the next, so that none is ever used twice.
 const APART: u64 = 100_000_000;
-/// And those of one variety this far from those of the next.
-const VARIETY: u64 = 10_000;
+/// And those of one level this far from those of the next.
+const LEVEL: u64 = 10_000;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,10 +69,10 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
             level: 0,
             seed: from + APART / 2 + u64::from(i),
         }));
-        let mut variety = 0;
+        let mut number = 0;
         for mode in modes {
             for level in 0..=mode.levels.len() {
-                variety += 1;
+                number += 1;
                 let intermittent = mode.kind() == FaultKind::Intermittent;
                 let seeds = match (purpose, intermittent) {
                     (Purpose::Dictionary, true) => INTERMITTENT_SEEDS * seeds,
@@ -84,9 +84,9 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
                         fault: Some(mode.at_level(level)?),
                         sets_in_s: sets_in(mode, i),
                         level,
-                        // Units of their own for each variety: of the same few, what they have in common would
+                        // Units of their own for each level: of the same few, what they have in common would
                         // look like the fault's doing.
-                        seed: from + VARIETY * variety + u64::from(i),
+                        seed: from + LEVEL * number + u64::from(i),
                     })
                 }));
             }

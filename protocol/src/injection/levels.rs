@@ -1,5 +1,5 @@
-//! Severity of an injected fault mode: its levels, the strengths of intermittent ones, and the kinds of modes
-//! that follow from both.
+//! Levels of a fault mode: the numbers its effect may have, the strengths of intermittent ones, and the kinds
+//! of modes that follow from both.
 
 use serde::{Deserialize, Serialize};
 
