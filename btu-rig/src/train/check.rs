@@ -1,5 +1,6 @@
 //! Ranges of a train's data, and what must fit together.
 
+use protocol::check_ranges;
 use protocol::config::{ConfigError, within};
 
 use super::MAX_CARS;
@@ -9,32 +10,24 @@ use super::data::{CarData, CarsData, IdealData, Role};
 pub(super) const MAX_TIME_S: f64 = 5.0;
 
 pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
-    for (key, value, low, high) in [
-        ("mass_kg", data.mass_kg, 1e3, 1e7),
-        ("full_load_kg", data.full_load_kg, 0.0, 1e6),
-        ("length_m", data.length_m, 1.0, 500.0),
-        ("drag_per_s", data.drag_per_s, 0.0, 0.1),
-        ("power_kmh_per_s", data.power_kmh_per_s, 0.1, 10.0),
-        (
-            "base_speed_kmh",
-            data.base_speed_kmh.unwrap_or(40.0),
-            1.0,
-            200.0,
-        ),
-        ("service_kmh_per_s", data.service_kmh_per_s, 0.1, 10.0),
-        ("emergency_kmh_per_s", data.emergency_kmh_per_s, 0.1, 10.0),
-        ("holding_share", data.holding_share, 0.0, 1.0),
-        ("parking_share", data.parking_share, 0.0, 1.0),
-    ] {
-        within(key, value, low, high)?;
+    check_ranges! { data, "";
+        mass_kg: 1e3, 1e7;
+        full_load_kg: 0.0, 1e6;
+        length_m: 1.0, 500.0;
+        drag_per_s: 0.0, 0.1;
+        power_kmh_per_s: 0.1, 10.0;
+        service_kmh_per_s: 0.1, 10.0;
+        emergency_kmh_per_s: 0.1, 10.0;
+        holding_share: 0.0, 1.0;
+        parking_share: 0.0, 1.0;
     }
+    let base_kmh = data.base_speed_kmh.unwrap_or(40.0);
+    within("base_speed_kmh", base_kmh, 1.0, 200.0)?;
     data.tcms.check()
 }
 
 pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
-    for (key, value, low, high) in ranges(data) {
-        within(key, value, low, high)?;
-    }
+    ranges(data)?;
     let electric = &data.electric_brake;
     if electric.fade_to_kmh >= electric.fade_from_kmh
         || electric.fade_from_kmh > electric.full_to_kmh
@@ -112,46 +105,39 @@ fn check_air(data: &CarsData) -> Result<(), ConfigError> {
     Ok(())
 }
 
-fn ranges(data: &CarsData) -> [(&'static str, f64, f64, f64); 31] {
-    let (t, el, s) = (&data.traction, &data.electric_brake, &data.service_brake);
-    let (em, r, w) = (&data.emergency_brake, &data.resistance, &data.wheels);
-    let time = MAX_TIME_S;
-    [
-        ("traction.full_load_n", t.full_load_n, 1e3, 1e7),
-        ("traction.base_speed_kmh", t.base_speed_kmh, 1.0, 200.0),
-        ("traction.jerk_mps3", t.jerk_mps3, 0.1, 100.0),
-        ("traction.dead_time_s", t.dead_time_s, 0.0, time),
-        ("traction.lag_s", t.lag_s, 0.0, time),
-        ("electric_brake.adhesion_limit", el.adhesion_limit, 0.0, 0.5),
-        ("electric_brake.full_to_kmh", el.full_to_kmh, 1.0, 200.0),
-        ("electric_brake.fade_from_kmh", el.fade_from_kmh, 0.1, 200.0),
-        ("electric_brake.fade_to_kmh", el.fade_to_kmh, 0.0, 200.0),
-        ("service_brake.kmh_per_s", s.kmh_per_s, 0.1, 10.0),
-        ("service_brake.holding_share", s.holding_share, 0.0, 1.0),
-        ("service_brake.security_share", s.security_share, 0.5, 1.3),
-        ("service_brake.parking_share", s.parking_share, 0.0, 1.0),
-        ("service_brake.dead_time_s", s.dead_time_s, 0.0, time),
-        ("service_brake.build_up_s", s.build_up_s, 0.0, time),
-        ("service_brake.release_s", s.release_s, 0.0, time),
-        ("emergency_brake.kmh_per_s", em.kmh_per_s, 0.1, 10.0),
-        ("emergency_brake.dead_time_s", em.dead_time_s, 0.0, time),
-        ("emergency_brake.build_up_s", em.build_up_s, 0.0, time),
-        ("emergency_brake.release_s", em.release_s, 0.0, time),
-        ("resistance.starting_kgf_t", r.starting_kgf_t, 0.0, 50.0),
-        ("resistance.starting_kmh", r.starting_kmh, 0.0, 20.0),
-        ("resistance.rolling_kgf_t", r.rolling_kgf_t, 0.0, 50.0),
-        (
-            "resistance.rolling_kgf_t_per_kmh",
-            r.rolling_kgf_t_per_kmh,
-            0.0,
-            1.0,
-        ),
-        ("resistance.air_kgf_per_kmh2", r.air_kgf_per_kmh2, 0.0, 10.0),
-        ("resistance.tunnel_kgf_t", r.tunnel_kgf_t, 0.0, 20.0),
-        ("resistance.curve_kgf_m_t", r.curve_kgf_m_t, 0.0, 5000.0),
-        ("wheels.sliding_share", w.sliding_share, 0.1, 1.0),
-        ("wheels.protection_mps", w.protection_mps, 0.05, 20.0),
-        ("wheels.release_s", w.release_s, 0.01, 10.0),
-        ("wheels.restore_s", w.restore_s, 0.01, 60.0),
-    ]
+fn ranges(data: &CarsData) -> Result<(), ConfigError> {
+    check_ranges! { data, "";
+        traction.full_load_n: 1e3, 1e7;
+        traction.base_speed_kmh: 1.0, 200.0;
+        traction.jerk_mps3: 0.1, 100.0;
+        traction.dead_time_s: 0.0, MAX_TIME_S;
+        traction.lag_s: 0.0, MAX_TIME_S;
+        electric_brake.adhesion_limit: 0.0, 0.5;
+        electric_brake.full_to_kmh: 1.0, 200.0;
+        electric_brake.fade_from_kmh: 0.1, 200.0;
+        electric_brake.fade_to_kmh: 0.0, 200.0;
+        service_brake.kmh_per_s: 0.1, 10.0;
+        service_brake.holding_share: 0.0, 1.0;
+        service_brake.security_share: 0.5, 1.3;
+        service_brake.parking_share: 0.0, 1.0;
+        service_brake.dead_time_s: 0.0, MAX_TIME_S;
+        service_brake.build_up_s: 0.0, MAX_TIME_S;
+        service_brake.release_s: 0.0, MAX_TIME_S;
+        emergency_brake.kmh_per_s: 0.1, 10.0;
+        emergency_brake.dead_time_s: 0.0, MAX_TIME_S;
+        emergency_brake.build_up_s: 0.0, MAX_TIME_S;
+        emergency_brake.release_s: 0.0, MAX_TIME_S;
+        resistance.starting_kgf_t: 0.0, 50.0;
+        resistance.starting_kmh: 0.0, 20.0;
+        resistance.rolling_kgf_t: 0.0, 50.0;
+        resistance.rolling_kgf_t_per_kmh: 0.0, 1.0;
+        resistance.air_kgf_per_kmh2: 0.0, 10.0;
+        resistance.tunnel_kgf_t: 0.0, 20.0;
+        resistance.curve_kgf_m_t: 0.0, 5000.0;
+        wheels.sliding_share: 0.1, 1.0;
+        wheels.protection_mps: 0.05, 20.0;
+        wheels.release_s: 0.01, 10.0;
+        wheels.restore_s: 0.01, 60.0;
+    }
+    Ok(())
 }

@@ -9,6 +9,8 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::check_ranges;
+
 mod ato;
 
 pub use ato::{
@@ -230,9 +232,7 @@ impl UnitConfig {
     /// # Errors
     /// The first thing wrong.
     pub fn check(&self) -> Result<(), ConfigError> {
-        for (key, value, low, high) in self.ranges() {
-            within(key, value, low, high)?;
-        }
+        self.check_ranges()?;
         if self.name.is_empty() || self.name.len() > 16 || !self.name.is_ascii() {
             return Err(conflict("name must be 1 to 16 ASCII characters"));
         }
@@ -249,62 +249,35 @@ impl UnitConfig {
         self.check_codes()
     }
 
-    /// Key, value and allowed range of every bounded number.
-    fn ranges(&self) -> [(&'static str, f64, f64, f64); 25] {
-        let (r, t, o, l) = (&self.receiver, &self.tacho, &self.overspeed, &self.link);
-        let m = &self.marker;
-        [
-            (
-                "receiver.carrier_tolerance_hz",
-                r.carrier_tolerance_hz,
-                1.0,
-                1000.0,
-            ),
-            ("receiver.rate_tolerance_hz", r.rate_tolerance_hz, 0.05, 5.0),
-            ("receiver.level_min_mv", r.level_min_mv, 1.0, 5000.0),
-            ("receiver.level_max_mv", r.level_max_mv, 1.0, 10000.0),
-            ("receiver.detect_ms", f64::from(r.detect_ms), 50.0, 5000.0),
-            ("receiver.hold_ms", f64::from(r.hold_ms), 0.0, 5000.0),
-            (
-                "tacho.pulses_per_turn",
-                f64::from(t.pulses_per_turn),
-                10.0,
-                1000.0,
-            ),
-            (
-                "tacho.wheel_diameter_mm",
-                t.wheel_diameter_mm,
-                500.0,
-                1200.0,
-            ),
-            ("tacho.window_ms", f64::from(t.window_ms), 20.0, 1000.0),
-            ("tacho.difference_kmh", t.difference_kmh, 1.0, 20.0),
-            ("tacho.standstill_kmh", t.standstill_kmh, 0.1, 3.0),
-            ("tacho.rollback_m", t.rollback_m, 0.05, 5.0),
-            ("overspeed.alarm_margin_kmh", o.alarm_margin_kmh, 0.0, 20.0),
-            ("overspeed.fsb_margin_kmh", o.fsb_margin_kmh, 0.0, 20.0),
-            ("overspeed.eb_margin_kmh", o.eb_margin_kmh, 0.0, 30.0),
-            ("overspeed.yard_kmh", o.yard_kmh, 5.0, 45.0),
-            ("overspeed.emergency_kmh", o.emergency_kmh, 5.0, 45.0),
-            ("doors.aligned_m", self.doors.aligned_m, 0.05, 2.0),
-            ("marker.window_m", m.window_m, 0.1, 50.0),
-            ("marker.start_window_m", m.start_window_m, 0.1, 50.0),
-            ("marker.window_share", m.window_share, 0.0, 0.2),
-            ("marker.scatter_m", m.scatter_m, 0.001, 2.0),
-            ("marker.wheel_spread", m.wheel_spread, 0.0001, 0.1),
-            (
-                "link.io_timeout_ms",
-                f64::from(l.io_timeout_ms),
-                50.0,
-                900.0,
-            ),
-            (
-                "link.tester_timeout_ms",
-                f64::from(l.tester_timeout_ms),
-                200.0,
-                1000.0,
-            ),
-        ]
+    fn check_ranges(&self) -> Result<(), ConfigError> {
+        check_ranges! { self, "";
+            receiver.carrier_tolerance_hz: 1.0, 1000.0;
+            receiver.rate_tolerance_hz: 0.05, 5.0;
+            receiver.level_min_mv: 1.0, 5000.0;
+            receiver.level_max_mv: 1.0, 10000.0;
+            receiver.detect_ms: 50.0, 5000.0;
+            receiver.hold_ms: 0.0, 5000.0;
+            tacho.pulses_per_turn: 10.0, 1000.0;
+            tacho.wheel_diameter_mm: 500.0, 1200.0;
+            tacho.window_ms: 20.0, 1000.0;
+            tacho.difference_kmh: 1.0, 20.0;
+            tacho.standstill_kmh: 0.1, 3.0;
+            tacho.rollback_m: 0.05, 5.0;
+            overspeed.alarm_margin_kmh: 0.0, 20.0;
+            overspeed.fsb_margin_kmh: 0.0, 20.0;
+            overspeed.eb_margin_kmh: 0.0, 30.0;
+            overspeed.yard_kmh: 5.0, 45.0;
+            overspeed.emergency_kmh: 5.0, 45.0;
+            doors.aligned_m: 0.05, 2.0;
+            marker.window_m: 0.1, 50.0;
+            marker.start_window_m: 0.1, 50.0;
+            marker.window_share: 0.0, 0.2;
+            marker.scatter_m: 0.001, 2.0;
+            marker.wheel_spread: 0.0001, 0.1;
+            link.io_timeout_ms: 50.0, 900.0;
+            link.tester_timeout_ms: 200.0, 1000.0;
+        }
+        Ok(())
     }
 
     fn check_codes(&self) -> Result<(), ConfigError> {
@@ -340,6 +313,20 @@ pub fn checksum(text: &str) -> u32 {
 
 pub(crate) fn conflict(text: &str) -> ConfigError {
     ConfigError::Conflict(text.to_string())
+}
+
+/// Checks the ranges of a configuration's numbers, each in a line: the path to its field, which behind the prefix is
+/// its key, and the least and the greatest value permitted.
+#[macro_export]
+macro_rules! check_ranges {
+    ($of:expr, $prefix:literal; $($first:ident $(. $rest:ident)*: $low:expr, $high:expr;)*) => {
+        $($crate::config::within(
+            concat!($prefix, stringify!($first) $(, ".", stringify!($rest))*),
+            f64::from($of.$first $(.$rest)*),
+            $low,
+            $high,
+        )?;)*
+    };
 }
 
 /// Whether a value lies in its range; not a number lies in none.

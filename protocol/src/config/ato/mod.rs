@@ -5,7 +5,7 @@ mod ranges;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ConfigError, within};
+use super::ConfigError;
 
 pub use controllers::{
     FuzzyConfig, GainUnit, ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
@@ -137,9 +137,7 @@ pub struct AtoConfig {
 impl AtoConfig {
     /// Checks ranges and that values fit together.
     pub(super) fn check(&self) -> Result<(), ConfigError> {
-        for (key, value, low, high) in self.ranges() {
-            within(key, value, low, high)?;
-        }
+        self.check_ranges()?;
         for [re, im] in self.servo.poles {
             let size = libm::hypot(re, im);
             if size.is_nan() || size >= 1.0 {
