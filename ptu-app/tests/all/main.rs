@@ -6,6 +6,7 @@ mod common;
 mod automatic_runs;
 mod bad_database;
 mod bad_input;
+mod bad_scripts;
 mod bench_page;
 mod care;
 mod diagnose;

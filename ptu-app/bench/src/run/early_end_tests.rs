@@ -1,6 +1,9 @@
 //! The verdict of a run that ends early: stopped between its procedures, when none was under way to say so,
 //! ended by its first failure, or by a database that takes no more.
 
+mod repetitions;
+mod searches;
+
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -332,110 +335,6 @@ impl Listener for Busy {
             std::thread::sleep(Duration::from_millis(1));
         }
     }
-}
-
-/// Each repetition of a procedure begins with its set-up and ends with its clean-up.
-const LEAVES_THE_KEY_ON: &str = "procedure(title = \"Key\", suspect = \"-\", setup = cab.key(False), cleanup = wait(ms(500)))\n\
-     step(\"off\", do = wait(ms(200)), expect = becomes(maintenance_key, False))\n\
-     step(\"on\", do = [cab.key(True), wait(ms(200))], expect = becomes(maintenance_key, True))\n";
-
-#[test]
-fn a_repetition_is_the_procedure_again_with_its_set_up_and_clean_up() {
-    let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
-    plan.tasks[0].options.repeat = 3;
-    let (outcome, detail) = recorded(&Arc::new(Presser::default()), &plan, setup());
-    assert_eq!(outcome.exit, Exit::Passed, "{:#?}", detail.steps);
-    let names: Vec<_> = detail.steps.iter().map(|step| step.name.as_str()).collect();
-    let rounds = [
-        "off (1/3)",
-        "on (1/3)",
-        "off (2/3)",
-        "on (2/3)",
-        "off (3/3)",
-        "on (3/3)",
-    ];
-    assert_eq!(names[..6], rounds);
-    assert_eq!(names[6..], ["waits"]);
-}
-
-/// Goal: repetitions that were still due make a run that was stopped aborted, when the one under way had
-/// nothing left to be stopped. Method: stopped in the last scan of the second of three.
-#[test]
-fn a_procedure_stopped_between_two_repetitions_is_aborted() {
-    let once = plan_of(&[LEAVES_THE_KEY_ON]);
-    let scans = ends(&once)[0];
-    let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
-    plan.tasks[0].options.repeat = 3;
-    let presser = Arc::new(Presser {
-        at: Some(2 * scans),
-        ..Presser::default()
-    });
-    let (outcome, detail) = recorded(&presser, &plan, setup());
-    assert_eq!(outcome.exit, Exit::Aborted);
-    let verdicts: Vec<_> = detail.steps.iter().map(|step| step.verdict).collect();
-    assert_eq!(verdicts, [fault_db::Verdict::Passed; 4]);
-}
-
-/// Goal: what fails in one repetition ends a run that is to end with its first failure; else the others have
-/// their turn.
-#[test]
-fn a_failed_repetition_ends_a_run_that_stops_on_fail() {
-    for (ends, turns) in [(false, 3), (true, 1)] {
-        let mut plan = plan_of(&[FAILS]);
-        plan.stop_on_fail = ends;
-        plan.tasks[0].options.repeat = 3;
-        plan.tasks[0].options.stop_on_fail = ends;
-        let (outcome, detail) = recorded(&Arc::new(Presser::default()), &plan, setup());
-        assert_eq!(outcome.exit, Exit::Failed);
-        assert_eq!(detail.steps.len(), turns);
-    }
-}
-
-/// A search for a part among these procedures.
-fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
-    let suite = Suite::load(&directory(), procedures, setup).expect("the suite");
-    let mut plan = plan(suite.procedures.into_iter().filter(|p| !p.on_request));
-    let choice = BenchChoice::default();
-    let bench = run_diagnosis::Bench {
-        unit_config_sha256: &setup.config.sha256,
-        line: &choice.line,
-        train: &choice.train,
-    };
-    let serial = setup.expected_serial();
-    let (_folder, store) = store();
-    let adaptive = run_diagnosis::adaptive(&store, &directory(), &serial, &bench);
-    plan.adaptive = Some(adaptive.expect("the shipped dictionary"));
-    plan
-}
-
-/// Goal: a search for a part that was stopped is not taken for one that found nothing more. Method: an
-/// adaptive run on a good unit, which it leaves after the last procedure only, stopped after the first.
-#[test]
-fn a_search_stopped_between_two_procedures_is_aborted() {
-    let two = ["atp/limit_speed", "door/interlocks"].map(str::to_owned);
-    let plan = search(&two, &setup());
-    assert_eq!(plan.tasks.len(), 2);
-    let (outcome, stored) = stopped_after(0, &plan);
-    assert_eq!(stored, fault_db::Verdict::Aborted);
-    assert_eq!(outcome.exit, Exit::Aborted);
-}
-
-/// Goal: a search judges each step before the next begins, whoever ordered it. Method: the part is found by a
-/// step that others follow at once.
-#[test]
-fn a_search_ends_with_the_step_that_found_the_part() {
-    let mut setup = setup();
-    let faults = directory().faults().expect("faults");
-    setup.faults = vec![faults.fault("tra.dead").expect("mode").clone()];
-    let plan = search(&[], &setup);
-    let (_, detail) = recorded(&Arc::new(Presser::default()), &plan, setup);
-    let last = detail.steps.last().expect("a step");
-    assert_eq!(
-        last.verdict,
-        fault_db::Verdict::Failed,
-        "{:#?}",
-        detail.steps
-    );
 }
 
 /// Goal: who gives up reaching a unit has not found an error. Method: a port that is there, nobody on it,

@@ -1,0 +1,60 @@
+//! The verdict of a procedure whose repetitions end early.
+
+use super::*;
+
+/// Each repetition of a procedure begins with its set-up and ends with its clean-up.
+const LEAVES_THE_KEY_ON: &str = "procedure(title = \"Key\", suspect = \"-\", setup = cab.key(False), cleanup = wait(ms(500)))\n\
+     step(\"off\", do = wait(ms(200)), expect = becomes(maintenance_key, False))\n\
+     step(\"on\", do = [cab.key(True), wait(ms(200))], expect = becomes(maintenance_key, True))\n";
+
+#[test]
+fn a_repetition_is_the_procedure_again_with_its_set_up_and_clean_up() {
+    let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
+    plan.tasks[0].options.repeat = 3;
+    let (outcome, detail) = recorded(&Arc::new(Presser::default()), &plan, setup());
+    assert_eq!(outcome.exit, Exit::Passed, "{:#?}", detail.steps);
+    let names: Vec<_> = detail.steps.iter().map(|step| step.name.as_str()).collect();
+    let rounds = [
+        "off (1/3)",
+        "on (1/3)",
+        "off (2/3)",
+        "on (2/3)",
+        "off (3/3)",
+        "on (3/3)",
+    ];
+    assert_eq!(names[..6], rounds);
+    assert_eq!(names[6..], ["waits"]);
+}
+
+/// Goal: repetitions that were still due make a run that was stopped aborted, when the one under way had
+/// nothing left to be stopped. Method: stopped in the last scan of the second of three.
+#[test]
+fn a_procedure_stopped_between_two_repetitions_is_aborted() {
+    let once = plan_of(&[LEAVES_THE_KEY_ON]);
+    let scans = ends(&once)[0];
+    let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
+    plan.tasks[0].options.repeat = 3;
+    let presser = Arc::new(Presser {
+        at: Some(2 * scans),
+        ..Presser::default()
+    });
+    let (outcome, detail) = recorded(&presser, &plan, setup());
+    assert_eq!(outcome.exit, Exit::Aborted);
+    let verdicts: Vec<_> = detail.steps.iter().map(|step| step.verdict).collect();
+    assert_eq!(verdicts, [fault_db::Verdict::Passed; 4]);
+}
+
+/// Goal: what fails in one repetition ends a run that is to end with its first failure; else the others have
+/// their turn.
+#[test]
+fn a_failed_repetition_ends_a_run_that_stops_on_fail() {
+    for (ends, turns) in [(false, 3), (true, 1)] {
+        let mut plan = plan_of(&[FAILS]);
+        plan.stop_on_fail = ends;
+        plan.tasks[0].options.repeat = 3;
+        plan.tasks[0].options.stop_on_fail = ends;
+        let (outcome, detail) = recorded(&Arc::new(Presser::default()), &plan, setup());
+        assert_eq!(outcome.exit, Exit::Failed);
+        assert_eq!(detail.steps.len(), turns);
+    }
+}

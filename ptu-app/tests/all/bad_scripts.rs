@@ -1,0 +1,301 @@
+//! Wrong scripts and wrong files beside them: each error is named with its place and what is wanted, and nothing is
+//! driven.
+
+use crate::common::{Place, list, scripts, text};
+
+const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
+
+/// A script that must not load: exit 2 with these words, and nothing driven.
+#[track_caller]
+pub fn does_not_load(body: &str, words: &[&str]) {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    place.write("wrong.star", &format!("{HEAD}{body}"));
+    for check in [
+        &["run", "wrong.star"][..],
+        &["run", "--check", "wrong.star"],
+    ] {
+        place
+            .ptu(check)
+            .exits(2)
+            .explains(words)
+            .explains(&["wrong.star:", "1 error in the scripts; nothing was driven"]);
+    }
+    assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
+}
+
+#[test]
+fn a_syntax_error_is_shown_with_its_place() {
+    does_not_load(
+        "step(\"a\", do = wait(s(1))\n",
+        &["wrong.star:3:1:", "Parse error"],
+    );
+}
+
+#[test]
+fn a_misspelt_name_is_found_in_a_branch_never_taken() {
+    does_not_load(
+        "step(\"a\", do = wait(s(1)), expect = becomes(eb, \"applied\"))\n\
+         if False:\n    step(\"b\", expect = becomes(ebb, \"applied\"))\n",
+        &["wrong.star:4:", "`ebb`", "`eb`"],
+    );
+}
+
+#[test]
+fn a_runtime_error_is_shown_with_its_place() {
+    does_not_load("x = [1][3]\n", &["wrong.star:2:5:", "Index `3`"]);
+}
+
+#[test]
+fn wrong_types_units_and_verbs_are_shown_with_what_is_wanted() {
+    does_not_load(
+        "step(\"a\", do = wait(kmh(3)))\n",
+        &["wrong.star:2:", "wants a time such as s(2)", "3 km/h"],
+    );
+    does_not_load(
+        "step(\"a\", do = tacho.speed(to = \"fast\"))\n",
+        &["wrong.star:2:", "wants a speed such as kmh(55)", "\"fast\""],
+    );
+    does_not_load(
+        "step(\"a\", do = tacho.sped(kmh(3)))\n",
+        &["wrong.star:2:", "sped", "speed"],
+    );
+    does_not_load(
+        "step(\"a\", expect = becomes(eb, \"aplied\"))\n",
+        &["wrong.star:2:", "aplied", "applied"],
+    );
+}
+
+#[test]
+fn a_script_that_never_ends_is_stopped() {
+    does_not_load(
+        "def long():\n    for a in range(1000000):\n        for b in range(1000000):\n            pass\nlong()\n",
+        &["wrong.star:"],
+    );
+}
+
+/// Goal: what a few characters of the script language ask for is refused in bounded time, memory and stack, with
+/// the script, by all that reads scripts. Method: built-ins that no count of steps sees into.
+#[test]
+fn a_script_that_asks_for_more_than_a_machine_has_is_refused() {
+    let deep = "    x = []\n    for i in range(200000):\n        x = [x]\n    return str(x)\n";
+    let double = "    x = \"x\"\n    for i in range(60):\n        x = x + x\n    return x\n";
+    let conditions = "    c = is_(alarm, True)\n    for i in range(300):\n        c = any_of(c, c)\n    return c\n";
+    for (body, words) in [
+        ("x = [0] * 1000000000\n", "needs more than 512 MB of memory"),
+        ("x = list(range(2000000000))\n", "wrong.star:1:1: "),
+        (
+            &format!("def f():\n{double}x = f()\n"),
+            "needs more than 512 MB of memory",
+        ),
+        (
+            &format!("def f():\n{deep}x = f()\n"),
+            "holds values within values too deeply",
+        ),
+        (
+            &format!("def f():\n{conditions}step(\"a\", expect = becomes(f()))\n"),
+            "wrong.star:1:1: ",
+        ),
+    ] {
+        does_not_load(body, &[words]);
+        let place = Place::new();
+        place.write("wrong.star", &format!("{HEAD}{body}"));
+        let list = place.ptu(&["run", "--list", "wrong.star"]);
+        list.exits(2).explains(&["wrong.star:1:1: ", words]);
+    }
+    let place = Place::new();
+    let square = "def f():\n    x = 3\n    for i in range(40):\n        x = x * x\nf()\n";
+    place.write("wrong.star", &format!("{HEAD}{square}"));
+    let began = std::time::Instant::now();
+    let said = place.ptu(&["run", "--check", "wrong.star"]);
+    said.exits(2)
+        .explains(&["wrong.star:1:1: takes longer than 9 s to load"]);
+    // By the clock of a machine that has other work.
+    assert!(began.elapsed() < std::time::Duration::from_secs(70));
+}
+
+#[test]
+fn a_part_that_is_none_cannot_be_suspected() {
+    let place = Place::new();
+    let script = HEAD.replace("atp_cpu", "atp_cqu") + "step(\"a\", do = wait(s(1)))\n";
+    place.write("wrong.star", &script);
+    place.ptu(&["run", "wrong.star"]).exits(2).explains(&[
+        "wrong.star:1:",
+        "no part \"atp_cqu\"",
+        "\"atp_cpu\"",
+        "`ptu catalog lrus`",
+    ]);
+}
+
+#[test]
+fn check_reports_the_errors_of_all_scripts() {
+    let place = Place::new();
+    place.write("one.star", &format!("{HEAD}step(\"a\", do = wait(s(1))\n"));
+    place.write(
+        "two.star",
+        &format!("{HEAD}step(\"a\", do = wait(kmh(1)))\n"),
+    );
+    place.write(
+        "good.star",
+        &format!("{HEAD}step(\"a\", do = wait(s(1)))\n"),
+    );
+    place
+        .ptu(&["run", "--check", "one.star", "two.star", "good.star"])
+        .exits(2)
+        .explains(&["one.star:3:1:", "two.star:2:", "2 errors in the scripts"]);
+    let said = place.ptu(&["run", "--check"]).exits(0);
+    assert!(said.out.contains("no errors"), "{}", said.all());
+}
+
+/// Goal: a step that outlasts its limit is an error, not a pass and not a hang, the other steps
+/// still run, and so does clean-up. Method: a clean-up that cannot succeed is reported when it ran.
+#[test]
+fn a_step_that_runs_too_long_is_an_error_and_clean_up_runs() {
+    let place = Place::new();
+    let earlier = place.recorded_run();
+    place.write(
+        "long.star",
+        "procedure(title = \"Test\", title_ko = \"시험\", cleanup = until(mode, \"yard\", within = s(1)))\n\
+         step(\"too long\", do = wait(s(60)), limit = s(2))\n\
+         step(\"short\", do = wait(s(1)))\n",
+    );
+    let (said, report) = place.run(&["long.star"]);
+    let said = said
+        .exits(3)
+        .explains(&["too long", "time limit of 2.000 s", "clean-up:", "yard"]);
+    let steps = list(&report["steps"]);
+    let verdicts: Vec<_> = steps.iter().map(|s| text(&s["verdict"])).collect();
+    assert_eq!(verdicts, ["error", "passed"], "{}", said.all());
+    assert!(text(&steps[0]["message"]).contains("time limit"));
+    assert_eq!(report["run"]["verdict"], "error");
+    assert!(place.run_ids().contains(&earlier));
+}
+
+#[test]
+fn a_prompt_that_nobody_can_answer_is_an_error() {
+    let place = Place::new();
+    place.write(
+        "prompt.star",
+        &format!("{HEAD}step(\"ask\", do = prompt(\"Is the lamp lit?\"))\n"),
+    );
+    let (said, report) = place.run(&["prompt.star"]);
+    said.exits(3).explains(&["Is the lamp lit?"]);
+    assert_eq!(report["steps"][0]["verdict"], "error");
+}
+
+/// A scripts directory with one line file, `lines/slip.toml`, and a sound unit configuration.
+fn scripts_with_line(place: &Place, line: &str) -> String {
+    for folder in ["units", "lines"] {
+        std::fs::create_dir_all(place.path("mine").join(folder)).expect("a folder");
+    }
+    place.write("mine/units/sg100.toml", &delivered("units/sg100.toml"));
+    place.write("mine/lines/slip.toml", line);
+    place.text_path("mine")
+}
+
+/// A file of the scripts directory.
+fn delivered(name: &str) -> String {
+    std::fs::read_to_string(scripts().join(name)).expect("a data file")
+}
+
+/// Goal: a slip of the finger in a track database is named with file, line and reason.
+#[test]
+fn a_wrong_track_database_is_refused_with_line_and_reason() {
+    let place = Place::new();
+    let good = delivered("lines/line8.toml");
+    for (entry, instead, words) in [
+        (
+            "741.53, 829.03",
+            "829.03, 741.53",
+            "section 61: PSM3 at 741.53 m must lie after PSM2 at 829.03 m",
+        ),
+        (
+            "length_m = 850.03",
+            "length_m = -850.03",
+            "section 61: length_m = -850.03",
+        ),
+        ("stop_m = 850.03\n", "\n", "missing field `stop_m`"),
+    ] {
+        let damaged = good.replacen(entry, instead, 1);
+        assert_ne!(damaged, good, "{entry}");
+        let mine = scripts_with_line(&place, &damaged);
+        let said = place.ptu(&["catalog", "lines", "--scripts", &mine]);
+        let said = said.exits(2).explains(&["slip.toml: ", "line ", words]);
+        assert!(
+            place
+                .ptu(&["run", "--line", "slip", "--scripts", &mine])
+                .exits(2)
+                .err
+                .contains(words),
+            "{}",
+            said.all()
+        );
+    }
+}
+
+/// Goal: a file changed without its checksum is refused, and the one it has now is told.
+#[test]
+fn a_wrong_checksum_of_a_track_database_is_refused() {
+    let place = Place::new();
+    let track = |checksum: &str| {
+        let track = delivered("lines/test_track.toml");
+        let others = track.lines().filter(|line| !line.starts_with("checksum"));
+        let guarded = format!(
+            "checksum = \"{checksum}\"\n{}",
+            others.collect::<Vec<_>>().join("\n")
+        );
+        scripts_with_line(&place, &guarded)
+    };
+    let arguments =
+        |mine: &str| ["catalog", "lines", "--json", "--scripts", mine].map(str::to_owned);
+    let refused = place.ptu(&arguments(&track("00000000")).each_ref().map(String::as_str));
+    let refused = refused
+        .exits(2)
+        .explains(&["slip.toml: line 1: checksum \"00000000\" is wrong"]);
+    let told = refused
+        .err
+        .split("is \"")
+        .nth(1)
+        .and_then(|rest| rest.get(..8));
+    let told = told.expect("the file's own checksum").to_owned();
+    let taken = place.json(&arguments(&track(&told)).each_ref().map(String::as_str));
+    assert_eq!(taken[0]["checksum"], told.as_str());
+}
+
+/// A fault of the catalogue that nobody could carry out is named, with what there is instead.
+#[test]
+fn a_wrong_fault_catalogue_is_refused_with_the_fault_and_the_reason() {
+    let place = Place::new();
+    let mine = scripts_with_line(&place, &delivered("lines/line8.toml"));
+    let good = delivered("units/faults.toml");
+    for (entry, instead, words) in [
+        (
+            "place = \"inverter\"\neffect = { kind = \"dead\" }",
+            "place = \"inverter\"\neffect = { kind = \"stuck_on\" }",
+            "fault inverter.dead: stuck_on does nothing at inverter; there: dead",
+        ),
+        (
+            "factor = 0.5 }\ncar = 5",
+            "factor = 0.5 }",
+            "fault brake_cylinder.weak: brake_cylinder is on a car, name it with `car`",
+        ),
+        (
+            "place = \"brake_cylinder\"\neffect = { kind = \"gain\", factor = 0.5 }",
+            "place = \"brake_cylinder\"\neffect = { kind = \"gain\", factor = -1 }",
+            "fault brake_cylinder.weak: effect.factor = -1 is outside 0 .. 1",
+        ),
+        (
+            "place = \"tcms\"",
+            "place = \"tcm\"",
+            "unknown variant `tcm`",
+        ),
+    ] {
+        let damaged = good.replacen(entry, instead, 1);
+        assert_ne!(damaged, good, "{entry}");
+        place.write("mine/units/faults.toml", &damaged);
+        place
+            .ptu(&["catalog", "faults", "--scripts", &mine])
+            .exits(2)
+            .explains(&["faults.toml: ", words]);
+    }
+}
