@@ -113,15 +113,7 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         percent(figures.adaptive.0, figures.fixed.0),
         percent(figures.adaptive.1, figures.fixed.1),
     );
-    list(&mut text, "not detected in some run", &figures.undetected);
-    list(
-        &mut text,
-        "not isolated to one part in some run",
-        &figures.not_isolated,
-    );
-    for group in &figures.ambiguous {
-        let _ = writeln!(text, "not told apart in some run: {}", group.join(", "));
-    }
+    list_shortfalls(&mut text, figures);
     for said in outcome.good.iter().filter(|said| !said.is_empty()) {
         let _ = writeln!(text, "false alarm: {}", said.join("; "));
     }
@@ -135,6 +127,18 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         steps.never_failed.len()
     );
     text.trim_end().to_owned()
+}
+
+fn list_shortfalls(text: &mut String, figures: &Figures) {
+    list(text, "not detected in some run", &figures.undetected);
+    list(
+        text,
+        "not isolated to one part in some run",
+        &figures.not_isolated,
+    );
+    for group in &figures.ambiguous {
+        let _ = writeln!(text, "not told apart in some run: {}", group.join(", "));
+    }
 }
 
 fn percent(part: f64, of: f64) -> f64 {

@@ -118,7 +118,7 @@ impl StatsArguments {
             .print(&KEYS, &rows, || self.table(&stats, together.first(), all))
     }
 
-    fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
+    fn headings(&self) -> Vec<&'static str> {
         let heading = match self.by {
             By::Code => "CODE",
             By::Lru => "PART",
@@ -126,9 +126,8 @@ impl StatsArguments {
             By::Line => "LINE",
             By::Month => "MONTH",
         };
-        let is_course = self.by != By::Month;
         let mut headings = vec![heading, "SEEN"];
-        if is_course {
+        if self.by != By::Month {
             headings.extend(["SHARE", "CUM"]);
         }
         headings.extend([
@@ -141,9 +140,15 @@ impl StatsArguments {
             "NFF",
             "LAST SEEN",
         ]);
-        if is_course {
+        if self.by != By::Month {
             headings.push("COURSE");
         }
+        headings
+    }
+
+    fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
+        let is_course = self.by != By::Month;
+        let headings = self.headings();
         let numbers = 1..headings.len() - 1 - usize::from(is_course);
         let mut table = Table::new(&headings).right(numbers);
         let mut so_far = 0;

@@ -24,6 +24,19 @@ struct Progress<'a> {
     faults: usize,
 }
 
+impl<'a> Progress<'a> {
+    fn new(procedure: &'a Procedure, now: Instant) -> Self {
+        Self {
+            procedure,
+            step: None,
+            turn: 0,
+            step_began: now,
+            explained: false,
+            faults: 0,
+        }
+    }
+}
+
 impl<L: UnitLink> Session<L> {
     /// Runs a procedure as often as it is to be repeated, each time with its set-up and clean-up, or as long as
     /// `go_on` says so after a step; `found` are faults of the bring-up.
@@ -47,20 +60,12 @@ impl<L: UnitLink> Session<L> {
         };
         let mut rounds = Rounds::new(options.repeat);
         let mut runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
-        let mut progress = Progress {
-            procedure,
-            step: None,
-            turn: 0,
-            step_began: self.bench.now(),
-            explained: false,
-            faults: 0,
-        };
+        let mut progress = Progress::new(procedure, self.bench.now());
         for fault in found {
             runner.found_before(&fault.name);
             self.report(fault, &mut progress, sink);
         }
-        let mut presses = 0;
-        let mut link_lost = false;
+        let (mut presses, mut link_lost) = (0, false);
         loop {
             let mut cut = |cut| sink(SessionEvent::Trace(Box::new(cut)));
             self.scan(&mut cut);
@@ -68,18 +73,7 @@ impl<L: UnitLink> Session<L> {
                 // What the unit logs meanwhile is not its own doing.
                 self.make_up(&mut cut, &mut |_, _, _| {});
             }
-            let pressed = self.stop.presses();
-            for press in presses..pressed {
-                match self.stop.reason().filter(|_| press == 0) {
-                    Some(reason) => runner.bench_stalled(reason.to_owned()),
-                    None => runner.stop(),
-                }
-            }
-            presses = pressed;
-            if let Some(behind) = self.stalled.take() {
-                runner.bench_stalled(stall_message(behind));
-            }
-            runner.behind(self.behind());
+            self.interrupt(&mut runner, &mut presses);
             let now = self.bench.now();
             let events = self.take_events();
             let link_error = self.link_error();
@@ -93,12 +87,7 @@ impl<L: UnitLink> Session<L> {
             self.wait_with(runner.awaits_operator());
             let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
-            for event in runner.take_events() {
-                self.note(&event, &mut progress, sink);
-                if let Some(event) = rounds.take(event) {
-                    sink(SessionEvent::Run(event));
-                }
-            }
+            self.emit(&mut runner, &mut rounds, &mut progress, sink);
             if !go_on() {
                 runner.leave();
             }
@@ -124,6 +113,37 @@ impl<L: UnitLink> Session<L> {
         ));
         if traced.get() {
             sink(SessionEvent::Recording(Box::new(recorded)));
+        }
+    }
+
+    /// Tells the runner of stop pressed since the last scan, and of a bench that was held up.
+    fn interrupt(&mut self, runner: &mut Runner, presses: &mut u32) {
+        let pressed = self.stop.presses();
+        for press in *presses..pressed {
+            match self.stop.reason().filter(|_| press == 0) {
+                Some(reason) => runner.bench_stalled(reason.to_owned()),
+                None => runner.stop(),
+            }
+        }
+        *presses = pressed;
+        if let Some(behind) = self.stalled.take() {
+            runner.bench_stalled(stall_message(behind));
+        }
+        runner.behind(self.behind());
+    }
+
+    fn emit(
+        &mut self,
+        runner: &mut Runner,
+        rounds: &mut Rounds,
+        progress: &mut Progress<'_>,
+        sink: &mut dyn FnMut(SessionEvent),
+    ) {
+        for event in runner.take_events() {
+            self.note(&event, progress, sink);
+            if let Some(event) = rounds.take(event) {
+                sink(SessionEvent::Run(event));
+            }
         }
     }
 

@@ -68,7 +68,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
         Signal::Target,
     ]
     .map(|signal| view.seen.value(signal));
-    let [measured, truth, limit, target] = speeds;
+    let [measured, _, limit, _] = speeds;
     let strong = ui.visuals().strong_text_color();
     let colours = [strong, palette.accent, palette.bad, palette.good];
 
@@ -80,31 +80,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
         scale,
     };
     paint_face(&painter, &face, limit, palette);
-    if let Some(limit) = limit {
-        face.mark(
-            &painter,
-            limit,
-            face.radius - 3.0,
-            face.radius + 10.0,
-            palette.bad,
-        );
-    }
-    if let Some(target) = target {
-        face.mark(
-            &painter,
-            target,
-            face.radius - 9.0,
-            face.radius - 22.0,
-            palette.good,
-        );
-    }
-    if let Some(truth) = truth {
-        let needle = [face.at(truth, radius * 0.38), face.at(truth, radius - 2.0)];
-        painter.line_segment(needle, Stroke::new(2.0, palette.accent));
-    }
-    if let Some(measured) = measured {
-        face.mark(&painter, measured, radius - 4.0, radius * 0.36, strong);
-    }
+    paint_speeds(&painter, &face, speeds, colours);
     let digits = measured.map_or(UNKNOWN.to_owned(), |kmh| format!("{kmh:.1}"));
     let over = measured
         .zip(limit)
@@ -128,6 +104,49 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
         "km/h",
     );
     legend(ui, area, speeds, colours, words, palette);
+}
+
+/// Marks at limit and target, needles at the true and the measured speed.
+fn paint_speeds(
+    painter: &Painter,
+    face: &Face,
+    [measured, truth, limit, target]: [Option<f64>; 4],
+    colours: [Color32; 4],
+) {
+    if let Some(limit) = limit {
+        face.mark(
+            painter,
+            limit,
+            face.radius - 3.0,
+            face.radius + 10.0,
+            colours[2],
+        );
+    }
+    if let Some(target) = target {
+        face.mark(
+            painter,
+            target,
+            face.radius - 9.0,
+            face.radius - 22.0,
+            colours[3],
+        );
+    }
+    if let Some(truth) = truth {
+        let needle = [
+            face.at(truth, face.radius * 0.38),
+            face.at(truth, face.radius - 2.0),
+        ];
+        painter.line_segment(needle, Stroke::new(2.0, colours[1]));
+    }
+    if let Some(measured) = measured {
+        face.mark(
+            painter,
+            measured,
+            face.radius - 4.0,
+            face.radius * 0.36,
+            colours[0],
+        );
+    }
 }
 
 fn paint_face(painter: &Painter, face: &Face, limit: Option<f64>, palette: &Palette) {

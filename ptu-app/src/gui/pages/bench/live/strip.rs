@@ -1,6 +1,6 @@
 //! The track strip: start, PSM1 to PSM4, stop point, train.
 
-use eframe::egui::{Align2, Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Align2, Color32, Painter, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 use protocol::signal::Signal;
 
 use super::View;
@@ -69,42 +69,7 @@ fn paint(ui: &Ui, area: Rect, strip: &Strip, words: &Bench, palette: &Palette) {
         rail - 6.0..=rail + 6.0,
         Stroke::new(2.0, palette.quiet),
     );
-    // From the stop point backwards: the last markers are close to it and to each other.
-    let mut taken = x(strip.stop) + 2.0;
-    let mut low = false;
-    for (psm, share) in [1_u8, 2, 3, 4].into_iter().zip(strip.markers).rev() {
-        let at = x(share);
-        let hit = strip.detected == Some(psm);
-        let colour = if hit { palette.accent } else { palette.quiet };
-        let height = if hit { 9.0 } else { 7.0 };
-        let diamond = vec![
-            pos2(at, rail - height),
-            pos2(at + 5.0, rail),
-            pos2(at, rail + height),
-            pos2(at - 5.0, rail),
-        ];
-        let fill = if hit { colour } else { ground(palette) };
-        painter.add(Shape::convex_polygon(
-            diamond,
-            fill,
-            Stroke::new(1.5, colour),
-        ));
-        low = taken - at < NEAR && !low;
-        let y = if low { rail - 28.0 } else { rail + 17.0 };
-        let name = format!("PSM{psm}");
-        put(
-            painter,
-            pos2(at, y),
-            Align2::CENTER_CENTER,
-            12.0,
-            colour,
-            &name,
-        );
-        if low {
-            painter.vline(at, y + 7.0..=rail - 9.0, Stroke::new(1.0, palette.grid));
-        }
-        taken = at;
-    }
+    paint_markers(painter, strip, palette, rail, x);
     let stop = x(strip.stop);
     painter.vline(
         stop,
@@ -143,5 +108,50 @@ fn paint(ui: &Ui, area: Rect, strip: &Strip, words: &Bench, palette: &Palette) {
             pos2(nose, rail - 4.0),
         ];
         painter.add(Shape::convex_polygon(body, palette.accent, Stroke::NONE));
+    }
+}
+
+/// From the stop point backwards: the last markers are close to it and to each other.
+fn paint_markers(
+    painter: &Painter,
+    strip: &Strip,
+    palette: &Palette,
+    rail: f32,
+    x: impl Fn(f32) -> f32,
+) {
+    let mut taken = x(strip.stop) + 2.0;
+    let mut low = false;
+    for (psm, share) in [1_u8, 2, 3, 4].into_iter().zip(strip.markers).rev() {
+        let at = x(share);
+        let hit = strip.detected == Some(psm);
+        let colour = if hit { palette.accent } else { palette.quiet };
+        let height = if hit { 9.0 } else { 7.0 };
+        let diamond = vec![
+            pos2(at, rail - height),
+            pos2(at + 5.0, rail),
+            pos2(at, rail + height),
+            pos2(at - 5.0, rail),
+        ];
+        let fill = if hit { colour } else { ground(palette) };
+        painter.add(Shape::convex_polygon(
+            diamond,
+            fill,
+            Stroke::new(1.5, colour),
+        ));
+        low = taken - at < NEAR && !low;
+        let y = if low { rail - 28.0 } else { rail + 17.0 };
+        let name = format!("PSM{psm}");
+        put(
+            painter,
+            pos2(at, y),
+            Align2::CENTER_CENTER,
+            12.0,
+            colour,
+            &name,
+        );
+        if low {
+            painter.vline(at, y + 7.0..=rail - 9.0, Stroke::new(1.0, palette.grid));
+        }
+        taken = at;
     }
 }
