@@ -12,12 +12,12 @@ const ROUNDING_US: i64 = 1;
 
 /// A file's signals at a trace's rows, and the trace with nothing known where the file says nothing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Laid {
+pub struct Aligned {
     /// The stored trace.
     pub trace: TraceData,
     /// The file's signals, at the same rows.
     pub imported: TraceData,
-    /// Names of the file's signals that the trace does not have: nothing is laid beside nothing.
+    /// Names of the file's signals that the trace does not have: they are left out.
     pub unknown: Vec<String>,
     /// Seconds from the trigger to the first and last row both have.
     pub window_s: (f64, f64),
@@ -25,12 +25,12 @@ pub struct Laid {
     pub is_row_by_row: bool,
 }
 
-/// Lays a file's signals at the rows of `trace`, `shift_us` later than they say: at each row stands the last
+/// Aligns a file's signals with the rows of `trace`, `shift_us` later than they say: at each row stands the last
 /// sample that came until then.
 ///
 /// # Errors
 /// They have no time in common, or one signal comes twice.
-pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, Failure> {
+pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Aligned, Failure> {
     let trigger = i64::from(trace.trigger_row.unwrap_or(0));
     let period_us = trace.period_us.max(1);
     // From the file's clock to that of the rows.
@@ -63,7 +63,7 @@ pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, 
         first = first.min(held.rows.start);
         end = end.max(held.rows.end);
         is_row_by_row &= held.is_row_by_row;
-        // Each column goes as soon as it is laid: a large file is in memory once.
+        // Each column goes as soon as it is aligned: a large file is in memory once.
         for (channel, column) in table.channels.into_iter().zip(table.columns) {
             if !names.insert(channel.name.clone()) {
                 return Err(Failure::usage(format!(
@@ -88,7 +88,7 @@ pub fn lay(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Laid, 
         column[end..].fill(f64::NAN);
     }
     let at_s = |row: usize| row_us(row) as f64 / 1e6;
-    Ok(Laid {
+    Ok(Aligned {
         trace,
         imported,
         unknown,
@@ -203,22 +203,25 @@ mod tests {
     }
 
     /// Unknown samples as -1, to be compared.
-    fn laid(import: &Import, shift_us: i64) -> (Vec<f64>, Vec<f64>) {
-        let laid = lay(import.clone(), trace(&[1.0; 6]), shift_us).expect("laid");
+    fn aligned(import: &Import, shift_us: i64) -> (Vec<f64>, Vec<f64>) {
+        let aligned = align(import.clone(), trace(&[1.0; 6]), shift_us).expect("aligned");
         let told = |columns: &[Vec<f64>]| -> Vec<f64> {
             columns[0]
                 .iter()
                 .map(|s| if s.is_nan() { -1.0 } else { *s })
                 .collect()
         };
-        (told(&laid.trace.columns), told(&laid.imported.columns))
+        (
+            told(&aligned.trace.columns),
+            told(&aligned.imported.columns),
+        )
     }
 
     /// Rows are at -100, -50, 0, 50, 100 and 150 ms.
     #[test]
     fn a_row_has_the_last_sample_before_it() {
         let slow = file(&[-50_000, 50_000], &[3.0, 4.0], false);
-        let (ours, theirs) = laid(&slow, 0);
+        let (ours, theirs) = aligned(&slow, 0);
         assert_eq!(theirs, [-1.0, 3.0, 3.0, 4.0, 4.0, -1.0]);
         assert_eq!(ours, [-1.0, 1.0, 1.0, 1.0, 1.0, -1.0]);
         let fast = file(
@@ -226,9 +229,9 @@ mod tests {
             &[1.0, 2.0, 3.0, 4.0, 5.0],
             false,
         );
-        let (_, theirs) = laid(&fast, 0);
+        let (_, theirs) = aligned(&fast, 0);
         assert_eq!(theirs, [-1.0, -1.0, 3.0, 4.0, -1.0, -1.0]);
-        let (_, theirs) = laid(&slow, 50_000);
+        let (_, theirs) = aligned(&slow, 50_000);
         assert_eq!(theirs, [-1.0, -1.0, 3.0, 3.0, 4.0, 4.0]);
     }
 
@@ -236,16 +239,18 @@ mod tests {
     fn times_of_day_are_aligned_with_those_of_the_trace() {
         let rows: Vec<i64> = (0..6).map(|row| 1_000_000 + row * 50_000).collect();
         let import = file(&rows, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true);
-        let laid = lay(import.clone(), trace(&[1.0; 6]), 0).expect("laid");
-        assert_eq!(laid.imported.columns, import.tables[0].columns);
-        assert!(laid.is_row_by_row);
-        assert_eq!(laid.window_s, (-0.1, 0.15));
+        let aligned = align(import.clone(), trace(&[1.0; 6]), 0).expect("aligned");
+        assert_eq!(aligned.imported.columns, import.tables[0].columns);
+        assert!(aligned.is_row_by_row);
+        assert_eq!(aligned.window_s, (-0.1, 0.15));
     }
 
     #[test]
     fn files_without_common_time_are_reported_with_both_spans() {
         let import = file(&[9_000_000, 9_050_000], &[1.0, 2.0], false);
-        let told = lay(import, trace(&[1.0; 6]), 0).expect_err("apart").message;
+        let told = align(import, trace(&[1.0; 6]), 0)
+            .expect_err("apart")
+            .message;
         for word in ["9.000 to 9.050 s", "-0.100 to 0.150 s", "--shift"] {
             assert!(told.contains(word), "{told}");
         }

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 use fault_db::{Channel, ChannelKind};
 use protocol::display_text;
@@ -76,6 +77,13 @@ fn quoted(text: &str) -> Cow<'_, str> {
     } else {
         Cow::Borrowed(text)
     }
+}
+
+/// The name of a CSV file's description.
+pub(super) fn beside(file: &Path) -> PathBuf {
+    let mut name = file.as_os_str().to_owned();
+    name.push("-metadata.json");
+    name.into()
 }
 
 /// The document that stands beside a file of the name `file`.

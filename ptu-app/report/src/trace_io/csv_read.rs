@@ -8,8 +8,7 @@ use fault_db::{Channel, ChannelKind, open_regular_file, read_regular_file};
 use serde_json::Value;
 
 use super::about::About;
-use super::csv::heading;
-use super::export::beside;
+use super::csv::{beside, heading};
 use super::series::{Import, Table, check_size, plain, wrong};
 use ptu_bench::data::LONGEST_FILE;
 use ptu_bench::failure::Failure;

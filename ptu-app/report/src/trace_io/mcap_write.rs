@@ -13,7 +13,7 @@ use mcap::{Compression, McapError, WriteOptions};
 use serde_json::{Map, Value, json};
 
 use super::about::{About, NAME};
-use super::export::Chosen;
+use super::part::Chosen;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
 

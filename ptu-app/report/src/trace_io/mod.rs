@@ -4,7 +4,7 @@
 //!   hour of all signals takes no more memory than a second of one;
 //! * [`About`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
 //! * [`import`]: signals of a CSV or MCAP file, ours or another program's;
-//! * [`lay`]: these signals at the times of a stored trace's rows, to be compared with it.
+//! * [`align()`]: these signals at the times of a stored trace's rows, to be compared with it.
 
 mod about;
 mod align;
@@ -14,9 +14,11 @@ mod export;
 mod mcap_read;
 mod mcap_write;
 mod parquet;
+mod part;
 mod series;
 
 pub use about::About;
-pub use align::{Laid, lay};
-pub use export::{Chosen, Format, Seconds, export};
+pub use align::{Aligned, align};
+pub use export::{Format, export};
+pub use part::{Chosen, Seconds};
 pub use series::{Import, import, is_importable};

@@ -18,7 +18,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::about::NAME;
-use super::export::Chosen;
+use super::part::Chosen;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
 

@@ -12,7 +12,7 @@ use super::plot::lanes;
 use crate::cli::{ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
-use ptu_report::trace_io::{import, is_importable, lay};
+use ptu_report::trace_io::{align, import, is_importable};
 
 /// Names that are told of a file that has none of the trace's signals.
 const SHOWN_NAMES: usize = 10;
@@ -106,14 +106,14 @@ impl DiffArguments {
         file: &Path,
     ) -> Result<Sides, Failure> {
         let import = import(file, &came.channels)?;
-        let laid = lay(import, came, (self.shift * 1e6) as i64)?;
+        let aligned = align(import, came, (self.shift * 1e6) as i64)?;
         // Nothing compared must not look like nothing that differs.
-        if laid.imported.channels.is_empty() {
-            let more = match laid.unknown.len().saturating_sub(SHOWN_NAMES) {
+        if aligned.imported.channels.is_empty() {
+            let more = match aligned.unknown.len().saturating_sub(SHOWN_NAMES) {
                 0 => String::new(),
                 more => format!(" and {more} more"),
             };
-            let shown: Vec<_> = (laid.unknown.iter().take(SHOWN_NAMES))
+            let shown: Vec<_> = (aligned.unknown.iter().take(SHOWN_NAMES))
                 .map(String::as_str)
                 .collect();
             return Err(Failure::usage(format!(
@@ -122,18 +122,18 @@ impl DiffArguments {
                 shown.join(", ")
             )));
         }
-        let rule = if laid.is_row_by_row {
+        let rule = if aligned.is_row_by_row {
             rule_between(store, a, a)?
         } else {
             Rule::wall_clock()
         };
         Ok(Sides {
             name: self.expected.clone(),
-            came: laid.trace,
-            expected: laid.imported,
+            came: aligned.trace,
+            expected: aligned.imported,
             rule,
-            unknown: laid.unknown,
-            window_s: Some(laid.window_s),
+            unknown: aligned.unknown,
+            window_s: Some(aligned.window_s),
         })
     }
 }
