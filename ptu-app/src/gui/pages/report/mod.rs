@@ -2,7 +2,7 @@
 
 mod bar;
 mod file;
-mod paper;
+mod sheet_view;
 
 use std::path::PathBuf;
 
@@ -146,7 +146,7 @@ impl ReportPage {
         self.bar(ui, context);
         ui.separator();
         if let Some(shown) = &self.shown {
-            paper::show(ui, shown.run, &shown.pages);
+            sheet_view::show(ui, shown.run, &shown.pages);
         }
     }
 }

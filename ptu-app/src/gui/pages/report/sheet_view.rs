@@ -58,13 +58,13 @@ pub fn show(ui: &mut Ui, run: Id, pages: &[Page]) {
             let ground = ui.visuals().extreme_bg_color;
             let painter = ui.painter();
             painter.rect(area, 0.0, ground, edge, StrokeKind::Outside);
-            let paper = Paper {
+            let page_area = PageArea {
                 ui,
                 number,
                 at,
                 scale,
             };
-            paper.draw(page, Rangef::new(seen.min / scale, seen.max / scale));
+            page_area.draw(page, Rangef::new(seen.min / scale, seen.max / scale));
         }
     });
 }
@@ -83,14 +83,14 @@ fn keys(ui: &Ui, page: f32) {
     }
 }
 
-struct Paper<'a> {
+struct PageArea<'a> {
     ui: &'a mut Ui,
     number: usize,
     at: Pos2,
     scale: f32,
 }
 
-impl Paper<'_> {
+impl PageArea<'_> {
     /// Draws the items between these heights of the page.
     fn draw(mut self, page: &Page, seen: Rangef) {
         for (place, item) in page.iter().enumerate() {
