@@ -278,7 +278,7 @@ pub enum StoreError {
     },
     /// The server does not answer, or no longer.
     #[error("{} is away ({doing}: {reason}); look at the network and the server, then try again (nothing is lost: the laptop's file has everything)", .path.display())]
-    ServerAway {
+    ServerUnreachable {
         /// The server.
         path: PathBuf,
         /// What was being done.

@@ -34,7 +34,7 @@ pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error
         SqlState::ADMIN_SHUTDOWN
         | SqlState::CRASH_SHUTDOWN
         | SqlState::CANNOT_CONNECT_NOW
-        | SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => StoreError::ServerAway {
+        | SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => StoreError::ServerUnreachable {
             path,
             doing,
             reason,
@@ -63,7 +63,7 @@ fn without_message(
 ) -> StoreError {
     if source.is_closed() {
         let reason = "the connection is lost".to_owned();
-        return StoreError::ServerAway {
+        return StoreError::ServerUnreachable {
             path,
             doing,
             reason,
@@ -109,7 +109,7 @@ fn without_message(
         | std::io::ErrorKind::BrokenPipe => "the connection is lost".to_owned(),
         _ => network.to_string(),
     };
-    StoreError::ServerAway {
+    StoreError::ServerUnreachable {
         path,
         doing,
         reason,

@@ -151,7 +151,7 @@ fn reach(
             // Nobody receives it if it took too long.
             let _ = done.send(connected);
         });
-    let away = |reason: String| StoreError::ServerAway {
+    let away = |reason: String| StoreError::ServerUnreachable {
         path: path.to_path_buf(),
         doing: DOING,
         reason,

@@ -150,7 +150,7 @@ impl Case<'_> {
         std::fs::copy(self.history.path(), &file).expect("a copy");
         let wire = Wire::to(self.cluster.port(), when, || {});
         let cut = sync(&file, &self.address_by(&address, &wire)).expect_err("a wire that is cut");
-        assert!(matches!(cut, StoreError::ServerAway { .. }), "{cut}");
+        assert!(matches!(cut, StoreError::ServerUnreachable { .. }), "{cut}");
         wire.commits();
         self.check(&format!("wire cut, {when:?}"), &address, &file);
     }
@@ -217,7 +217,10 @@ fn a_sync_continues_after_the_server_was_killed_at_any_commit() {
             let victim = Arc::clone(&cluster);
             let wire = Wire::to(cluster.port(), when, move || victim.kill());
             let away = sync(&file, &case.address_by(&address, &wire)).expect_err("no server");
-            assert!(matches!(away, StoreError::ServerAway { .. }), "{away}");
+            assert!(
+                matches!(away, StoreError::ServerUnreachable { .. }),
+                "{away}"
+            );
             wire.commits();
             let gone = sync(&file, &address).expect_err("still no server");
             assert!(gone.to_string().contains("nothing listens"), "{gone}");

@@ -26,7 +26,10 @@ fn an_unreachable_server_is_reported_with_the_reason() {
     ] {
         let begun = Instant::now();
         let away = connect(address).expect_err(address);
-        assert!(matches!(away, StoreError::ServerAway { .. }), "{away:?}");
+        assert!(
+            matches!(away, StoreError::ServerUnreachable { .. }),
+            "{away:?}"
+        );
         let said = format!("{away} {away:?}");
         assert!(said.contains(words), "{said}");
         assert!(said.contains("postgres://ptu@"), "{said}");
