@@ -69,8 +69,8 @@ pub use open_options::{OpenOptions, Synchronous};
 pub use query::{
     DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
     Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RunDetail, RunFault, RunFilter,
-    RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery, StepDetail,
-    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
+    RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery, TraceHead,
+    TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
 };
 pub use record::{
     FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,

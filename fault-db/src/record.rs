@@ -90,7 +90,7 @@ pub struct RunEnd {
 }
 
 /// A finished step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepRecord {
     /// Place in the run; must rise from step to step.
     pub index: u32,

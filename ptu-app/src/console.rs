@@ -230,7 +230,7 @@ fn procedures(run: &RunDetail) -> Table {
 
 /// The verdict of a procedure. One that was broken off is an error, as its run is; in any other run a check
 /// that failed is said before one that could not be made.
-fn worst(steps: &[fault_db::StepDetail], run: Option<fault_db::Verdict>) -> &'static str {
+fn worst(steps: &[fault_db::StepRecord], run: Option<fault_db::Verdict>) -> &'static str {
     use fault_db::Verdict::{Aborted, Error, Failed, Passed};
     let order = match run {
         Some(Error) => [Aborted, Error, Failed, Passed],

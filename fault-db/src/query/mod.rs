@@ -19,7 +19,7 @@ pub use daily::DailyCount;
 pub use fault_filter::{FaultFilter, code_number};
 pub use faults::{FaultDetail, FaultEvent, FaultSummary, Occurrence};
 pub use history::{LOG_SOURCE, PartHistory, PartRepair, SAME_ENTRY_US};
-pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary, StepDetail};
+pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary};
 pub use signs::RunOccurrence;
 pub use sql::{QueryBounds, QueryResult, SqlValue};
 pub use stats::{FaultStat, StatKey, StatQuery};

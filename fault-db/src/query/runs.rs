@@ -9,7 +9,7 @@ use crate::backend::{Row, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::id::Id;
-use crate::record::{MeasurementRecord, ScriptRecord, Verdict};
+use crate::record::{MeasurementRecord, ScriptRecord, StepRecord, Verdict};
 use crate::run_notes::RunNote;
 use crate::seal::{RunSealed, sealed_as};
 use crate::store::Store;
@@ -103,36 +103,13 @@ pub struct RunDetail {
     /// The procedure files it used.
     pub scripts: Vec<ScriptRecord>,
     /// Its steps in order.
-    pub steps: Vec<StepDetail>,
+    pub steps: Vec<StepRecord>,
     /// The faults seen in it, in order of their first occurrence.
     pub faults: Vec<RunFault>,
     /// Notes on it, oldest first.
     pub notes: Vec<RunNote>,
     /// Its seal; `None` before its end.
     pub seal: Option<RunSealed>,
-}
-
-/// A step as recorded.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepDetail {
-    /// Place in the run.
-    pub index: u32,
-    /// Its procedure.
-    pub procedure: String,
-    /// Its name.
-    pub name: String,
-    /// The step's verdict.
-    pub verdict: Verdict,
-    /// Bench time at its start.
-    pub started_bench_us: i64,
-    /// Bench time it took.
-    pub bench_time_us: i64,
-    /// The reason of the verdict.
-    pub message: String,
-    /// Line of the script.
-    pub script_line: Option<u32>,
-    /// Its measurements.
-    pub measurements: Vec<MeasurementRecord>,
 }
 
 /// A fault as seen by one run: counts and times are those of the run alone.
@@ -231,7 +208,7 @@ impl Store {
         )
     }
 
-    fn steps(&self, run: i64) -> SqlResult<Vec<StepDetail>> {
+    fn steps(&self, run: i64) -> SqlResult<Vec<StepRecord>> {
         let mut measurements = self.measurements(run)?;
         self.backend().select(
             "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
@@ -239,7 +216,7 @@ impl Store {
             &values![run],
             |row| {
                 let index = row.get(0)?;
-                Ok(StepDetail {
+                Ok(StepRecord {
                     index,
                     procedure: row.get(1)?,
                     name: row.get(2)?,

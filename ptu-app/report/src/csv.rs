@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-use fault_db::{MeasurementRecord, RunDetail, StepDetail};
+use fault_db::{MeasurementRecord, RunDetail, StepRecord};
 use protocol::display_text;
 
 use ptu_bench::clock::rfc3339;
@@ -49,7 +49,7 @@ pub fn csv(run: &RunDetail) -> String {
     text
 }
 
-fn cells(run: &RunDetail, step: &StepDetail, measured: Option<&MeasurementRecord>) -> [Cell; 15] {
+fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 15] {
     let text = |text: &str| Cell::Text(text.to_owned());
     let number = |value: Option<f64>| {
         Cell::Number(value.map_or_else(String::new, |value| value.to_string()))

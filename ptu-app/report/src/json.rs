@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepDetail};
+use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepRecord};
 use protocol::display_text;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -54,7 +54,7 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
     })
 }
 
-fn step_json(step: &StepDetail) -> Value {
+fn step_json(step: &StepRecord) -> Value {
     json!({
         "procedure": step.procedure,
         "name": step.name,

@@ -1,6 +1,6 @@
 //! JUnit XML, for tools that collect test results.
 
-use fault_db::{RunDetail, StepDetail, Verdict};
+use fault_db::{RunDetail, StepRecord, Verdict};
 use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -35,7 +35,7 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
         .map_err(|error| Failure::bench(format!("cannot make the JUnit report: {error}")))
 }
 
-fn case(step: &StepDetail) -> TestCase {
+fn case(step: &StepRecord) -> TestCase {
     let status = match step.verdict {
         Verdict::Passed => TestCaseStatus::success(),
         Verdict::Skipped => TestCaseStatus::skipped(),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use btu_rig::procedure::{RunEvent, StepResult};
 use diagnosis::{CheckName, Observation, Sign, StepSeen, is_observed};
-use fault_db::{RunDetail, RunOccurrence, StepDetail};
+use fault_db::{RunDetail, RunOccurrence, StepRecord};
 use protocol::lru;
 
 use super::{CHECK_FAILED, FaultSeen, SessionEvent};
@@ -93,7 +93,7 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
             fault: occurrence.code_name.clone(),
             lru: lru::from_stored(&occurrence.lru),
         };
-        let after = |step: &StepDetail| match occurrence.step_index {
+        let after = |step: &StepRecord| match occurrence.step_index {
             Some(index) => step.index >= index,
             None => step.started_bench_us >= occurrence.bench_us,
         };
@@ -107,7 +107,7 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
     seen
 }
 
-fn of_step(step: &StepDetail) -> Option<StepSeen> {
+fn of_step(step: &StepRecord) -> Option<StepSeen> {
     let result = Some(from_stored(step.verdict)).filter(|verdict| is_observed(*verdict))?;
     let values = step.measurements.iter();
     Some(StepSeen {

@@ -1,7 +1,7 @@
 //! What a test sheet says, block after block: verdict, notes and failures first, then all that was run,
 //! with what and by whom.
 
-use fault_db::{FaultState, RunState, RunSummary, StepDetail, Verdict};
+use fault_db::{FaultState, RunState, RunSummary, StepRecord, Verdict};
 use protocol::event::Event;
 
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
@@ -124,7 +124,7 @@ fn failures(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut drawn = Vec::new();
     for step in failed() {
         blocks.push(Block::Subheading(step.procedure.clone(), String::new()));
-        let this: &[StepDetail] = std::slice::from_ref(step);
+        let this: &[StepRecord] = std::slice::from_ref(step);
         blocks.push(Block::Table(steps::table(this, words)));
         for trace in sheet
             .traces

@@ -1,6 +1,6 @@
 //! Steps and their measurements as tables.
 
-use fault_db::{MeasurementRecord, StepDetail, Verdict};
+use fault_db::{MeasurementRecord, StepRecord, Verdict};
 
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use crate::limits::short;
@@ -10,7 +10,7 @@ use crate::words::Words;
 const MEASURED: usize = 5;
 
 /// Steps, each with its message and measurements below it.
-pub fn table(steps: &[StepDetail], words: &Words) -> Table {
+pub fn table(steps: &[StepRecord], words: &Words) -> Table {
     let (common, report) = (&words.common, &words.report);
     Table {
         columns: vec![
@@ -27,7 +27,7 @@ pub fn table(steps: &[StepDetail], words: &Words) -> Table {
     }
 }
 
-fn rows(step: &StepDetail, words: &Words) -> Vec<Row> {
+fn rows(step: &StepRecord, words: &Words) -> Vec<Row> {
     let plain = |text: String| Cell::Text(Tone::Plain, text);
     let mut rows = vec![Row {
         kind: RowKind::Head,
