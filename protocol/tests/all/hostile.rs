@@ -125,3 +125,19 @@ fn a_flood_is_bounded() {
         assert_eq!(decoder.pending_len(), 0);
     }
 }
+
+/// What arrived before a restart belongs to no frame after it, and each of its bytes is counted once.
+#[test]
+fn a_restart_counts_every_byte_that_it_forgets() {
+    let mut decoder = Decoder::new();
+    decoder.push(&[0x7E, 1, 2, 3]);
+    assert!(decoder.next_frame().is_none());
+    decoder.push(&[4, 5]);
+    assert_eq!(decoder.pending_len(), 2);
+    decoder.restart();
+    assert_eq!(decoder.garbage(), 5);
+    assert_eq!(decoder.pending_len(), 0);
+    decoder.push(&[6, 7, 0x7E]);
+    assert!(decoder.next_frame().is_none());
+    assert_eq!(decoder.garbage(), 7);
+}
