@@ -314,7 +314,13 @@ fn a_restarted_tester_is_heard_after_silence() {
     assert!(at(last + RESYNC, &mut restarted));
     assert!(at(last + RESYNC, &mut restarted));
     assert_eq!(unit.last_heard(Channel::Ptu), Some(last + RESYNC));
-    assert_eq!(unit.counters().rejected_on(Channel::Ptu), 2);
+    let counters = unit.counters();
+    assert_eq!(counters.rejected_on(Channel::Ptu), 2);
+    let refused = |channel| counters.rejected_for(Reject::Sequence, channel);
+    assert_eq!(
+        [Some(Channel::Ptu), Some(Channel::Io), None].map(refused),
+        [2, 0, 0]
+    );
 }
 
 #[test]
