@@ -33,7 +33,7 @@ struct Asked {
     now_us: i64,
 }
 
-const QUESTIONS: [Question; 14] = [
+const QUESTIONS: [Question; 26] = [
     question("unit: last 50 faults", |store, asked| {
         list(
             store,
@@ -114,6 +114,143 @@ const QUESTIONS: [Question; 14] = [
             },
         )
     }),
+    question("fleet: a year, critical, by part", |store, asked| {
+        filtered(
+            store,
+            asked,
+            StatKey::Lru,
+            FaultFilter {
+                severity: Some("critical".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: a year, critical, by unit", |store, asked| {
+        filtered(
+            store,
+            asked,
+            StatKey::Unit,
+            FaultFilter {
+                severity: Some("critical".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: a year, open, by code", |store, asked| {
+        filtered(
+            store,
+            asked,
+            StatKey::Code,
+            FaultFilter {
+                states: vec![FaultState::Open],
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: a year, closed, by line", |store, asked| {
+        filtered(
+            store,
+            asked,
+            StatKey::Line,
+            FaultFilter {
+                states: vec![FaultState::Closed],
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: critical by part", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Lru,
+            FaultFilter {
+                severity: Some("critical".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: minor by unit", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Unit,
+            FaultFilter {
+                severity: Some("minor".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: open by code", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Code,
+            FaultFilter {
+                states: vec![FaultState::Open],
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: closed by line", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Line,
+            FaultFilter {
+                states: vec![FaultState::Closed],
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: atp/overspeed by code", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Code,
+            FaultFilter {
+                procedure: Some("atp/overspeed".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: eb_relay by unit", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Unit,
+            FaultFilter {
+                lru: Some("eb_relay".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question("fleet: 교체 in a note, by part", |store, asked| {
+        filtered_whole(
+            store,
+            asked,
+            StatKey::Lru,
+            FaultFilter {
+                note: Some("교체".into()),
+                ..FaultFilter::default()
+            },
+        )
+    }),
+    question(
+        "fleet: closed, minor, on a line, by part",
+        |store, asked| {
+            filtered_whole(
+                store,
+                asked,
+                StatKey::Lru,
+                FaultFilter {
+                    states: vec![FaultState::Closed],
+                    severity: Some("minor".into()),
+                    line: Some("line5".into()),
+                    ..FaultFilter::default()
+                },
+            )
+        },
+    ),
 ];
 
 const fn question(
@@ -142,6 +279,37 @@ fn stats(
             until_us: Some((asked.since_us + YEAR_US).min(asked.now_us)),
             ..FaultFilter::default()
         },
+        now_us: asked.now_us,
+        back_within_days: 30,
+    };
+    Ok(store.stats(&query)?.len())
+}
+
+/// Counts with a filter, in a year.
+fn filtered(
+    store: &Store,
+    asked: &Asked,
+    by: StatKey,
+    filter: FaultFilter,
+) -> Result<usize, StoreError> {
+    let filter = FaultFilter {
+        since_us: Some(asked.since_us),
+        until_us: Some((asked.since_us + YEAR_US).min(asked.now_us)),
+        ..filter
+    };
+    filtered_whole(store, asked, by, filter)
+}
+
+/// Counts with a filter, in the whole history.
+fn filtered_whole(
+    store: &Store,
+    asked: &Asked,
+    by: StatKey,
+    filter: FaultFilter,
+) -> Result<usize, StoreError> {
+    let query = StatQuery {
+        by,
+        filter,
         now_us: asked.now_us,
         back_within_days: 30,
     };

@@ -13,6 +13,7 @@ use std::collections::BTreeSet;
 
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
+use crate::packed::fill_empty_blocks;
 use crate::recurrence::{HighWaterMark, reopen_recurred};
 
 /// Recomputes the derived columns of a fault's row from its occurrences and events.
@@ -36,6 +37,18 @@ fn recompute_faults(backend: &Backend, faults: &[i64]) -> SqlResult<()> {
 /// Brings faults that got rows from elsewhere to one state: derived columns, duplicates, and, unless the
 /// sender has done it, recurrences. The faults are named by an id that is or was theirs.
 pub(crate) fn settle(
+    backend: &Backend,
+    touched: &BTreeSet<Id>,
+    judge: Option<HighWaterMark>,
+) -> SqlResult<()> {
+    settle_touched(backend, touched, judge)?;
+    match backend {
+        Backend::File(_) => fill_empty_blocks(backend),
+        Backend::Server(_) => Ok(()),
+    }
+}
+
+fn settle_touched(
     backend: &Backend,
     touched: &BTreeSet<Id>,
     judge: Option<HighWaterMark>,

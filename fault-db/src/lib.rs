@@ -36,6 +36,7 @@ pub mod limits;
 mod lookup;
 mod maintenance;
 mod open_options;
+mod packed;
 mod query;
 mod record;
 mod recording;

@@ -14,6 +14,7 @@ use crate::error::StoreError;
 use crate::id::Id;
 use crate::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
 use crate::limits;
+use crate::packed::fill_empty_blocks;
 use crate::query::LOG_SOURCE;
 use crate::record::{FaultRecord, RunEnd, RunRecord, StepRecord};
 use crate::seal;
@@ -249,7 +250,8 @@ impl<'a> RunWriter<'a> {
                 }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
-            store.verify_proven((unit, run, id), known_events, end)
+            store.verify_proven((unit, run, id), known_events, end)?;
+            fill_empty_blocks(store.backend()).map_err(|error| store.failed(DOING, error))
         })?;
         self.waiting.clear();
         self.finished = true;

@@ -19,10 +19,17 @@ const STEPS: &[&str] = &[
         include_str!("schema/words.sql")
     ),
     include_str!("schema/0005.sql"),
+    concat!(
+        include_str!("schema/0006.sql"),
+        include_str!("schema/packed.sql")
+    ),
 ];
 
 /// Recomputes the tables of counts.
-pub(crate) const COUNTS: &str = include_str!("schema/counts.sql");
+pub(crate) const COUNTS: &str = concat!(
+    include_str!("schema/counts.sql"),
+    include_str!("schema/packed.sql")
+);
 
 /// Rebuilds the full-text index of notes.
 pub(crate) const WORDS: &str = include_str!("schema/words.sql");
@@ -84,7 +91,8 @@ mod tests {
         ))
         .expect("an old file");
         sql_functions::register(&conn).expect("functions");
-        for sql in [include_str!("schema/0004.sql"), COUNTS, WORDS] {
+        let counts = include_str!("schema/counts.sql");
+        for sql in [include_str!("schema/0004.sql"), counts, WORDS] {
             conn.execute_batch(sql).expect("under way");
         }
         conn.execute_batch("UPDATE run SET train = 'T' || seq; PRAGMA user_version = 4")

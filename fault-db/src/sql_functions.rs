@@ -6,6 +6,7 @@ use rusqlite::functions::{Aggregate, Context, FunctionFlags};
 use rusqlite::types::FromSqlError;
 
 use crate::full_text::{Search, words};
+use crate::packed::PackRows;
 use crate::record::{RepairRecord, part_name};
 use crate::server::derived_columns;
 use crate::units;
@@ -24,6 +25,7 @@ pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
         Ok(units::with(context.get_raw(0).as_blob()?, context.get(1)?))
     })?;
     conn.create_aggregate_function("unit_set", 1, flags, UnitSet)?;
+    conn.create_aggregate_function("packed_rows", -1, flags, PackRows)?;
     conn.create_scalar_function("part_of", 1, flags, |context| {
         Ok(part_of(context.get_raw(0).as_str()?))
     })?;

@@ -1,10 +1,12 @@
 //! One filter on faults, for lists, counts and repairs.
 
+use std::collections::BTreeSet;
+
 use super::filter::Conditions;
 use super::note_filter::{
     faults_with_note, faults_with_run_note, has_note, has_run_note, repaired_with,
 };
-use crate::backend::{Backend, values};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::full_text::Search;
@@ -287,6 +289,30 @@ impl Resolved<'_> {
                 "EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = {fault} AND {asked})"
             ),
         });
+    }
+
+    /// The faults with the words and the part's serial number asked for; `None` if neither is asked for.
+    pub fn faults_by_text(&self, backend: &Backend) -> SqlResult<Option<BTreeSet<i64>>> {
+        let FaultFilter { serial, note, .. } = self.filter;
+        if serial.is_none() && note.is_none() {
+            return Ok(None);
+        }
+        let filter = FaultFilter {
+            serial: serial.clone(),
+            note: note.clone(),
+            ..FaultFilter::default()
+        };
+        let only = Resolved {
+            filter: &filter,
+            unit: None,
+            codes: None,
+            lrus: None,
+            ..self.clone()
+        };
+        let all = only.conditions(backend, FilteredTable::Faults, None);
+        let sql = format!("SELECT x.seq FROM fault x {}", all.sql());
+        let found = backend.select(&sql, all.values(), |row| row.get(0))?;
+        Ok(Some(found.into_iter().collect()))
     }
 
     /// The conditions with the span of time, on the time column `at` of `x`.

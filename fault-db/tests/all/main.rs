@@ -7,6 +7,7 @@ mod asking;
 mod care;
 mod checking;
 mod counting;
+mod counting_filters;
 mod daily;
 mod dictionaries;
 mod foreign_files;

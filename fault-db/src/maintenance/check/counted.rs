@@ -15,16 +15,17 @@ use crate::seal::{RECOUNTED, RecountedPayload, append_statement};
 use crate::store::Store;
 
 /// The tables of counts, and the columns to index for a join with itself.
-const TABLES: [(&str, Option<&str>); 4] = [
+const TABLES: [(&str, Option<&str>); 5] = [
     ("repair", None),
     ("tally", None),
     ("measured_day", Some("name, day")),
     ("measured_month", Some("name, month, unit")),
+    ("packed", Some("block")),
 ];
 
 /// Queries that count differing rows. Floating-point sums depend on the order of summation; that much
 /// difference is allowed, relative to the sum of squares.
-const DIFFERENCES: [(&str, &str); 6] = [
+const DIFFERENCES: [(&str, &str); 7] = [
     (
         "rows of the table of repairs",
         "SELECT count(DISTINCT event) FROM (
@@ -54,6 +55,12 @@ const DIFFERENCES: [(&str, &str); 6] = [
             OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx
             OR (a.t - b.t) * (a.t - b.t) > 1e-18 * b.n * b.tt OR abs(a.tt - b.tt) > 1e-9 * b.tt
             OR (a.tx - b.tx) * (a.tx - b.tx) > 1e-18 * b.tt * b.xx",
+    ),
+    (
+        "blocks of packed faults",
+        "SELECT count(*) FROM main.packed a FULL JOIN temp.packed b USING (block)
+         WHERE a.block IS NULL OR a.faults IS NOT NULL AND (a.faults, a.occurrences, a.repairs)
+            IS NOT (b.faults, b.occurrences, b.repairs)",
     ),
     (
         "notes on faults that a search does not find, or finds and are not there",

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::backend::Field;
-use crate::sql_functions::{DAY_US, utc_day, utc_month};
+use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
 use crate::units;
 
 /// The key of a count: a code or unit by its number, a part or line by its name; empty for all faults.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Key {
     Number(i64),
     Text(String),
@@ -143,6 +143,9 @@ pub(crate) struct Bins {
     last: i64,
 }
 
+/// Most days of a table of bins: a hundred years.
+const MOST_DAYS_OF_TABLE: i64 = 36_600;
+
 /// Longest span shown by day, days.
 const MOST_DAYS: i64 = 62;
 
@@ -166,6 +169,20 @@ impl Bins {
     /// The bin of a day or month, by its number.
     pub fn place(&self, number: i64) -> usize {
         usize::try_from((number - self.first).max(0)).unwrap_or(0)
+    }
+
+    /// Number of the first day in the first bin, and the bins of the days from then on.
+    pub fn of_days(&self) -> (i64, Vec<usize>) {
+        let (first, last) = match self.by_day {
+            true => (self.first, self.last),
+            false => {
+                let first_of = |month| utc_day(month_start_us(month));
+                (first_of(self.first), first_of(self.last + 1) - 1)
+            }
+        };
+        let last = last.min(first + MOST_DAYS_OF_TABLE);
+        let bins = (first..=last).map(|day| self.place_at(day * DAY_US));
+        (first, bins.collect())
     }
 
     /// The bin of a time.

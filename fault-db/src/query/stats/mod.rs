@@ -1,23 +1,25 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
-//! A file answers from the counts that its triggers maintain if the filter allows it; the incomplete days
-//! at both ends of the span, and every other filter, are counted row by row. A server always counts row by
-//! row.
+//! A file answers from the counts that its triggers maintain if the filter allows it, with the incomplete days
+//! at both ends of the span counted row by row; other filters from the packed faults, but those on one unit,
+//! train or run, which select few rows, row by row. A server always counts row by row.
 
 mod by_row;
 mod counts;
 mod exposure;
+mod from_packed;
 mod from_tally;
 mod repairs;
 
 use serde::Serialize;
 
 pub(crate) use counts::Bins;
-use counts::{Counts, Key};
+use counts::{Counted, Counts, Key};
 use exposure::Exposure;
+use from_tally::TallyPart;
 
 use super::fault_filter::{FaultFilter, FilteredTable, Resolved};
-use crate::backend::{Backend, values};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::store::Store;
 
@@ -103,18 +105,16 @@ impl Store {
             Backend::File(_) => from_tally::part_for(&resolved, query.by),
             Backend::Server(_) => None,
         };
-        let counted = match &kept {
-            Some(kept) => from_tally::count(self.backend(), kept, &query.filter, &bins),
-            None => by_row::count(self.backend(), &resolved, query.by, &bins),
+        let packed = match &kept {
+            None => from_packed::count(self.backend(), &resolved, query, &bins).map_err(failed)?,
+            Some(_) => None,
         };
-        let mut counted = counted.map_err(failed)?;
-        counted.retain(|_, counts| !counts.is_nothing());
-        self.add_not_closed(&resolved, query.by, &mut counted)
-            .map_err(failed)?;
-        if kept.is_none() || query.back_within_days != repairs::KEPT_DAYS {
-            repairs::add(self.backend(), &resolved, query, &mut counted).map_err(failed)?;
-        }
-        repairs::add_young(self.backend(), &resolved, query, &mut counted).map_err(failed)?;
+        let counted = match packed {
+            Some(counted) => counted,
+            None => self
+                .count_rows(&resolved, query, &bins, kept.as_ref())
+                .map_err(failed)?,
+        };
         let names = Names::read(self, query.by)?;
         let mut stats: Vec<FaultStat> = counted
             .into_iter()
@@ -128,12 +128,34 @@ impl Store {
         Ok(stats)
     }
 
+    /// Counts from the tables of counts as far as they answer, else row by row.
+    fn count_rows(
+        &self,
+        resolved: &Resolved<'_>,
+        query: &StatQuery,
+        bins: &Bins,
+        kept: Option<&TallyPart>,
+    ) -> SqlResult<Counted> {
+        let backend = self.backend();
+        let mut counted = match kept {
+            Some(kept) => from_tally::count(backend, kept, &query.filter, bins)?,
+            None => by_row::count(backend, resolved, query.by, bins)?,
+        };
+        counted.retain(|_, counts| !counts.is_nothing());
+        self.add_not_closed(resolved, query.by, &mut counted)?;
+        if kept.is_none() || query.back_within_days != repairs::KEPT_DAYS {
+            repairs::add(backend, resolved, query, &mut counted)?;
+        }
+        repairs::add_young(backend, resolved, query, &mut counted)?;
+        Ok(counted)
+    }
+
     fn add_not_closed(
         &self,
         resolved: &Resolved<'_>,
         by: StatKey,
-        counted: &mut counts::Counted,
-    ) -> crate::backend::SqlResult<()> {
+        counted: &mut Counted,
+    ) -> SqlResult<()> {
         let mut conditions =
             resolved.conditions_at(self.backend(), FilteredTable::Faults, "last_at_us");
         conditions.require("x.state <> 'closed'");

@@ -88,6 +88,6 @@ pub(super) fn add_young(
     })
 }
 
-fn within_us(query: &StatQuery) -> i64 {
+pub(super) fn within_us(query: &StatQuery) -> i64 {
     i64::from(query.back_within_days) * DAY_US
 }
