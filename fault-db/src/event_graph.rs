@@ -42,10 +42,7 @@ pub(crate) fn settle(
     judge: Option<HighWaterMark>,
 ) -> SqlResult<()> {
     settle_touched(backend, touched, judge)?;
-    match backend {
-        Backend::File(_) => fill_empty_blocks(backend),
-        Backend::Server(_) => Ok(()),
-    }
+    fill_empty_blocks(backend)
 }
 
 fn settle_touched(

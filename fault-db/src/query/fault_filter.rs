@@ -1,12 +1,12 @@
 //! One filter on faults, for lists, counts and repairs.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 
 use super::filter::Conditions;
 use super::note_filter::{
     faults_with_note, faults_with_run_note, has_note, has_run_note, repaired_with,
 };
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, Value, values};
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::full_text::Search;
@@ -291,28 +291,40 @@ impl Resolved<'_> {
         });
     }
 
-    /// The faults with the words and the part's serial number asked for; `None` if neither is asked for.
-    pub fn faults_by_text(&self, backend: &Backend) -> SqlResult<Option<BTreeSet<i64>>> {
-        let FaultFilter { serial, note, .. } = self.filter;
-        if serial.is_none() && note.is_none() {
+    /// The faults of a file with the words and the part's serial number asked for; `None` if neither is asked
+    /// for.
+    pub fn faults_by_text(&self, backend: &Backend) -> SqlResult<Option<HashSet<i64>>> {
+        let mut found = None;
+        if let Some(search) = &self.search {
+            let mut all = Conditions::default();
+            let of_faults = faults_with_note(backend, search, &mut all);
+            let of_runs = faults_with_run_note(backend, search, &mut all);
+            let sql = format!("{of_faults} UNION ALL {of_runs}");
+            found = Some(numbers(backend, &sql, all.values())?);
+        }
+        if let Some(serial) = &self.filter.serial {
+            let mut all = Conditions::default();
+            let sql = repaired_with(backend, serial, &mut all);
+            let mut repaired = numbers(backend, &sql, all.values())?;
+            if let Some(found) = &found {
+                repaired.retain(|fault| found.contains(fault));
+            }
+            found = Some(repaired);
+        }
+        Ok(found)
+    }
+
+    /// The runs of the train and the one run asked for; `None` if neither is asked for.
+    pub fn runs(&self, backend: &Backend) -> SqlResult<Option<HashSet<i64>>> {
+        let FaultFilter { train, run, .. } = self.filter;
+        if train.is_none() && run.is_none() {
             return Ok(None);
         }
-        let filter = FaultFilter {
-            serial: serial.clone(),
-            note: note.clone(),
-            ..FaultFilter::default()
-        };
-        let only = Resolved {
-            filter: &filter,
-            unit: None,
-            codes: None,
-            lrus: None,
-            ..self.clone()
-        };
-        let all = only.conditions(backend, FilteredTable::Faults, None);
-        let sql = format!("SELECT x.seq FROM fault x {}", all.sql());
-        let found = backend.select(&sql, all.values(), |row| row.get(0))?;
-        Ok(Some(found.into_iter().collect()))
+        let mut all = Conditions::default();
+        all.add("r.train = ? AND r.train <> ''", train.clone());
+        all.add("r.id = ?", *run);
+        let sql = format!("SELECT r.seq FROM run r {}", all.sql());
+        Ok(Some(numbers(backend, &sql, all.values())?))
     }
 
     /// The conditions with the span of time, on the time column `at` of `x`.
@@ -344,6 +356,11 @@ impl Resolved<'_> {
         all.add("x.first_at_us < ?", until_us);
         all
     }
+}
+
+fn numbers(backend: &Backend, sql: &str, values: &[Value<'_>]) -> SqlResult<HashSet<i64>> {
+    let found = backend.select(sql, values, |row| row.get(0))?;
+    Ok(found.into_iter().collect())
 }
 
 /// Start and end, µs.

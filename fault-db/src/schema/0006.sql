@@ -1,6 +1,7 @@
 -- Sixth schema: faults with their occurrences and repairs packed by column, for counts with any filter. A row holds
 -- the 32 faults whose seq / 32 it names. It follows from other rows: triggers empty it when one of them changes, whoever
--- changes it. The end of a run and of an import fills what is empty; a reader packs what is empty itself.
+-- changes it. The end of a run and of an import fills what is empty if it is more than a few rows; a reader packs what
+-- is empty itself.
 CREATE TABLE packed(
   block INTEGER PRIMARY KEY,
   faults BLOB,                          -- NULL: empty, as are the other two

@@ -5,7 +5,7 @@ INSERT INTO packed(block, faults, occurrences, repairs)
     repairs), (SELECT packed_rows(1) WHERE false), (SELECT packed_rows(1) WHERE false)
   FROM fault GROUP BY 1;
 UPDATE packed SET occurrences = known.rows FROM
-  (SELECT o.fault >> 5 AS of, packed_rows(o.fault, o.at_us, o.line, s.procedure) AS rows
+  (SELECT o.fault >> 5 AS of, packed_rows(o.fault, o.at_us, o.line, s.procedure, o.run) AS rows
    FROM fault_occurrence o LEFT JOIN step s ON s.run = o.run AND s.step_index = o.step_index GROUP BY 1) AS known
   WHERE packed.block = known.of;
 UPDATE packed SET repairs = known.rows FROM

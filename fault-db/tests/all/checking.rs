@@ -160,6 +160,12 @@ fn derived_rows_are_checked_and_can_be_rebuilt() {
         ),
         ("DELETE FROM tally", "tally", "counts by day or month"),
         (
+            "UPDATE packed SET faults = x'', occurrences = x'', repairs = x''",
+            "tally",
+            "1 blocks of packed faults",
+        ),
+        ("DELETE FROM packed", "tally", "1 blocks of packed faults"),
+        (
             "UPDATE repair SET opened_at_us = 5",
             "tally",
             "1 rows of the table of repairs",

@@ -1,18 +1,22 @@
-//! Counts with any filter, compared with those of each unit, which are counted row by row.
+//! Counts with any filter, compared with plain SQL on the rows.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use crate::common::{Random, T0_US, end, fault, ids, open, run_record, step};
 use fault_db::{
     FaultFilter, FaultStat, FaultState, OpenOptions, RepairRecord, RunRecord, RunWriter, StatKey,
     StatQuery, Store, Verdict,
 };
+use rusqlite::Connection;
 use tempfile::tempdir;
 
 const DAY_US: i64 = 86_400_000_000;
-const DAYS: i64 = 150;
+const DAYS: i64 = 100;
 const UNITS: u64 = 5;
 const PROCEDURES: [&str; 3] = ["atp/overspeed", "twc/exchange", "door/interlocks"];
 
-/// Five months of units on two lines: faults of three severities, seen in three procedures or in none,
+/// A hundred days of units on two lines: faults of three severities, seen in three procedures or in none,
 /// repaired, noted, closed, and what happened to some after the last run.
 fn history(store: &Store, random: &mut Random) {
     for day in 0..DAYS {
@@ -20,6 +24,7 @@ fn history(store: &Store, random: &mut Random) {
         let record = RunRecord {
             started_at_us: at_us,
             line: format!("line-{}", random.next() % 2),
+            train: format!("T{}", random.next() % 2),
             ..run_record(&format!("ATC-{}", random.next() % UNITS))
         };
         let mut writer = RunWriter::begin(store, &record).expect("begun");
@@ -73,126 +78,251 @@ fn handle(store: &Store, id: fault_db::Id, at_us: i64, random: &mut Random) {
     done.expect("people may");
 }
 
-fn filters() -> Vec<FaultFilter> {
+/// A filter, and what it selects, in SQL on a fault `f`, and on an occurrence `o` with its run `r` and step `s`.
+type Case = (FaultFilter, &'static str, &'static str);
+
+/// Filters on the properties of faults.
+fn of_faults() -> Vec<Case> {
     let any = FaultFilter::default;
     let text = |text: &str| Some(text.to_owned());
+    let states = |states: &[FaultState]| FaultFilter {
+        states: states.to_vec(),
+        ..any()
+    };
+    let with = |change: &dyn Fn(&mut FaultFilter)| {
+        let mut filter = any();
+        change(&mut filter);
+        filter
+    };
     vec![
-        FaultFilter {
-            severity: text("CRITICAL"),
-            ..any()
-        },
-        FaultFilter {
-            states: vec![FaultState::Open],
-            ..any()
-        },
-        FaultFilter {
-            states: vec![FaultState::Closed, FaultState::Repaired],
-            ..any()
-        },
-        FaultFilter {
-            procedure: text("atp/overspeed"),
-            ..any()
-        },
-        FaultFilter {
-            procedure: text("atp/none"),
-            ..any()
-        },
-        FaultFilter {
-            procedure: text("twc/exchange"),
-            line: text("line-1"),
-            ..any()
-        },
-        FaultFilter {
-            code: text("1,3"),
-            ..any()
-        },
-        FaultFilter {
-            code: text("2"),
-            severity: text("major"),
-            ..any()
-        },
-        FaultFilter {
-            lru: text("tra"),
-            ..any()
-        },
-        FaultFilter {
-            lru: text("eb_relay"),
-            line: text("line-0"),
-            ..any()
-        },
-        FaultFilter {
-            note: text("relay"),
-            ..any()
-        },
-        FaultFilter {
-            serial: text("SN-3"),
-            ..any()
-        },
-        FaultFilter {
-            note: text("replaced"),
-            states: vec![FaultState::Open],
-            procedure: text("door/interlocks"),
-            ..any()
-        },
+        (with(&|f| f.severity = text("CRITICAL")), "f.severity = 'critical'", "1"),
+        (states(&[FaultState::Open]), "f.state = 'open'", "1"),
+        (
+            states(&[FaultState::Closed, FaultState::Repaired]),
+            "f.state IN ('closed', 'repaired')",
+            "1",
+        ),
+        (with(&|f| f.code = text("1,3")), "f.code IN (1, 3)", "1"),
+        (with(&|f| f.lru = text("tra")), "f.lru IN ('tra', 'TRA')", "1"),
+        (with(&|f| f.lru = text("eb_relay")), "f.lru = 'eb_relay'", "1"),
+        (
+            with(&|f| (f.code, f.severity) = (text("2"), text("major"))),
+            "f.code = 2 AND f.severity = 'major'",
+            "1",
+        ),
+        (
+            with(&|f| (f.unit, f.severity) = (text("ATC-1"), text("minor"))),
+            "f.unit = (SELECT seq FROM unit WHERE serial = 'ATC-1') AND f.severity = 'minor'",
+            "1",
+        ),
+        (
+            with(&|f| (f.unit, f.lru) = (text("ATC-2"), text("tra"))),
+            "f.unit = (SELECT seq FROM unit WHERE serial = 'ATC-2') AND f.lru IN ('tra', 'TRA')",
+            "1",
+        ),
+        (
+            with(&|f| f.note = text("replaced")),
+            "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%replaced%')",
+            "1",
+        ),
+        (
+            with(&|f| f.serial = text("SN-3")),
+            "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%\"SN-3\"%')",
+            "1",
+        ),
+        (
+            with(&|f| (f.serial, f.note) = (text("SN-3"), text("replaced"))),
+            "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%\"SN-3\"%')
+             AND EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%replaced%')",
+            "1",
+        ),
     ]
 }
 
-/// What is counted of one key, whatever the unit.
+/// Filters on the properties of occurrences, alone and with others.
+fn of_occurrences() -> Vec<Case> {
+    let any = FaultFilter::default;
+    let text = |text: &str| Some(text.to_owned());
+    let with = |change: &dyn Fn(&mut FaultFilter)| {
+        let mut filter = any();
+        change(&mut filter);
+        filter
+    };
+    let overspeed = "s.procedure = 'atp/overspeed'";
+    vec![
+        (with(&|f| f.procedure = text("atp/overspeed")), "1", overspeed),
+        (with(&|f| f.procedure = text("atp/none")), "1", "0"),
+        (with(&|f| f.train = text("T1")), "1", "r.train = 'T1'"),
+        (
+            with(&|f| (f.train, f.procedure) = (text("T0"), text("atp/overspeed"))),
+            "1",
+            "r.train = 'T0' AND s.procedure = 'atp/overspeed'",
+        ),
+        (
+            with(&|f| (f.procedure, f.line) = (text("atp/overspeed"), text("line-1"))),
+            "1",
+            overspeed,
+        ),
+        (
+            with(&|f| (f.lru, f.line) = (text("eb_relay"), text("line-1"))),
+            "f.lru = 'eb_relay'",
+            "1",
+        ),
+        (
+            with(&|f| {
+                (f.note, f.procedure) = (text("replaced"), text("door/interlocks"));
+                f.states = vec![FaultState::Open];
+            }),
+            "f.state = 'open'
+             AND EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%replaced%')",
+            "s.procedure = 'door/interlocks'",
+        ),
+    ]
+}
+
+/// What is counted of one key.
 #[derive(Debug, Default, PartialEq)]
 struct Sum {
-    counts: [u64; 9],
+    /// Opened, not closed, closed, of these without repair; repairs, too young, back.
+    counts: [u32; 7],
+    occurrences: u64,
+    units: BTreeSet<i64>,
     last_at_us: Option<i64>,
-    course: Vec<u64>,
-    repair_hours: i64,
+    repair_us: i64,
 }
 
-impl Sum {
-    fn add(&mut self, stat: &FaultStat) {
-        let more = [
-            stat.faults,
-            stat.not_closed,
-            stat.units,
-            stat.closed,
-            stat.no_fault_found,
-            stat.repairs,
-            stat.repairs_judged,
-            stat.repairs_back,
-        ];
-        let more = more.into_iter().map(u64::from).chain([stat.occurrences]);
-        self.counts
-            .iter_mut()
-            .zip(more)
-            .for_each(|(sum, more)| *sum += more);
-        self.last_at_us = self.last_at_us.max(stat.last_at_us);
-        self.course.resize(stat.course.len(), 0);
-        self.course
-            .iter_mut()
-            .zip(&stat.course)
-            .for_each(|(sum, more)| *sum += more);
-        let hours = stat.mttr_hours.unwrap_or_default() * f64::from(stat.repairs);
-        self.repair_hours += (hours * 1e3).round() as i64;
-    }
-}
-
-fn sums(stats: &[FaultStat]) -> std::collections::BTreeMap<String, Sum> {
-    let mut sums = std::collections::BTreeMap::<String, Sum>::new();
-    for stat in stats {
-        sums.entry(stat.key.clone()).or_default().add(stat);
-    }
+/// Counts in plain SQL.
+fn sums(conn: &Connection, case: &Case, query: &StatQuery) -> BTreeMap<String, Sum> {
+    let (filter, of_fault, of_occurrence) = case;
+    let column = |table: &str| match query.by {
+        StatKey::Code => format!("{table}.code"),
+        StatKey::Lru => format!("{table}.lru"),
+        StatKey::Unit => format!("(SELECT serial FROM unit u WHERE u.seq = {table}.unit)"),
+        StatKey::Line => format!("{table}.line"),
+        StatKey::All => "''".to_owned(),
+    };
+    let line = |table: &str| match &filter.line {
+        Some(line) => format!("{table}.line = '{line}'"),
+        None => "1".to_owned(),
+    };
+    let seen = "fault_occurrence o JOIN run r ON r.seq = o.run
+        LEFT JOIN step s ON s.run = o.run AND s.step_index = o.step_index";
+    let fault = format!(
+        "{of_fault} AND EXISTS (SELECT 1 FROM {seen} WHERE o.fault = f.seq AND {of_occurrence})"
+    );
+    let (since_us, until_us) = (query.filter.since_us, query.filter.until_us);
+    let within = |at_us: i64| {
+        since_us.is_none_or(|since| at_us >= since) && until_us.is_none_or(|until| at_us < until)
+    };
+    let within_us = i64::from(query.back_within_days) * DAY_US;
+    let mut sums = BTreeMap::<String, Sum>::new();
+    let each = |sql: String, take: &mut dyn FnMut(&rusqlite::Row<'_>)| {
+        let mut select = conn.prepare(&sql).expect(&sql);
+        let mut rows = select.query([]).expect("asked");
+        while let Some(row) = rows.next().expect("read") {
+            take(row);
+        }
+    };
+    each(
+        format!(
+            "SELECT CAST({} AS TEXT), o.at_us, o.unit FROM fault f JOIN {seen}
+             WHERE o.fault = f.seq AND {of_fault} AND {of_occurrence} AND {}",
+            column("o"),
+            line("o")
+        ),
+        &mut |row| {
+            let at_us: i64 = row.get(1).expect("a time");
+            if within(at_us) {
+                let sum = sums.entry(row.get(0).expect("a key")).or_default();
+                sum.occurrences += 1;
+                sum.last_at_us = sum.last_at_us.max(Some(at_us));
+                sum.units.insert(row.get(2).expect("a unit"));
+            }
+        },
+    );
+    each(
+        format!(
+            "SELECT CAST({} AS TEXT), f.first_at_us, f.last_at_us, f.closed_at_us, f.state, f.repairs
+             FROM fault f WHERE {fault} AND {}",
+            column("f"),
+            line("f")
+        ),
+        &mut |row| {
+            let at = |column| row.get::<_, Option<i64>>(column).expect("a time");
+            let is_in = |column| at(column).is_some_and(within);
+            let state: String = row.get(4).expect("a state");
+            let bare = row.get::<_, i64>(5).expect("a number") == 0;
+            let is = [
+                is_in(1),
+                is_in(2) && state != "closed",
+                is_in(3),
+                is_in(3) && bare,
+            ];
+            if is.contains(&true) {
+                let sum = sums.entry(row.get(0).expect("a key")).or_default();
+                for (count, is) in sum.counts.iter_mut().zip(is) {
+                    *count += u32::from(is);
+                }
+            }
+        },
+    );
+    each(
+        format!(
+            "SELECT CAST({} AS TEXT), p.at_us, p.opened_at_us, p.back_at_us
+             FROM repair p JOIN fault f ON f.seq = p.fault WHERE {fault} AND {}",
+            column("p"),
+            line("p")
+        ),
+        &mut |row| {
+            let at_us: i64 = row.get(1).expect("a time");
+            if within(at_us) {
+                let back: Option<i64> = row.get(3).expect("a time");
+                let is_back = back.is_some_and(|back| back - at_us < within_us);
+                let is_young = !is_back && query.now_us - at_us < within_us;
+                let sum = sums.entry(row.get(0).expect("a key")).or_default();
+                sum.repair_us += at_us - row.get::<_, i64>(2).expect("a time");
+                for (count, is) in sum.counts[4..].iter_mut().zip([true, is_young, is_back]) {
+                    *count += u32::from(is);
+                }
+            }
+        },
+    );
     sums
 }
 
-fn compare(store: &Store, what: &str) {
+fn agree(stat: &FaultStat, sum: &Sum) -> bool {
+    let [opened, not_closed, closed, bare, repairs, young, back] = sum.counts;
+    let hours = sum.repair_us as f64 / f64::from(repairs) / 3.6e9;
+    let expected = FaultStat {
+        key: stat.key.clone(),
+        name: stat.name.clone(),
+        faults: opened,
+        not_closed,
+        occurrences: sum.occurrences,
+        units: sum.units.len() as u32,
+        last_at_us: sum.last_at_us,
+        closed,
+        no_fault_found: bare,
+        repairs,
+        repairs_judged: repairs - young,
+        repairs_back: back,
+        mtbf_days: stat.mtbf_days,
+        mttr_hours: (repairs > 0).then_some(hours),
+        course: stat.course.clone(),
+    };
+    *stat == expected && stat.course.iter().sum::<u64>() == sum.occurrences
+}
+
+fn compare(store: &Store, path: &Path, what: &str) {
+    let conn = Connection::open(path).expect("opens");
+    let month = T0_US + 40 * DAY_US + 3;
     let spans = [
         (None, None),
-        (Some(T0_US + 9 * DAY_US + 5), Some(T0_US + 100 * DAY_US + 7)),
-        (Some(T0_US + 120 * DAY_US - 1), None),
-        (None, Some(T0_US + 40 * DAY_US + 3)),
+        (Some(T0_US + 9 * DAY_US + 5), Some(T0_US + 70 * DAY_US + 7)),
+        (Some(T0_US + 80 * DAY_US - 1), None),
+        (None, Some(month)),
     ];
-    for (filter, (since_us, until_us)) in filters()
-        .into_iter()
-        .flat_map(|filter| spans.map(|span| (filter.clone(), span)))
-    {
+    for case in of_faults().into_iter().chain(of_occurrences()) {
         for by in [
             StatKey::Code,
             StatKey::Lru,
@@ -200,49 +330,116 @@ fn compare(store: &Store, what: &str) {
             StatKey::Line,
             StatKey::All,
         ] {
-            let query = StatQuery {
+            let query = |(since_us, until_us)| StatQuery {
                 by,
                 filter: FaultFilter {
                     since_us,
                     until_us,
-                    ..filter.clone()
+                    ..case.0.clone()
                 },
                 now_us: T0_US + DAYS * DAY_US,
                 back_within_days: 20,
             };
-            let units = (0..UNITS).flat_map(|unit| {
-                let mut of_unit = query.clone();
-                of_unit.filter.unit = Some(format!("ATC-{unit}"));
-                store.stats(&of_unit).expect("counted")
-            });
-            let units: Vec<_> = units.collect();
-            let mut all = sums(&store.stats(&query).expect("counted"));
-            let mut expected = sums(&units);
-            // Each unit's times to repair were rounded by themselves.
-            for (key, sum) in &mut all {
-                let hours = expected.get(key).map_or(0, |sum| sum.repair_hours);
-                assert!((sum.repair_hours - hours).abs() < 20, "{what} {query:?}");
-                sum.repair_hours = hours;
+            for span in spans {
+                let query = query(span);
+                let (stats, total) = store.stats_and_total(&query).expect("counted");
+                let expected = sums(&conn, &case, &query);
+                assert_eq!(stats.len(), expected.len(), "{what} {query:?}: {stats:#?}");
+                for stat in &stats {
+                    let sum = &expected[&stat.key];
+                    assert!(
+                        agree(stat, sum),
+                        "{what} {query:?}: {stat:#?}, not {sum:#?}"
+                    );
+                }
+                let by = StatKey::All;
+                let all = store.stats(&StatQuery { by, ..query }).expect("counted");
+                assert_eq!(all.first().unwrap_or(&total), &total, "{what} {by:?}");
             }
-            assert_eq!(all, expected, "{what} {query:?}");
-            expected.clear();
+            let adjacent = [T0_US..month, month..month, month..month + 35 * DAY_US];
+            let together = store.stats_of_spans(&query((None, None)), &adjacent);
+            let alone = adjacent.map(|span| {
+                let query = query((Some(span.start), Some(span.end)));
+                store.stats(&query).expect("counted")
+            });
+            assert_eq!(together.expect("counted"), alone, "{what} {by:?}");
         }
     }
 }
 
+/// Goal: the same is counted whether faults are packed or not, of whatever they came from, and by a reader
+/// that may not write.
 #[test]
 fn counts_with_any_filter_are_those_of_the_rows() {
     let dir = tempdir().expect("a directory");
-    for seed in 1..3 {
-        let path = dir.path().join(format!("{seed}.db"));
-        let store = open(&path);
-        history(&store, &mut Random::new(seed));
-        compare(&store, "recorded");
-        assert_eq!(store.check().expect("checked").problems, []);
-        let copy = dir.path().join(format!("{seed}-copy.db"));
-        let copy = Store::open(&copy, OpenOptions::new(ids(7))).expect("opens");
-        copy.merge_from(&store).expect("merged");
-        compare(&copy, "merged");
-        assert_eq!(copy.check().expect("checked").problems, []);
-    }
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    history(&store, &mut Random::new(1));
+    assert!(empty(&path) > 0);
+    let reader = Store::open_read_only(&path).expect("opens");
+    compare(&reader, &path, "recorded");
+    assert_eq!(
+        store.rebuild(T0_US).expect("made anew"),
+        Vec::<String>::new()
+    );
+    assert_eq!(empty(&path), 0);
+    compare(&store, &path, "packed");
+    history(&store, &mut Random::new(10));
+    assert!(empty(&path) > 0);
+    compare(&store, &path, "recorded on");
+    assert_eq!(store.check().expect("checked").problems, []);
+    let to = dir.path().join("b.db");
+    let copy = Store::open(&to, OpenOptions::new(ids(7))).expect("opens");
+    copy.merge_from(&store).expect("merged");
+    compare(&copy, &to, "merged");
+    assert_eq!(copy.check().expect("checked").problems, []);
+}
+
+/// Blocks of packed faults that are empty.
+fn empty(path: &Path) -> i64 {
+    let conn = Connection::open(path).expect("opens");
+    let sql = "SELECT count(*) FROM packed WHERE faults IS NULL";
+    let empty = conn.query_row(sql, [], |row| row.get(0));
+    empty.expect("counted")
+}
+
+/// Goal: a reader that reads while another writes counts what was committed; a run that leaves many blocks
+/// empty packs them, one that leaves few does not.
+#[test]
+fn readers_count_what_is_committed_and_many_empty_blocks_are_packed() {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let reader = Store::open_read_only(&path).expect("opens");
+    let query = StatQuery {
+        by: StatKey::All,
+        filter: FaultFilter {
+            severity: Some("major".into()),
+            ..FaultFilter::default()
+        },
+        now_us: T0_US + DAY_US,
+        back_within_days: 30,
+    };
+    let faults = |store: &Store| {
+        let stats = store.stats(&query).expect("counted");
+        stats.first().map_or(0, |all| all.faults)
+    };
+    let run = |codes: std::ops::Range<i64>| {
+        let mut writer = RunWriter::begin(&store, &run_record("ATC-7"))?;
+        for code in codes {
+            writer.fault(&fault(code, T0_US))?;
+        }
+        writer.finish(&end(Verdict::Failed))
+    };
+    store.transaction(|| run(0..40)).expect("written");
+    assert_eq!((faults(&reader), empty(&path)), (40, 2));
+    let many = || {
+        run(40..2200)?;
+        assert_eq!((faults(&store), faults(&reader)), (2200, 40));
+        Ok(())
+    };
+    store.transaction(many).expect("written");
+    assert_eq!((faults(&reader), empty(&path)), (2200, 0));
+    run(0..5).expect("written");
+    assert_eq!((faults(&reader), empty(&path)), (2200, 1));
 }

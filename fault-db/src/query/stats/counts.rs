@@ -78,6 +78,28 @@ impl Counts {
         less(&mut self.repairs.back, tally.back);
     }
 
+    /// Adds the counts of another key that has none of the same faults.
+    pub fn add_key(&mut self, other: &Self) {
+        self.occurrences += other.occurrences;
+        self.opened += other.opened;
+        self.not_closed += other.not_closed;
+        self.closed += other.closed;
+        self.closed_without_repair += other.closed_without_repair;
+        if let Units::Set(units) = &other.units {
+            self.units.add(units);
+        }
+        self.last_at_us = self.last_at_us.max(other.last_at_us);
+        let bins = self.course.len().max(other.course.len());
+        self.course.resize(bins, 0);
+        for (sum, more) in self.course.iter_mut().zip(&other.course) {
+            *sum += more;
+        }
+        self.repairs.all += other.repairs.all;
+        self.repairs.back += other.repairs.back;
+        self.repairs.young += other.repairs.young;
+        self.repairs.us += other.repairs.us;
+    }
+
     /// Records an occurrence at this time, for the latest one.
     pub fn seen_at(&mut self, at_us: i64) {
         self.last_at_us = self.last_at_us.max(Some(at_us));

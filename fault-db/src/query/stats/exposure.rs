@@ -1,34 +1,40 @@
-//! Observation time of units, from a unit's first run, within the span asked for.
+//! Observation time of units, from a unit's first run, within a span.
 
 use super::super::fault_filter::Resolved;
 use super::StatKey;
-use super::counts::Key;
+use super::counts::{Bins, Key};
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::sql_functions::DAY_US;
 use crate::store::Store;
 
-/// Observed days of each unit.
-pub(crate) struct Exposure {
+/// The units that match a filter, and when they were observed first.
+pub(crate) struct Observed {
     units: Vec<ObservedUnit>,
-    since_us: i64,
-    until_us: i64,
+    /// The first run of any unit; `None` without runs.
+    first_us: Option<i64>,
+    now_us: i64,
 }
 
 struct ObservedUnit {
     unit: i64,
     line: String,
-    days: f64,
+    first_us: i64,
 }
 
-impl Exposure {
-    /// Of the units that match the filter. A unit's line and train are those of its latest run.
+/// Observed days of each unit in a span.
+pub(crate) struct Exposure<'a> {
+    observed: &'a Observed,
+    since_us: Option<i64>,
+    until_us: i64,
+}
+
+impl Observed {
+    /// The units that match the filter. A unit's line and train are those of its latest run.
     pub fn read(store: &Store, resolved: &Resolved<'_>, now_us: i64) -> Result<Self, StoreError> {
         let filter = resolved.filter();
-        let until_us = filter.until_us.map_or(now_us, |until| until.min(now_us));
         let first = "SELECT min(started_at_us) FROM run";
         let first = store.first("looking for the first run", first, &[], |row| row.get(0))?;
-        let first_us = first.flatten().unwrap_or(until_us);
         let sql = "SELECT u.seq,
                 (SELECT min(r.started_at_us) FROM run r WHERE r.unit = u.seq),
                 (SELECT r.line FROM run r WHERE r.unit = u.seq ORDER BY r.started_at_us DESC LIMIT 1),
@@ -47,34 +53,41 @@ impl Exposure {
         })?;
         let mut units = Vec::new();
         for (unit, first, line, train) in all {
-            let Some(first) = first else { continue };
+            let Some(first_us) = first else { continue };
             let is_meant = resolved.unit().is_none_or(|meant| meant == unit)
                 && filter.line.as_ref().is_none_or(|meant| *meant == line)
                 && filter.train.as_ref().is_none_or(|meant| *meant == train);
-            if !is_meant {
-                continue;
+            if is_meant {
+                units.push(ObservedUnit {
+                    unit,
+                    line,
+                    first_us,
+                });
             }
-            let since_us = filter.since_us.map_or(first, |since| since.max(first));
-            let days = (until_us - since_us).max(0) as f64 / DAY_US as f64;
-            units.push(ObservedUnit { unit, line, days });
         }
-        let since_us = filter
-            .since_us
-            .map_or(first_us, |since| since.max(first_us));
         Ok(Self {
             units,
-            since_us,
-            until_us,
+            first_us: first.flatten(),
+            now_us,
         })
     }
 
-    /// The start of the span, or of the history.
-    pub fn since_us(&self) -> i64 {
-        self.since_us
+    /// The part of a span until now.
+    pub fn within(&self, since_us: Option<i64>, until_us: Option<i64>) -> Exposure<'_> {
+        Exposure {
+            observed: self,
+            since_us,
+            until_us: until_us.map_or(self.now_us, |until| until.min(self.now_us)),
+        }
     }
+}
 
-    pub fn until_us(&self) -> i64 {
-        self.until_us
+impl Exposure<'_> {
+    /// The span divided into days or months; one without a start begins with the history.
+    pub fn bins(&self) -> Bins {
+        let first_us = self.observed.first_us.unwrap_or(self.until_us);
+        let since_us = self.since_us.map_or(first_us, |since| since.max(first_us));
+        Bins::of(since_us, self.until_us)
     }
 
     /// Observed days of all units that belong to a key.
@@ -84,10 +97,12 @@ impl Exposure {
             (StatKey::Line, Key::Text(line)) => observed.line == *line,
             _ => true,
         };
-        self.units
-            .iter()
-            .filter(is_meant)
-            .map(|observed| observed.days)
-            .sum()
+        let days = |observed: &ObservedUnit| {
+            let first = observed.first_us;
+            let since_us = self.since_us.map_or(first, |since| since.max(first));
+            (self.until_us - since_us).max(0) as f64 / DAY_US as f64
+        };
+        let units = self.observed.units.iter().filter(is_meant);
+        units.map(days).sum()
     }
 }

@@ -1,66 +1,87 @@
 //! Counts from a file's table `packed`: all faults with their occurrences and repairs are gone through.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::super::fault_filter::{FaultFilter, Resolved};
 use super::counts::{Bins, Counted, Counts, Key};
 use super::repairs::within_us;
-use super::{StatKey, StatQuery};
+use super::{CountedSpan, StatKey, StatQuery};
 use crate::backend::{Backend, Row, SqlError, SqlResult};
 use crate::packed::{Column, Packed, each_block};
 use crate::sql_functions::utc_day;
 
-/// Counts what the filter selects; `None` where rows of the tables are read in less time, and of a server.
+/// Counts what the filter selects in each of several spans, which are in order and do not overlap.
 pub(super) fn count(
     backend: &Backend,
     resolved: &Resolved<'_>,
     query: &StatQuery,
-    bins: &Bins,
-) -> SqlResult<Option<Counted>> {
+    spans: &[CountedSpan],
+) -> SqlResult<Vec<Counted>> {
     let filter = resolved.filter();
-    let is_few = resolved.unit().is_some() || filter.train.is_some() || filter.run.is_some();
-    if is_few || matches!(backend, Backend::Server(_)) {
-        return Ok(None);
-    }
+    let spans: Vec<_> = spans.iter().map(Span::of).collect();
     let mut counting = Counting {
         filter,
+        unit: resolved.unit(),
         codes: resolved.codes(),
         lrus: resolved.lrus(),
         faults: resolved.faults_by_text(backend)?,
+        runs: resolved.runs(backend)?,
         by: query.by,
-        span: filter.since_us.unwrap_or(i64::MIN)..filter.until_us.unwrap_or(i64::MAX),
-        is_open_end: filter.until_us.is_none(),
         within_us: within_us(query),
         young_us: query.now_us - within_us(query) + 1,
-        bins,
-        days: bins.of_days(),
+        spans,
         places: HashMap::new(),
         counts: Vec::new(),
     };
     each_block(backend, |row| counting.block(row))?;
-    let places = counting.places.into_iter();
-    let counted = places.map(|(key, place)| (key, std::mem::take(&mut counting.counts[place])));
-    let counted = counted.filter(|(_, counts)| !counts.is_nothing() || counts.not_closed > 0);
-    Ok(Some(counted.collect()))
+    Ok(counting.counted())
 }
 
 struct Counting<'a> {
     filter: &'a FaultFilter,
+    unit: Option<i64>,
     codes: Option<&'a [i64]>,
     lrus: Option<&'a [String]>,
     /// With the words and the part's serial number asked for.
-    faults: Option<BTreeSet<i64>>,
+    faults: Option<HashSet<i64>>,
+    /// Of the train asked for, or the one run.
+    runs: Option<HashSet<i64>>,
     by: StatKey,
-    span: Range<i64>,
-    is_open_end: bool,
     within_us: i64,
     young_us: i64,
-    bins: &'a Bins,
-    days: (i64, Vec<usize>),
-    /// The place of each key among the counts.
+    spans: Vec<Span>,
+    /// Where the counts of each key begin.
     places: HashMap<Key, usize>,
+    /// Of each key in each span.
     counts: Vec<Counts>,
+}
+
+struct Span {
+    first_us: i64,
+    last_us: i64,
+    bins: Bins,
+    days: (i64, Vec<usize>),
+}
+
+impl Span {
+    fn of(span: &CountedSpan) -> Self {
+        Self {
+            first_us: span.since_us.unwrap_or(i64::MIN),
+            last_us: span
+                .until_us
+                .map_or(i64::MAX, |until| until.saturating_sub(1)),
+            bins: span.bins,
+            days: span.bins.of_days(),
+        }
+    }
+
+    fn bin(&self, at_us: i64) -> usize {
+        let (first, bins) = &self.days;
+        let day = usize::try_from(utc_day(at_us) - first).ok();
+        let bin = day.and_then(|day| bins.get(day));
+        bin.copied().unwrap_or_else(|| self.bins.place_at(at_us))
+    }
 }
 
 /// What of a block's texts is asked for, and where the keys among them are counted; by code in their column.
@@ -78,7 +99,7 @@ struct Texts {
 }
 
 type Faults<'a> = Packed<'a, 11>;
-type Occurrences<'a> = Packed<'a, 4>;
+type Occurrences<'a> = Packed<'a, 5>;
 type Repairs<'a> = Packed<'a, 4>;
 
 impl Counting<'_> {
@@ -101,9 +122,10 @@ impl Counting<'_> {
             if !self.is_asked(seq, &faults, fault, &texts) {
                 continue;
             }
-            let procedure = &occurrences.columns[3];
-            if !seen.clone().any(|row| texts.procedure[procedure.code(row)])
-                && self.filter.procedure.is_some()
+            if (self.filter.procedure.is_some() || self.runs.is_some())
+                && !seen
+                    .clone()
+                    .any(|row| self.is_of_run(&occurrences, row, &texts))
             {
                 continue;
             }
@@ -119,7 +141,7 @@ impl Counting<'_> {
 
     fn texts(&mut self, faults: &Faults<'_>, occurrences: &Occurrences<'_>) -> Texts {
         let [_, _, _, lru, fault_line, severity, state, ..] = &faults.columns;
-        let [_, _, line, procedure] = &occurrences.columns;
+        let [_, _, line, procedure, _] = &occurrences.columns;
         let filter = self.filter;
         let in_line = |text: &str| filter.line.as_ref().is_none_or(|line| line == text);
         Texts {
@@ -160,13 +182,14 @@ impl Counting<'_> {
         let next = self.counts.len();
         let place = *self.places.entry(key).or_insert(next);
         if place == next {
-            self.counts.push(Counts::default());
+            let end = next + self.spans.len();
+            self.counts.resize(end, Counts::default());
         }
         place
     }
 
     fn is_asked(&self, seq: i64, faults: &Faults<'_>, fault: usize, texts: &Texts) -> bool {
-        let [_, _, code, lru, _, severity, state, ..] = &faults.columns;
+        let [_, unit, code, lru, _, severity, state, ..] = &faults.columns;
         let has_code = |codes: &[i64]| {
             let code = code.number(fault);
             code.is_some_and(|code| codes.contains(&code))
@@ -174,6 +197,9 @@ impl Counting<'_> {
         texts.severity[severity.code(fault)]
             && texts.state[state.code(fault)]
             && texts.lru[lru.code(fault)]
+            && self
+                .unit
+                .is_none_or(|asked| unit.number(fault) == Some(asked))
             && self.codes.is_none_or(has_code)
             && self
                 .faults
@@ -181,7 +207,14 @@ impl Counting<'_> {
                 .is_none_or(|faults| faults.contains(&seq))
     }
 
-    /// Where a fault is counted.
+    /// Whether an occurrence is of the procedure and the runs asked for.
+    fn is_of_run(&self, occurrences: &Occurrences<'_>, row: usize, texts: &Texts) -> bool {
+        let [.., procedure, run] = &occurrences.columns;
+        let is_in = |runs: &HashSet<i64>| run.number(row).is_some_and(|run| runs.contains(&run));
+        texts.procedure[procedure.code(row)] && self.runs.as_ref().is_none_or(is_in)
+    }
+
+    /// Where the counts of a fault's key begin.
     fn place(&mut self, faults: &Faults<'_>, fault: usize, texts: &Texts) -> usize {
         let [_, unit, code, lru, line, ..] = &faults.columns;
         let number = |column: &Column<'_>| Key::Number(column.number(fault).unwrap_or_default());
@@ -204,23 +237,26 @@ impl Counting<'_> {
         texts: &Texts,
         place: usize,
     ) {
-        let [_, at, line, procedure] = &occurrences.columns;
+        let [_, at, line, ..] = &occurrences.columns;
         let unit = faults.columns[1].number(fault).unwrap_or_default();
         let mut last = None;
         for row in rows {
             let at_us = at.number(row).unwrap_or_default();
             let line = line.code(row);
-            if !self.is_within(at_us) || !texts.line[line] || !texts.procedure[procedure.code(row)]
-            {
+            if !texts.line[line] || !self.is_of_run(occurrences, row, texts) {
                 continue;
             }
-            let place = match self.by {
-                StatKey::Line => texts.line_places[line],
-                _ => place,
+            let Some(span) = self.span(at_us) else {
+                continue;
             };
-            let bin = self.bin(at_us);
+            let place = span
+                + match self.by {
+                    StatKey::Line => texts.line_places[line],
+                    _ => place,
+                };
+            let span = &self.spans[span];
             let counts = &mut self.counts[place];
-            counts.add_occurrences(self.bins, bin, 1);
+            counts.add_occurrences(&span.bins, span.bin(at_us), 1);
             counts.seen_at(at_us);
             if last != Some(place) {
                 counts.units.add_one(unit);
@@ -232,17 +268,19 @@ impl Counting<'_> {
     /// Counts a fault's opening and closing, and that it is not closed.
     fn life(&mut self, faults: &Faults<'_>, fault: usize, texts: &Texts, place: usize) {
         let [.., state, first, last, closed, repairs] = &faults.columns;
-        let is_within = |column: &Column<'_>| {
-            let at_us = column.number(fault);
-            at_us.is_some_and(|at_us| self.is_within(at_us))
-        };
-        let (opened, closed) = (is_within(first), is_within(closed));
-        let not_closed = is_within(last) && !texts.closed[state.code(fault)];
-        let counts = &mut self.counts[place];
-        counts.opened += u32::from(opened);
-        counts.closed += u32::from(closed);
-        counts.closed_without_repair += u32::from(closed && repairs.number(fault) == Some(0));
-        counts.not_closed += u32::from(not_closed);
+        let span_of = |column: &Column<'_>| self.span(column.number(fault)?);
+        let (opened, last, closed_in) = (span_of(first), span_of(last), span_of(closed));
+        if let Some(span) = opened {
+            self.counts[place + span].opened += 1;
+        }
+        if let Some(span) = closed_in {
+            let counts = &mut self.counts[place + span];
+            counts.closed += 1;
+            counts.closed_without_repair += u32::from(repairs.number(fault) == Some(0));
+        }
+        if let (Some(span), false) = (last, texts.closed[state.code(fault)]) {
+            self.counts[place + span].not_closed += 1;
+        }
     }
 
     /// Counts a fault's repairs.
@@ -250,12 +288,12 @@ impl Counting<'_> {
         let [_, at, opened, back] = &repairs.columns;
         for row in rows {
             let at_us = at.number(row).unwrap_or_default();
-            if !self.is_within(at_us) {
+            let Some(span) = self.span(at_us) else {
                 continue;
-            }
+            };
             let after_us = back.number(row).map(|back_us| back_us - at_us);
             let is_back = after_us.is_some_and(|after_us| after_us < self.within_us);
-            let of_key = &mut self.counts[place].repairs;
+            let of_key = &mut self.counts[place + span].repairs;
             of_key.all += 1;
             of_key.us += at_us - opened.number(row).unwrap_or_default();
             of_key.back += u32::from(is_back);
@@ -263,15 +301,26 @@ impl Counting<'_> {
         }
     }
 
-    fn is_within(&self, at_us: i64) -> bool {
-        at_us >= self.span.start && (at_us < self.span.end || self.is_open_end)
+    /// The span of a time.
+    fn span(&self, at_us: i64) -> Option<usize> {
+        let span = self.spans.partition_point(|span| span.last_us < at_us);
+        let first_us = self.spans.get(span)?.first_us;
+        (at_us >= first_us).then_some(span)
     }
 
-    fn bin(&self, at_us: i64) -> usize {
-        let (first, bins) = &self.days;
-        let day = usize::try_from(utc_day(at_us) - first).ok();
-        let bin = day.and_then(|day| bins.get(day));
-        bin.copied().unwrap_or_else(|| self.bins.place_at(at_us))
+    /// The counts of each span.
+    fn counted(mut self) -> Vec<Counted> {
+        let spans = 0..self.spans.len();
+        let in_span = |span: usize| {
+            let counts = self.places.iter().map(|(key, place)| {
+                let counts = std::mem::take(&mut self.counts[place + span]);
+                (key.clone(), counts)
+            });
+            let counted =
+                counts.filter(|(_, counts)| !counts.is_nothing() || counts.not_closed > 0);
+            counted.collect()
+        };
+        spans.map(in_span).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use super::counts::{Bins, Counted, Counts, Key, Tally, Units};
 use super::repairs::KEPT_DAYS;
 use crate::backend::{Backend, Row, SqlResult, Value, values};
 use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
+use crate::units;
 
 /// Granularities in the table `tally`.
 const MONTHS: i64 = 0;
@@ -99,8 +100,11 @@ pub(super) fn count(
     }
     counting.last(since, until)?;
     if kept.tells_units_apart() {
-        for counts in counting.counted.values_mut() {
-            counts.units = Units::Number(u32::from(counts.occurrences > 0));
+        for (key, counts) in &mut counting.counted {
+            counts.units = match key {
+                Key::Number(unit) if counts.occurrences > 0 => Units::Set(units::with(&[], *unit)),
+                _ => Units::default(),
+            };
         }
     }
     Ok(counting.counted)

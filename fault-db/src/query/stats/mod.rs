@@ -1,8 +1,8 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
 //! A file answers from the counts that its triggers maintain if the filter allows it, with the incomplete days
-//! at both ends of the span counted row by row; other filters from the packed faults, but those on one unit,
-//! train or run, which select few rows, row by row. A server always counts row by row.
+//! at both ends of the span counted row by row; a unit's counts by code, part or line row by row; and whatever
+//! else is asked, and several spans at once, from the packed faults. A server always counts row by row.
 
 mod by_row;
 mod counts;
@@ -15,7 +15,7 @@ use serde::Serialize;
 
 pub(crate) use counts::Bins;
 use counts::{Counted, Counts, Key};
-use exposure::Exposure;
+use exposure::{Exposure, Observed};
 use from_tally::TallyPart;
 
 use super::fault_filter::{FaultFilter, FilteredTable, Resolved};
@@ -90,85 +90,158 @@ pub struct FaultStat {
     pub course: Vec<u64>,
 }
 
+/// Start and end of a span to count, and its parts.
+struct CountedSpan {
+    since_us: Option<i64>,
+    until_us: Option<i64>,
+    bins: Bins,
+}
+
+/// How a query is answered.
+enum Way {
+    Tally(TallyPart),
+    Rows,
+    Packed,
+}
+
+const DOING: &str = "counting faults";
+
 impl Store {
     /// Counts faults by code, part, unit or line, the most frequent first.
     ///
     /// # Errors
     /// Of the filter, or of the file or server.
     pub fn stats(&self, query: &StatQuery) -> Result<Vec<FaultStat>, StoreError> {
-        const DOING: &str = "counting faults";
-        let failed = |error| self.failed(DOING, error);
-        let resolved = query.filter.resolve(self)?;
-        let exposure = Exposure::read(self, &resolved, query.now_us)?;
-        let bins = Bins::of(exposure.since_us(), exposure.until_us());
-        let kept = match self.backend() {
-            Backend::File(_) => from_tally::part_for(&resolved, query.by),
-            Backend::Server(_) => None,
-        };
-        let packed = match &kept {
-            None => from_packed::count(self.backend(), &resolved, query, &bins).map_err(failed)?,
-            Some(_) => None,
-        };
-        let counted = match packed {
-            Some(counted) => counted,
-            None => self
-                .count_rows(&resolved, query, &bins, kept.as_ref())
-                .map_err(failed)?,
-        };
-        let names = Names::read(self, query.by)?;
-        let mut stats: Vec<FaultStat> = counted
-            .into_iter()
-            .map(|(key, mut counts)| {
-                counts.course.resize(bins.len(), 0);
-                let days = exposure.days(query.by, &key);
-                names.name(key, counts.stat(days))
-            })
-            .collect();
-        stats.sort_by(|a, b| (b.occurrences, &a.key).cmp(&(a.occurrences, &b.key)));
-        Ok(stats)
+        Ok(self.count_and_total(query, false)?.0)
     }
 
-    /// Counts from the tables of counts as far as they answer, else row by row.
-    fn count_rows(
+    /// The same, and the counts of all keys together.
+    ///
+    /// # Errors
+    /// Of the filter, or of the file or server.
+    pub fn stats_and_total(
+        &self,
+        query: &StatQuery,
+    ) -> Result<(Vec<FaultStat>, FaultStat), StoreError> {
+        self.count_and_total(query, true)
+    }
+
+    /// Counts faults in each of several spans instead of the filter's; the spans are in order and do not
+    /// overlap.
+    ///
+    /// # Errors
+    /// Of the filter, or of the file or server.
+    pub fn stats_of_spans(
+        &self,
+        query: &StatQuery,
+        spans: &[std::ops::Range<i64>],
+    ) -> Result<Vec<Vec<FaultStat>>, StoreError> {
+        if let Backend::Server(_) = self.backend() {
+            let in_span = |span: &std::ops::Range<i64>| {
+                let mut query = query.clone();
+                query.filter.since_us = Some(span.start);
+                query.filter.until_us = Some(span.end);
+                self.stats(&query)
+            };
+            return spans.iter().map(in_span).collect();
+        }
+        let resolved = query.filter.resolve(self)?;
+        let observed = Observed::read(self, &resolved, query.now_us)?;
+        let names = Names::read(self, query.by)?;
+        let within = |span: &std::ops::Range<i64>| {
+            let (since_us, until_us) = (Some(span.start), Some(span.end));
+            CountedSpan {
+                since_us,
+                until_us,
+                bins: observed.within(since_us, until_us).bins(),
+            }
+        };
+        let spans: Vec<_> = spans.iter().map(within).collect();
+        let counted = from_packed::count(self.backend(), &resolved, query, &spans)
+            .map_err(|error| self.failed(DOING, error))?;
+        let in_spans = counted.into_iter().zip(&spans);
+        let in_spans = in_spans.map(|(counted, span)| {
+            let exposure = observed.within(span.since_us, span.until_us);
+            names.stats(counted, &exposure, &span.bins)
+        });
+        Ok(in_spans.collect())
+    }
+
+    /// The counts of each key, and those of all together if they are wanted.
+    fn count_and_total(
+        &self,
+        query: &StatQuery,
+        with_total: bool,
+    ) -> Result<(Vec<FaultStat>, FaultStat), StoreError> {
+        let resolved = query.filter.resolve(self)?;
+        let observed = Observed::read(self, &resolved, query.now_us)?;
+        let FaultFilter {
+            since_us, until_us, ..
+        } = query.filter;
+        let exposure = observed.within(since_us, until_us);
+        let span = CountedSpan {
+            since_us,
+            until_us,
+            bins: exposure.bins(),
+        };
+        let counted = self.count(&resolved, query, &span)?;
+        let mut total = Counts::default();
+        if with_total {
+            match self.backend() {
+                Backend::File(_) => counted.values().for_each(|key| total.add_key(key)),
+                // A server tells the number of units of a key, not which they are.
+                Backend::Server(_) => {
+                    let by = StatKey::All;
+                    let all = StatQuery {
+                        by,
+                        ..query.clone()
+                    };
+                    let counted = self.count(&resolved, &all, &span)?;
+                    total = counted.into_values().next().unwrap_or_default();
+                }
+            }
+        }
+        total.course.resize(span.bins.len(), 0);
+        let days = exposure.days(StatKey::All, &Key::Text(String::new()));
+        let names = Names::read(self, query.by)?;
+        let stats = names.stats(counted, &exposure, &span.bins);
+        Ok((stats, total.stat(days)))
+    }
+
+    fn way(&self, resolved: &Resolved<'_>, by: StatKey) -> Way {
+        if let Backend::Server(_) = self.backend() {
+            return Way::Rows;
+        }
+        let is_of_unit = resolved.identity_filters_only().is_some() && resolved.unit().is_some();
+        match from_tally::part_for(resolved, by) {
+            Some(part) => Way::Tally(part),
+            None if is_of_unit => Way::Rows,
+            None => Way::Packed,
+        }
+    }
+
+    fn count(
         &self,
         resolved: &Resolved<'_>,
         query: &StatQuery,
-        bins: &Bins,
-        kept: Option<&TallyPart>,
-    ) -> SqlResult<Counted> {
+        span: &CountedSpan,
+    ) -> Result<Counted, StoreError> {
         let backend = self.backend();
-        let mut counted = match kept {
-            Some(kept) => from_tally::count(backend, kept, &query.filter, bins)?,
-            None => by_row::count(backend, resolved, query.by, bins)?,
+        let counted = match self.way(resolved, query.by) {
+            Way::Tally(part) => from_tally::count(backend, &part, &query.filter, &span.bins)
+                .and_then(|counted| add_state_and_repairs(backend, resolved, query, counted, true)),
+            Way::Rows => {
+                by_row::count(backend, resolved, query.by, &span.bins).and_then(|counted| {
+                    add_state_and_repairs(backend, resolved, query, counted, false)
+                })
+            }
+            Way::Packed => {
+                let spans = std::slice::from_ref(span);
+                from_packed::count(backend, resolved, query, spans)
+                    .map(|mut counted| counted.pop().unwrap_or_default())
+            }
         };
-        counted.retain(|_, counts| !counts.is_nothing());
-        self.add_not_closed(resolved, query.by, &mut counted)?;
-        if kept.is_none() || query.back_within_days != repairs::KEPT_DAYS {
-            repairs::add(backend, resolved, query, &mut counted)?;
-        }
-        repairs::add_young(backend, resolved, query, &mut counted)?;
-        Ok(counted)
-    }
-
-    fn add_not_closed(
-        &self,
-        resolved: &Resolved<'_>,
-        by: StatKey,
-        counted: &mut Counted,
-    ) -> SqlResult<()> {
-        let mut conditions =
-            resolved.conditions_at(self.backend(), FilteredTable::Faults, "last_at_us");
-        conditions.require("x.state <> 'closed'");
-        let sql = format!(
-            "SELECT {}, count(*) FROM fault x {} GROUP BY 1",
-            by.column(),
-            conditions.sql()
-        );
-        self.backend().each(&sql, conditions.values(), |row| {
-            let key = Key::from_field(row.field(0)?);
-            counted.entry(key).or_default().not_closed = row.get(1)?;
-            Ok(())
-        })
+        counted.map_err(|error| self.failed(DOING, error))
     }
 
     /// The first and the last time of any run, occurrence or event, µs since 1970. `None` for an empty
@@ -195,6 +268,48 @@ impl Store {
     }
 }
 
+/// Adds the faults that are not closed, and the repairs as far as they are not counted.
+fn add_state_and_repairs(
+    backend: &Backend,
+    resolved: &Resolved<'_>,
+    query: &StatQuery,
+    mut counted: Counted,
+    has_repairs: bool,
+) -> SqlResult<Counted> {
+    counted.retain(|_, counts| !counts.is_nothing());
+    add_not_closed(backend, resolved, query.by, &mut counted)?;
+    if !has_repairs || query.back_within_days != repairs::KEPT_DAYS {
+        repairs::add(backend, resolved, query, &mut counted)?;
+    }
+    repairs::add_young(backend, resolved, query, &mut counted)?;
+    Ok(counted)
+}
+
+fn add_not_closed(
+    backend: &Backend,
+    resolved: &Resolved<'_>,
+    by: StatKey,
+    counted: &mut Counted,
+) -> SqlResult<()> {
+    let mut conditions = resolved.conditions_at(backend, FilteredTable::Faults, "last_at_us");
+    conditions.require("x.state <> 'closed'");
+    // An operation on the column keeps SQLite from reading all faults in its order: few are not closed.
+    let group = match backend {
+        Backend::File(_) => format!("+{}", by.column()),
+        Backend::Server(_) => "1".to_owned(),
+    };
+    let sql = format!(
+        "SELECT {}, count(*) FROM fault x {} GROUP BY {group}",
+        by.column(),
+        conditions.sql()
+    );
+    backend.each(&sql, conditions.values(), |row| {
+        let key = Key::from_field(row.field(0)?);
+        counted.entry(key).or_default().not_closed = row.get(1)?;
+        Ok(())
+    })
+}
+
 impl StatKey {
     /// The column of this key in faults, occurrences and repairs called `x`.
     fn column(self) -> &'static str {
@@ -208,39 +323,51 @@ impl StatKey {
     }
 }
 
-/// Readable names of keys.
-enum Names {
-    OfNumbers(std::collections::BTreeMap<i64, String>, StatKey),
-    AsTheyAre,
+/// Readable names of keys; of texts none.
+struct Names {
+    by: StatKey,
+    of_numbers: std::collections::BTreeMap<i64, String>,
 }
 
 impl Names {
     fn read(store: &Store, by: StatKey) -> Result<Self, StoreError> {
-        Ok(match by {
-            StatKey::Code => Self::OfNumbers(store.known_codes()?.into_iter().collect(), by),
-            StatKey::Unit => {
-                let units = store.select(
-                    "listing units",
-                    "SELECT seq, serial FROM unit",
-                    &values![],
-                    |row| Ok((row.get(0)?, row.get(1)?)),
-                )?;
-                Self::OfNumbers(units.into_iter().collect(), by)
-            }
-            StatKey::Lru | StatKey::Line | StatKey::All => Self::AsTheyAre,
+        let names = match by {
+            StatKey::Code => store.known_codes()?,
+            StatKey::Unit => store.select(
+                "listing units",
+                "SELECT seq, serial FROM unit",
+                &values![],
+                |row| Ok((row.get(0)?, row.get(1)?)),
+            )?,
+            StatKey::Lru | StatKey::Line | StatKey::All => Vec::new(),
+        };
+        Ok(Self {
+            by,
+            of_numbers: names.into_iter().collect(),
         })
     }
 
+    /// Statistics from counts, the most frequent first.
+    fn stats(&self, counted: Counted, exposure: &Exposure<'_>, bins: &Bins) -> Vec<FaultStat> {
+        let stats = counted.into_iter().map(|(key, mut counts)| {
+            counts.course.resize(bins.len(), 0);
+            let days = exposure.days(self.by, &key);
+            self.name(key, counts.stat(days))
+        });
+        let mut stats: Vec<_> = stats.collect();
+        stats.sort_by(|a, b| (b.occurrences, &a.key).cmp(&(a.occurrences, &b.key)));
+        stats
+    }
+
     fn name(&self, key: Key, mut stat: FaultStat) -> FaultStat {
-        let (key, name) = match (self, key) {
-            (Self::OfNumbers(names, by), Key::Number(number)) => {
-                let name = names.get(&number).cloned().unwrap_or_default();
+        let (key, name) = match (self.by, key) {
+            (by, Key::Number(number)) => {
+                let name = self.of_numbers.get(&number).cloned().unwrap_or_default();
                 match by {
                     StatKey::Unit => (name, String::new()),
                     _ => (number.to_string(), name),
                 }
             }
-            (_, Key::Number(number)) => (number.to_string(), String::new()),
             (_, Key::Text(text)) => (text, String::new()),
         };
         (stat.key, stat.name) = (key, name);

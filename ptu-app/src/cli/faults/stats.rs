@@ -1,7 +1,7 @@
 //! `ptu faults stats`: counts of faults by kind, and how effective repairs were.
 
 use clap::{Args, ValueEnum};
-use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
+use fault_db::{FaultStat, StatKey, StatQuery, Store};
 use serde_json::{Value, json};
 
 use super::filter::FilterArguments;
@@ -97,25 +97,22 @@ impl StatsArguments {
             now_us: clock::now_us(),
             back_within_days: self.back_within,
         };
-        let stats = match self.by {
-            By::Month => by_month(store, &query)?,
-            _ => store.stats(&query)?,
+        let (stats, together) = match (self.by, self.output.is_table()) {
+            (By::Month, _) => (by_month(store, &query)?, None),
+            (_, false) => (store.stats(&query)?, None),
+            (_, true) => {
+                let (stats, together) = store.stats_and_total(&query)?;
+                (stats, Some(together))
+            }
         };
         self.output.save()?;
         if stats.is_empty() && self.output.is_table() {
             return print_out(&self.filter.nothing(store)?);
         }
-        let together = match self.output.is_table() && self.by != By::Month {
-            true => store.stats(&StatQuery {
-                by: StatKey::All,
-                ..query
-            })?,
-            false => Vec::new(),
-        };
         let all: u64 = stats.iter().map(|stat| stat.occurrences).sum();
         let rows: Vec<_> = stats.iter().map(|stat| entry(stat, all)).collect();
         self.output
-            .print(&KEYS, &rows, || self.table(&stats, together.first(), all))
+            .print(&KEYS, &rows, || self.table(&stats, together.as_ref(), all))
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -241,29 +238,21 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
         .filter
         .until_us
         .map_or(end_us, |until| until.min(end_us));
-    let mut stats = Vec::new();
-    let mut is_quiet = true;
-    for (name, since_us, until_us) in clock::months(since_us, until_us) {
-        let query = StatQuery {
-            filter: FaultFilter {
-                since_us: Some(since_us),
-                until_us: Some(until_us),
-                ..query.filter.clone()
-            },
-            ..query.clone()
-        };
-        // A quiet month has a row, too.
-        let stat = store.stats(&query)?.into_iter().next();
-        is_quiet &= stat.is_none();
-        stats.push(FaultStat {
-            key: name,
-            ..stat.unwrap_or_default()
-        });
+    let months = clock::months(since_us, until_us);
+    let spans: Vec<_> = months
+        .iter()
+        .map(|(_, since, until)| *since..*until)
+        .collect();
+    let counted = store.stats_of_spans(query, &spans)?;
+    if counted.iter().all(Vec::is_empty) {
+        return Ok(Vec::new());
     }
-    if is_quiet {
-        stats.clear();
-    }
-    Ok(stats)
+    // A quiet month has a row, too.
+    let stats = months.into_iter().zip(counted).map(|((key, ..), counted)| {
+        let stat = counted.into_iter().next().unwrap_or_default();
+        FaultStat { key, ..stat }
+    });
+    Ok(stats.collect())
 }
 
 fn entry(stat: &FaultStat, all: u64) -> Value {
