@@ -20,6 +20,7 @@ extern crate alloc;
 
 mod backlog;
 pub mod config;
+mod decoder;
 pub mod display_text;
 pub mod event;
 pub mod frame;

@@ -22,54 +22,84 @@ struct NamedMeasurement {
     unit: &'static str,
 }
 
+/// What a script declared, each step complete but for the part to suspect.
+#[derive(Default)]
+struct Declared {
+    head: Option<ProcedureDraft>,
+    steps: Vec<Step>,
+    /// Indices of steps that leave the part to suspect to the procedure.
+    without_suspect: Vec<usize>,
+    measurements: Vec<NamedMeasurement>,
+    errors: Vec<LoadError>,
+}
+
+impl Declared {
+    /// The declarations of the script at `path`, in its order.
+    fn of(path: &str, declarations: Vec<(Declaration, Vec<FileSpan>)>) -> Self {
+        let mut all = Self::default();
+        for (declaration, places) in declarations {
+            // The place in this file; a step may be declared by a function of a library.
+            let place = places
+                .iter()
+                .find(|p| p.filename() == path)
+                .or(places.first());
+            let fail = |message: String| match place {
+                Some(place) => error_at(place, message),
+                None => at_top(path, &message),
+            };
+            match declaration {
+                Declaration::Procedure(_) if all.head.is_some() => {
+                    all.errors
+                        .push(fail("a second procedure() in one file".into()));
+                }
+                Declaration::Procedure(draft) => all.head = Some(draft),
+                Declaration::Step(draft) => {
+                    let line = place.map_or(0, |p| p.resolve_span().begin.line as u32 + 1);
+                    all.step(draft, line, fail);
+                }
+            }
+        }
+        all
+    }
+
+    fn step(&mut self, draft: StepDraft, line: u32, fail: impl Fn(String) -> LoadError) {
+        if self.steps.iter().any(|step| step.name == draft.name) {
+            self.errors
+                .push(fail(format!("two steps are called \"{}\"", draft.name)));
+        }
+        if draft.suspect.is_none() {
+            self.without_suspect.push(self.steps.len());
+        }
+        match step(draft, line, &mut self.measurements) {
+            Ok(step) => self.steps.push(step),
+            Err(message) => self.errors.push(fail(message)),
+        }
+    }
+}
+
+fn at_top(path: &str, message: &str) -> LoadError {
+    LoadError {
+        file: path.to_owned(),
+        line: 1,
+        column: 1,
+        message: message.to_owned(),
+    }
+}
+
 /// A procedure out of the declarations of the script at `path`.
 pub(super) fn assemble(
     path: &str,
     text: &str,
     declared: Vec<(Declaration, Vec<FileSpan>)>,
 ) -> Result<Procedure, Vec<LoadError>> {
-    let at_top = |message: &str| LoadError {
-        file: path.to_owned(),
-        line: 1,
-        column: 1,
-        message: message.to_owned(),
-    };
-    let mut errors = Vec::new();
-    let mut head: Option<ProcedureDraft> = None;
-    let mut steps: Vec<Step> = Vec::new();
-    // Those that leave the part to suspect to the procedure.
-    let mut without_suspect = Vec::new();
-    let mut known: Vec<NamedMeasurement> = Vec::new();
-    for (declaration, places) in declared {
-        // The place in this file; a step may be declared by a function of a library.
-        let place = places
-            .iter()
-            .find(|p| p.filename() == path)
-            .or(places.first());
-        let fail = |message: String| match place {
-            Some(place) => error_at(place, message),
-            None => at_top(&message),
-        };
-        match declaration {
-            Declaration::Procedure(_) if head.is_some() => {
-                errors.push(fail("a second procedure() in one file".into()));
-            }
-            Declaration::Procedure(draft) => head = Some(draft),
-            Declaration::Step(draft) => {
-                if steps.iter().any(|step| step.name == draft.name) {
-                    errors.push(fail(format!("two steps are called \"{}\"", draft.name)));
-                }
-                let line = place.map_or(0, |p| p.resolve_span().begin.line as u32 + 1);
-                if draft.suspect.is_none() {
-                    without_suspect.push(steps.len());
-                }
-                match step(draft, line, &mut known) {
-                    Ok(step) => steps.push(step),
-                    Err(message) => errors.push(fail(message)),
-                }
-            }
-        }
-    }
+    let at_top = |message: &str| at_top(path, message);
+    let Declared {
+        head,
+        mut steps,
+        without_suspect,
+        measurements,
+        mut errors,
+    } = Declared::of(path, declared);
     if head.is_none() {
         errors.push(at_top("no procedure(title = …)"));
     }
@@ -99,7 +129,7 @@ pub(super) fn assemble(
         setup: head.setup,
         cleanup: head.cleanup,
         steps,
-        slots: known.len(),
+        slots: measurements.len(),
     };
     if procedure.worst_case() > LONGEST {
         return Err(vec![at_top("the procedure can take longer than 24 hours")]);
