@@ -6,6 +6,7 @@
 //! another one, [`sync`] exchanges batches with a server.
 
 mod change_set;
+mod checksum;
 mod merge;
 mod rows;
 mod statements;

@@ -1,8 +1,7 @@
 //! The replicated tables: their columns, how their rows are read from a file, and what each side does with
 //! them besides inserting. `statements` makes the SQL of it.
 
-use sha2::{Digest as _, Sha256};
-
+use super::checksum::checksum;
 use crate::backend::Value;
 use crate::domain::check_body;
 
@@ -364,21 +363,6 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
 ];
-
-/// The reason why content is refused that is not what was stored.
-pub(super) const DAMAGED: &str = "it does not match its checksum";
-
-fn checksum(sha256: &Value<'_>, content: &Value<'_>) -> Result<(), String> {
-    let content = match content {
-        Value::Bytes(content) => &content[..],
-        Value::Text(content) => content.as_bytes(),
-        _ => return Ok(()),
-    };
-    match sha256 {
-        Value::Bytes(sha256) if Sha256::digest(content)[..] == sha256[..] => Ok(()),
-        _ => Err(DAMAGED.to_owned()),
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -7,7 +7,8 @@ use crate::backend::{Backend, Server, SqlResult, values};
 use crate::domain::{Refusal, shown_id};
 use crate::id::Id;
 use crate::replication::change_set::{ChangeSet, Counts, ENOUGH_BYTES, MOST_ENTRIES};
-use crate::replication::tables::{DAMAGED, Of};
+use crate::replication::checksum::DAMAGED;
+use crate::replication::tables::Of;
 
 /// An outbox entry: a run, event, note or trace.
 pub(super) struct Entry {
