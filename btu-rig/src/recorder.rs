@@ -71,7 +71,7 @@ struct Open {
 
 /// A window cut out.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cut {
+pub struct RecordedWindow {
     /// Faults it shows, by their number in the procedure.
     pub faults: Vec<usize>,
     /// Its rows; at least one.
@@ -91,7 +91,7 @@ pub struct Recorder {
 
 impl Recorder {
     /// Takes one row; returns the window it completes.
-    pub fn record(&mut self, now: Instant, sample: &Sample) -> Option<Cut> {
+    pub fn record(&mut self, now: Instant, sample: &Sample) -> Option<RecordedWindow> {
         self.ring.push(Row {
             at: now,
             sample: sample.clone(),
@@ -105,7 +105,12 @@ impl Recorder {
 
     /// Fault number `fault` happened now, in a step that began at `step_began`. Inside an open
     /// window it extends and shares that; returns the window it ends.
-    pub fn trigger(&mut self, now: Instant, step_began: Instant, fault: usize) -> Option<Cut> {
+    pub fn trigger(
+        &mut self,
+        now: Instant,
+        step_began: Instant,
+        fault: usize,
+    ) -> Option<RecordedWindow> {
         let until = now + AFTER;
         if let Some(open) = &mut self.open
             && until.since(open.from) <= LONGEST_WINDOW
@@ -131,20 +136,20 @@ impl Recorder {
     }
 
     /// Ends the open window; `partial` when its time is not over.
-    pub fn close(&mut self, partial: bool) -> Option<Cut> {
+    pub fn close(&mut self, partial: bool) -> Option<RecordedWindow> {
         let open = self.open.take()?;
         let faults = open.faults;
         let cut = self.cut(open.from, open.trigger, partial)?;
-        Some(Cut { faults, ..cut })
+        Some(RecordedWindow { faults, ..cut })
     }
 
     /// All rows from `from` on; none without a row.
-    pub fn cut(&self, from: Instant, trigger: Instant, partial: bool) -> Option<Cut> {
+    pub fn cut(&self, from: Instant, trigger: Instant, partial: bool) -> Option<RecordedWindow> {
         let rows = self.ring.rows();
         let rows: Vec<_> = rows.iter().filter(|row| row.at >= from).cloned().collect();
         let last = rows.len().checked_sub(1)?;
         let trigger_row = rows.iter().position(|row| row.at >= trigger);
-        Some(Cut {
+        Some(RecordedWindow {
             faults: Vec::new(),
             rows,
             trigger_row: trigger_row.unwrap_or(last),
@@ -157,7 +162,7 @@ impl Recorder {
 mod tests {
     use super::*;
 
-    fn run(recorder: &mut Recorder, from_ms: u64, to_ms: u64) -> Option<Cut> {
+    fn run(recorder: &mut Recorder, from_ms: u64, to_ms: u64) -> Option<RecordedWindow> {
         (from_ms..to_ms)
             .step_by(50)
             .find_map(|ms| recorder.record(Instant::from_ms(ms), &Sample::default()))

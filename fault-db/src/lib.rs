@@ -80,7 +80,7 @@ pub use record::{
 pub use recording::{Recording, RecordingRecord};
 pub use regular_file::{open_regular_file, read_regular_file};
 pub use replication::{
-    CopyOf, Different, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
+    CopyOf, Difference, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
 };
 pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};

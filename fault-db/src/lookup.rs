@@ -15,7 +15,7 @@ const DOING: &str = "looking up an id";
 const MATCHES_SHOWN: usize = 4;
 
 /// A table whose rows users name.
-struct Named {
+struct NamedTable {
     what: &'static str,
     table: &'static str,
     /// Aliases of its rows: a table expression with `id` and `named`, the row's own id.
@@ -28,7 +28,7 @@ impl Store {
     pub fn resolve_run(&self, asked: &str) -> Result<Id, StoreError> {
         let newest_first = "started_at_us DESC, seq DESC";
         self.resolve(
-            &Named {
+            &NamedTable {
                 what: "run",
                 table: "run",
                 aliases: None,
@@ -42,7 +42,7 @@ impl Store {
     pub fn resolve_fault(&self, asked: &str) -> Result<Id, StoreError> {
         let newest_first = "last_at_us DESC, seq DESC";
         self.resolve(
-            &Named {
+            &NamedTable {
                 what: "fault",
                 table: "fault",
                 aliases: Some(
@@ -58,7 +58,7 @@ impl Store {
     pub fn resolve_trace(&self, asked: &str) -> Result<Id, StoreError> {
         let newest_first = "t0_us DESC, seq DESC";
         self.resolve(
-            &Named {
+            &NamedTable {
                 what: "trace",
                 table: "trace",
                 aliases: None,
@@ -68,8 +68,8 @@ impl Store {
         )
     }
 
-    fn resolve(&self, named: &Named, asked: &str) -> Result<Id, StoreError> {
-        let Named {
+    fn resolve(&self, named: &NamedTable, asked: &str) -> Result<Id, StoreError> {
+        let NamedTable {
             what,
             table,
             newest_first,
@@ -107,7 +107,7 @@ impl Store {
         }
     }
 
-    fn matches(&self, named: &Named, digits: &str) -> SqlResult<Vec<Id>> {
+    fn matches(&self, named: &NamedTable, digits: &str) -> SqlResult<Vec<Id>> {
         let table = named.table;
         let bound = |fill| Value::Bytes(bytes(&padded(digits, fill)).into());
         let (low, high) = (bound('0'), bound('f'));

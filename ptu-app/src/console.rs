@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
 use ptu_bench::failure::Failure;
-use ptu_bench::run::{Listener, RunPlan, SessionEvent, Speaker, steps_of};
+use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_bench::stdio;
 use ptu_bench::table::{Table, cell};
 
@@ -34,7 +34,7 @@ pub struct Console {
 
 enum Shown {
     /// What is under way, beside the bar.
-    Present(String),
+    RunPosition(String),
     StepDone,
     Line(String),
 }
@@ -87,11 +87,11 @@ fn bar(steps: u64) -> Option<ProgressBar> {
 fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
     for shown in all {
         match (shown, bar) {
-            (Shown::Present(what), Some(bar)) => bar.set_message(what),
+            (Shown::RunPosition(what), Some(bar)) => bar.set_message(what),
             (Shown::StepDone, Some(bar)) => bar.inc(1),
             (Shown::Line(line), Some(bar)) => bar.println(display_text::line(&line)),
             (Shown::Line(line), None) => stdio::note(&display_text::line(&line)),
-            (Shown::Present(_) | Shown::StepDone, None) => {}
+            (Shown::RunPosition(_) | Shown::StepDone, None) => {}
         }
     }
     if let Some(bar) = bar {
@@ -101,8 +101,9 @@ fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
 
 impl Listener for Console {
     fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
-        let present =
-            |what: String| Shown::Present(cell(&format!("{}: {what}", procedure.id), BESIDE_BAR));
+        let present = |what: String| {
+            Shown::RunPosition(cell(&format!("{}: {what}", procedure.id), BESIDE_BAR))
+        };
         let shown = match event {
             SessionEvent::Run(RunEvent::StepStarted { name, .. }) => present(name.clone()),
             SessionEvent::Run(RunEvent::Waiting { what, left }) => {
@@ -148,7 +149,7 @@ impl Listener for Console {
         }
     }
 
-    fn speaker(&self) -> Option<Speaker> {
+    fn speaker(&self) -> Option<LinePrinter> {
         let (shown, left_out) = (self.shown.clone(), self.left_out.clone());
         Some(Box::new(move |line| {
             if shown.try_send(Shown::Line(line)).is_err() {

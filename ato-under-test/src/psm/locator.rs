@@ -13,7 +13,7 @@ use protocol::line::{Line, Section};
 use protocol::message::TwcWayside;
 
 use super::marker_check::{
-    Fix, MarkerCheck, MarkerDetection, PendingDetection, Wheels, further_m, judge, place_m,
+    MarkerCheck, MarkerDetection, PendingDetection, PositionFix, Wheels, further_m, judge, place_m,
     window_m,
 };
 use super::{Movement, Odometer, WheelCalibration};
@@ -36,7 +36,7 @@ pub struct Locator {
     odometer: Odometer,
     wheel: WheelCalibration,
     section: Option<Section>,
-    fix: Fix,
+    fix: PositionFix,
     /// Number the next pulse should have; pulses of test markers count, too.
     expected: u8,
     pending: Option<MarkerDetection>,
@@ -67,7 +67,7 @@ impl Locator {
             ),
             config: marker,
             section: None,
-            fix: Fix {
+            fix: PositionFix {
                 place_m: 0.0,
                 distance_m: 0.0,
                 marker: 0,
@@ -95,7 +95,7 @@ impl Locator {
         let departing = data.loop_id == section.from_loop;
         let run = same && self.position_m() > section.start_m + self.config.start_window_m;
         if standstill && (!same || (departing && run)) {
-            self.fix = Fix {
+            self.fix = PositionFix {
                 place_m: section.start_m,
                 distance_m: self.odometer.distance_m(),
                 marker: 0,
@@ -194,7 +194,7 @@ impl Locator {
                 .learn(place_m - from_m, detection.distance_m - distance_m);
             self.report_wheel(now, log);
         }
-        self.fix = Fix {
+        self.fix = PositionFix {
             place_m,
             distance_m: detection.distance_m,
             marker,

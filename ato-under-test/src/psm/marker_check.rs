@@ -15,7 +15,7 @@ const REMEMBERED_M: f64 = 600.0;
 
 /// A place at which the train is known to have been.
 #[derive(Clone, Copy, Debug)]
-pub struct Fix {
+pub struct PositionFix {
     /// Where, m from the section's start.
     pub place_m: f64,
     /// Distance the odometer told there, m.
@@ -64,7 +64,7 @@ pub enum MarkerCheck {
 }
 
 /// How far from its place a marker is believed after `run_m` from a fix, m.
-pub fn window_m(fix: &Fix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -> f64 {
+pub fn window_m(fix: &PositionFix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -> f64 {
     let least = if fix.marker == 0 {
         config.start_window_m
     } else {
@@ -85,7 +85,7 @@ pub struct PendingDetection {
 
 pub fn judge(
     section: &Section,
-    fix: &Fix,
+    fix: &PositionFix,
     detection: MarkerDetection,
     pending: PendingDetection,
     wheels: &Wheels,
@@ -120,7 +120,7 @@ pub fn judge(
 /// greater than configured hear every marker early. Calibrated wheels do not, and the next marker alone
 /// tells it.
 pub fn further_m(
-    fix: &Fix,
+    fix: &PositionFix,
     detection: MarkerDetection,
     error_m: f64,
     wheels: &Wheels,
@@ -178,7 +178,7 @@ mod tests {
         let line = Line::from_toml(line).unwrap();
         let section = line.section(61).unwrap();
         let [_, second, third, fourth] = section.markers_m;
-        let fix = Fix {
+        let fix = PositionFix {
             place_m: second,
             distance_m: 0.0,
             marker: 2,
@@ -260,7 +260,7 @@ mod tests {
         };
         let judged = |section: &Section, believed: u8, unsure| {
             let [first, second, ..] = section.markers_m;
-            let fix = Fix {
+            let fix = PositionFix {
                 place_m: section.markers_m[2],
                 distance_m: 0.0,
                 marker: believed,

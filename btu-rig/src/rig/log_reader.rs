@@ -31,12 +31,12 @@ const ENTRIES_PER_S: u64 = 40;
 
 /// What of a log is still kept: as much as a unit can hold, and then what it can send meanwhile.
 #[derive(Debug)]
-struct Allowance {
+struct LogBudget {
     left: u64,
     filled: Instant,
 }
 
-impl Allowance {
+impl LogBudget {
     /// One entry more, if it may be kept.
     fn take(&mut self, now: Instant) -> bool {
         let more = now.since(self.filled).as_us() * ENTRIES_PER_S / 1_000_000;
@@ -48,7 +48,7 @@ impl Allowance {
     }
 }
 
-impl Default for Allowance {
+impl Default for LogBudget {
     fn default() -> Self {
         Self {
             left: LOG_ENTRIES as u64,
@@ -81,7 +81,7 @@ pub struct LogReader {
     asked_times: u32,
     events: VecDeque<UnitEvent>,
     overwritten: u64,
-    allowance: Allowance,
+    allowance: LogBudget,
     /// Entries that were read and not kept.
     not_kept: u64,
 }

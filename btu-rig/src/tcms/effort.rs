@@ -62,12 +62,12 @@ pub struct Effort {
     /// Longer answer of air than of inverters, s.
     air_later_s: f64,
     sharing: Sharing,
-    shared_for: SharedFor,
+    shared_for: SharingInputs,
 }
 
 /// What the sharing was worked out for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct SharedFor {
+struct SharingInputs {
     load_kg: f64,
     no_electric: CarSet,
     no_air: CarSet,
@@ -86,7 +86,7 @@ impl Effort {
             held_mps2: 0.0,
             departs: false,
             sharing: Sharing::new(&consist, CarSet::NONE, CarSet::NONE),
-            shared_for: SharedFor {
+            shared_for: SharingInputs {
                 load_kg: consist.load_kg(),
                 no_electric: CarSet::NONE,
                 no_air: CarSet::NONE,
@@ -180,7 +180,7 @@ impl Effort {
 
     /// Recalculates the shares when load or cut-outs have changed.
     fn share_between(&mut self, no_electric: CarSet, no_air: CarSet) {
-        let wanted = SharedFor {
+        let wanted = SharingInputs {
             load_kg: self.consist.load_kg(),
             no_electric,
             no_air,

@@ -9,7 +9,7 @@ use super::atc_link::AtcLink;
 use super::data::TcmsData;
 use super::equipment_monitor::EquipmentFailures;
 use super::inputs::TcmsInputs;
-use super::timer::Burst;
+use super::timer::BurstDetector;
 use super::view::{TcmsEvent, TcmsView};
 
 /// What it goes by in one scan.
@@ -37,7 +37,7 @@ pub(super) struct Report {
     line_takes_nothing: bool,
     conditions: u8,
     contradictions: u32,
-    refused: Burst,
+    refused: BurstDetector,
     /// Whether the unit was silent, once it has been heard.
     silent: Option<bool>,
 }
@@ -56,7 +56,7 @@ impl Report {
             line_takes_nothing: false,
             conditions: 0,
             contradictions: 0,
-            refused: Burst::new(
+            refused: BurstDetector::new(
                 data.refused_frames,
                 Duration::from_secs(data.refused_within_s),
             ),

@@ -64,7 +64,7 @@ impl OnDelayCars {
 
 /// Detects events that come often: at least so many within a time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Burst {
+pub(super) struct BurstDetector {
     at_least: u32,
     within: Duration,
     /// Begin of the time looked at, and the count then.
@@ -73,7 +73,7 @@ pub(super) struct Burst {
     told: bool,
 }
 
-impl Burst {
+impl BurstDetector {
     /// `at_least` times `within` a time.
     pub fn new(at_least: u32, within: Duration) -> Self {
         Self {
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_burst_is_told_once_until_it_is_over() {
-        let mut burst = Burst::new(3, Duration::from_ms(1000));
+        let mut burst = BurstDetector::new(3, Duration::from_ms(1000));
         let mut begins = |ms: u64, count: u32| burst.begins(Instant::from_ms(ms), count);
         // Two and two, with a pause: never three within a second.
         assert!(!begins(0, 1) && !begins(100, 2) && !begins(1200, 2));

@@ -5,7 +5,7 @@ use crate::conditions::Conditions;
 use super::actuator::{Actuators, Times, share_per_step};
 use super::data::CarsData;
 use super::resistance::RunningResistance;
-use super::wheels::{Efforts, Rolling, WheelSets, adhesion_share, direction};
+use super::wheels::{Efforts, TrainMotion, WheelSets, adhesion_share, direction};
 use super::{
     CarSet, Equipment, EquipmentFaults, KGF_PER_T, MAX_CARS, PerCar, Piece, TrainInputs, TrainState,
 };
@@ -177,7 +177,7 @@ impl Formation {
         }
         let speed_mps = self.velocity_mps.abs();
         self.follow_demands(dt_s, inputs);
-        let rolling = Rolling {
+        let rolling = TrainMotion {
             velocity_mps: self.velocity_mps,
             accel_mps2: self.accel_mps2,
             reverser: if inputs.backward { -1.0 } else { 1.0 },

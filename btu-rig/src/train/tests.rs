@@ -11,7 +11,7 @@ const FULL_KG: f64 = 160_000.0;
 const EMPTY_INERTIA_KG: f64 = 296_368.0;
 
 /// A train, TCMS's sharing out of effort, and the steps it has made.
-struct Ride {
+struct TrainRun {
     train: Train,
     effort: Effort,
     /// Ordered once in two steps, as TCMS does.
@@ -23,7 +23,7 @@ struct Ride {
     distance_m: f64,
 }
 
-impl Ride {
+impl TrainRun {
     fn new(conditions: Conditions, kmh: f64, inputs: TrainInputs) -> Self {
         let mut train = Train::new(&TrainData::line6(), &conditions);
         train.place(kmh / 3.6);
@@ -116,7 +116,7 @@ fn demanding(demand: f64) -> TrainInputs {
 #[test]
 fn full_power_accelerates_as_printed_empty_and_full() {
     for load_kg in [0.0, FULL_KG] {
-        let mut ride = Ride::nominal(0.0, 1.0);
+        let mut ride = TrainRun::nominal(0.0, 1.0);
         ride.inputs.load_kg = load_kg;
         ride.run_until(|r| r.kmh() >= 10.0);
         let seconds = ride.run_until(|r| r.kmh() >= 35.0);
@@ -134,7 +134,7 @@ fn full_power_accelerates_as_printed_empty_and_full() {
 fn full_service_brakes_as_printed_empty_and_full() {
     for load_kg in [0.0, FULL_KG] {
         let inertia_kg = EMPTY_INERTIA_KG + load_kg;
-        let mut ride = Ride::nominal(80.0, -1.0);
+        let mut ride = TrainRun::nominal(80.0, -1.0);
         ride.inputs.load_kg = load_kg;
         for kmh in [60.0, 40.0, 20.0, 3.0] {
             ride.run_until(|r| r.kmh() <= kmh);
@@ -156,7 +156,7 @@ fn full_service_brakes_as_printed_empty_and_full() {
 /// A motor car's electric brake reaches S3's limit of 87 kN; trailers brake first.
 #[test]
 fn electric_brake_reaches_its_limit_and_trailers_do_the_rest() {
-    let mut ride = Ride::nominal(60.0, -1.0);
+    let mut ride = TrainRun::nominal(60.0, -1.0);
     ride.inputs.load_kg = FULL_KG;
     ride.run(3.0);
     // Full B7 443.7 kN less four times 87.3 and 87.4 kN [S3].
@@ -177,7 +177,7 @@ fn electric_brake_reaches_its_limit_and_trailers_do_the_rest() {
 #[test]
 fn emergency_brake_stops_in_its_distance_by_air_alone() {
     for load_kg in [0.0, FULL_KG] {
-        let mut ride = Ride::nominal(80.0, 1.0);
+        let mut ride = TrainRun::nominal(80.0, 1.0);
         ride.inputs.emergency = true;
         ride.inputs.load_kg = load_kg;
         ride.run_until(|r| r.kmh() == 0.0 || r.state.electric_brake_n > 0.0 || r.state.sliding);
@@ -195,14 +195,14 @@ fn emergency_brake_stops_in_its_distance_by_air_alone() {
 #[test]
 fn brakes_build_up_in_their_times() {
     let share =
-        |r: &Ride, full_kmh_per_s: f64| r.brake_n() * 3.6 / full_kmh_per_s / EMPTY_INERTIA_KG;
-    let mut service = Ride::nominal(60.0, -1.0);
+        |r: &TrainRun, full_kmh_per_s: f64| r.brake_n() * 3.6 / full_kmh_per_s / EMPTY_INERTIA_KG;
+    let mut service = TrainRun::nominal(60.0, -1.0);
     let tenth = service.run_until(|r| share(r, 3.5) >= 0.1);
     let most = tenth + service.run_until(|r| share(r, 3.5) >= 0.9);
     assert!((0.25..0.45).contains(&tenth), "{tenth}");
     assert!((1.3..1.7).contains(&most), "{most}");
 
-    let mut emergency = Ride::nominal(60.0, 0.0);
+    let mut emergency = TrainRun::nominal(60.0, 0.0);
     emergency.inputs.emergency = true;
     let tenth = emergency.run_until(|r| share(r, 4.5) >= 0.1);
     let most = tenth + emergency.run_until(|r| share(r, 4.5) >= 0.9);
@@ -214,7 +214,7 @@ fn brakes_build_up_in_their_times() {
         delay_factor: 2.0,
         ..Conditions::default()
     };
-    let mut late = Ride::new(slow, 60.0, emergency.inputs);
+    let mut late = TrainRun::new(slow, 60.0, emergency.inputs);
     let late_most = late.run_until(|r| share(r, 4.5) >= 0.9);
     assert!((late_most / most - 2.0).abs() < 0.02, "{late_most}");
 }
@@ -225,7 +225,7 @@ fn brakes_build_up_in_their_times() {
 #[test]
 fn jerk_is_limited() {
     for load_kg in [0.0, FULL_KG] {
-        let mut ride = Ride::nominal(0.0, 1.0);
+        let mut ride = TrainRun::nominal(0.0, 1.0);
         ride.inputs.load_kg = load_kg;
         for (demand, seconds) in [
             (1.0, 18.0),
@@ -252,7 +252,7 @@ fn the_holding_brake_holds_where_it_would_roll() {
             load_kg: FULL_KG,
             ..TrainInputs::default()
         };
-        let mut free = Ride::new(Conditions::default(), 0.0, inputs);
+        let mut free = TrainRun::new(Conditions::default(), 0.0, inputs);
         free.run(2.0);
         assert!(
             free.distance_m * gradient_permille < 0.0,
@@ -279,7 +279,7 @@ fn it_departs_without_rolling_back_or_jumping() {
             load_kg,
             ..TrainInputs::default()
         };
-        let mut ride = Ride::new(Conditions::default(), 0.0, inputs);
+        let mut ride = TrainRun::new(Conditions::default(), 0.0, inputs);
         ride.holding = true;
         ride.run(3.0);
         let stood_m = ride.distance_m;
@@ -308,7 +308,7 @@ fn braked_wheels_slide_on_leaves_and_recover() {
         adhesion: 0.05,
         ..Conditions::default()
     };
-    let mut ride = Ride::new(leaves, 60.0, demanding(-1.0));
+    let mut ride = TrainRun::new(leaves, 60.0, demanding(-1.0));
     let mut axle_m = 0.0;
     let mut sliding_steps = 0;
     for _ in 0..1600 {
@@ -340,7 +340,7 @@ fn slip_under_power_does_not_reach_a_trailers_tachometers() {
         adhesion: 0.1,
         ..Conditions::default()
     };
-    let mut ride = Ride::new(leaves, 0.0, demanding(1.0));
+    let mut ride = TrainRun::new(leaves, 0.0, demanding(1.0));
     let mut slipped = false;
     for _ in 0..2000 {
         ride.step();
@@ -359,7 +359,7 @@ fn a_slide_to_a_stop_leaves_no_wheel_turning() {
         adhesion: 0.03,
         ..Conditions::default()
     };
-    let mut ride = Ride::new(ice, 30.0, demanding(-1.0));
+    let mut ride = TrainRun::new(ice, 30.0, demanding(-1.0));
     ride.run_until(|r| r.kmh() == 0.0);
     ride.run(5.0);
     assert_eq!((ride.kmh(), ride.state.sliding), (0.0, false));
@@ -379,11 +379,11 @@ fn energy_is_kept() {
         },
         ..Conditions::default()
     };
-    let mut ride = Ride::new(conditions, 20.0, TrainInputs::default());
+    let mut ride = TrainRun::new(conditions, 20.0, TrainInputs::default());
     ride.inputs.load_kg = 80_000.0;
     ride.inputs.curvature_per_m = 1.0 / 600.0;
     let inertia_kg = EMPTY_INERTIA_KG + 80_000.0;
-    let kinetic = |r: &Ride| 0.5 * inertia_kg * r.train.velocity_mps().powi(2);
+    let kinetic = |r: &TrainRun| 0.5 * inertia_kg * r.train.velocity_mps().powi(2);
     let start = kinetic(&ride);
     let (mut work, mut traction) = (0.0, 0.0);
     for (demand, gradient, seconds) in [
@@ -420,7 +420,7 @@ fn it_stays_finite_and_deterministic() {
             adhesion: 0.04,
             ..Conditions::default()
         };
-        let mut ride = Ride::new(leaves, 70.0, TrainInputs::default());
+        let mut ride = TrainRun::new(leaves, 70.0, TrainInputs::default());
         for (i, demand) in [f64::NAN, 1e300, -1e300, f64::INFINITY, 0.0]
             .into_iter()
             .enumerate()

@@ -23,7 +23,7 @@ pub(super) struct Efforts {
 
 /// The train's motion that decides on slip and slide.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rolling {
+pub(super) struct TrainMotion {
     /// Train's speed, m/s, forward positive.
     pub velocity_mps: f64,
     /// Its acceleration in the step before, m/s².
@@ -128,7 +128,7 @@ impl WheelSets {
     }
 
     /// What the rails carry of the efforts.
-    pub fn grip(&mut self, efforts: &Efforts, rolling: Rolling) -> Rails {
+    pub fn grip(&mut self, efforts: &Efforts, rolling: TrainMotion) -> Rails {
         if self.disturbed || self.exceeds(efforts, rolling) {
             return self.grip_each(efforts, rolling);
         }
@@ -141,7 +141,7 @@ impl WheelSets {
     }
 
     /// Some car is asked for more than its rails carry.
-    fn exceeds(&self, efforts: &Efforts, rolling: Rolling) -> bool {
+    fn exceeds(&self, efforts: &Efforts, rolling: TrainMotion) -> bool {
         let against = direction(rolling.velocity_mps);
         let mut exceeds = false;
         for i in 0..MAX_CARS {
@@ -155,7 +155,7 @@ impl WheelSets {
 
     /// [`Self::grip`] with each car's wheels on their own.
     #[cold]
-    fn grip_each(&mut self, efforts: &Efforts, rolling: Rolling) -> Rails {
+    fn grip_each(&mut self, efforts: &Efforts, rolling: TrainMotion) -> Rails {
         let against = direction(rolling.velocity_mps);
         let mut rails = Rails {
             inertia_kg: self.inertia_kg,

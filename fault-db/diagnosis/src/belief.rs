@@ -3,7 +3,7 @@
 use protocol::LruId;
 
 use super::model::{Model, NO_FAULT};
-use super::observation::{Observation, StepSeen};
+use super::observation::{Observation, ObservedStep};
 
 /// What the evidence has settled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,12 +20,12 @@ pub struct Belief<'m, 'd> {
     /// What it is a belief in.
     pub model: &'m Model<'d>,
     ln: Vec<f64>,
-    steps: Vec<Weighed>,
+    steps: Vec<WeighedStep>,
 }
 
 /// A step that the dictionary knows, with its likelihoods.
 #[derive(Clone, Debug)]
-pub(super) struct Weighed {
+pub(super) struct WeighedStep {
     /// Its index in the observation, or among the steps added.
     pub seen: usize,
     /// Index of its check in the dictionary.
@@ -59,7 +59,7 @@ impl<'m, 'd> Belief<'m, 'd> {
     }
 
     /// Adds the step with this index; a step that the dictionary does not know changes nothing.
-    pub fn see(&mut self, number: usize, step: &StepSeen) {
+    pub fn see(&mut self, number: usize, step: &ObservedStep) {
         let Some(place) = self.model.dictionary.place(&step.check) else {
             return;
         };
@@ -67,7 +67,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         for (sum, ln) in self.ln.iter_mut().zip(&ln) {
             *sum += ln;
         }
-        self.steps.push(Weighed {
+        self.steps.push(WeighedStep {
             seen: number,
             place,
             ln,
@@ -75,7 +75,7 @@ impl<'m, 'd> Belief<'m, 'd> {
     }
 
     /// The steps added, each with its likelihoods.
-    pub(super) fn steps(&self) -> &[Weighed] {
+    pub(super) fn steps(&self) -> &[WeighedStep] {
         &self.steps
     }
 

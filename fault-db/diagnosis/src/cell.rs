@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use protocol::Verdict;
 use serde::{Deserialize, Serialize};
 
-use super::observation::{Sign, StepSeen, observed};
+use super::observation::{ObservedStep, Sign, observed};
 
 /// The result of a step with the signs that showed: what can be compared as equal or not.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -20,7 +20,7 @@ pub struct Signature {
 
 impl Signature {
     /// The signature of an observed step.
-    pub fn of(step: &StepSeen) -> Self {
+    pub fn of(step: &ObservedStep) -> Self {
         Self {
             result: step.result,
             signs: step.signs.clone(),
@@ -99,7 +99,7 @@ pub struct Cell {
 
 impl Cell {
     /// Counts a step.
-    pub fn add(&mut self, step: &StepSeen) {
+    pub fn add(&mut self, step: &ObservedStep) {
         let signature = Signature::of(step);
         match self.signatures.iter_mut().find(|(s, _)| *s == signature) {
             Some((_, count)) => *count += 1,

@@ -31,7 +31,7 @@ pub use cell::{Cell, Signature, Values};
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
-pub use observation::{CheckName, Observation, Sign, StepSeen, is_observed};
+pub use observation::{CheckName, Observation, ObservedStep, Sign, is_observed};
 pub use settings::Settings;
 pub use strategy::{Effort, Strategy, fixed_order, replayed};
 pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

@@ -7,7 +7,7 @@
 use protocol::Verdict;
 
 use super::cell::{Cell, Signature, Values};
-use super::observation::{Sign, StepSeen};
+use super::observation::{ObservedStep, Sign};
 
 /// Greatest number of runs that count: more would pretend that all benches are alike.
 const MOST_RUNS: f64 = 50.0;
@@ -155,7 +155,7 @@ fn student4(t: f64) -> f64 {
 /// Likelihood of a step under `expected` counts; `scale` gives the range of a measurement's values.
 pub fn likelihood<'s>(
     expected: Expected<'_>,
-    step: &StepSeen,
+    step: &ObservedStep,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
     let values = step.values.iter();
@@ -167,7 +167,7 @@ pub fn likelihood<'s>(
 
 /// The same if nothing is known.
 pub fn likelihood_of_anything<'s>(
-    step: &StepSeen,
+    step: &ObservedStep,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
     let signs = SIGN_UNKNOWN.powi(step.signs.len() as i32);
@@ -182,8 +182,8 @@ mod tests {
     use super::*;
     use crate::observation::CheckName;
 
-    fn step(result: Verdict, value: Option<f64>) -> StepSeen {
-        StepSeen {
+    fn step(result: Verdict, value: Option<f64>) -> ObservedStep {
+        ObservedStep {
             check: CheckName {
                 procedure: "p".into(),
                 step: "s".into(),
@@ -195,7 +195,7 @@ mod tests {
         }
     }
 
-    fn cell(of: &[StepSeen]) -> Cell {
+    fn cell(of: &[ObservedStep]) -> Cell {
         let mut cell = Cell::default();
         of.iter().for_each(|step| cell.add(step));
         cell

@@ -7,7 +7,7 @@ use protocol::LruId;
 use super::cell::Cell;
 use super::dictionary::{Column, Dictionary};
 use super::likelihood::{Expected, Scale, likelihood, likelihood_of_anything};
-use super::observation::StepSeen;
+use super::observation::ObservedStep;
 use super::settings::Settings;
 
 /// Index of [`Hypothesis::NoFault`] in every model.
@@ -145,7 +145,7 @@ impl<'a> Model<'a> {
     /// A mode was run few times, and an intermittent one affects another check each time. So, besides what
     /// was counted, an affected check may behave as on a healthy unit, as under another mode of the same
     /// part, or at random; and an unaffected check may be affected now and then.
-    pub fn ln_likelihoods(&self, place: usize, step: &StepSeen) -> Vec<f64> {
+    pub fn ln_likelihoods(&self, place: usize, step: &ObservedStep) -> Vec<f64> {
         let settings = self.settings;
         let scale = |name: &str| self.scales.get(&place)?.get(name);
         let counted = |hypothesis| likelihood(self.expected(hypothesis, place), step, scale);
@@ -185,7 +185,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    fn doubt(&self, hypothesis: Hypothesis) -> Doubt {
+    fn doubt(&self, hypothesis: Hypothesis) -> Reliability {
         let settings = self.settings;
         let (runs, new_hits) = if self.is_intermittent(hypothesis) {
             (
@@ -195,7 +195,7 @@ impl<'a> Model<'a> {
         } else {
             (settings.doubt_runs, settings.new_hits)
         };
-        Doubt {
+        Reliability {
             otherwise: runs / (f64::from(self.column(hypothesis).runs) + runs),
             new_hits,
         }
@@ -237,7 +237,7 @@ impl<'a> Model<'a> {
 }
 
 /// How reliably a mode behaves as counted.
-struct Doubt {
+struct Reliability {
     /// Share of runs in which an affected check behaves otherwise.
     otherwise: f64,
     /// Share of unaffected checks that it affects nevertheless.

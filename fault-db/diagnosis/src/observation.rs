@@ -94,7 +94,7 @@ impl TryFrom<String> for Sign {
 
 /// A step that was run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepSeen {
+pub struct ObservedStep {
     /// Which.
     pub check: CheckName,
     /// Its verdict, one that [`is_observed`].
@@ -112,7 +112,7 @@ pub struct StepSeen {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Steps, in the order they were run.
-    pub steps: Vec<StepSeen>,
+    pub steps: Vec<ObservedStep>,
     /// Signs from the unit's own log, which belong to no step.
     pub signs: BTreeSet<Sign>,
 }

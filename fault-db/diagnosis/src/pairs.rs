@@ -7,7 +7,7 @@ use protocol::Verdict;
 
 use super::belief::{Belief, normalised};
 use super::model::{Hypothesis, NO_FAULT};
-use super::observation::{Observation, StepSeen};
+use super::observation::{Observation, ObservedStep};
 
 /// Number of best explaining modes that are combined to pairs.
 const MOST_EXPLAINING: usize = 12;
@@ -53,7 +53,7 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, f64) {
     (found, left)
 }
 
-fn is_strange(step: &StepSeen) -> bool {
+fn is_strange(step: &ObservedStep) -> bool {
     step.result != Verdict::Passed || !step.signs.is_empty()
 }
 

@@ -4,7 +4,7 @@ use protocol::Verdict;
 
 use super::belief::Belief;
 use super::model::{Hypothesis, Model, NO_FAULT};
-use super::observation::{Observation, StepSeen};
+use super::observation::{Observation, ObservedStep};
 
 /// Most reasons in each direction.
 const MOST: usize = 6;
@@ -79,7 +79,7 @@ fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
 }
 
 /// A step, its result, and its expected result under the mode and on a healthy unit.
-fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &StepSeen) -> String {
+fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &ObservedStep) -> String {
     let own = model.expected(hypothesis, place);
     let healthy = model.expected(Hypothesis::NoFault, place);
     let share = |expected: super::likelihood::Expected<'_>| {

@@ -10,7 +10,7 @@ use protocol::Verdict;
 use super::belief::Belief;
 use super::model::Model;
 use super::next_check::NextCheck;
-use super::observation::{CheckName, Observation, StepSeen};
+use super::observation::{CheckName, Observation, ObservedStep};
 
 /// Isolates a fault, check by check.
 #[derive(Debug)]
@@ -42,7 +42,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
     }
 
     /// Adds the result of a step; whether its procedure is to go on.
-    pub fn saw(&mut self, step: &StepSeen) -> bool {
+    pub fn saw(&mut self, step: &ObservedStep) -> bool {
         let new = self.done.insert(step.check.clone());
         if new {
             self.belief.see(self.seen.steps.len(), step);

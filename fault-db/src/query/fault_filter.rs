@@ -62,13 +62,13 @@ pub(crate) struct Resolved<'a> {
     codes: Option<Vec<i64>>,
     lrus: Option<Vec<String>>,
     search: Option<Search>,
-    frequent: Frequent,
+    frequent: FrequentWords,
 }
 
 /// Whether the search words occur so often that it is faster to look through faults for them than to look up
 /// all their matches.
 #[derive(Clone, Copy, Debug, Default)]
-struct Frequent {
+struct FrequentWords {
     of_faults: bool,
     of_runs: bool,
 }
@@ -92,7 +92,7 @@ impl FaultFilter {
             codes: code.transpose()?,
             lrus: lru.transpose()?,
             search: search.transpose()?,
-            frequent: Frequent::default(),
+            frequent: FrequentWords::default(),
         })
     }
 }
@@ -119,7 +119,7 @@ impl Resolved<'_> {
             })?;
             Ok(found == Some(true))
         };
-        self.frequent = Frequent {
+        self.frequent = FrequentWords {
             of_faults: is_frequent("event_words", "fault_event")?,
             of_runs: is_frequent("note_words", "run_note")?,
         };

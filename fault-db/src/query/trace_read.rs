@@ -48,7 +48,7 @@ pub struct TraceHead {
 }
 
 /// A row of the table, without its samples.
-struct Facts {
+struct TraceRow {
     seq: i64,
     t0_bench_us: i64,
     t0_us: i64,
@@ -113,7 +113,7 @@ impl Store {
         })
     }
 
-    fn row_of(&self, id: Id) -> Result<Facts, StoreError> {
+    fn row_of(&self, id: Id) -> Result<TraceRow, StoreError> {
         const SQL: &str =
             "SELECT seq, t0_bench_us, t0_us, period_us, row_count, trigger_row, flags,
             channel_set, encoding, length(data) FROM trace WHERE id = ?1";
@@ -196,7 +196,7 @@ impl Store {
     fn parts(
         &self,
         id: Id,
-        row: &Facts,
+        row: &TraceRow,
         shape: &Shape<'_>,
         wanted: &[usize],
         rows: &Range<usize>,
@@ -292,8 +292,8 @@ enum Reader<'s> {
     Server(i64),
 }
 
-fn read_row(row: Row<'_>) -> SqlResult<Facts> {
-    Ok(Facts {
+fn read_row(row: Row<'_>) -> SqlResult<TraceRow> {
+    Ok(TraceRow {
         seq: row.get(0)?,
         t0_bench_us: row.get(1)?,
         t0_us: row.get(2)?,

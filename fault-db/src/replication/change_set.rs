@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::rows::{Mark, Rows};
-use super::tables::{COUNT, Of, TABLES};
+use super::tables::{COUNT, TABLES, TableId};
 use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::domain::Refusal;
 
@@ -42,12 +42,12 @@ impl ChangeSet {
         self.rows.iter()
     }
 
-    pub fn rows(&self, of: Of) -> &Rows {
+    pub fn rows(&self, of: TableId) -> &Rows {
         &self.rows[of as usize]
     }
 
     /// The rows of a table, to add some that come from elsewhere than a file.
-    pub fn rows_mut(&mut self, of: Of) -> &mut Rows {
+    pub fn rows_mut(&mut self, of: TableId) -> &mut Rows {
         &mut self.rows[of as usize]
     }
 
@@ -86,16 +86,21 @@ impl ChangeSet {
 
     /// Reads a run with its unit, scripts, steps, measurements, occurrences and their faults.
     pub fn run(&mut self, file: &Backend, run: i64) -> SqlResult<()> {
-        self.read(file, Of::Run, run)?;
+        self.read(file, TableId::Run, run)?;
         // Parents first: it is them that are named if they are refused.
         let parents = |sql| file.select(sql, &values![run], |row| row.get::<i64>(0));
         for unit in parents("SELECT unit FROM run WHERE seq = ?1")? {
-            self.include(file, Of::Unit, unit)?;
+            self.include(file, TableId::Unit, unit)?;
         }
         for fault in parents("SELECT DISTINCT fault FROM fault_occurrence WHERE run = ?1")? {
             self.fault(file, fault)?;
         }
-        for of in [Of::Script, Of::Step, Of::Measurement, Of::Occurrence] {
+        for of in [
+            TableId::Script,
+            TableId::Step,
+            TableId::Measurement,
+            TableId::Occurrence,
+        ] {
             self.read(file, of, run)?;
         }
         Ok(())
@@ -103,30 +108,30 @@ impl ChangeSet {
 
     /// Reads an event with its fault.
     pub fn event(&mut self, file: &Backend, event: i64) -> SqlResult<()> {
-        let before = self.rows(Of::Event).count();
-        self.read(file, Of::Event, event)?;
+        let before = self.rows(TableId::Event).count();
+        self.read(file, TableId::Event, event)?;
         let fault = "SELECT fault FROM fault_event WHERE seq = ?1";
         match file.first(fault, &values![event], |row| row.get(0))? {
-            Some(fault) if self.rows(Of::Event).count() > before => self.fault(file, fault),
+            Some(fault) if self.rows(TableId::Event).count() > before => self.fault(file, fault),
             _ => Ok(()),
         }
     }
 
     /// Reads a trace with its channel list, and which occurrences show it.
     pub fn trace(&mut self, file: &Backend, trace: i64) -> SqlResult<()> {
-        let before = self.rows(Of::Trace).count();
-        self.read(file, Of::Trace, trace)?;
-        if self.rows(Of::Trace).count() > before {
+        let before = self.rows(TableId::Trace).count();
+        self.read(file, TableId::Trace, trace)?;
+        if self.rows(TableId::Trace).count() > before {
             let list = "SELECT channel_set FROM trace WHERE seq = ?1";
             if let Some(list) = file.first(list, &values![trace], |row| row.get(0))? {
-                self.include(file, Of::ChannelSet, list)?;
+                self.include(file, TableId::ChannelSet, list)?;
             }
         }
-        self.read(file, Of::Shown, trace)
+        self.read(file, TableId::Shown, trace)
     }
 
     /// Reads the rows of a table that belong to this one: to a run, fault or trace, or itself.
-    pub fn read(&mut self, file: &Backend, of: Of, seq: i64) -> SqlResult<()> {
+    pub fn read(&mut self, file: &Backend, of: TableId, seq: i64) -> SqlResult<()> {
         let (rows, refused) = (&mut self.rows[of as usize], &mut self.refused);
         let sql = rows.sql.clone();
         file.each(&sql, &values![seq], |row| match rows.take(row) {
@@ -140,19 +145,19 @@ impl ChangeSet {
 
     /// Reads a fault with its aliases and its unit.
     pub fn fault(&mut self, file: &Backend, fault: i64) -> SqlResult<()> {
-        if !self.include(file, Of::Fault, fault)? {
+        if !self.include(file, TableId::Fault, fault)? {
             return Ok(());
         }
-        self.read(file, Of::Alias, fault)?;
+        self.read(file, TableId::Alias, fault)?;
         let unit = "SELECT unit FROM fault WHERE seq = ?1";
         match file.first(unit, &values![fault], |row| row.get(0))? {
-            Some(unit) => self.include(file, Of::Unit, unit).map(drop),
+            Some(unit) => self.include(file, TableId::Unit, unit).map(drop),
             None => Ok(()),
         }
     }
 
     /// Reads a row that others refer to, unless it is included; whether it was not.
-    fn include(&mut self, file: &Backend, of: Of, seq: i64) -> SqlResult<bool> {
+    fn include(&mut self, file: &Backend, of: TableId, seq: i64) -> SqlResult<bool> {
         let (key, place) = ((of as usize, seq), self.rows(of).count());
         if self.included.contains_key(&key) {
             return Ok(false);

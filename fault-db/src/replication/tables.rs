@@ -6,7 +6,7 @@ use crate::backend::Value;
 use crate::domain::check_body;
 
 pub(super) struct Table {
-    pub of: Of,
+    pub of: TableId,
     pub name: &'static str,
     /// The columns that both sides have. A parent is named by its identity, not by its row number.
     pub columns: &'static [Column],
@@ -63,7 +63,7 @@ pub(super) enum Kind {
 /// The replicated tables, in the order of [`TABLES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[rustfmt::skip]
-pub(super) enum Of {
+pub(super) enum TableId {
     Unit, Run, Fault, Alias, Script, Step, Measurement, Recording, Occurrence, Event, Note, ChannelSet,
     Trace, Shown,
     /// Applied on their own, after the rows they cover.
@@ -72,7 +72,7 @@ pub(super) enum Of {
 
 pub(super) const COUNT: usize = 15;
 
-impl Of {
+impl TableId {
     pub fn table(self) -> &'static Table {
         &TABLES[self as usize]
     }
@@ -110,7 +110,7 @@ macro_rules! columns {
 }
 
 const TABLE: Table = Table {
-    of: Of::Unit,
+    of: TableId::Unit,
     name: "",
     columns: &[],
     derived: &[],
@@ -131,7 +131,7 @@ const TABLE: Table = Table {
 /// Parents before children.
 pub(super) static TABLES: [Table; COUNT] = [
     Table {
-        of: Of::Unit,
+        of: TableId::Unit,
         name: "unit",
         columns: columns![serial Text, kind Text, config_name Text, sw_versions Text],
         derived: &[Column {
@@ -147,7 +147,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Run,
+        of: TableId::Run,
         name: "run",
         columns: columns![
             id Bytes, unit Unit, line Text, seed Integer, operator Text, source Text,
@@ -169,7 +169,7 @@ pub(super) static TABLES: [Table; COUNT] = [
     // A fault is known under its id or an alias. Duplicates under other ids are merged after the events, as
     // one of these may have closed a fault.
     Table {
-        of: Of::Fault,
+        of: TableId::Fault,
         name: "fault",
         columns: columns![
             id Bytes, unit Unit, code Integer, code_name Text, lru Text, severity Text, state Text,
@@ -189,7 +189,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Alias,
+        of: TableId::Alias,
         name: "fault_alias",
         columns: columns![fault Fault, id Bytes],
         shown: 1,
@@ -213,7 +213,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Script,
+        of: TableId::Script,
         name: "run_script",
         columns: columns![run Run, path Text, sha256 Text],
         shown: 1,
@@ -222,7 +222,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Step,
+        of: TableId::Step,
         name: "step",
         columns: columns![
             run Run, step_index Integer, procedure Text, name Text, verdict Text,
@@ -234,7 +234,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Measurement,
+        of: TableId::Measurement,
         name: "measurement",
         columns: columns![
             run Run, step_index Integer, ordinal Integer, name Text, value Real, unit Text, low Real,
@@ -246,7 +246,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Recording,
+        of: TableId::Recording,
         name: "recording",
         columns: columns![
             run Run, ordinal Integer, procedure Text, t0_bench_us Integer, bench_json Text,
@@ -259,7 +259,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Occurrence,
+        of: TableId::Occurrence,
         name: "fault_occurrence",
         columns: columns![
             id Bytes, fault Fault, run Run, step_index Integer, at_us Integer, bench_us Integer,
@@ -272,7 +272,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Event,
+        of: TableId::Event,
         name: "fault_event",
         columns: columns![
             id Bytes, fault Fault, kind Text, at_us Integer, who Text, body Text, state Text,
@@ -303,7 +303,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Note,
+        of: TableId::Note,
         name: "run_note",
         columns: columns![id Bytes, run Run, at_us Integer, who Text, text Text],
         derived: &[Column {
@@ -316,7 +316,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::ChannelSet,
+        of: TableId::ChannelSet,
         name: "channel_set",
         columns: columns![sha256 Bytes, json Text],
         check: |row| checksum(&row[0], &row[1]),
@@ -324,7 +324,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Trace,
+        of: TableId::Trace,
         name: "trace",
         columns: columns![
             id Bytes, run Run, t0_bench_us Integer, t0_us Integer, period_us Integer,
@@ -339,7 +339,7 @@ pub(super) static TABLES: [Table; COUNT] = [
     },
     // The occurrences that a trace shows: a trace may be added after its occurrences were.
     Table {
-        of: Of::Shown,
+        of: TableId::Shown,
         name: "fault_occurrence",
         columns: columns![id Bytes, trace Trace],
         by: "trace",
@@ -352,7 +352,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ..TABLE
     },
     Table {
-        of: Of::Seal,
+        of: TableId::Seal,
         name: "seal",
         columns: columns![
             origin Bytes, ordinal Integer, what Text, id Bytes, covers Integer, says Text, digest Bytes,
@@ -377,9 +377,12 @@ mod tests {
 
     #[test]
     fn the_checks_look_at_the_columns_they_mean() {
-        let names = |of: Of| -> Vec<_> { of.table().columns.iter().map(|c| c.name).collect() };
-        assert_eq!([2, 5].map(|n| names(Of::Event)[n]), ["kind", "body"]);
-        assert_eq!([10, 11].map(|n| names(Of::Trace)[n]), ["sha256", "data"]);
-        assert_eq!(names(Of::ChannelSet), ["sha256", "json"]);
+        let names = |of: TableId| -> Vec<_> { of.table().columns.iter().map(|c| c.name).collect() };
+        assert_eq!([2, 5].map(|n| names(TableId::Event)[n]), ["kind", "body"]);
+        assert_eq!(
+            [10, 11].map(|n| names(TableId::Trace)[n]),
+            ["sha256", "data"]
+        );
+        assert_eq!(names(TableId::ChannelSet), ["sha256", "json"]);
     }
 }

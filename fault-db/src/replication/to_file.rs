@@ -6,7 +6,7 @@ use rusqlite::{Connection, params_from_iter};
 
 use super::change_set::{ChangeSet, Counts};
 use super::rows::Rows;
-use super::tables::{COUNT, Kind, Of};
+use super::tables::{COUNT, Kind, TableId};
 use crate::backend::{Backend, SqlResult, values};
 use crate::event_graph::{fault_of, merge_faults};
 use crate::id::Id;
@@ -21,7 +21,7 @@ pub(super) struct FileApplier<'a> {
     /// The file may be older than the faults of the change sets: rows of those it does not have are skipped.
     pub is_older: bool,
     /// The last event and note before anything was added.
-    pub before: Before,
+    pub before: LastEntries,
     /// New rows by table.
     pub counts: Counts,
     /// Ids of faults with new rows, to be settled.
@@ -33,7 +33,7 @@ pub(super) struct FileApplier<'a> {
 
 /// The last event and note of a file at some time.
 #[derive(Clone, Copy)]
-pub(super) struct Before {
+pub(super) struct LastEntries {
     pub event: i64,
     pub note: i64,
 }
@@ -48,7 +48,7 @@ impl<'a> FileApplier<'a> {
             file,
             conn,
             is_older: false,
-            before: Before { event, note },
+            before: LastEntries { event, note },
             counts: [0; COUNT],
             touched: BTreeSet::new(),
             new_faults: BTreeSet::new(),
@@ -59,10 +59,10 @@ impl<'a> FileApplier<'a> {
     /// Adds the rows that the file does not have.
     pub fn apply(&mut self, set: &ChangeSet) -> SqlResult<()> {
         // Before the faults an alias makes a fault known that is here under another id.
-        self.join_aliases(set.rows(Of::Alias))?;
+        self.join_aliases(set.rows(TableId::Alias))?;
         for rows in set.tables() {
             match rows.table.of {
-                Of::Alias => self.join_aliases(rows)?,
+                TableId::Alias => self.join_aliases(rows)?,
                 _ => self.insert(rows)?,
             }
         }
@@ -104,12 +104,12 @@ impl<'a> FileApplier<'a> {
             };
             self.counts[of as usize] += u64::from(is_new);
             match of {
-                Of::Run if is_new || is_completed => self.new_runs.extend(row[0].id()),
-                Of::Fault if is_new => {
+                TableId::Run if is_new || is_completed => self.new_runs.extend(row[0].id()),
+                TableId::Fault if is_new => {
                     self.touched.extend(row[0].id());
                     self.new_faults.extend(row[0].id());
                 }
-                Of::Occurrence | Of::Event if is_new => self.touched.extend(fault),
+                TableId::Occurrence | TableId::Event if is_new => self.touched.extend(fault),
                 _ => {}
             }
         }

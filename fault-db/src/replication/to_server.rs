@@ -7,7 +7,7 @@ use postgres::types::ToSql;
 
 use super::change_set::{ChangeSet, Counts};
 use super::rows::Rows;
-use super::tables::{COUNT, Column, Kind, Of};
+use super::tables::{COUNT, Column, Kind, TableId};
 use crate::backend::{Backend, Server, SqlResult, Value};
 use crate::event_graph::settle;
 use crate::recurrence::HighWaterMark;
@@ -27,12 +27,12 @@ impl ServerApplier<'_> {
         let mark = HighWaterMark::of(self.backend)?;
         let mut counts = [0; COUNT];
         // Before the faults an alias makes a fault known that is here under another id.
-        self.insert(set.rows(Of::Alias))?;
+        self.insert(set.rows(TableId::Alias))?;
         for rows in set.tables() {
             counts[rows.table.of as usize] = self.insert(rows)?;
         }
         let faults = set
-            .rows(Of::Fault)
+            .rows(TableId::Fault)
             .column(0)
             .filter_map(Value::id)
             .collect();

@@ -143,13 +143,17 @@ pub(crate) fn seal_note_as_found(backend: &Backend, note: i64, found: &str) -> S
 type DigestOf = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
 
 /// One digest over all events or notes up to a row number: those stored before schema 5.
-pub(crate) fn earlier(backend: &Backend, what: Earlier, last: i64) -> SqlResult<EarlierPayload> {
+pub(crate) fn earlier(
+    backend: &Backend,
+    what: SealedTable,
+    last: i64,
+) -> SqlResult<EarlierPayload> {
     let (seqs, digest): (&str, DigestOf) = match what {
-        Earlier::Events => (
+        SealedTable::Events => (
             "SELECT seq FROM fault_event WHERE seq <= ?1 ORDER BY seq",
             event_digest,
         ),
-        Earlier::Notes => (
+        SealedTable::Notes => (
             "SELECT seq FROM run_note WHERE seq <= ?1 ORDER BY seq",
             note_digest,
         ),
@@ -168,7 +172,7 @@ pub(crate) fn earlier(backend: &Backend, what: Earlier, last: i64) -> SqlResult<
 
 /// Which table.
 #[derive(Clone, Copy)]
-pub(crate) enum Earlier {
+pub(crate) enum SealedTable {
     Events,
     Notes,
 }

@@ -22,7 +22,7 @@ pub(crate) use head::{head_of, sealed_as};
 
 use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
-use events_and_notes::{Earlier, EarlierPayload};
+use events_and_notes::{EarlierPayload, SealedTable};
 
 /// How a run, event or note came that was sealed as found.
 pub(crate) const BY_IMPORT: &str = "import";
@@ -186,8 +186,8 @@ pub(crate) fn begin(backend: &Backend, schema: i32, minted: Id) -> SqlResult<Id>
         schema,
         runs_sealed: count("SELECT count(DISTINCT id) FROM seal")?.unwrap_or(0),
         runs_found: found.len(),
-        events: events_and_notes::earlier(backend, Earlier::Events, i64::MAX)?,
-        notes: events_and_notes::earlier(backend, Earlier::Notes, i64::MAX)?,
+        events: events_and_notes::earlier(backend, SealedTable::Events, i64::MAX)?,
+        notes: events_and_notes::earlier(backend, SealedTable::Notes, i64::MAX)?,
     };
     append_statement(backend, "begun", origin, &begun)?;
     for run in found {

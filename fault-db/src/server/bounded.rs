@@ -27,7 +27,7 @@ type Failed = Box<dyn Error + Sync + Send>;
 
 /// Opens streams. It negotiates TLS itself, so that plain streams are bounded, too; the client takes every
 /// stream for one with TLS.
-pub(super) struct Bounded {
+pub(super) struct BoundedConnector {
     pub tls: Option<MakeRustlsConnect>,
     /// Whether an unencrypted connection is allowed if the server has no TLS.
     pub or_clear: bool,
@@ -42,13 +42,13 @@ where
     or_clear: bool,
 }
 
-impl<S> MakeTlsConnect<S> for Bounded
+impl<S> MakeTlsConnect<S> for BoundedConnector
 where
     S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
     <MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect: Send + 'static,
     <<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect as TlsConnect<S>>::Future: Send,
 {
-    type Stream = Watched<S>;
+    type Stream = BoundedStream<S>;
     type TlsConnect = Connecting<S>;
     type Error = Failed;
 
@@ -70,24 +70,24 @@ where
     <MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect: Send + 'static,
     <<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect as TlsConnect<S>>::Future: Send,
 {
-    type Stream = Watched<S>;
+    type Stream = BoundedStream<S>;
     type Error = Failed;
-    type Future = Pin<Box<dyn Future<Output = Result<Watched<S>, Failed>> + Send>>;
+    type Future = Pin<Box<dyn Future<Output = Result<BoundedStream<S>, Failed>> + Send>>;
 
     fn connect(self, mut stream: S) -> Self::Future {
         Box::pin(async move {
             let Some(tls) = self.tls else {
-                return Ok(Watched::new(Way::Clear(stream)));
+                return Ok(BoundedStream::new(MaybeTls::Clear(stream)));
             };
             stream.write_all(&TLS_REQUEST).await?;
             let mut answer = [0];
             stream.read_exact(&mut answer).await?;
             if answer == [TLS_YES] {
                 let stream = tls.connect(stream).await.map_err(Into::<Failed>::into)?;
-                return Ok(Watched::new(Way::Tls(Box::new(stream))));
+                return Ok(BoundedStream::new(MaybeTls::Tls(Box::new(stream))));
             }
             match self.or_clear {
-                true => Ok(Watched::new(Way::Clear(stream))),
+                true => Ok(BoundedStream::new(MaybeTls::Clear(stream))),
                 false => Err(NO_TLS.into()),
             }
         })
@@ -97,7 +97,7 @@ where
 type Tls<S> = <MakeRustlsConnect as MakeTlsConnect<S>>::Stream;
 
 /// With or without TLS.
-enum Way<S>
+enum MaybeTls<S>
 where
     MakeRustlsConnect: MakeTlsConnect<S>,
 {
@@ -106,19 +106,19 @@ where
 }
 
 /// A stream that checks the length of incoming messages.
-pub(super) struct Watched<S>
+pub(super) struct BoundedStream<S>
 where
     MakeRustlsConnect: MakeTlsConnect<S>,
 {
-    way: Way<S>,
+    way: MaybeTls<S>,
     lengths: Lengths,
 }
 
-impl<S> Watched<S>
+impl<S> BoundedStream<S>
 where
     MakeRustlsConnect: MakeTlsConnect<S>,
 {
-    fn new(way: Way<S>) -> Self {
+    fn new(way: MaybeTls<S>) -> Self {
         Self {
             way,
             lengths: Lengths::default(),
@@ -126,19 +126,19 @@ where
     }
 }
 
-impl<S> TlsStream for Watched<S>
+impl<S> TlsStream for BoundedStream<S>
 where
     S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
 {
     fn channel_binding(&self) -> ChannelBinding {
         match &self.way {
-            Way::Clear(_) => ChannelBinding::none(),
-            Way::Tls(stream) => stream.channel_binding(),
+            MaybeTls::Clear(_) => ChannelBinding::none(),
+            MaybeTls::Tls(stream) => stream.channel_binding(),
         }
     }
 }
 
-impl<S> AsyncRead for Watched<S>
+impl<S> AsyncRead for BoundedStream<S>
 where
     S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
 {
@@ -150,14 +150,14 @@ where
         let Self { way, lengths } = self.get_mut();
         let before = into.filled().len();
         ready!(match way {
-            Way::Clear(stream) => Pin::new(stream).poll_read(context, into),
-            Way::Tls(stream) => Pin::new(&mut **stream).poll_read(context, into),
+            MaybeTls::Clear(stream) => Pin::new(stream).poll_read(context, into),
+            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_read(context, into),
         })?;
         Poll::Ready(lengths.take(&into.filled()[before..]))
     }
 }
 
-impl<S> AsyncWrite for Watched<S>
+impl<S> AsyncWrite for BoundedStream<S>
 where
     S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
 {
@@ -167,22 +167,22 @@ where
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
         match &mut self.get_mut().way {
-            Way::Clear(stream) => Pin::new(stream).poll_write(context, bytes),
-            Way::Tls(stream) => Pin::new(&mut **stream).poll_write(context, bytes),
+            MaybeTls::Clear(stream) => Pin::new(stream).poll_write(context, bytes),
+            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_write(context, bytes),
         }
     }
 
     fn poll_flush(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
         match &mut self.get_mut().way {
-            Way::Clear(stream) => Pin::new(stream).poll_flush(context),
-            Way::Tls(stream) => Pin::new(&mut **stream).poll_flush(context),
+            MaybeTls::Clear(stream) => Pin::new(stream).poll_flush(context),
+            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_flush(context),
         }
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
         match &mut self.get_mut().way {
-            Way::Clear(stream) => Pin::new(stream).poll_shutdown(context),
-            Way::Tls(stream) => Pin::new(&mut **stream).poll_shutdown(context),
+            MaybeTls::Clear(stream) => Pin::new(stream).poll_shutdown(context),
+            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_shutdown(context),
         }
     }
 }

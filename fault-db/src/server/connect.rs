@@ -8,7 +8,7 @@ use postgres::config::{SslMode, SslNegotiation};
 use postgres::{Client, Config, NoTls};
 
 use super::address::{Address, Guard};
-use super::bounded::Bounded;
+use super::bounded::BoundedConnector;
 use super::password::{self, Password};
 use super::{schema, tls};
 use crate::backend::{Backend, Server};
@@ -134,7 +134,7 @@ fn reach(
         Guard::Disable => None,
         Guard::Prefer | Guard::Verify => Some(tls::connector(address).map_err(not_trusted)?),
     };
-    let bounded = Bounded {
+    let bounded = BoundedConnector {
         tls,
         or_clear: guard != Guard::Verify,
     };

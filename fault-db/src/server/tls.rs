@@ -28,7 +28,7 @@ pub(super) fn connector(address: &Address) -> Result<MakeRustlsConnect, String> 
         }
         Guard::Disable | Guard::Prefer => builder
             .dangerous()
-            .with_custom_certificate_verifier(Arc::new(Anybody(provider))),
+            .with_custom_certificate_verifier(Arc::new(AcceptAnyCertificate(provider))),
     };
     Ok(MakeRustlsConnect::new(config.with_no_client_auth()))
 }
@@ -62,9 +62,9 @@ fn trusted(file: Option<&Path>) -> Result<RootCertStore, String> {
 
 /// Accepts any certificate, but only from the holder of its key.
 #[derive(Debug)]
-struct Anybody(Arc<CryptoProvider>);
+struct AcceptAnyCertificate(Arc<CryptoProvider>);
 
-impl ServerCertVerifier for Anybody {
+impl ServerCertVerifier for AcceptAnyCertificate {
     fn verify_server_cert(
         &self,
         _: &CertificateDer<'_>,

@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 
 /// Counts the presses of stop; clones share the count.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<Presses>);
+pub struct Stop(Arc<StopRequests>);
 
 #[derive(Debug, Default)]
-struct Presses {
+struct StopRequests {
     count: AtomicU32,
     /// The reason, if the tester itself pressed first.
     because: OnceLock<String>,

@@ -16,7 +16,7 @@ use ptu_bench::table::Table;
 pub struct CatalogArguments {
     /// What to show
     #[arg(value_enum)]
-    what: What,
+    what: CatalogTopic,
     /// Unit configuration whose speed codes to show
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
@@ -31,7 +31,7 @@ pub struct CatalogArguments {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum What {
+enum CatalogTopic {
     /// Fault modes that can be injected
     Faults,
     /// Recorded signals
@@ -50,12 +50,12 @@ impl CatalogArguments {
     /// Prints the catalogue.
     pub fn run(self) -> Result<Exit, Failure> {
         let entries = match self.what {
-            What::Faults => self.faults()?,
-            What::Signals => signals(),
-            What::Codes => self.codes()?,
-            What::Lines => self.lines()?,
-            What::Lrus => self.lrus()?,
-            What::Train => self.train()?,
+            CatalogTopic::Faults => self.faults()?,
+            CatalogTopic::Signals => signals(),
+            CatalogTopic::Codes => self.codes()?,
+            CatalogTopic::Lines => self.lines()?,
+            CatalogTopic::Lrus => self.lrus()?,
+            CatalogTopic::Train => self.train()?,
         };
         if self.json {
             print_json(&entries)

@@ -42,17 +42,17 @@ pub(in crate::cli) fn only_file(path: &Path) -> Result<&Path, Failure> {
 }
 
 /// Where it is.
-enum Place {
+enum DatabasePlace {
     File(PathBuf),
     Server(Address),
 }
 
 impl Database {
-    fn place(&self) -> Result<Place, Failure> {
+    fn place(&self) -> Result<DatabasePlace, Failure> {
         let Some(path) = self.named() else {
             let file = directories::ProjectDirs::from("", "", "ptu")
                 .map(|directories| directories.data_dir().join("history.db"));
-            return file.map(Place::File).ok_or_else(|| {
+            return file.map(DatabasePlace::File).ok_or_else(|| {
                 Failure::usage("no user data directory; name a database with --db")
             });
         };
@@ -62,8 +62,8 @@ impl Database {
             )));
         }
         Ok(match as_address(&path) {
-            Some(address) => Place::Server(address?),
-            None => Place::File(path),
+            Some(address) => DatabasePlace::Server(address?),
+            None => DatabasePlace::File(path),
         })
     }
 
@@ -76,8 +76,8 @@ impl Database {
     /// Its path, of a file; for what a server does not do.
     pub(in crate::cli) fn file(&self) -> Result<PathBuf, Failure> {
         match self.place()? {
-            Place::File(path) => Ok(path),
-            Place::Server(address) => Err(StoreError::NotAFile {
+            DatabasePlace::File(path) => Ok(path),
+            DatabasePlace::Server(address) => Err(StoreError::NotAFile {
                 path: address.to_string().into(),
             }
             .into()),
@@ -87,8 +87,8 @@ impl Database {
     /// Opens it for writing; the user's own data directory is made if need be.
     pub(in crate::cli) fn open(&self) -> Result<Store, Failure> {
         match self.place()? {
-            Place::File(_) => self.open_file(),
-            Place::Server(address) => Ok(Store::connect(&address, clock::ids())?),
+            DatabasePlace::File(_) => self.open_file(),
+            DatabasePlace::Server(address) => Ok(Store::connect(&address, clock::ids())?),
         }
     }
 
@@ -107,7 +107,7 @@ impl Database {
     /// Opens it for reading.
     pub(in crate::cli) fn open_read_only(&self) -> Result<Store, Failure> {
         Ok(match self.place()? {
-            Place::File(path) => {
+            DatabasePlace::File(path) => {
                 let store = Store::open_read_only(&path)?;
                 for stranger in store.foreign_objects()? {
                     stdio::note(&format!(
@@ -117,7 +117,7 @@ impl Database {
                 }
                 store
             }
-            Place::Server(address) => Store::connect_read_only(&address)?,
+            DatabasePlace::Server(address) => Store::connect_read_only(&address)?,
         })
     }
 }

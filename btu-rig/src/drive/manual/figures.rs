@@ -4,7 +4,7 @@ use protocol::CYCLE;
 use protocol::signal::Signal;
 
 use super::settle::steady_deviation;
-use super::{Done, Plan};
+use super::{Plan, StepDone};
 use crate::drive::Row;
 use crate::drive::figure::figures;
 
@@ -64,7 +64,7 @@ figures! {
 
 impl Figures {
     /// Of a run.
-    pub fn of(rows: &[Row], done: &[Done], plan: &Plan) -> Self {
+    pub fn of(rows: &[Row], done: &[StepDone], plan: &Plan) -> Self {
         let most = |of: fn(&Row) -> f64| rows.iter().map(of).fold(0.0, f64::max);
         let moving = rows.iter().filter(|row| row.speed_kmh > 0.0);
         let work =

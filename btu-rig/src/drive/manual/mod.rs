@@ -6,7 +6,7 @@
 //! * `player`: plays the sequence, scan by scan;
 //! * `settle`, `figures`, `outcome`: what it came to.
 //!
-//! Terms: a *step* waits for its condition and then performs its actions; [`Done`] is a step performed.
+//! Terms: a *step* waits for its condition and then performs its actions; [`StepDone`] is a step performed.
 
 mod figures;
 mod file;
@@ -20,7 +20,7 @@ mod settle;
 pub use figures::Figures;
 pub use file::{MAX_AFTER_S, MAX_STEPS};
 pub use keys::words;
-pub use outcome::{AtpBrake, Done, Ending, Outcome};
+pub use outcome::{AtpBrake, Ending, Outcome, StepDone};
 pub use plan::{ManualError, Plan};
 pub use player::Player;
 pub use sequence::{Sequence, SequenceError, Step, When};

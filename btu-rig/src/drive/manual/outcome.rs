@@ -78,7 +78,7 @@ pub(super) fn behind_colon<C>(cause: Option<C>, label: fn(C) -> &'static str) ->
 
 /// A step as it was done.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Done {
+pub struct StepDone {
     /// Line of its file; 0 = by hand.
     pub line: usize,
     /// Time since the sequence began, s.
@@ -91,7 +91,7 @@ pub struct Done {
     pub actions: Vec<Stimulus>,
 }
 
-impl Done {
+impl StepDone {
     /// What was done, in words.
     pub fn what(&self) -> String {
         let words: Vec<_> = self.actions.iter().map(words).collect();
@@ -99,8 +99,8 @@ impl Done {
     }
 }
 
-impl From<&Done> for Landmark {
-    fn from(done: &Done) -> Self {
+impl From<&StepDone> for Landmark {
+    fn from(done: &StepDone) -> Self {
         Self {
             t_s: done.t_s,
             x_m: done.x_m,
@@ -117,7 +117,7 @@ pub struct Outcome {
     /// One row a cycle. Time 0 is the beginning of the sequence.
     pub rows: Vec<Row>,
     /// Steps that were done.
-    pub done: Vec<Done>,
+    pub done: Vec<StepDone>,
     /// Those, and what unit and TCMS logged, in order.
     pub landmarks: Vec<Landmark>,
     /// Speeds, efforts and brake work over the run, of the rows and steps.

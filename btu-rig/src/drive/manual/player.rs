@@ -8,7 +8,7 @@ use protocol::{CYCLE, Duration, Instant};
 use super::file::MAX_STEPS;
 use super::keys::powers;
 use super::outcome::behind_colon;
-use super::{AtpBrake, Done, Ending, Figures, Outcome, Plan, When};
+use super::{AtpBrake, Ending, Figures, Outcome, Plan, StepDone, When};
 use crate::drive::recording::Recording;
 use crate::drive::{Landmark, Row, watch};
 use crate::lever::Lever;
@@ -61,7 +61,7 @@ struct Waiting {
 
 /// A brake of ATP: the gravest, since when, and since when there is none any more.
 #[derive(Clone, Copy, Debug)]
-struct Braked {
+struct AtpBraking {
     brake: AtpBrake,
     since: Instant,
     released: Option<Instant>,
@@ -74,8 +74,8 @@ pub struct Player {
     phase: Phase,
     next: usize,
     waiting: Waiting,
-    braked: Option<Braked>,
-    done: Vec<Done>,
+    braked: Option<AtpBraking>,
+    done: Vec<StepDone>,
     recording: Recording,
 }
 
@@ -304,7 +304,7 @@ impl Player {
         }
         let leaves = truth.speed_mps == 0.0 && actions.iter().any(powers);
         let began = self.recording.began.unwrap_or(now);
-        self.done.push(Done {
+        self.done.push(StepDone {
             line,
             t_s: now.since(began).as_secs(),
             x_m: truth.position_m,
@@ -345,7 +345,7 @@ impl Player {
             }
             return;
         };
-        let braked = self.braked.get_or_insert(Braked {
+        let braked = self.braked.get_or_insert(AtpBraking {
             brake: found,
             since: now,
             released: None,

@@ -2,7 +2,7 @@
 
 use protocol::signal::Signal;
 
-use super::Done;
+use super::StepDone;
 use crate::drive::Row;
 
 /// Deviation of the brake from its demand that counts as none [2 %: required of blending].
@@ -66,7 +66,7 @@ pub fn settled(rows: &[Row], t_s: f64, until_s: f64) -> Option<Settled> {
 /// Greatest deviation of the brake from its demand outside transients, and when: more than a second
 /// after the last step and after the demand last moved, at speeds above `above_kmh`. None without such
 /// a time.
-pub fn steady_deviation(rows: &[Row], done: &[Done], above_kmh: f64) -> Option<(f64, f64)> {
+pub fn steady_deviation(rows: &[Row], done: &[StepDone], above_kmh: f64) -> Option<(f64, f64)> {
     let mut moved_s = f64::NEG_INFINITY;
     let mut steps = done.iter().map(|done| done.t_s).peekable();
     let mut worst: Option<(f64, f64)> = None;
@@ -140,7 +140,7 @@ mod tests {
     /// The first second belongs to the demand's own appearance, the one from 1.9 s to the step.
     #[test]
     fn deviation_is_told_outside_of_transients() {
-        let step = Done {
+        let step = StepDone {
             line: 1,
             t_s: 1.9,
             x_m: 0.0,

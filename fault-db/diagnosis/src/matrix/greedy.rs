@@ -48,19 +48,19 @@ pub(super) enum Rollout {
 }
 
 /// A complete tree.
-pub(super) struct Grown {
+pub(super) struct GrownTree {
     pub(super) tree: Tree,
     /// Whether some choices were made by gain alone because the rollout work was used up.
     pub(super) unchecked: bool,
 }
 
 /// Grows a tree, the likeliest branches first.
-pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> Grown {
+pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> GrownTree {
     let mut grower = Grower::new(problem);
     let mut nodes = vec![Node::Leaf(problem.leaf(&problem.root(), false))];
-    let mut open = BinaryHeap::from([Open::new(problem.root(), 0)]);
+    let mut open = BinaryHeap::from([OpenBranch::new(problem.root(), 0)]);
     let mut unchecked = false;
-    while let Some(Open { belief, node, .. }) = open.pop() {
+    while let Some(OpenBranch { belief, node, .. }) = open.pop() {
         let ranked = grower.rank(&belief);
         let Some(&best) = ranked.first() else {
             continue;
@@ -87,23 +87,23 @@ pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> Grown {
         };
         for (belief, place) in [(pass, place), (fail, place + 1)] {
             nodes.push(Node::Leaf(problem.leaf(&belief, false)));
-            open.push(Open::new(belief, place));
+            open.push(OpenBranch::new(belief, place));
         }
     }
-    Grown {
+    GrownTree {
         tree: Tree::new(nodes),
         unchecked,
     }
 }
 
 /// A branch that is not grown yet.
-struct Open {
+struct OpenBranch {
     mass: f64,
     belief: Belief,
     node: usize,
 }
 
-impl Open {
+impl OpenBranch {
     fn new(belief: Belief, node: usize) -> Self {
         Self {
             mass: belief.mass(),
@@ -113,7 +113,7 @@ impl Open {
     }
 }
 
-impl Ord for Open {
+impl Ord for OpenBranch {
     /// The likeliest is the greatest; of equals, the earlier one.
     fn cmp(&self, other: &Self) -> Ordering {
         self.mass
@@ -122,19 +122,19 @@ impl Ord for Open {
     }
 }
 
-impl PartialOrd for Open {
+impl PartialOrd for OpenBranch {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Open {
+impl PartialEq for OpenBranch {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Open {}
+impl Eq for OpenBranch {}
 
 struct Grower<'a> {
     problem: &'a Problem<'a>,

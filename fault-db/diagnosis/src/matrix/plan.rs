@@ -7,7 +7,7 @@ use super::model::Matrix;
 use super::noisy::NoisySpace;
 use super::posterior::Posterior;
 use super::problem::{Belief, Problem};
-use super::search::{Limits, OutOfWork, Search, Space};
+use super::search::{Limits, Search, Space, WorkLimitReached};
 use super::tree::{Node, Tree};
 
 /// Probability that an answer must have where tests are not certain, unless asked otherwise.
@@ -109,7 +109,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
                     warnings,
                 });
             }
-            Err(OutOfWork) => warnings.push(
+            Err(WorkLimitReached) => warnings.push(
                 "the search for the optimal tree met its limit of work; this tree is greedy and may cost more"
                     .into(),
             ),
@@ -136,7 +136,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
     })
 }
 
-fn best_tree(problem: &Problem<'_>) -> Result<Tree, OutOfWork> {
+fn best_tree(problem: &Problem<'_>) -> Result<Tree, WorkLimitReached> {
     if problem.is_crisp() {
         let space = CrispSpace::new(problem);
         let root = space.root();
@@ -153,7 +153,7 @@ fn searched<S: Space>(
     problem: &Problem<'_>,
     mut search: Search<S>,
     root: S::Point,
-) -> Result<Tree, OutOfWork> {
+) -> Result<Tree, WorkLimitReached> {
     search.solve(root)?;
     let leaf = |belief: &Belief| Node::Leaf(problem.leaf(belief, false));
     let mut nodes = vec![leaf(&problem.root())];
@@ -165,7 +165,7 @@ fn searched<S: Space>(
             continue;
         };
         if nodes.len() >= MAX_NODES {
-            return Err(OutOfWork);
+            return Err(WorkLimitReached);
         }
         let (pass, fail) = problem.split(&belief, branch.test);
         let next = nodes.len();

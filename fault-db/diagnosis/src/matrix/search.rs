@@ -37,7 +37,7 @@ pub(super) struct Limits {
 
 /// A limit was reached before the optimum was known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct OutOfWork;
+pub(super) struct WorkLimitReached;
 
 #[derive(Clone, Copy)]
 struct Known {
@@ -68,14 +68,14 @@ impl<S: Space> Search<S> {
 
     /// The least cost from a node on. The recursion is as deep as tests follow each other: at most their
     /// number.
-    pub(super) fn solve(&mut self, point: S::Point) -> Result<f64, OutOfWork> {
+    pub(super) fn solve(&mut self, point: S::Point) -> Result<f64, WorkLimitReached> {
         if let Some(known) = self.known.get(&point).filter(|known| known.solved) {
             return Ok(known.cost);
         }
         let branches = self.space.branches(point);
         self.weighed += branches.len() as u64;
         if self.weighed > self.limits.branches || self.known.len() > self.limits.points {
-            return Err(OutOfWork);
+            return Err(WorkLimitReached);
         }
         let mut order: Vec<(f64, usize)> = Vec::with_capacity(branches.len());
         for (index, branch) in branches.iter().enumerate() {

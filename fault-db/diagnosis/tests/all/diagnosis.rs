@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, Settings, Sign,
-    StepSeen, Strategy, fixed_order, replayed,
+    Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, ObservedStep,
+    Settings, Sign, Strategy, fixed_order, replayed,
 };
 use protocol::Verdict;
 use protocol::lru::from_stored;
@@ -27,7 +27,7 @@ fn name(procedure: &str, step: &str) -> CheckName {
 fn run(fails: &[&str], t: Option<f64>) -> Observation {
     let step = |check: CheckName| {
         let short = format!("{}.{}", check.procedure, check.step);
-        StepSeen {
+        ObservedStep {
             result: if fails.contains(&short.as_str()) {
                 Verdict::Failed
             } else {

@@ -7,7 +7,7 @@ use super::{Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::seal::events_and_notes::{
-    Earlier, EarlierPayload, EventPayload, earlier, event_digest, note_digest,
+    EarlierPayload, EventPayload, SealedTable, earlier, event_digest, note_digest,
 };
 use crate::seal::run::RunPayload;
 use crate::seal::{
@@ -270,8 +270,13 @@ fn check_begun(
         return Ok(());
     };
     let rows = [
-        ("events", Earlier::Events, &begun.events, UNSEALED_EVENTS),
-        ("notes", Earlier::Notes, &begun.notes, UNSEALED_NOTES),
+        (
+            "events",
+            SealedTable::Events,
+            &begun.events,
+            UNSEALED_EVENTS,
+        ),
+        ("notes", SealedTable::Notes, &begun.notes, UNSEALED_NOTES),
     ];
     for (name, what, said, unsealed) in rows {
         let now = earlier(backend, what, said.last)?;

@@ -2,7 +2,7 @@
 
 use super::super::fault_filter::{FilteredTable, Resolved};
 use super::StatKey;
-use super::counts::{Bins, Counted, Key, Units};
+use super::counts::{Bins, CountsByKey, Key, Units};
 use crate::backend::{Backend, SqlResult};
 
 /// Counts the rows that match the filter.
@@ -11,7 +11,7 @@ pub(super) fn count(
     resolved: &Resolved<'_>,
     by: StatKey,
     bins: &Bins,
-) -> SqlResult<Counted> {
+) -> SqlResult<CountsByKey> {
     let mut counted = match backend {
         Backend::File(_) => seen_in_file(backend, resolved, by, bins)?,
         Backend::Server(_) => seen_on_server(backend, resolved, by, bins)?,
@@ -50,8 +50,8 @@ fn seen_in_file(
     resolved: &Resolved<'_>,
     by: StatKey,
     bins: &Bins,
-) -> SqlResult<Counted> {
-    let mut counted = Counted::new();
+) -> SqlResult<CountsByKey> {
+    let mut counted = CountsByKey::new();
     let seen = resolved.conditions_at(backend, FilteredTable::Occurrences, "at_us");
     let sql = format!(
         "SELECT {}, x.at_us, x.unit FROM fault_occurrence x {}",
@@ -75,8 +75,8 @@ fn seen_on_server(
     resolved: &Resolved<'_>,
     by: StatKey,
     bins: &Bins,
-) -> SqlResult<Counted> {
-    let mut counted = Counted::new();
+) -> SqlResult<CountsByKey> {
+    let mut counted = CountsByKey::new();
     let column = by.column();
     let bin = match bins.by_day {
         true => "utc_day(x.at_us)",

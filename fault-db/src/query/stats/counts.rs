@@ -23,7 +23,7 @@ impl Key {
     }
 }
 
-pub(crate) type Counted = BTreeMap<Key, Counts>;
+pub(crate) type CountsByKey = BTreeMap<Key, Counts>;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Counts {

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::super::fault_filter::{FaultFilter, Resolved};
-use super::counts::{Bins, Counted, Counts, Key};
+use super::counts::{Bins, Counts, CountsByKey, Key};
 use super::repairs::within_us;
 use super::{CountedSpan, StatKey, StatQuery};
 use crate::backend::{Backend, Row, SqlError, SqlResult};
@@ -17,7 +17,7 @@ pub(super) fn count(
     resolved: &Resolved<'_>,
     query: &StatQuery,
     spans: &[CountedSpan],
-) -> SqlResult<Vec<Counted>> {
+) -> SqlResult<Vec<CountsByKey>> {
     let filter = resolved.filter();
     let spans: Vec<_> = spans.iter().map(Span::of).collect();
     let mut counting = Counting {
@@ -309,7 +309,7 @@ impl Counting<'_> {
     }
 
     /// The counts of each span.
-    fn counted(mut self) -> Vec<Counted> {
+    fn counted(mut self) -> Vec<CountsByKey> {
         let spans = 0..self.spans.len();
         let in_span = |span: usize| {
             let counts = self.places.iter().map(|(key, place)| {

@@ -3,7 +3,7 @@
 
 use super::super::fault_filter::{FaultFilter, Resolved};
 use super::StatKey;
-use super::counts::{Bins, Counted, Counts, Key, Tally, Units};
+use super::counts::{Bins, Counts, CountsByKey, Key, Tally, Units};
 use super::repairs::KEPT_DAYS;
 use crate::backend::{Backend, Row, SqlResult, Value, values};
 use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
@@ -72,12 +72,12 @@ pub(super) fn count(
     kept: &TallyPart,
     filter: &FaultFilter,
     bins: &Bins,
-) -> SqlResult<Counted> {
+) -> SqlResult<CountsByKey> {
     let mut counting = Counting {
         backend,
         kept,
         bins,
-        counted: Counted::new(),
+        counted: CountsByKey::new(),
     };
     let (since, until) = (filter.since_us, filter.until_us);
     // A span without an end has no incomplete day there.
@@ -114,7 +114,7 @@ struct Counting<'a> {
     backend: &'a Backend,
     kept: &'a TallyPart,
     bins: &'a Bins,
-    counted: Counted,
+    counted: CountsByKey,
 }
 
 impl Counting<'_> {

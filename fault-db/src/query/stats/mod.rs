@@ -14,7 +14,7 @@ mod repairs;
 use serde::Serialize;
 
 pub(crate) use counts::Bins;
-use counts::{Counted, Counts, Key};
+use counts::{Counts, CountsByKey, Key};
 use exposure::{Exposure, Observed};
 use from_tally::TallyPart;
 
@@ -225,7 +225,7 @@ impl Store {
         resolved: &Resolved<'_>,
         query: &StatQuery,
         span: &CountedSpan,
-    ) -> Result<Counted, StoreError> {
+    ) -> Result<CountsByKey, StoreError> {
         let backend = self.backend();
         let counted = match self.way(resolved, query.by) {
             Way::Tally(part) => from_tally::count(backend, &part, &query.filter, &span.bins)
@@ -273,9 +273,9 @@ fn add_state_and_repairs(
     backend: &Backend,
     resolved: &Resolved<'_>,
     query: &StatQuery,
-    mut counted: Counted,
+    mut counted: CountsByKey,
     has_repairs: bool,
-) -> SqlResult<Counted> {
+) -> SqlResult<CountsByKey> {
     counted.retain(|_, counts| !counts.is_nothing());
     add_not_closed(backend, resolved, query.by, &mut counted)?;
     if !has_repairs || query.back_within_days != repairs::KEPT_DAYS {
@@ -289,7 +289,7 @@ fn add_not_closed(
     backend: &Backend,
     resolved: &Resolved<'_>,
     by: StatKey,
-    counted: &mut Counted,
+    counted: &mut CountsByKey,
 ) -> SqlResult<()> {
     let mut conditions = resolved.conditions_at(backend, FilteredTable::Faults, "last_at_us");
     conditions.require("x.state <> 'closed'");
@@ -348,7 +348,7 @@ impl Names {
     }
 
     /// Statistics from counts, the most frequent first.
-    fn stats(&self, counted: Counted, exposure: &Exposure<'_>, bins: &Bins) -> Vec<FaultStat> {
+    fn stats(&self, counted: CountsByKey, exposure: &Exposure<'_>, bins: &Bins) -> Vec<FaultStat> {
         let stats = counted.into_iter().map(|(key, mut counts)| {
             counts.course.resize(bins.len(), 0);
             let days = exposure.days(self.by, &key);

@@ -1,7 +1,7 @@
 //! Repairs: how long they took, and whether the fault came back.
 
 use super::super::fault_filter::{FilteredTable, Resolved};
-use super::counts::{Counted, Key};
+use super::counts::{CountsByKey, Key};
 use super::{HOUR_US, StatQuery};
 use crate::backend::{Backend, SqlResult};
 use crate::sql_functions::DAY_US;
@@ -32,7 +32,7 @@ pub(super) fn add(
     backend: &Backend,
     resolved: &Resolved<'_>,
     query: &StatQuery,
-    counted: &mut Counted,
+    counted: &mut CountsByKey,
 ) -> SqlResult<()> {
     let mut conditions = resolved.conditions_at(backend, FilteredTable::Repairs, "at_us");
     let within = conditions.place(within_us(query));
@@ -60,7 +60,7 @@ pub(super) fn add_young(
     backend: &Backend,
     resolved: &Resolved<'_>,
     query: &StatQuery,
-    counted: &mut Counted,
+    counted: &mut CountsByKey,
 ) -> SqlResult<()> {
     let young_us = query.now_us - within_us(query) + 1;
     if query

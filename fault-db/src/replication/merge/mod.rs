@@ -10,8 +10,8 @@ use rusqlite::Connection;
 use serde::Serialize;
 
 use super::change_set::{ChangeSet, ENOUGH_BYTES, MOST_ENTRIES};
-use super::sync::Different;
-use super::tables::Of;
+use super::sync::Difference;
+use super::tables::TableId;
 use super::to_file::FileApplier;
 use crate::backend::{Backend, SqlResult, values};
 use crate::domain::{Refusal, Refusals, shown_id};
@@ -45,7 +45,7 @@ pub struct MergeCounts {
     /// Notes on runs not known before.
     pub notes: usize,
     /// Runs that are finished on both sides with different content; ours were kept.
-    pub different: Vec<Different>,
+    pub different: Vec<Difference>,
     /// Set if the other file is a copy of a file whose chain of seals is known here.
     pub copy: Option<CopyOf>,
     /// Rows of the other file outside their columns' domain, and runs that do not match their seals: they
@@ -76,7 +76,7 @@ struct Merge<'a> {
     /// Runs of theirs that are refused, with all that belongs to them.
     refused_runs: BTreeSet<i64>,
     /// What is known of faults of theirs.
-    faults_here: BTreeMap<i64, FaultHere>,
+    faults_here: BTreeMap<i64, LocalFault>,
     /// Ids of their runs, events and notes that are left out.
     left_out: BTreeSet<Vec<u8>>,
     /// Runs that are finished here and differ there.
@@ -109,26 +109,26 @@ impl<'a> Merge<'a> {
     fn all(mut self, copy: Option<CopyOf>) -> SqlResult<MergeCounts> {
         let mark = HighWaterMark::of(self.ours)?;
         self.find_orphans()?;
-        self.each(Of::Run, "unit", Self::run)?;
+        self.each(TableId::Run, "unit", Self::run)?;
         self.aliases()?;
-        self.each(Of::Event, "fault", Self::event)?;
-        self.each(Of::Note, "run", Self::note)?;
-        self.each(Of::Trace, "run", Self::trace)?;
+        self.each(TableId::Event, "fault", Self::event)?;
+        self.each(TableId::Note, "run", Self::note)?;
+        self.each(TableId::Trace, "run", Self::trace)?;
         settle(self.ours, &self.applier.touched, Some(mark))?;
         self.seals()?;
         self.applier.seal_the_rest(BY_IMPORT)?;
-        let new = |of: Of| self.applier.counts[of as usize] as usize;
+        let new = |of: TableId| self.applier.counts[of as usize] as usize;
         Ok(MergeCounts {
-            units: new(Of::Unit),
-            runs: new(Of::Run),
-            steps: new(Of::Step),
-            measurements: new(Of::Measurement),
+            units: new(TableId::Unit),
+            runs: new(TableId::Run),
+            steps: new(TableId::Step),
+            measurements: new(TableId::Measurement),
             faults: self.applier.faults_added()?,
-            occurrences: new(Of::Occurrence),
-            events: new(Of::Event),
-            traces: new(Of::Trace),
-            recordings: new(Of::Recording),
-            notes: new(Of::Note),
+            occurrences: new(TableId::Occurrence),
+            events: new(TableId::Event),
+            traces: new(TableId::Trace),
+            recordings: new(TableId::Recording),
+            notes: new(TableId::Note),
             copy,
             ..self.counts
         })
@@ -138,7 +138,7 @@ impl<'a> Merge<'a> {
     /// entry is taken or known.
     fn each(
         &mut self,
-        of: Of,
+        of: TableId,
         parent: &str,
         read: fn(&mut Self, &mut ChangeSet, &Entry) -> SqlResult<bool>,
     ) -> SqlResult<()> {
@@ -180,7 +180,7 @@ impl<'a> Merge<'a> {
     fn take(
         &mut self,
         set: &mut ChangeSet,
-        of: Of,
+        of: TableId,
         entry: &Entry,
         read: impl FnOnce(&mut ChangeSet) -> SqlResult<()>,
     ) -> SqlResult<bool> {
@@ -214,13 +214,13 @@ impl<'a> Merge<'a> {
             if !is_same(self.ours, ours, theirs, entry.seq)? {
                 let id = Id::from_bytes(id);
                 self.different_runs.insert(id);
-                (self.counts.different).push(Different { what: "run", id });
+                (self.counts.different).push(Difference { what: "run", id });
             }
-            set.read(theirs, Of::Recording, entry.seq)?;
+            set.read(theirs, TableId::Recording, entry.seq)?;
             return Ok(true);
         }
         let refers_to_nothing = self.of_nothing.contains(&entry.seq);
-        let is_taken = self.take(set, Of::Run, entry, |set| {
+        let is_taken = self.take(set, TableId::Run, entry, |set| {
             set.run(theirs, entry.seq)?;
             let reason = if refers_to_nothing {
                 Some("a step or fault it speaks of is not there".to_owned())
@@ -235,7 +235,7 @@ impl<'a> Merge<'a> {
             }
         })?;
         if is_taken {
-            set.read(theirs, Of::Recording, entry.seq)?;
+            set.read(theirs, TableId::Recording, entry.seq)?;
         } else {
             self.refused_runs.insert(entry.seq);
         }
@@ -246,13 +246,13 @@ impl<'a> Merge<'a> {
     fn aliases(&mut self) -> SqlResult<()> {
         let faults = "SELECT DISTINCT fault FROM fault_alias ORDER BY fault";
         for fault in self.theirs.select(faults, &[], |row| row.get(0))? {
-            if self.fault_here(fault)? != FaultHere::Known {
+            if self.fault_here(fault)? != LocalFault::Known {
                 continue;
             }
             let (theirs, mut set) = (self.theirs, ChangeSet::new(false));
             let refused = set.whole(|set| set.fault(theirs, fault))?;
             if refused.is_some() {
-                self.faults_here.insert(fault, FaultHere::LeftOut);
+                self.faults_here.insert(fault, LocalFault::LeftOut);
             }
             self.applier.apply(&set)?;
             for refusal in set.refused.into_iter().chain(refused) {
@@ -265,36 +265,36 @@ impl<'a> Merge<'a> {
     fn event(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
         let theirs = self.theirs;
         match self.fault_here(entry.parent)? {
-            FaultHere::Known => self.take(set, Of::Event, entry, |set| {
-                set.read(theirs, Of::Event, entry.seq)
+            LocalFault::Known => self.take(set, TableId::Event, entry, |set| {
+                set.read(theirs, TableId::Event, entry.seq)
             }),
-            FaultHere::SeenByNobody => {
-                self.take(set, Of::Event, entry, |set| set.event(theirs, entry.seq))
-            }
-            FaultHere::LeftOut => Ok(false),
+            LocalFault::SeenByNobody => self.take(set, TableId::Event, entry, |set| {
+                set.event(theirs, entry.seq)
+            }),
+            LocalFault::LeftOut => Ok(false),
         }
     }
 
     /// Whether a fault of theirs is here: it was, or it came with a run.
-    fn fault_here(&mut self, fault: i64) -> SqlResult<FaultHere> {
+    fn fault_here(&mut self, fault: i64) -> SqlResult<LocalFault> {
         if let Some(known) = self.faults_here.get(&fault) {
             return Ok(*known);
         }
         let ids = "SELECT id FROM fault WHERE seq = ?1 UNION ALL SELECT id FROM fault_alias WHERE fault = ?1";
         let ids = (self.theirs).select(ids, &values![fault], |row| row.get::<Vec<u8>>(0))?;
-        let mut found = FaultHere::SeenByNobody;
+        let mut found = LocalFault::SeenByNobody;
         let seen = "SELECT 1 FROM fault_occurrence WHERE fault = ?1";
         if (self.theirs)
             .first(seen, &values![fault], |_| Ok(()))?
             .is_some()
         {
-            found = FaultHere::LeftOut;
+            found = LocalFault::LeftOut;
         }
         for id in ids {
             if let Ok(id) = id[..].try_into().map(Id::from_bytes)
                 && fault_of(self.ours, id)?.is_some()
             {
-                found = FaultHere::Known;
+                found = LocalFault::Known;
             }
         }
         self.faults_here.insert(fault, found);
@@ -303,20 +303,22 @@ impl<'a> Merge<'a> {
 
     fn note(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
         let theirs = self.theirs;
-        let read = |set: &mut ChangeSet| set.read(theirs, Of::Note, entry.seq);
-        Ok(!self.refused_runs.contains(&entry.parent) && self.take(set, Of::Note, entry, read)?)
+        let read = |set: &mut ChangeSet| set.read(theirs, TableId::Note, entry.seq);
+        Ok(!self.refused_runs.contains(&entry.parent)
+            && self.take(set, TableId::Note, entry, read)?)
     }
 
     fn trace(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
         let theirs = self.theirs;
         let read = |set: &mut ChangeSet| set.trace(theirs, entry.seq);
-        Ok(!self.refused_runs.contains(&entry.parent) && self.take(set, Of::Trace, entry, read)?)
+        Ok(!self.refused_runs.contains(&entry.parent)
+            && self.take(set, TableId::Trace, entry, read)?)
     }
 }
 
 /// What becomes of a fault of theirs.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum FaultHere {
+enum LocalFault {
     Known,
     /// Taken with its events.
     SeenByNobody,

@@ -7,8 +7,8 @@ use super::Merge;
 use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
 use crate::replication::rows::Rows;
-use crate::replication::tables::Of;
-use crate::replication::to_file::Before;
+use crate::replication::tables::TableId;
+use crate::replication::to_file::LastEntries;
 use crate::seal::chained;
 use crate::seal::events_and_notes::{event_digest, note_digest};
 
@@ -25,11 +25,15 @@ impl Merge<'_> {
     /// because they would not fit. The same holds from an entry on whose row was refused, or whose content
     /// differs from what is stored here.
     pub(super) fn seals(&mut self) -> SqlResult<()> {
-        let mut insert = self.conn.prepare(&Of::Seal.table().insert_into_file())?;
-        let mut rows = Rows::of(Of::Seal.table(), false);
+        let mut insert = self
+            .conn
+            .prepare(&TableId::Seal.table().insert_into_file())?;
+        let mut rows = Rows::of(TableId::Seal.table(), false);
         let empty = rows.mark();
         let mut last: Option<Last> = None;
-        let all = Of::Seal.table().read_where("true ORDER BY origin, ordinal");
+        let all = TableId::Seal
+            .table()
+            .read_where("true ORDER BY origin, ordinal");
         self.theirs.each(&all, &[], |row| {
             rows.back_to(empty);
             if let Err(error) = rows.take(row) {
@@ -81,7 +85,7 @@ impl Merge<'_> {
     /// Whether an entry covers something else than what was stored here before the merge.
     fn is_different(&self, what: &str, id: Id, payload: &str, digest: &[u8]) -> SqlResult<bool> {
         type DigestOf = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
-        let Before { event, note } = self.applier.before;
+        let LastEntries { event, note } = self.applier.before;
         let (table, last, digest_of): (_, _, DigestOf) = match what {
             "run" => return Ok(self.different_runs.contains(&id)),
             "event" => ("fault_event", event, event_digest),

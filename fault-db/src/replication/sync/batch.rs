@@ -2,18 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::outcome::{Different, SyncOutcome};
+use super::outcome::{Difference, SyncOutcome};
 use crate::backend::{Backend, Server, SqlResult, values};
 use crate::domain::{Refusal, shown_id};
 use crate::id::Id;
 use crate::replication::change_set::{ChangeSet, Counts, ENOUGH_BYTES, MOST_ENTRIES};
 use crate::replication::checksum::DAMAGED;
-use crate::replication::tables::Of;
+use crate::replication::tables::TableId;
 
 /// An outbox entry: a run, event, note or trace.
 pub(super) struct Entry {
     pub seq: i64,
-    of: Of,
+    of: TableId,
     row: i64,
     /// `None` if it was pruned since.
     id: Option<Vec<u8>>,
@@ -41,10 +41,10 @@ pub(super) fn entries(
             Ok(Entry {
                 seq: row.get(0)?,
                 of: match row.get::<&str>(1)? {
-                    "run" => Of::Run,
-                    "event" => Of::Event,
-                    "note" => Of::Note,
-                    _ => Of::Trace,
+                    "run" => TableId::Run,
+                    "event" => TableId::Event,
+                    "note" => TableId::Note,
+                    _ => TableId::Trace,
                 },
                 row: row.get(2)?,
                 id: row.get(3)?,
@@ -52,7 +52,7 @@ pub(super) fn entries(
             })
         },
     )?;
-    for entry in entries.iter_mut().filter(|entry| entry.of == Of::Run) {
+    for entry in entries.iter_mut().filter(|entry| entry.of == TableId::Run) {
         let sealed = "SELECT digest FROM seal WHERE id = ?1 AND what = 'run'";
         let id = entry.id.as_deref().unwrap_or_default();
         (entry.digests).extend(file.select(sealed, &values![id], |row| row.get::<Vec<u8>>(0))?);
@@ -68,13 +68,13 @@ pub(super) fn last(file: &Backend) -> SqlResult<i64> {
 
 /// What the server has of a run or trace.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Known {
+enum ServerCopy {
     /// The same, complete.
     Whole,
     /// Part of it, or unknown.
     Perhaps,
     /// A different one with the same id.
-    Different,
+    Difference,
 }
 
 pub(super) struct Batch {
@@ -99,7 +99,7 @@ impl Batch {
             batch.through = entry.seq;
             batch.entries += 1;
             if let Some(id) = &entry.id {
-                let known = known.get(id).copied().unwrap_or(Known::Perhaps);
+                let known = known.get(id).copied().unwrap_or(ServerCopy::Perhaps);
                 batch.take(file, entry, id, known)?;
             }
             if batch.set.bytes() >= ENOUGH_BYTES {
@@ -109,34 +109,40 @@ impl Batch {
         Ok(batch)
     }
 
-    fn take(&mut self, file: &Backend, entry: &Entry, id: &[u8], known: Known) -> SqlResult<()> {
+    fn take(
+        &mut self,
+        file: &Backend,
+        entry: &Entry,
+        id: &[u8],
+        known: ServerCopy,
+    ) -> SqlResult<()> {
         let (set, row) = (&mut self.set, entry.row);
         let refused = match (known, entry.of) {
-            (Known::Different, of) => {
+            (ServerCopy::Difference, of) => {
                 if let Ok(id) = id.try_into().map(Id::from_bytes) {
                     let what = of.table().name;
-                    self.outcome.different.push(Different { what, id });
+                    self.outcome.different.push(Difference { what, id });
                 }
                 None
             }
-            (Known::Whole, of) => {
+            (ServerCopy::Whole, of) => {
                 self.outcome.already_there += 1;
                 // An occurrence may have been sent after its trace.
                 match of {
-                    Of::Trace => set.whole(|set| set.read(file, Of::Shown, row))?,
+                    TableId::Trace => set.whole(|set| set.read(file, TableId::Shown, row))?,
                     _ => None,
                 }
             }
-            (Known::Perhaps, Of::Run) => set.whole(|set| {
+            (ServerCopy::Perhaps, TableId::Run) => set.whole(|set| {
                 set.run(file, row)?;
-                set.read(file, Of::Recording, row)?;
+                set.read(file, TableId::Recording, row)?;
                 let notes = "SELECT seq FROM run_note WHERE run = ?1 ORDER BY seq";
                 let notes = file.select(notes, &values![row], |row| row.get(0))?;
-                (notes.into_iter()).try_for_each(|note| set.read(file, Of::Note, note))
+                (notes.into_iter()).try_for_each(|note| set.read(file, TableId::Note, note))
             })?,
-            (Known::Perhaps, Of::Event) => set.whole(|set| set.event(file, row))?,
-            (Known::Perhaps, Of::Trace) => set.whole(|set| set.trace(file, row))?,
-            (Known::Perhaps, of) => set.whole(|set| set.read(file, of, row))?,
+            (ServerCopy::Perhaps, TableId::Event) => set.whole(|set| set.event(file, row))?,
+            (ServerCopy::Perhaps, TableId::Trace) => set.whole(|set| set.trace(file, row))?,
+            (ServerCopy::Perhaps, of) => set.whole(|set| set.read(file, of, row))?,
         };
         let alone = std::mem::take(&mut self.set.refused);
         for refusal in alone.into_iter().chain(refused) {
@@ -166,17 +172,17 @@ impl Batch {
 
     /// The outcome, when the server had this many new rows.
     pub fn outcome(mut self, new: &Counts) -> SyncOutcome {
-        let new = |of: Of| new[of as usize];
-        for of in [Of::Run, Of::Event] {
+        let new = |of: TableId| new[of as usize];
+        for of in [TableId::Run, TableId::Event] {
             let sent = self.set.rows(of).count() as u64;
             self.outcome.already_there += sent.saturating_sub(new(of));
         }
         SyncOutcome {
-            runs: new(Of::Run),
-            occurrences: new(Of::Occurrence),
-            events: new(Of::Event),
-            notes: new(Of::Note),
-            traces: new(Of::Trace),
+            runs: new(TableId::Run),
+            occurrences: new(TableId::Occurrence),
+            events: new(TableId::Event),
+            notes: new(TableId::Note),
+            traces: new(TableId::Trace),
             bytes: self.set.bytes() as u64,
             ..self.outcome
         }
@@ -184,9 +190,9 @@ impl Batch {
 }
 
 /// What the server has of the entries' runs and traces. A sealed run was sent complete.
-fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, Known>> {
+fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, ServerCopy>> {
     let ours: BTreeMap<&[u8], &BTreeSet<Vec<u8>>> = (entries.iter())
-        .filter(|entry| matches!(entry.of, Of::Run | Of::Trace))
+        .filter(|entry| matches!(entry.of, TableId::Run | TableId::Trace))
         .filter_map(|entry| Some((entry.id.as_deref()?, &entry.digests)))
         .collect();
     let mut known = BTreeMap::new();
@@ -203,13 +209,13 @@ fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, Know
     for row in found {
         let (id, theirs): (Vec<u8>, Option<Vec<u8>>) = (row.try_get(0)?, row.try_get(1)?);
         let state = match (ours.get(&id[..]), theirs) {
-            (Some(ours), Some(theirs)) if ours.contains(&theirs) => Known::Whole,
-            (Some(ours), Some(_)) if !ours.is_empty() => Known::Different,
-            _ => Known::Perhaps,
+            (Some(ours), Some(theirs)) if ours.contains(&theirs) => ServerCopy::Whole,
+            (Some(ours), Some(_)) if !ours.is_empty() => ServerCopy::Difference,
+            _ => ServerCopy::Perhaps,
         };
         // Files that shared a run before there were seals have each sealed it.
         let best = known.entry(id).or_insert(state);
-        if state == Known::Whole {
+        if state == ServerCopy::Whole {
             *best = state;
         }
     }

@@ -16,7 +16,7 @@ pub(super) struct Cursors {
 }
 
 /// The server's record of a file.
-pub(super) struct Laptop {
+pub(super) struct FileRecord {
     /// The server's row number of it.
     pub seq: i64,
     pub cursors: Cursors,
@@ -28,7 +28,7 @@ pub(super) fn register_laptop(
     backend: &Backend,
     file_id: Id,
     options: &SyncOptions<'_>,
-) -> SqlResult<Laptop> {
+) -> SqlResult<FileRecord> {
     let clock = "SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000000 AS bigint)";
     let asked_us = (options.now_us)();
     let theirs_us = backend.first(clock, &[], |row| row.get::<i64>(0))?;
@@ -41,7 +41,7 @@ pub(super) fn register_laptop(
         |row| Ok((row.get(0)?, cursors(row.get(1)?, row.get(2)?, row.get(3)?))),
     )?;
     let (seq, cursors) = found.unwrap_or((0, cursors(0, 0, 0)));
-    Ok(Laptop {
+    Ok(FileRecord {
         seq,
         cursors,
         clock_offset_us,

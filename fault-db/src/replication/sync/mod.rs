@@ -16,13 +16,13 @@ mod seal_chains;
 use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::replication::tables::Of;
+use crate::replication::tables::TableId;
 use crate::replication::to_server::ServerApplier;
 use crate::server::schema::server_id;
 use crate::store::Store;
 use batch::Batch;
-use cursors::{Cursors, Laptop};
-pub use outcome::{Different, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
+use cursors::{Cursors, FileRecord};
+pub use outcome::{Difference, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
 use seal_chains::Chain;
 pub(crate) use seal_chains::chain_error;
 
@@ -99,7 +99,7 @@ struct Sync<'a> {
     wire: &'a Server,
     /// The server's id.
     id: Id,
-    laptop: Laptop,
+    laptop: FileRecord,
     cursors: Cursors,
     own_too: bool,
     chains: Vec<Chain>,
@@ -244,7 +244,7 @@ impl Sync<'_> {
                 self.of_server(RECEIVING, |backend| receive::events(backend, scope, from))?;
             after = batch.next;
             self.outcome.refused.extend(batch.refused);
-            let events = batch.set.rows(Of::Event).count();
+            let events = batch.set.rows(TableId::Event).count();
             if events == 0 {
                 continue;
             }

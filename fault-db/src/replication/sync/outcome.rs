@@ -71,7 +71,7 @@ pub struct SyncOutcome {
     /// How far the laptop's clock is ahead of the server's, µs.
     pub clock_offset_us: i64,
     /// Rows with the same id and different content on both sides; both were left as they are.
-    pub different: Vec<Different>,
+    pub different: Vec<Difference>,
     /// Traces of the file that do not match their checksum; they were not sent.
     pub damaged_traces: Vec<Id>,
     /// Rows on either side outside their columns' domain: they were left where they are, and all others were
@@ -85,7 +85,7 @@ pub struct SyncOutcome {
 
 /// Something with different content on both sides.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Different {
+pub struct Difference {
     /// run, trace or chain.
     pub what: &'static str,
     /// Its id; of a chain of seals that of its file.

@@ -7,7 +7,7 @@ use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::domain::Refusals;
 use crate::event_graph::{faults_of, settle};
 use crate::replication::change_set::{ChangeSet, MOST_ENTRIES};
-use crate::replication::tables::{Kind, Of};
+use crate::replication::tables::{Kind, TableId};
 use crate::replication::to_file::FileApplier;
 use crate::seal::BY_SYNC;
 
@@ -50,7 +50,7 @@ pub(super) fn events(backend: &Backend, scope: PullScope, after: i64) -> SqlResu
     } else {
         "AND e.laptop IS DISTINCT FROM ?1"
     };
-    let columns = Of::Event.table().columns;
+    let columns = TableId::Event.table().columns;
     let values: Vec<_> = (columns.iter())
         .map(|column| match column.kind {
             Kind::Fault => "k.id".to_owned(),
@@ -73,7 +73,7 @@ pub(super) fn events(backend: &Backend, scope: PullScope, after: i64) -> SqlResu
     backend.each(&sql, &values![scope.laptop, after, scope.until], |row| {
         count += 1;
         found.next = Some(row.get(columns.len())?);
-        match found.set.rows_mut(Of::Event).take(row) {
+        match found.set.rows_mut(TableId::Event).take(row) {
             Err(SqlError::Refused(refusal)) => {
                 let what = format!("event {} on the server", refusal.shown);
                 found.refused.add(what, refusal.reason);
@@ -107,7 +107,7 @@ pub(super) fn add(file: &Backend, conn: &Connection, set: &ChangeSet) -> SqlResu
         &values![last.unwrap_or(0)],
     )?;
     let outcome = SyncOutcome {
-        events_received: applier.counts[Of::Event as usize],
+        events_received: applier.counts[TableId::Event as usize],
         faults_changed: faults_of(file, &applier.touched)?.len() as u64,
         bytes: set.bytes() as u64,
         ..SyncOutcome::default()
@@ -117,17 +117,17 @@ pub(super) fn add(file: &Backend, conn: &Connection, set: &ChangeSet) -> SqlResu
 }
 
 /// A fault that is new to a laptop, and how often it became so.
-pub(super) struct Fresh {
+pub(super) struct NewFault {
     fault: i64,
     times: i64,
 }
 
 /// The faults that are new to a laptop.
-pub(super) fn fresh(backend: &Backend, laptop: i64) -> SqlResult<Vec<Fresh>> {
+pub(super) fn fresh(backend: &Backend, laptop: i64) -> SqlResult<Vec<NewFault>> {
     let fresh =
         "SELECT fault, fresh FROM laptop_fault WHERE laptop = ?1 AND fresh > 0 ORDER BY fault";
     backend.select(fresh, &values![laptop], |row| {
-        Ok(Fresh {
+        Ok(NewFault {
             fault: row.get(0)?,
             times: row.get(1)?,
         })
@@ -139,7 +139,7 @@ pub(super) fn fresh(backend: &Backend, laptop: i64) -> SqlResult<Vec<Fresh>> {
 pub(super) fn acknowledge(
     server: &Server,
     laptop: i64,
-    fresh: &[Fresh],
+    fresh: &[NewFault],
     received: i64,
 ) -> SqlResult<()> {
     let faults: Vec<i64> = fresh.iter().map(|fresh| fresh.fault).collect();

@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use super::outcome::Different;
+use super::outcome::Difference;
 use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::replication::rows::Rows;
-use crate::replication::tables::Of;
+use crate::replication::tables::TableId;
 use crate::replication::to_server::ServerApplier;
 use crate::seal::divergence::{ChainComparison, compare_all_chains, compare_chains};
 use crate::seal::{CopiedPayload, copied_from, head_of, start_chain_of_copy};
@@ -32,7 +32,7 @@ pub(super) struct Chains {
     /// The file's own chain, if it does not continue the one on the server.
     pub refused: Option<ChainComparison>,
     /// Chains of other files that have forked.
-    pub different: Vec<Different>,
+    pub different: Vec<Difference>,
 }
 
 /// Compares all chains of a file.
@@ -51,7 +51,7 @@ pub(super) fn look(file: &Backend, server: &Backend, own: Id) -> SqlResult<Chain
                 // A copy that was given its own id recorded that, and sealed its entries again.
                 if copied_from(file, origin)?.is_none() {
                     let (what, id) = ("chain", origin);
-                    found.different.push(Different { what, id });
+                    found.different.push(Difference { what, id });
                 }
             }
         }
@@ -108,10 +108,10 @@ pub(super) fn send(
     server: &ServerApplier<'_>,
     chain: &mut Chain,
 ) -> SqlResult<Option<u64>> {
-    let mut rows = Rows::of(Of::Seal.table(), true);
+    let mut rows = Rows::of(TableId::Seal.table(), true);
     let next = "origin = ?1 AND ordinal > ?2 AND ordinal <= ?3 ORDER BY ordinal LIMIT ?4";
     file.each(
-        &Of::Seal.table().read_where(next),
+        &TableId::Seal.table().read_where(next),
         &values![chain.origin, chain.sent, chain.until, MOST_SEALS],
         |row| rows.take(row),
     )?;

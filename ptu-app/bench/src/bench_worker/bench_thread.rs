@@ -18,7 +18,7 @@ use super::live_state::{LiveState, Phase};
 use super::{Order, RunOrder, permit};
 use crate::link::Pace;
 use crate::run::{
-    Began, BenchSetup, Connected, Listener, READY_WITHIN, Session, SessionEvent, run_on, settled,
+    BenchSetup, Connected, Listener, READY_WITHIN, RunStart, Session, SessionEvent, run_on, settled,
 };
 use crate::stop::Stop;
 
@@ -251,7 +251,7 @@ impl BenchThread {
             made.realtime = order.realtime;
         }
         let mut ear = EventForwarder(self);
-        let began = Began::now();
+        let began = RunStart::now();
         let (plan, store) = (&order.plan, order.store);
         let result = run_on(connected, &began, plan, setup, store, stop, &mut ear);
         let closed = result.and_then(|(store, outcome)| {

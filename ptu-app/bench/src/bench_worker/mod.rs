@@ -26,7 +26,7 @@ pub use event::BenchEvent;
 pub use link_quality::LinkQuality;
 pub use live_state::{HISTORY, LiveData, LiveState, Phase};
 pub use permit::{Refused, permit};
-pub use progress::{Present, ProcedureProgress, Progress, Waiting};
+pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting};
 
 use crate::failure::Failure;
 use crate::run::{BenchSetup, RunPlan};

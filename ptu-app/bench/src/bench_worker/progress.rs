@@ -29,7 +29,7 @@ pub struct Progress {
     /// Steps over that neither passed nor were skipped.
     pub not_passed: usize,
     /// Where it is.
-    pub present: Option<Present>,
+    pub present: Option<RunPosition>,
     /// Faults found, in order.
     pub faults: Vec<FaultSeen>,
     /// The outcome once the run has ended; the inner `None` = it could not be started or recorded.
@@ -56,9 +56,9 @@ pub struct ProcedureProgress {
     pub message: String,
 }
 
-/// Where a run is.
+/// The procedure and step that a run has reached.
 #[derive(Clone, Debug)]
-pub struct Present {
+pub struct RunPosition {
     /// Place of the procedure in the run.
     pub procedure: usize,
     /// Place of the step in its procedure, once one has begun.
@@ -218,16 +218,16 @@ impl Progress {
 
     fn event(&mut self, place: usize, event: &RunEvent) {
         match event {
-            RunEvent::ProcedureStarted { .. } => self.present = Some(Present::of(place)),
+            RunEvent::ProcedureStarted { .. } => self.present = Some(RunPosition::of(place)),
             RunEvent::StepStarted { index, name, .. } => {
-                self.present = Some(Present {
+                self.present = Some(RunPosition {
                     step: Some(*index),
                     name: name.clone(),
-                    ..Present::of(place)
+                    ..RunPosition::of(place)
                 });
             }
             RunEvent::Paused { next, .. } => {
-                let present = self.present.get_or_insert_with(|| Present::of(place));
+                let present = self.present.get_or_insert_with(|| RunPosition::of(place));
                 present.waiting = None;
                 present.paused = Some(next.clone());
             }
@@ -280,7 +280,7 @@ impl Progress {
     }
 }
 
-impl Present {
+impl RunPosition {
     fn of(procedure: usize) -> Self {
         Self {
             procedure,

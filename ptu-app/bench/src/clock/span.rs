@@ -22,7 +22,7 @@ pub struct Span {
 }
 
 /// One of its ends, as it was written: a stretch of time of its own.
-struct Stretch {
+struct SpanEnd {
     since_us: i64,
     /// None of a time ago: it lasts until now.
     until_us: Option<i64>,
@@ -100,7 +100,7 @@ pub fn months(since_us: i64, until_us: i64) -> Vec<(String, i64, i64)> {
     months
 }
 
-fn stretch(text: &str) -> Result<Stretch, String> {
+fn stretch(text: &str) -> Result<SpanEnd, String> {
     let ago = [("h", 1), ("d", 24), ("w", 7 * 24)]
         .into_iter()
         .find_map(|(unit, hours)| {
@@ -110,7 +110,7 @@ fn stretch(text: &str) -> Result<Stretch, String> {
     if let Some(ago_us) = ago {
         let since_us = ago_us.and_then(|ago_us| now_us().checked_sub(ago_us));
         let since_us = since_us.ok_or_else(|| format!("\"{text}\" is too long ago"))?;
-        return Ok(Stretch {
+        return Ok(SpanEnd {
             since_us,
             until_us: None,
         });
@@ -129,7 +129,7 @@ fn stretch(text: &str) -> Result<Stretch, String> {
             "\"{text}\" is no time; write 30d, 12h, today, 2026, 2026-03, 2026-03-21, or a span such as 2026-03..2026-05"
         )
     })?;
-    Ok(Stretch {
+    Ok(SpanEnd {
         since_us,
         until_us: Some(until_us),
     })

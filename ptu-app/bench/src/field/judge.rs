@@ -34,16 +34,16 @@ const FRAMES_LOST: [Event; 4] = [
 
 /// A log, judged.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Judged {
+pub struct JudgedLog {
     /// Faults, in order.
     pub faults: Vec<Entry>,
     /// Why the others are none.
-    pub left_out: LeftOut,
+    pub left_out: ExcludedEntries,
 }
 
 /// Entries left out, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct ExcludedEntries {
     /// Information only.
     pub information: u32,
     /// Of the time before the one asked for.
@@ -60,12 +60,12 @@ pub struct LeftOut {
 }
 
 /// Judges entries, which are in order; `tested` are the spans, µs UTC, in which runs tested the unit.
-pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) -> Judged {
+pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) -> JudgedLog {
     let events: Vec<_> = entries.iter().map(|entry| entry.event).collect();
     let armed = armed(&events);
     let alone = alone(&events);
     let within = |spans: &[Range<usize>], place| spans.iter().any(|span| span.contains(&place));
-    let mut judged = Judged::default();
+    let mut judged = JudgedLog::default();
     for (place, entry) in entries.iter().enumerate() {
         let silence = SILENCE.iter().any(|event| is(&entry.event, *event));
         let left_out = &mut judged.left_out;
@@ -180,7 +180,7 @@ mod tests {
     use crate::field::read::tests::event;
 
     /// Entries half a second apart from the first on, dated by their own time; names of the faults.
-    fn faults(events: &[Event], tested: &[(i64, i64)]) -> (Vec<u32>, LeftOut) {
+    fn faults(events: &[Event], tested: &[(i64, i64)]) -> (Vec<u32>, ExcludedEntries) {
         let entries: Vec<_> = (0..)
             .zip(events)
             .map(|(index, code)| Entry {

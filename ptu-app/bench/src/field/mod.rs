@@ -11,6 +11,6 @@ mod judge;
 mod read;
 mod store;
 
-pub use judge::{Judged, LeftOut, judge};
+pub use judge::{ExcludedEntries, JudgedLog, judge};
 pub use read::{Entry, LogRead, read_log};
 pub use store::{Imported, Source, import};

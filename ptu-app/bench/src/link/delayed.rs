@@ -10,8 +10,8 @@ use protocol::{Duration, Instant, SCAN};
 #[derive(Debug)]
 pub struct Delayed<L> {
     link: L,
-    to_unit: Way,
-    from_unit: Way,
+    to_unit: Direction,
+    from_unit: Direction,
     /// Bytes that arrive at the unit in this scan, and those it sends.
     arriving: Vec<u8>,
     sent: Vec<u8>,
@@ -21,7 +21,7 @@ impl<L> Delayed<L> {
     /// A wire to `link`; `seed` picks the scans whose bytes are late.
     pub fn new(link: L, timing: &Timing, seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let mut way = |takes| Way::new(takes, timing.late_share, random.fork());
+        let mut way = |takes| Direction::new(takes, timing.late_share, random.fork());
         Self {
             link,
             to_unit: way(timing.to_unit),
@@ -50,7 +50,7 @@ impl<L: UnitLink> UnitLink for Delayed<L> {
 
 /// One direction. Bytes stay in order.
 #[derive(Debug)]
-struct Way {
+struct Direction {
     takes: Duration,
     late_share: f64,
     random: Random,
@@ -58,7 +58,7 @@ struct Way {
     under_way: VecDeque<(Instant, Vec<u8>)>,
 }
 
-impl Way {
+impl Direction {
     fn new(takes: Duration, late_share: f64, random: Random) -> Self {
         Self {
             takes,

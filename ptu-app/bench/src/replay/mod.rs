@@ -17,6 +17,6 @@ mod rerun;
 pub use compare::{Comparison, Deviation, Difference, Rule, compare};
 pub use explain::{Explanation, Link, explain};
 pub use original::{Original, rule_between};
-pub use rerun::{Likeness, Rerun, Rerunning, rerun};
+pub use rerun::{ReplayMatch, Rerun, Rerunning, rerun};
 
 pub use replay_embedded::good_twin;

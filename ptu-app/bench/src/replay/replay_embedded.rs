@@ -14,7 +14,7 @@ use crate::run::{READY_WITHIN, settled};
 use crate::stop::Stop;
 
 #[derive(Debug)]
-pub(super) struct Again {
+pub(super) struct EmbeddedReplay {
     pub trace: TraceData,
     /// How it compares with the original.
     pub rule: Rule,
@@ -42,7 +42,7 @@ pub(super) fn on_embedded(
     original: &Original,
     setup: &BenchSetup,
     stop: &Stop,
-) -> Result<Again, Failure> {
+) -> Result<EmbeddedReplay, Failure> {
     let mut session = setup.sim_session(&original.procedure, stop);
     if !original.made.on_port() {
         return play(original, &mut session, 0, Rule::exact());
@@ -59,7 +59,7 @@ pub(super) fn on_embedded(
 pub(super) fn from_here<L: UnitLink>(
     original: &Original,
     session: &mut Session<L>,
-) -> Result<Again, Failure> {
+) -> Result<EmbeddedReplay, Failure> {
     let began_us = original.stimuli.began_us;
     // Rows of both lie at whole cycles of their clocks.
     session.idle(
@@ -81,7 +81,7 @@ fn play<L: UnitLink>(
     session: &mut Session<L>,
     shift_us: i64,
     rule: Rule,
-) -> Result<Again, Failure> {
+) -> Result<EmbeddedReplay, Failure> {
     let record = &original.stimuli.record;
     let mut refused = Vec::new();
     let window = original.window(shift_us);
@@ -95,7 +95,7 @@ fn play<L: UnitLink>(
         entry.at_us = entry.at_us.saturating_add_signed(shift_us);
     }
     let began = Instant::from_us(original.stimuli.began_us.saturating_add_signed(shift_us));
-    Ok(Again {
+    Ok(EmbeddedReplay {
         trace,
         rule,
         recorded: RecordedStimuli { began, record },

@@ -7,7 +7,7 @@ use fault_db::{
 use protocol::Instant;
 use protocol::injection::FaultMode;
 
-use super::replay_embedded::{Again, from_here, on_embedded};
+use super::replay_embedded::{EmbeddedReplay, from_here, on_embedded};
 use super::{Comparison, Original, compare, good_twin};
 use crate::clock;
 use crate::data::ScriptsDirectory;
@@ -27,9 +27,9 @@ pub struct Rerunning {
     pub operator: String,
 }
 
-/// What a replay is like.
+/// How closely a replay follows the recorded trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Likeness {
+pub enum ReplayMatch {
     /// The original and its good twin are the same, and so is the replay.
     Sound,
     /// As the original: the fault shows again.
@@ -40,7 +40,7 @@ pub enum Likeness {
     Otherwise,
 }
 
-impl Likeness {
+impl ReplayMatch {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
@@ -80,7 +80,7 @@ pub struct Rerun {
     /// Serial number of the unit.
     pub serial: String,
     /// What it is like.
-    pub likeness: Likeness,
+    pub likeness: ReplayMatch,
     /// First deviating signal of the original, and whether it deviates again.
     pub first_again: Option<(String, bool)>,
     /// The replay against the original.
@@ -118,10 +118,10 @@ pub fn rerun(
     let from_original = compare(&again.trace, &original.trace, &again.rule, &[])?;
     let from_twin = compare(&again.trace, &twin, &again.rule, &[])?;
     let likeness = match (from_original.deviations.len(), from_twin.deviations.len()) {
-        (0, 0) => Likeness::Sound,
-        (0, _) => Likeness::Reproduced,
-        (_, 0) => Likeness::AsTwin,
-        _ => Likeness::Otherwise,
+        (0, 0) => ReplayMatch::Sound,
+        (0, _) => ReplayMatch::Reproduced,
+        (_, 0) => ReplayMatch::AsTwin,
+        _ => ReplayMatch::Otherwise,
     };
     let first_again = first_again(&expected, &from_twin);
     let record = run_record(original, &setup, &serial, rerunning, started_at_us);
@@ -181,13 +181,13 @@ fn play(
     original: &Original,
     setup: &mut BenchSetup,
     stop: &Stop,
-) -> Result<(Again, String, Option<String>), Failure> {
+) -> Result<(EmbeddedReplay, String, Option<String>), Failure> {
     let port = setup.endpoint != Endpoint::Sim;
     if port {
         // Any unit of this configuration will do: that is what a bench is for.
         setup.serial = None;
     }
-    let stopped = |again: &Again| {
+    let stopped = |again: &EmbeddedReplay| {
         let stopped = (stop.presses() > 0).then(|| "stopped by the operator".to_owned());
         stopped.filter(|_| again.trace.partial)
     };
@@ -250,9 +250,9 @@ fn write(
     writer: &mut RunWriter<'_>,
     original: &Original,
     made: &BenchContents,
-    again: &Again,
+    again: &EmbeddedReplay,
     verdict: Verdict,
-    likeness: Likeness,
+    likeness: ReplayMatch,
 ) -> Result<Id, Failure> {
     let mut trace = again.trace.clone();
     trace.t0_us = clock::now_us() - bench_time_us(&trace);

@@ -14,7 +14,7 @@ use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::message::Identity;
 
-use super::connect_port::Reached;
+use super::connect_port::ReadyUnit;
 use super::fault_watch::FaultSeen;
 use super::session::Session;
 use super::{RunControl, unit_text};
@@ -86,7 +86,7 @@ impl BenchSetup {
         if self.endpoint == Endpoint::Sim {
             return Ok(Connected::Sim(Box::new(self.clone())));
         }
-        let Reached {
+        let ReadyUnit {
             session,
             identity,
             found,

@@ -2,13 +2,13 @@
 //! them to the store and to the listener, and computes the verdict of the run.
 
 use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
-use btu_rig::recorder::Cut;
+use btu_rig::recorder::RecordedWindow;
 use fault_db::{Id, MeasurementRecord, RecordingRecord, StepRecord};
 use protocol::Duration;
 
 use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
-use super::store_thread::{RunStore, Speaker};
+use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use super::{FaultSeen, Task};
 use crate::clock;
@@ -26,7 +26,7 @@ pub trait Listener {
     }
 
     /// Prints these lines.
-    fn speaker(&self) -> Option<Speaker> {
+    fn speaker(&self) -> Option<LinePrinter> {
         None
     }
 }
@@ -172,7 +172,7 @@ impl<'a> Collector<'a> {
         self.store.fault(record);
     }
 
-    fn trace(&mut self, cut: &Cut) {
+    fn trace(&mut self, cut: &RecordedWindow) {
         let mut trace = trace_data(cut);
         trace.t0_bench_us += self.before.as_us() as i64;
         let faults: Vec<_> = (cut.faults.iter())

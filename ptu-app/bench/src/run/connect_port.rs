@@ -32,8 +32,8 @@ const CLOCK_DOUBTED: Duration = Duration::from_ms(10_000);
 /// Time in which the unit's log is answered or given up.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 
-/// A unit on a port, ready.
-pub(super) struct Reached {
+/// A connected unit on a port that has said it is ready.
+pub(super) struct ReadyUnit {
     pub session: Session<WireLink>,
     pub identity: Identity,
     /// What TCMS found meanwhile, and the unit in its own self-test.
@@ -45,7 +45,7 @@ impl BenchSetup {
     ///
     /// # Errors
     /// It cannot be reached, is another one, or has another configuration.
-    pub(super) fn reach(&self, stop: &Stop) -> Result<Reached, Failure> {
+    pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let link = WireLink::open(&self.endpoint)?.slower(self.slower);
         let mut bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
         bench.rig_mut().leave_log_before_contact();
@@ -67,7 +67,7 @@ impl BenchSetup {
             });
         }
         let identity = identity?;
-        Ok(Reached {
+        Ok(ReadyUnit {
             session,
             identity,
             found,

@@ -15,7 +15,7 @@ use fault_db::Store;
 use protocol::Instant;
 
 use super::{
-    Began, BenchChoice, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan,
+    BenchChoice, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan, RunStart,
     SessionEvent, Suite, Task, run, run_on,
 };
 use crate::clock;
@@ -32,7 +32,7 @@ const FAILS: &str = "procedure(title = \"Alarm\", suspect = \"-\")\n\
 
 /// Counts the scans of all procedures, and presses stop before one of them.
 #[derive(Default)]
-struct Presser {
+struct StopBeforeScan {
     count: Mutex<Count>,
     /// Before this scan, counted from 1.
     at: Option<usize>,
@@ -47,7 +47,7 @@ struct Count {
     before: Vec<usize>,
 }
 
-impl RunControl for Presser {
+impl RunControl for StopBeforeScan {
     fn after_cycle(&self, now: Instant, _: &Rig) {
         let mut count = self.count.lock().expect("no thread panics with it");
         if now < count.now {
@@ -113,7 +113,7 @@ fn plan_of(texts: &[&str]) -> RunPlan {
 
 /// Runs the plan under a run control; the outcome and the stored run.
 fn run_with(
-    presser: &Arc<Presser>,
+    presser: &Arc<StopBeforeScan>,
     plan: &RunPlan,
     setup: BenchSetup,
 ) -> (Outcome, fault_db::Verdict) {
@@ -123,14 +123,14 @@ fn run_with(
 
 /// The same with all that is stored.
 fn recorded(
-    presser: &Arc<Presser>,
+    presser: &Arc<StopBeforeScan>,
     plan: &RunPlan,
     mut setup: BenchSetup,
 ) -> (Outcome, fault_db::RunDetail) {
     setup.run_control = Some(presser.clone());
     let mut connected = setup.connect(&presser.stop).expect("the embedded unit");
     let (_folder, store) = store();
-    let (began, stop) = (Began::now(), &presser.stop);
+    let (began, stop) = (RunStart::now(), &presser.stop);
     let ran = run_on(&mut connected, &began, plan, &setup, store, stop, &mut ());
     let (store, outcome) = ran.expect("it is recorded");
     let detail = store.run(outcome.id, &|_| true).expect("the run");
@@ -140,7 +140,7 @@ fn recorded(
 /// The last scan of each procedure, counted in a run that nobody stops; in virtual time they are the same
 /// in every run.
 fn ends(plan: &RunPlan) -> Vec<usize> {
-    let counter = Arc::new(Presser::default());
+    let counter = Arc::new(StopBeforeScan::default());
     run_with(&counter, plan, setup());
     let count = counter.count.lock().expect("no thread panics with it");
     let ends = [&count.before[..], &[count.scans]].concat();
@@ -151,9 +151,9 @@ fn ends(plan: &RunPlan) -> Vec<usize> {
 
 /// Stop pressed in this scan.
 fn stopped_at(scan: usize, plan: &RunPlan) -> (Outcome, fault_db::Verdict) {
-    let presser = Arc::new(Presser {
+    let presser = Arc::new(StopBeforeScan {
         at: Some(scan),
-        ..Presser::default()
+        ..StopBeforeScan::default()
     });
     let came_to = run_with(&presser, plan, setup());
     assert_eq!(presser.stop.presses(), 1);
@@ -167,7 +167,7 @@ fn stopped_after(place: usize, plan: &RunPlan) -> (Outcome, fault_db::Verdict) {
 
 #[test]
 fn a_run_stopped_before_its_first_procedure_is_aborted() {
-    let presser = Arc::new(Presser::default());
+    let presser = Arc::new(StopBeforeScan::default());
     presser.stop.press();
     let (outcome, stored) = run_with(&presser, &plan_of(&[PASSES]), setup());
     assert_eq!(stored, fault_db::Verdict::Aborted);
@@ -222,7 +222,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
         for turn in 0..2 * TIMES {
             plan.jobs = [1, 3][turn % 2];
             let mut connected = setup.connect(&Stop::default()).expect("the embedded unit");
-            let begun = Arc::new(Presser::default());
+            let begun = Arc::new(StopBeforeScan::default());
             let setup = BenchSetup {
                 run_control: Some(begun.clone()),
                 ..setup.clone()
@@ -230,7 +230,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
             if let Connected::Sim(bench) = &mut connected {
                 **bench = setup.clone();
             }
-            let (began, mut slow) = (Began::now(), Slow(turn % 3));
+            let (began, mut slow) = (RunStart::now(), SlowListener(turn % 3));
             let ran = run_on(
                 &mut connected,
                 &began,
@@ -257,9 +257,9 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
 }
 
 /// Looks on, and is slow about it.
-struct Slow(usize);
+struct SlowListener(usize);
 
-impl Listener for Slow {
+impl Listener for SlowListener {
     fn on_event(&mut self, _: &Procedure, event: &SessionEvent) {
         if matches!(event, SessionEvent::Ended { .. }) {
             std::thread::sleep(Duration::from_millis(3 * self.0 as u64));
@@ -286,7 +286,7 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
         .expect("a number");
     let options = clock::open_options().max_pages(pages + 20);
     let store = Store::open(&file, options).expect("the database");
-    let slowly = Arc::new(Slowly::default());
+    let slowly = Arc::new(SlowClock::default());
     let mut setup = setup();
     setup.run_control = Some(slowly.clone());
     let stop = Stop::default();
@@ -305,9 +305,9 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
 
 /// Takes its time for each scan.
 #[derive(Default)]
-struct Slowly(AtomicU64);
+struct SlowClock(AtomicU64);
 
-impl RunControl for Slowly {
+impl RunControl for SlowClock {
     fn after_cycle(&self, _: Instant, _: &Rig) {}
 
     fn before_scan(&self, _: &mut Runner) {
@@ -319,7 +319,7 @@ impl RunControl for Slowly {
 /// Looks on, and hears nothing more when the last step has begun, until the bench is stopped.
 struct Busy {
     until: Stop,
-    at_most: Arc<Slowly>,
+    at_most: Arc<SlowClock>,
 }
 
 impl Listener for Busy {

@@ -2,7 +2,7 @@
 
 use btu_rig::procedure::RunEvent;
 use btu_rig::recorded::StimulusRecord;
-use btu_rig::recorder::Cut;
+use btu_rig::recorder::RecordedWindow;
 use protocol::{Duration, Instant};
 
 use super::fault_watch::FaultSeen;
@@ -15,7 +15,7 @@ pub enum SessionEvent {
     /// A fault was found; its number counts from 0 in this procedure.
     Fault(FaultSeen),
     /// The window around faults is complete.
-    Trace(Box<Cut>),
+    Trace(Box<RecordedWindow>),
     /// What was done to the bench in a procedure whose traces came before.
     Recording(Box<RecordedStimuli>),
     /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot

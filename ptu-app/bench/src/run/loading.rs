@@ -56,7 +56,7 @@ struct Order<'a> {
 
 /// What the process says, a line each.
 #[derive(Serialize, Deserialize)]
-enum Said<'a> {
+enum LoaderLine<'a> {
     /// It evaluates the script of this path from now on.
     Evaluates(Cow<'a, str>),
     Loaded(Box<Procedure>),
@@ -185,9 +185,9 @@ fn listen(lines: &Receiver<Option<Vec<u8>>>, most_s: u64) -> Result<Loaded, Brok
             );
         }
         match serde_json::from_slice(&line) {
-            Ok(Said::Evaluates(path)) => at = Some(path.into_owned()),
-            Ok(Said::Loaded(procedure)) => loaded.procedures.push(Arc::new(*procedure)),
-            Ok(Said::Done {
+            Ok(LoaderLine::Evaluates(path)) => at = Some(path.into_owned()),
+            Ok(LoaderLine::Loaded(procedure)) => loaded.procedures.push(Arc::new(*procedure)),
+            Ok(LoaderLine::Done {
                 errors,
                 need_cars,
                 printed,
@@ -310,7 +310,7 @@ pub fn serve() -> Result<(), Failure> {
 )]
 fn say_all(order: &Order<'_>) -> std::io::Result<()> {
     let mut output = BufWriter::new(std::io::stdout().lock());
-    let mut say = |said: &Said<'_>, at_once: bool| -> std::io::Result<()> {
+    let mut say = |said: &LoaderLine<'_>, at_once: bool| -> std::io::Result<()> {
         serde_json::to_writer(&mut output, said)?;
         output.write_all(b"\n")?;
         match at_once {
@@ -328,8 +328,8 @@ fn say_all(order: &Order<'_>) -> std::io::Result<()> {
     let loaded = loader::load_each(scripts, unit, line, train, &mut |told| {
         let done = match told {
             // What comes next may be the last.
-            LoadEvent::Evaluates(path) => say(&Said::Evaluates(Cow::Borrowed(path)), true),
-            LoadEvent::Loaded(procedure) => say(&Said::Loaded(procedure), false),
+            LoadEvent::Evaluates(path) => say(&LoaderLine::Evaluates(Cow::Borrowed(path)), true),
+            LoadEvent::Loaded(procedure) => say(&LoaderLine::Loaded(procedure), false),
         };
         if went_well.is_ok() {
             went_well = done;
@@ -337,7 +337,7 @@ fn say_all(order: &Order<'_>) -> std::io::Result<()> {
     });
     went_well?;
     say(
-        &Said::Done {
+        &LoaderLine::Done {
             errors: loaded.errors,
             need_cars: loaded.need_cars,
             printed: loaded.printed,

@@ -62,8 +62,8 @@ use crate::stop::Stop;
 use crate::stored::stored;
 use collector::Collector;
 use first_failure::FirstFailure;
+pub use store_thread::LinePrinter;
 use store_thread::RunStore;
-pub use store_thread::Speaker;
 
 /// Events of one procedure that may wait for the collector.
 const QUEUE: usize = 4096;
@@ -108,7 +108,7 @@ pub fn run(
     stop: &Stop,
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
-    let began = Began::now();
+    let began = RunStart::now();
     run_record(plan, &setup, setup.expected_serial(), began.at_us).check()?;
     match setup.connect(stop) {
         Ok(mut connected) => run_on(&mut connected, &began, plan, &setup, store, stop, listener),
@@ -131,7 +131,7 @@ pub fn run(
 /// The database fails; what was recorded stays.
 pub fn run_on(
     connected: &mut Connected,
-    began: &Began,
+    began: &RunStart,
     plan: &RunPlan,
     setup: &BenchSetup,
     store: Store,
@@ -231,12 +231,12 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
 }
 
 /// When a run began.
-pub struct Began {
+pub struct RunStart {
     at_us: i64,
     at: std::time::Instant,
 }
 
-impl Began {
+impl RunStart {
     /// Now.
     pub fn now() -> Self {
         Self {

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use btu_rig::procedure::{RunEvent, StepResult};
-use diagnosis::{CheckName, Observation, Sign, StepSeen, is_observed};
+use diagnosis::{CheckName, Observation, ObservedStep, Sign, is_observed};
 use fault_db::{RunDetail, RunOccurrence, StepRecord};
 use protocol::lru;
 
@@ -16,7 +16,7 @@ use crate::stored::from_stored;
 pub struct ObservationBuilder {
     procedure: String,
     waiting: BTreeSet<Sign>,
-    steps: Vec<StepSeen>,
+    steps: Vec<ObservedStep>,
 }
 
 impl ObservationBuilder {
@@ -30,7 +30,7 @@ impl ObservationBuilder {
     }
 
     /// Takes one event; a step that is over comes back.
-    pub fn take(&mut self, event: &SessionEvent) -> Option<&StepSeen> {
+    pub fn take(&mut self, event: &SessionEvent) -> Option<&ObservedStep> {
         match event {
             SessionEvent::Fault(fault) => {
                 self.waiting.extend(sign_of(fault));
@@ -41,12 +41,12 @@ impl ObservationBuilder {
         }
     }
 
-    fn step(&mut self, result: &StepResult) -> Option<&StepSeen> {
+    fn step(&mut self, result: &StepResult) -> Option<&ObservedStep> {
         if !is_observed(result.verdict) {
             return None;
         }
         let values = result.measurements.iter();
-        self.steps.push(StepSeen {
+        self.steps.push(ObservedStep {
             check: CheckName {
                 procedure: self.procedure.clone(),
                 step: result.name.clone(),
@@ -60,7 +60,7 @@ impl ObservationBuilder {
     }
 
     /// All steps; what showed after the last belongs to it.
-    pub fn finish(mut self) -> Vec<StepSeen> {
+    pub fn finish(mut self) -> Vec<ObservedStep> {
         if let Some(last) = self.steps.last_mut() {
             last.signs.append(&mut self.waiting);
         }
@@ -107,10 +107,10 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
     seen
 }
 
-fn of_step(step: &StepRecord) -> Option<StepSeen> {
+fn of_step(step: &StepRecord) -> Option<ObservedStep> {
     let result = Some(from_stored(step.verdict)).filter(|verdict| is_observed(*verdict))?;
     let values = step.measurements.iter();
-    Some(StepSeen {
+    Some(ObservedStep {
         check: CheckName {
             procedure: step.procedure.clone(),
             step: step.name.clone(),

@@ -7,7 +7,7 @@ use protocol::Instant;
 const MESSAGES: usize = 8;
 
 /// How many repetitions of a procedure have ended, and their common verdict.
-pub(super) struct Rounds {
+pub(super) struct RepetitionTally {
     of: u32,
     over: u32,
     verdict: Verdict,
@@ -16,7 +16,7 @@ pub(super) struct Rounds {
     more: u32,
 }
 
-impl Rounds {
+impl RepetitionTally {
     /// None over of so many.
     pub(super) fn new(of: u32) -> Self {
         Self {

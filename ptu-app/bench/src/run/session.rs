@@ -7,7 +7,7 @@ use std::sync::Arc;
 use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::recorded::StimulusPlayer;
-use btu_rig::recorder::{Cut, Recorder};
+use btu_rig::recorder::{RecordedWindow, Recorder};
 use btu_rig::rig::{Bench, UnitLink};
 use fault_db::TraceData;
 use protocol::signal::Sample;
@@ -135,7 +135,7 @@ impl<L: UnitLink> Session<L> {
 
     fn make_up(
         &mut self,
-        cut: &mut dyn FnMut(Cut),
+        cut: &mut dyn FnMut(RecordedWindow),
         seen: &mut dyn FnMut(&UnitEvent, Instant, &Sample),
     ) {
         // A computer that is too slow for good never catches up.
@@ -182,7 +182,7 @@ impl<L: UnitLink> Session<L> {
     }
 
     /// One scan of the bench, recorded; a completed window goes to `cut`.
-    fn scan(&mut self, cut: &mut dyn FnMut(Cut)) {
+    fn scan(&mut self, cut: &mut dyn FnMut(RecordedWindow)) {
         self.pace.wait();
         if let Err(failure) = self.bench.tick() {
             self.link_error.get_or_insert(failure.to_string());

@@ -23,14 +23,14 @@ const FLUSH: Duration = Duration::from_millis(250);
 /// How long a run under way waits for another writer. It would lose all that is still to come, and its thread
 /// keeps nobody waiting but the bench.
 #[derive(Clone, Copy)]
-struct Patience {
+struct BusyTimeout {
     /// After this time the bench is stopped: a unit is not driven for a run that may be lost.
     stops_ms: u32,
     /// After so long what was measured is kept in another file.
     gives_up: Duration,
 }
 
-const PATIENCE: Patience = Patience {
+const PATIENCE: BusyTimeout = BusyTimeout {
     stops_ms: 30_000,
     gives_up: Duration::from_secs(180),
 };
@@ -49,12 +49,12 @@ enum Entry {
 }
 
 /// Prints a line; must not block.
-pub type Speaker = Box<dyn FnMut(String) + Send>;
+pub type LinePrinter = Box<dyn FnMut(String) + Send>;
 
 /// Lines that are printed once the records they report are in the file.
 #[derive(Default)]
 struct Lines {
-    speaker: Option<Speaker>,
+    speaker: Option<LinePrinter>,
     waiting: Vec<String>,
 }
 
@@ -86,17 +86,17 @@ impl RunStore {
     pub fn begin(
         store: Store,
         record: RunRecord,
-        speaker: Option<Speaker>,
+        speaker: Option<LinePrinter>,
         stop: &Stop,
     ) -> Result<Self, Failure> {
         Self::begin_with(PATIENCE, store, record, speaker, stop)
     }
 
     fn begin_with(
-        patience: Patience,
+        patience: BusyTimeout,
         store: Store,
         record: RunRecord,
-        speaker: Option<Speaker>,
+        speaker: Option<LinePrinter>,
         stop: &Stop,
     ) -> Result<Self, Failure> {
         let (entries, receiver) = mpsc::sync_channel(QUEUE);
@@ -105,7 +105,7 @@ impl RunStore {
         let thread = std::thread::Builder::new()
             .name("store".into())
             .spawn(move || {
-                let mut kept = Kept::default();
+                let mut kept = RecordedIds::default();
                 kept.lines.speaker = speaker;
                 let result = write(&store, &record, &receiver, kept, &begun, (patience, &stop));
                 (store, result)
@@ -172,9 +172,9 @@ fn write(
     store: &Store,
     record: &RunRecord,
     entries: &Receiver<Entry>,
-    mut kept: Kept,
+    mut kept: RecordedIds,
     begun: &SyncSender<Id>,
-    (patience, stop): (Patience, &Stop),
+    (patience, stop): (BusyTimeout, &Stop),
 ) -> Result<(), Failure> {
     // Nothing is lost yet: a file that is locked is said as soon as any.
     let mut writer = RunWriter::begin(store, record)?;
@@ -205,9 +205,9 @@ fn write(
     })
 }
 
-/// What was recorded that later entries name.
+/// Identifiers of recorded rows that later entries refer to.
 #[derive(Default)]
-struct Kept {
+struct RecordedIds {
     occurrences: Vec<Id>,
     /// So many of them are in another file.
     before: usize,
@@ -219,9 +219,9 @@ struct Kept {
 /// Records all that comes. An entry that was not taken comes back with the error.
 fn write_entries(
     writer: &mut RunWriter<'_>,
-    kept: &mut Kept,
+    kept: &mut RecordedIds,
     entries: &Receiver<Entry>,
-    (patience, stop): (Patience, &Stop),
+    (patience, stop): (BusyTimeout, &Stop),
 ) -> Result<(), (StoreError, Option<Box<Entry>>)> {
     let mut flushed = Instant::now();
     loop {
@@ -260,7 +260,7 @@ fn write_entries(
 
 /// Does it until the file is free. A unit is not driven meanwhile for longer than a moment.
 fn patiently(
-    patience: Patience,
+    patience: BusyTimeout,
     stop: &Stop,
     mut work: impl FnMut(bool) -> Result<(), StoreError>,
 ) -> Result<(), StoreError> {
@@ -280,7 +280,7 @@ fn patiently(
 /// Records one entry, perhaps for another time: a step that was not written waits with the writer.
 fn keep(
     writer: &mut RunWriter<'_>,
-    kept: &mut Kept,
+    kept: &mut RecordedIds,
     entry: &Entry,
     again: bool,
 ) -> Result<(), StoreError> {
@@ -315,7 +315,7 @@ fn keep(
 /// Records the rest of a run in a file of its own, beside the one that stays busy; none if that fails, too.
 fn keep_rest(
     writer: &mut RunWriter<'_>,
-    mut kept: Kept,
+    mut kept: RecordedIds,
     record: &RunRecord,
     at_hand: Option<Box<Entry>>,
     entries: &Receiver<Entry>,

@@ -1,13 +1,13 @@
 //! A window of rows as a trace, and one row as a freeze frame.
 
 use btu_rig::procedure::describe::bit_names;
-use btu_rig::recorder::{Cut, Row};
+use btu_rig::recorder::{RecordedWindow, Row};
 use fault_db::{Channel, ChannelKind, FreezeSample, TraceData};
 use protocol::CYCLE;
 use protocol::signal::{Kind, Sample, Signal};
 
 /// The rows as a trace; `t0_us` is left for the edge to fill in.
-pub fn trace_data(cut: &Cut) -> TraceData {
+pub fn trace_data(cut: &RecordedWindow) -> TraceData {
     let rows = &cut.rows;
     let column = |signal: &Signal| {
         let values = rows.iter().map(|row| row.value(*signal));

@@ -20,7 +20,7 @@ const FROM: Duration = Duration::from_ms(13_500);
 
 /// What is wrong between bench and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Wrong {
+enum LinkFault {
     Nothing,
     /// This share of bytes has a bit flipped, both ways.
     Flips(f64),
@@ -32,18 +32,18 @@ enum Wrong {
     SelfTest,
 }
 
-struct Untrusted<L> {
+struct FaultyLink<L> {
     link: L,
-    wrong: Wrong,
+    wrong: LinkFault,
     random: Random,
     decoder: Decoder,
     /// Frames of the tester's channel that were left out: nothing of them shows in the sequence.
     left_out: u16,
 }
 
-impl<L> Untrusted<L> {
+impl<L> FaultyLink<L> {
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
-        let Wrong::Flips(share) = self.wrong else {
+        let LinkFault::Flips(share) = self.wrong else {
             return bytes.to_vec();
         };
         let random = &mut self.random;
@@ -62,20 +62,20 @@ impl<L> Untrusted<L> {
             if header.channel == Channel::Ptu {
                 header.seq = header.seq.wrapping_sub(self.left_out);
                 match (Message::decode(header.channel, &payload), self.wrong) {
-                    (Ok(Message::LogEntry(_) | Message::LogEnd(_)), Wrong::NoLog) => {
+                    (Ok(Message::LogEntry(_) | Message::LogEnd(_)), LinkFault::NoLog) => {
                         self.left_out += 1;
                         continue;
                     }
                     (Ok(Message::Identity(mut identity)), wrong) => {
                         match wrong {
-                            Wrong::OtherSerial => identity.serial[0] = b'X',
-                            Wrong::OtherDatabase => identity.tdb_crc ^= 1,
+                            LinkFault::OtherSerial => identity.serial[0] = b'X',
+                            LinkFault::OtherDatabase => identity.tdb_crc ^= 1,
                             _ => {}
                         }
                         payload.clear();
                         Message::from(identity).encode(&mut payload);
                     }
-                    (Ok(Message::Status(mut status)), Wrong::SelfTest) => {
+                    (Ok(Message::Status(mut status)), LinkFault::SelfTest) => {
                         status.self_test = SelfTest::from_bits_retain(u16::MAX);
                         payload.clear();
                         Message::from(status).encode(&mut payload);
@@ -88,14 +88,14 @@ impl<L> Untrusted<L> {
     }
 }
 
-impl<L: UnitLink> UnitLink for Untrusted<L> {
+impl<L: UnitLink> UnitLink for FaultyLink<L> {
     fn exchange(
         &mut self,
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkFailure> {
-        if now.since(Instant::ZERO) < FROM || self.wrong == Wrong::Nothing {
+        if now.since(Instant::ZERO) < FROM || self.wrong == LinkFault::Nothing {
             return self.link.exchange(now, to_unit, from_unit);
         }
         let there = self.pass(to_unit);
@@ -103,7 +103,7 @@ impl<L: UnitLink> UnitLink for Untrusted<L> {
         self.link.exchange(now, &there, &mut back)?;
         let back = self.pass(&back);
         match self.wrong {
-            Wrong::Flips(_) => from_unit.extend(back),
+            LinkFault::Flips(_) => from_unit.extend(back),
             _ => self.change(&back, from_unit),
         }
         Ok(())
@@ -111,19 +111,19 @@ impl<L: UnitLink> UnitLink for Untrusted<L> {
 }
 
 /// The result of a procedure.
-struct CameTo {
+struct ProcedureEnd {
     verdict: Verdict,
     message: String,
     steps: Vec<(Verdict, String)>,
     faults: Vec<String>,
 }
 
-struct Bed {
+struct FaultyBench {
     setup: BenchSetup,
     procedures: Vec<Arc<Procedure>>,
 }
 
-impl Bed {
+impl FaultyBench {
     fn new() -> Self {
         let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
         let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
@@ -135,7 +135,7 @@ impl Bed {
         Self { setup, procedures }
     }
 
-    fn run(&self, id: &str, wrong: Wrong, seed: u64) -> CameTo {
+    fn run(&self, id: &str, wrong: LinkFault, seed: u64) -> ProcedureEnd {
         let procedure = self.procedures.iter().find(|p| p.id == id).expect("there");
         let task = Task {
             procedure: procedure.clone(),
@@ -143,7 +143,7 @@ impl Bed {
         };
         let mut session = self
             .setup
-            .sim_session_by(id, &Stop::default(), |link| Untrusted {
+            .sim_session_by(id, &Stop::default(), |link| FaultyLink {
                 link,
                 wrong,
                 random: Random::new(seed),
@@ -152,7 +152,7 @@ impl Bed {
             });
         let (ready, found) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
         assert!(ready, "the unit is good so far");
-        let mut came_to = CameTo {
+        let mut came_to = ProcedureEnd {
             verdict: Verdict::Skipped,
             message: String::new(),
             steps: Vec::new(),
@@ -195,9 +195,9 @@ const JUDGE: [&str; 4] = [
 
 #[test]
 fn on_a_good_line_a_good_unit_passes() {
-    let bed = Bed::new();
+    let bed = FaultyBench::new();
     for id in JUDGE {
-        let came_to = bed.run(id, Wrong::Nothing, 1);
+        let came_to = bed.run(id, LinkFault::Nothing, 1);
         assert_eq!(
             came_to.verdict,
             Verdict::Passed,
@@ -209,9 +209,9 @@ fn on_a_good_line_a_good_unit_passes() {
 
 #[test]
 fn a_log_that_stops_answering_is_an_error_and_no_fault() {
-    let bed = Bed::new();
+    let bed = FaultyBench::new();
     for id in JUDGE {
-        let came_to = bed.run(id, Wrong::NoLog, 1);
+        let came_to = bed.run(id, LinkFault::NoLog, 1);
         assert_eq!(came_to.faults, [""; 0], "{id}");
         // A procedure in which nothing is logged has nothing to read.
         if came_to.verdict != Verdict::Passed {
@@ -223,7 +223,7 @@ fn a_log_that_stops_answering_is_an_error_and_no_fault() {
         }
     }
     assert_eq!(
-        bed.run("twc/exchange", Wrong::NoLog, 1).verdict,
+        bed.run("twc/exchange", LinkFault::NoLog, 1).verdict,
         Verdict::Error
     );
 }
@@ -232,11 +232,11 @@ fn a_log_that_stops_answering_is_an_error_and_no_fault() {
 /// hundred thousand flipped, some seeds each. Nearly good, it may pass.
 #[test]
 fn a_bad_line_blames_no_part() {
-    let bed = Bed::new();
+    let bed = FaultyBench::new();
     for share in [1e-2, 1e-3, 1e-4, 1e-5] {
         for seed in 1..=3 {
             for id in JUDGE {
-                let came_to = bed.run(id, Wrong::Flips(share), seed);
+                let came_to = bed.run(id, LinkFault::Flips(share), seed);
                 let what = format!("{id}, {share}, seed {seed}: {}", came_to.message);
                 assert_eq!(came_to.faults, [""; 0], "{what} {:?}", came_to.steps);
                 assert_ne!(came_to.verdict, Verdict::Failed, "{what}");
@@ -253,13 +253,16 @@ fn a_bad_line_blames_no_part() {
 
 #[test]
 fn another_unit_in_the_middle_of_a_procedure_is_an_error() {
-    let bed = Bed::new();
+    let bed = FaultyBench::new();
     for (wrong, words) in [
         (
-            Wrong::OtherSerial,
+            LinkFault::OtherSerial,
             "its serial number was \"SIM-0001\" and is \"XIM-0001\"",
         ),
-        (Wrong::OtherDatabase, "its track database's checksum was "),
+        (
+            LinkFault::OtherDatabase,
+            "its track database's checksum was ",
+        ),
     ] {
         let came_to = bed.run("twc/exchange", wrong, 1);
         assert_eq!(came_to.verdict, Verdict::Error, "{}", came_to.message);
@@ -270,8 +273,8 @@ fn another_unit_in_the_middle_of_a_procedure_is_an_error() {
 
 #[test]
 fn a_unit_that_says_its_self_test_failed_does_not_pass() {
-    let bed = Bed::new();
-    let came_to = bed.run("tcms/link", Wrong::SelfTest, 1);
+    let bed = FaultyBench::new();
+    let came_to = bed.run("tcms/link", LinkFault::SelfTest, 1);
     assert_eq!(came_to.verdict, Verdict::Failed);
     let items = [
         "Memory pattern test",

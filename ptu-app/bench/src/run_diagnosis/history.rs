@@ -125,7 +125,7 @@ fn repaired(repair: &PartRepair) -> String {
 
 #[cfg(test)]
 mod tests {
-    use diagnosis::{Basis, CheckName, Dictionary, ModeName, Model, Observation, StepSeen};
+    use diagnosis::{Basis, CheckName, Dictionary, ModeName, Model, Observation, ObservedStep};
 
     use btu_rig::procedure::Verdict;
 
@@ -155,7 +155,7 @@ mod tests {
             step: "applied in time".into(),
         };
         let came = |result| Observation {
-            steps: vec![StepSeen {
+            steps: vec![ObservedStep {
                 check: check.clone(),
                 result,
                 time_s: 1.0,

@@ -1,6 +1,6 @@
 //! The tables of a report, the same in text and on a page.
 
-use btu_rig::drive::manual::{Done, settled};
+use btu_rig::drive::manual::{StepDone, settled};
 use btu_rig::drive::{Figure, Landmark, Metrics};
 use btu_rig::rig::PairEfforts;
 use maud::{Markup, html};
@@ -199,7 +199,7 @@ pub fn events(landmarks: &[Landmark]) -> Table {
 
 /// A step of a run by hand with what it did to MT pair 1, the pair that S3 plots.
 pub struct StepResult<'a> {
-    pub done: &'a Done,
+    pub done: &'a StepDone,
     pub settled: Option<btu_rig::drive::manual::Settled>,
     /// MT pair 1 a few seconds later, or just before the next step.
     pub pair: Option<PairEfforts>,

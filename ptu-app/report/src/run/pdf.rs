@@ -11,7 +11,7 @@ use krilla::text::Font;
 use protocol::display_text;
 
 use super::Sheet;
-use super::page::font::Letters;
+use super::page::font::FontMetrics;
 use super::page::{self, DASH, HEIGHT, Ink, Item, Text, WIDTH};
 use crate::fonts::PRETENDARD;
 use crate::words::Words;
@@ -29,7 +29,7 @@ const QUARTER: f32 = 0.5523;
 /// The shipped font does not serve, or the document cannot be made of it.
 pub fn pdf(sheet: &Sheet, words: &Words) -> Result<Vec<u8>, Failure> {
     let pages = page::pages(sheet, words)?;
-    let letters = Letters::new()?;
+    let letters = FontMetrics::new()?;
     let failed = |what: &str| Failure::bench(format!("cannot make the PDF: {what}"));
     let font = Font::new(PRETENDARD.into(), 0).ok_or_else(|| failed("the shipped font"))?;
     let size = || PageSettings::from_wh(WIDTH, HEIGHT).ok_or_else(|| failed("the page size"));
@@ -68,7 +68,7 @@ fn metadata(sheet: &Sheet, words: &Words) -> Metadata {
         .creation_date(at.minute(minute).second(second).utc_offset_hour(0))
 }
 
-fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &Letters) {
+fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &FontMetrics) {
     match item {
         Item::Text(text) => words(text, surface, font, letters),
         Item::Line {
@@ -96,7 +96,7 @@ fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &Letters) 
     }
 }
 
-fn words(text: &Text, surface: &mut Surface<'_>, font: &Font, letters: &Letters) {
+fn words(text: &Text, surface: &mut Surface<'_>, font: &Font, letters: &FontMetrics) {
     let Text {
         x,
         size,

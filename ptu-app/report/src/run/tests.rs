@@ -7,7 +7,7 @@ use fault_db::{
 
 use protocol::display_text;
 
-use super::page::font::Letters;
+use super::page::font::FontMetrics;
 use super::page::{self, HEIGHT, Item, WIDTH};
 use super::{Sheet, html, pdf};
 use crate::words::{Language, Words};
@@ -217,7 +217,7 @@ fn korean_sheets_are_korean_and_all_placeholders_are_filled() {
 fn two_hundred_steps_stand_on_pages_with_headings() {
     let (store, id) = stored(200, true);
     let pages = laid_out(&sheet(&store, id), Language::English.words());
-    let letters = Letters::new().expect("the font");
+    let letters = FontMetrics::new().expect("the font");
     let mut said = String::new();
     for (number, page) in (1..).zip(&pages) {
         let words = words_of(page);

@@ -10,7 +10,7 @@ pub const NAME: &str = "ptu.trace";
 
 /// Whose trace it is, when it was recorded, and what its signals are; of a part of a trace that part's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct About {
+pub struct TraceInfo {
     /// The trace.
     pub trace_id: String,
     /// The run it was recorded in.
@@ -37,7 +37,7 @@ pub struct About {
     pub channels: Vec<Channel>,
 }
 
-impl About {
+impl TraceInfo {
     /// Of the rows from `first` on.
     pub fn part(head: &TraceHead, channels: Vec<Channel>, first: usize, rows: usize) -> Self {
         let later_us = (first as i64).saturating_mul(head.period_us);

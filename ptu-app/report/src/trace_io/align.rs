@@ -59,7 +59,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
     let known: BTreeSet<&str> = trace.channels.iter().map(|c| c.name.as_str()).collect();
     let (mut names, mut unknown) = (BTreeSet::new(), Vec::new());
     for table in import.tables {
-        let held = Held::new(&table.times_us, later_us, rows, row_us);
+        let held = RowAlignment::new(&table.times_us, later_us, rows, row_us);
         first = first.min(held.rows.start);
         end = end.max(held.rows.end);
         is_row_by_row &= held.is_row_by_row;
@@ -98,14 +98,14 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
 }
 
 /// Which of a table's rows stands at each row of a trace.
-struct Held {
+struct RowAlignment {
     places: Vec<Option<usize>>,
     /// Rows of the trace from the first to the last that has one.
     rows: std::ops::Range<usize>,
     is_row_by_row: bool,
 }
 
-impl Held {
+impl RowAlignment {
     fn new(times: &[i64], later_us: i64, rows: usize, row_us: impl Fn(usize) -> i64) -> Self {
         let at = |place: usize| times[place].saturating_add(later_us);
         // The last sample stands as long as the one before did.

@@ -12,7 +12,7 @@ use fault_db::{Channel, ChannelKind};
 use protocol::display_text;
 use serde_json::{Value, json};
 
-use super::about::About;
+use super::about::TraceInfo;
 use crate::csv::no_formula;
 
 /// Heading of the column of times.
@@ -87,7 +87,7 @@ pub(super) fn beside(file: &Path) -> PathBuf {
 }
 
 /// The document that stands beside a file of the name `file`.
-pub(super) fn description(file: &str, about: &About) -> Value {
+pub(super) fn description(file: &str, about: &TraceInfo) -> Value {
     let column = |channel: &Channel| {
         let datatype = match channel.kind {
             ChannelKind::Number { .. } => "double",

@@ -7,7 +7,7 @@ use std::path::Path;
 use fault_db::{Channel, ChannelKind, open_regular_file, read_regular_file};
 use serde_json::Value;
 
-use super::about::About;
+use super::about::TraceInfo;
 use super::csv::{beside, heading};
 use super::series::{Import, Table, check_size, plain, wrong};
 use ptu_bench::data::LONGEST_FILE;
@@ -39,7 +39,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
 }
 
 /// What stands in the description beside, if there is one.
-fn about(file: &Path) -> Result<Option<About>, Failure> {
+fn about(file: &Path) -> Result<Option<TraceInfo>, Failure> {
     let beside = beside(file);
     let text = match read_regular_file(&beside, LONGEST_FILE) {
         Ok(text) => text,

@@ -11,7 +11,7 @@ use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
-use super::about::{About, NAME};
+use super::about::{NAME, TraceInfo};
 use super::series::{Import, Table, check_size, plain, wrong};
 use ptu_bench::failure::Failure;
 
@@ -110,7 +110,7 @@ struct Reading<'a> {
     known: &'a [Channel],
     /// By the number of the file's channel.
     topics: BTreeMap<u16, Topic>,
-    about: Option<About>,
+    about: Option<TraceInfo>,
     messages: usize,
     /// Of all topics.
     signals: usize,

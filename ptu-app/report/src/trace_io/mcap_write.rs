@@ -1,7 +1,7 @@
 //! Traces as MCAP: one message of JSON a row, under one topic, for Foxglove, PlotJuggler and the like.
 //!
 //! A field a signal, null where a sample is not known; words and bits are numbers, so that they plot. The
-//! schema has each signal's unit and words, the file's metadata [`About`](super::About) under its name.
+//! schema has each signal's unit and words, the file's metadata [`TraceInfo`](super::About) under its name.
 
 use std::collections::BTreeMap;
 use std::io::{self, Seek, Write};
@@ -12,7 +12,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapError, WriteOptions};
 use serde_json::{Map, Value, json};
 
-use super::about::{About, NAME};
+use super::about::{NAME, TraceInfo};
 use super::part::Chosen;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
@@ -75,7 +75,7 @@ pub(super) fn put(
 }
 
 /// Each signal's name as JSON has it before a value; the same in every row.
-fn keys(about: &About) -> Vec<String> {
+fn keys(about: &TraceInfo) -> Vec<String> {
     let name = |channel: &Channel| Value::from(channel.name.as_str()).to_string();
     about.channels.iter().map(|c| name(c) + ":").collect()
 }
@@ -105,7 +105,7 @@ fn number(sample: f64) -> Value {
 }
 
 /// What a message looks like, as JSON Schema.
-fn schema(about: &About) -> Value {
+fn schema(about: &TraceInfo) -> Value {
     let properties: Map<String, Value> = about
         .channels
         .iter()

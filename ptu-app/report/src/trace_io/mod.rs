@@ -2,7 +2,7 @@
 //!
 //! * [`export`]: a stored trace, or a part of it, as CSV, Parquet or MCAP, a piece at a time, so that an
 //!   hour of all signals takes no more memory than a second of one;
-//! * [`About`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
+//! * [`TraceInfo`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
 //! * [`import`]: signals of a CSV or MCAP file, ours or another program's;
 //! * [`align()`]: these signals at the times of a stored trace's rows, to be compared with it.
 
@@ -17,7 +17,7 @@ mod parquet;
 mod part;
 mod series;
 
-pub use about::About;
+pub use about::TraceInfo;
 pub use align::{Aligned, align};
 pub use export::{Format, export};
 pub use part::{Chosen, Seconds};

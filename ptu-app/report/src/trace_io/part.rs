@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 
-use super::about::About;
+use super::about::TraceInfo;
 use ptu_bench::failure::Failure;
 
 /// Rows that are in memory at once, of all signals.
@@ -79,7 +79,7 @@ pub struct Chosen<'s> {
     id: Id,
     rows: Range<usize>,
     /// What it is.
-    pub about: About,
+    pub about: TraceInfo,
 }
 
 impl<'s> Chosen<'s> {
@@ -96,7 +96,7 @@ impl<'s> Chosen<'s> {
         let head = store.trace_head(id)?;
         let rows = span.rows(&head)?;
         let channels = chosen(&head, signals)?;
-        let about = About::part(&head, channels, rows.start, rows.len());
+        let about = TraceInfo::part(&head, channels, rows.start, rows.len());
         Ok(Self {
             store,
             id,

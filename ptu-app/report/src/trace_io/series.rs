@@ -5,7 +5,7 @@ use std::path::Path;
 use fault_db::trace::MAX_SAMPLES;
 use fault_db::{Channel, ChannelKind};
 
-use super::about::About;
+use super::about::TraceInfo;
 use super::{csv_read, mcap_read};
 use ptu_bench::failure::Failure;
 
@@ -30,7 +30,7 @@ pub struct Import {
     /// Times are since 1970, UTC; otherwise from the trigger.
     pub is_utc: bool,
     /// What it is, if one of our own exports.
-    pub about: Option<About>,
+    pub about: Option<TraceInfo>,
 }
 
 /// Whether a file of this name can be read.

@@ -54,7 +54,7 @@ pub struct Event {
 
 /// A trace that is open.
 #[derive(Debug)]
-pub struct Opened {
+pub struct OpenTrace {
     /// The trace.
     pub id: Id,
     /// Its run, as far as it is known.
@@ -134,7 +134,7 @@ impl ListedTrace {
 ///
 /// # Errors
 /// It is gone or damaged, or the database fails.
-pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<Opened, Failure> {
+pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<OpenTrace, Failure> {
     let data = store.trace(id)?;
     if !PERIODS_US.contains(&data.period_us) {
         return Err(Failure::bench(format!(
@@ -167,7 +167,7 @@ pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<Opened, Failure> {
         name: None,
     }));
     events.sort_by_key(|event| event.row);
-    Ok(Opened {
+    Ok(OpenTrace {
         id,
         run,
         view: TraceView::new(data),

@@ -29,10 +29,10 @@ mod visible_range;
 pub use axis::{Axis, Edges, Kind};
 pub use columns::Column;
 pub use min_max_index::MinMaxIndex;
-pub use overlay::{Against, Overlay, Parting};
+pub use overlay::{FirstDifference, Overlay, OverlaySource};
 pub use runs::Runs;
-pub use spans::{Shown, Span};
-pub use trace_plot::{Behind, Cursor, Lane, TracePlot};
+pub use spans::{Span, SpanKind};
+pub use trace_plot::{Cursor, Lane, OverlayTrace, TracePlot};
 pub use view::{Summary, TraceView};
 pub use visible_range::VisibleRange;
 

@@ -10,9 +10,9 @@ use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::Failure;
 use ptu_bench::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
-/// What a trace is laid against.
+/// What a trace is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Against {
+pub enum OverlaySource {
     /// The same stimuli on a sound unit.
     Twin,
     /// Another trace.
@@ -23,7 +23,7 @@ pub enum Against {
 #[derive(Debug)]
 pub struct Overlay {
     /// What it is.
-    pub against: Against,
+    pub against: OverlaySource,
     /// Its samples.
     pub view: TraceView,
     rule: Rule,
@@ -31,7 +31,7 @@ pub struct Overlay {
 
 /// The first difference between a trace and the trace behind, which may be shifted by some rows.
 #[derive(Debug)]
-pub struct Parting {
+pub struct FirstDifference {
     /// Rows by which the other one is laid later.
     pub shift_rows: i64,
     /// Rows of the trace that differ, by signal.
@@ -51,11 +51,11 @@ impl Overlay {
         store: &Store,
         scripts: &ScriptsDirectory,
         id: Id,
-        against: Against,
+        against: OverlaySource,
     ) -> Result<Self, Failure> {
         let (data, rule) = match against {
-            Against::Twin => good_twin(&Original::read(store, id)?, scripts)?,
-            Against::Trace(other) => (store.trace(other)?, rule_between(store, id, other)?),
+            OverlaySource::Twin => good_twin(&Original::read(store, id)?, scripts)?,
+            OverlaySource::Trace(other) => (store.trace(other)?, rule_between(store, id, other)?),
         };
         Ok(Self {
             against,
@@ -65,14 +65,14 @@ impl Overlay {
     }
 
     /// The first difference of `came` from it.
-    pub fn parting(&self, came: &TraceView, shift_rows: i64) -> Parting {
+    pub fn parting(&self, came: &TraceView, shift_rows: i64) -> FirstDifference {
         let rule = self.rule.shifted(shift_rows);
         let (found, trouble) = match compare(came.data(), self.view.data(), &rule, &[]) {
             Ok(found) => (Some(found), None),
             Err(failure) => (None, Some(failure.message)),
         };
         let deviations = found.map_or_else(Vec::new, |found: Comparison| found.deviations);
-        Parting {
+        FirstDifference {
             shift_rows,
             first: deviations.first().cloned(),
             stretches: deviations
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn the_first_difference_follows_the_shift_and_incomparable_traces_give_a_reason() {
         let other = |columns: &[(&str, &[f64])]| Overlay {
-            against: Against::Twin,
+            against: OverlaySource::Twin,
             view: TraceView::new(trace(columns)),
             rule: Rule::exact(),
         };

@@ -114,7 +114,7 @@ impl Runs {
 
 #[cfg(test)]
 mod tests {
-    use super::super::spans::Shown;
+    use super::super::spans::SpanKind;
     use super::super::tests::trace;
     use super::*;
 
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(Runs::of(&[]).changes(0..0), 0);
     }
 
-    fn spans(samples: &[f64], window: Window) -> Vec<(f32, f32, Shown)> {
+    fn spans(samples: &[f64], window: Window) -> Vec<(f32, f32, SpanKind)> {
         let axis = Axis::time(&trace(&[("eb", samples)]), 0);
         let mut edges = Edges::default();
         axis.edges(window, 100, &mut edges);
@@ -145,15 +145,15 @@ mod tests {
     fn a_state_is_one_interval_while_it_holds_and_unknown_is_none() {
         let found = spans(&SAMPLES, Window { from: 0.0, to: 0.5 });
         let expected = [
-            (0.0, 20.0, Shown::Value(0.0)),
-            (20.0, 50.0, Shown::Value(1.0)),
-            (60.0, 70.0, Shown::Value(1.0)),
-            (70.0, 100.0, Shown::Value(0.0)),
+            (0.0, 20.0, SpanKind::Value(0.0)),
+            (20.0, 50.0, SpanKind::Value(1.0)),
+            (60.0, 70.0, SpanKind::Value(1.0)),
+            (70.0, 100.0, SpanKind::Value(0.0)),
         ];
         assert_eq!(found, expected);
         let part = spans(&SAMPLES, Window { from: 0.3, to: 0.4 });
-        assert_eq!(part[0], (0.0, 50.0, Shown::Value(1.0)));
-        assert_eq!(part[1], (50.0, 100.0, Shown::Value(0.0)));
+        assert_eq!(part[0], (0.0, 50.0, SpanKind::Value(1.0)));
+        assert_eq!(part[1], (50.0, 100.0, SpanKind::Value(0.0)));
     }
 
     #[test]
@@ -168,9 +168,9 @@ mod tests {
             },
         );
         assert_eq!(found.len(), 2, "{found:?}");
-        assert_eq!(found[0].2, Shown::Busy);
+        assert_eq!(found[0].2, SpanKind::Busy);
         assert!((found[0].1 - 60.0).abs() <= 1.0, "{found:?}");
-        assert_eq!(found[1].2, Shown::Value(1.0));
+        assert_eq!(found[1].2, SpanKind::Value(1.0));
         assert!((found[1].0 - 60.0).abs() <= 1.0 && found[1].1 == 100.0);
     }
 }

@@ -7,7 +7,7 @@ const SHORTEST: f64 = 1.5;
 
 /// What a stretch shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shown {
+pub enum SpanKind {
     /// One value.
     Value(f64),
     /// Values that change faster than can be seen.
@@ -22,7 +22,7 @@ pub struct Span {
     /// Right edge.
     pub to: f32,
     /// What it shows.
-    pub shown: Shown,
+    pub shown: SpanKind,
 }
 
 /// Adds a stretch of one value, in order from the left; edges in pixels.
@@ -34,7 +34,7 @@ pub fn add(spans: &mut Vec<Span>, (from, to): (f64, f64), value: f64) {
     let last = spans.last_mut().filter(|last| left - last.to < 1.0);
     if to - from >= SHORTEST {
         if let Some(last) = last
-            && last.shown == Shown::Value(value)
+            && last.shown == SpanKind::Value(value)
         {
             last.to = right;
             return;
@@ -42,12 +42,12 @@ pub fn add(spans: &mut Vec<Span>, (from, to): (f64, f64), value: f64) {
         spans.push(Span {
             from: left,
             to: right,
-            shown: Shown::Value(value),
+            shown: SpanKind::Value(value),
         });
         return;
     }
     match last {
-        Some(last) if last.shown == Shown::Value(value) => last.to = last.to.max(right),
+        Some(last) if last.shown == SpanKind::Value(value) => last.to = last.to.max(right),
         _ => add_busy(spans, (from, to)),
     }
 }
@@ -56,13 +56,13 @@ pub fn add(spans: &mut Vec<Span>, (from, to): (f64, f64), value: f64) {
 pub fn add_busy(spans: &mut Vec<Span>, (from, to): (f64, f64)) {
     let (left, right) = (from as f32, to as f32);
     match spans.last_mut() {
-        Some(last) if last.shown == Shown::Busy && left - last.to < 1.0 => {
+        Some(last) if last.shown == SpanKind::Busy && left - last.to < 1.0 => {
             last.to = last.to.max(right);
         }
         _ => spans.push(Span {
             from: left,
             to: right.max(left + 1.0),
-            shown: Shown::Busy,
+            shown: SpanKind::Busy,
         }),
     }
 }
@@ -110,7 +110,7 @@ mod tests {
         to: 10.0,
     };
 
-    fn shown(samples: &[(f64, f64)]) -> Vec<(f32, f32, Shown)> {
+    fn shown(samples: &[(f64, f64)]) -> Vec<(f32, f32, SpanKind)> {
         let mut spans = Vec::new();
         of_samples(samples.iter().copied(), WINDOW, 100, &mut spans);
         spans.iter().map(|s| (s.from, s.to, s.shown)).collect()
@@ -127,9 +127,9 @@ mod tests {
             (12.0, 1.0),
         ]);
         let expected = [
-            (0.0, 40.0, Shown::Value(0.0)),
-            (40.0, 60.0, Shown::Value(1.0)),
-            (80.0, 100.0, Shown::Value(1.0)),
+            (0.0, 40.0, SpanKind::Value(0.0)),
+            (40.0, 60.0, SpanKind::Value(1.0)),
+            (80.0, 100.0, SpanKind::Value(1.0)),
         ];
         assert_eq!(found, expected);
     }
@@ -138,13 +138,13 @@ mod tests {
     fn a_short_pulse_is_visible_and_many_are_one_busy_interval() {
         let pulse = shown(&[(0.0, 0.0), (5.0, 1.0), (5.05, 0.0), (10.0, 0.0)]);
         assert_eq!(pulse.len(), 3);
-        assert_eq!(pulse[1], (50.0, 51.0, Shown::Busy));
+        assert_eq!(pulse[1], (50.0, 51.0, SpanKind::Busy));
         let busy: Vec<_> = (0..1000)
             .map(|i| (f64::from(i) / 100.0, f64::from(i % 2)))
             .collect();
         let found = shown(&busy);
         assert_eq!(found.len(), 1, "{found:?}");
-        assert_eq!(found[0].2, Shown::Busy);
+        assert_eq!(found[0].2, SpanKind::Busy);
         assert!(found[0].0 == 0.0 && found[0].1 > 99.0);
     }
 }

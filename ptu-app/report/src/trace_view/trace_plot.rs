@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::listing::Opened;
-use super::overlay::{Against, Overlay, Parting};
+use super::listing::OpenTrace;
+use super::overlay::{FirstDifference, Overlay, OverlaySource};
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
 use super::{Axis, Kind, VisibleRange, choose};
@@ -35,9 +35,9 @@ pub struct Lane {
     pub stretch: f32,
 }
 
-/// The trace behind.
+/// The trace that is drawn behind for comparison.
 #[derive(Debug)]
-pub struct Behind {
+pub struct OverlayTrace {
     /// Its samples.
     pub overlay: Arc<Overlay>,
     /// Where its rows lie.
@@ -45,26 +45,26 @@ pub struct Behind {
     /// Rows by which it is laid later.
     pub shift_rows: i64,
     /// The first difference; `None` until it is computed.
-    pub parting: Option<Parting>,
+    pub parting: Option<FirstDifference>,
 }
 
 /// A trace as it is looked at.
 #[derive(Debug)]
 pub struct TracePlot {
-    opened: Arc<Opened>,
+    opened: Arc<OpenTrace>,
     axis: Axis,
     camera: VisibleRange,
     lanes: Vec<Lane>,
     cursors: [Option<usize>; 2],
     close: bool,
-    behind: Option<Behind>,
+    behind: Option<OverlayTrace>,
     /// What is said of these rows, by lane; empty until asked for.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
 impl TracePlot {
     /// All of a trace over time, with these signals; with the usual ones if there are none.
-    pub fn new(opened: Arc<Opened>, signals: &[String]) -> Self {
+    pub fn new(opened: Arc<OpenTrace>, signals: &[String]) -> Self {
         let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
         let mut scene = Self {
             camera: camera(&axis, &opened.view),
@@ -81,7 +81,7 @@ impl TracePlot {
     }
 
     /// The trace.
-    pub fn opened(&self) -> &Arc<Opened> {
+    pub fn opened(&self) -> &Arc<OpenTrace> {
         &self.opened
     }
 
@@ -111,7 +111,7 @@ impl TracePlot {
     }
 
     /// The trace behind, if one is shown.
-    pub fn behind(&self) -> Option<&Behind> {
+    pub fn behind(&self) -> Option<&OverlayTrace> {
         self.behind.as_ref()
     }
 
@@ -264,7 +264,7 @@ impl TracePlot {
 
     /// Lays something behind the trace.
     pub fn lay_behind(&mut self, overlay: Arc<Overlay>) {
-        self.behind = Some(Behind {
+        self.behind = Some(OverlayTrace {
             axis: behind_axis(&overlay.view, self.axis.kind(), 0),
             overlay,
             shift_rows: 0,
@@ -289,7 +289,7 @@ impl TracePlot {
     }
 
     /// Takes the first difference from the trace behind.
-    pub fn told(&mut self, against: Against, parting: Parting) {
+    pub fn told(&mut self, against: OverlaySource, parting: FirstDifference) {
         if let Some(behind) = &mut self.behind
             && behind.overlay.against == against
         {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use fault_db::{
-    CopyOf, Different, MergeCounts, PruneCounts, PruneRule, Refusals, StateConflict, StoreError,
+    CopyOf, Difference, MergeCounts, PruneCounts, PruneRule, Refusals, StateConflict, StoreError,
 };
 use serde_json::{json, to_value};
 
@@ -129,7 +129,7 @@ fn tell_merged(
     if let Some(copy) = &counts.copy {
         stdio::note(&copied(copy));
     }
-    for Different { what, id } in &counts.different {
+    for Difference { what, id } in &counts.different {
         stdio::note(&format!(
             "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
         ));

@@ -54,7 +54,7 @@ impl SyncArguments {
                 std::process::exit(Exit::Aborted.code().into());
             }
         });
-        let mut shown = Shown::default();
+        let mut shown = ProgressLine::default();
         let outcome = file.sync(
             &server,
             &mut SyncOptions {
@@ -210,12 +210,12 @@ fn as_json(outcome: &SyncOutcome, server: &Store, took_s: f64) -> serde_json::Va
 
 /// Progress on stderr: a bar on a terminal, a line for each phase elsewhere.
 #[derive(Default)]
-struct Shown {
+struct ProgressLine {
     phase: Option<SyncPhase>,
     bar: Option<ProgressBar>,
 }
 
-impl Shown {
+impl ProgressLine {
     fn tell(&mut self, progress: SyncProgress) {
         if self.phase != Some(progress.phase) {
             self.phase = Some(progress.phase);
@@ -252,7 +252,7 @@ impl Shown {
     }
 }
 
-impl Drop for Shown {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::cli::{ScriptsOption, print_json, print_out, since_argument};
 use ptu_bench::clock::{local, now_us, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::field::{Imported, Judged, LogRead, Source, import, judge, read_log};
+use ptu_bench::field::{Imported, JudgedLog, LogRead, Source, import, judge, read_log};
 use ptu_bench::link::{Endpoint, WireLink};
 use ptu_bench::run::unit_text;
 use ptu_bench::stop::Stop;
@@ -62,7 +62,7 @@ pub struct ImportArguments {
 /// A log and what became of it.
 struct Outcome {
     read: LogRead,
-    judged: Judged,
+    judged: JudgedLog,
     source: Source,
     imported: Imported,
     warnings: Vec<String>,

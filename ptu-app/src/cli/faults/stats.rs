@@ -55,7 +55,7 @@ const BARS: usize = 24;
 pub struct StatsArguments {
     /// What to count by
     #[arg(long, value_enum, default_value = "code")]
-    by: By,
+    by: GroupBy,
     /// A fault that is seen again within so many days of its repair is back
     #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
     back_within: u32,
@@ -69,7 +69,7 @@ pub struct StatsArguments {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum By {
+enum GroupBy {
     /// By fault code
     Code,
     /// By replaceable part
@@ -85,11 +85,11 @@ enum By {
 impl StatsArguments {
     pub fn stats(&self, store: &Store) -> Result<Exit, Failure> {
         let by = match self.by {
-            By::Code => StatKey::Code,
-            By::Lru => StatKey::Lru,
-            By::Unit => StatKey::Unit,
-            By::Line => StatKey::Line,
-            By::Month => StatKey::All,
+            GroupBy::Code => StatKey::Code,
+            GroupBy::Lru => StatKey::Lru,
+            GroupBy::Unit => StatKey::Unit,
+            GroupBy::Line => StatKey::Line,
+            GroupBy::Month => StatKey::All,
         };
         let query = StatQuery {
             by,
@@ -98,7 +98,7 @@ impl StatsArguments {
             back_within_days: self.back_within,
         };
         let (stats, together) = match (self.by, self.output.is_table()) {
-            (By::Month, _) => (by_month(store, &query)?, None),
+            (GroupBy::Month, _) => (by_month(store, &query)?, None),
             (_, false) => (store.stats(&query)?, None),
             (_, true) => {
                 let (stats, together) = store.stats_and_total(&query)?;
@@ -117,14 +117,14 @@ impl StatsArguments {
 
     fn headings(&self) -> Vec<&'static str> {
         let heading = match self.by {
-            By::Code => "CODE",
-            By::Lru => "PART",
-            By::Unit => "UNIT",
-            By::Line => "LINE",
-            By::Month => "MONTH",
+            GroupBy::Code => "CODE",
+            GroupBy::Lru => "PART",
+            GroupBy::Unit => "UNIT",
+            GroupBy::Line => "LINE",
+            GroupBy::Month => "MONTH",
         };
         let mut headings = vec![heading, "SEEN"];
-        if self.by != By::Month {
+        if self.by != GroupBy::Month {
             headings.extend(["SHARE", "CUM"]);
         }
         headings.extend([
@@ -137,21 +137,21 @@ impl StatsArguments {
             "NFF",
             "LAST SEEN",
         ]);
-        if self.by != By::Month {
+        if self.by != GroupBy::Month {
             headings.push("COURSE");
         }
         headings
     }
 
     fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
-        let is_course = self.by != By::Month;
+        let is_course = self.by != GroupBy::Month;
         let headings = self.headings();
         let numbers = 1..headings.len() - 1 - usize::from(is_course);
         let mut table = Table::new(&headings).right(numbers);
         let mut so_far = 0;
         let more = stats.len().saturating_sub(self.limit as usize);
         let shown = match self.by {
-            By::Month => &stats[more..],
+            GroupBy::Month => &stats[more..],
             _ => &stats[..stats.len() - more],
         };
         let shown = shown.iter().map(|stat| (stat, true));
@@ -188,7 +188,7 @@ impl StatsArguments {
         }
         let (earlier, more) = match (more, self.by) {
             (0, _) => Default::default(),
-            (_, By::Month) => (
+            (_, GroupBy::Month) => (
                 format!("… {more} earlier months; see --limit\n"),
                 String::new(),
             ),
@@ -210,7 +210,7 @@ impl StatsArguments {
             .max()
             .unwrap_or(0);
         let course = match (self.by, by_day) {
-            (By::Month, _) => "",
+            (GroupBy::Month, _) => "",
             (_, 0..=1) => "",
             _ => "; course by day or month, the last 24",
         };

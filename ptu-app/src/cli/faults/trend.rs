@@ -64,7 +64,7 @@ pub struct Trend {
     /// Limits and their unit, as they were last.
     pub limits: TrendLimits,
     /// Value by value, or day by day.
-    pub course: Course,
+    pub course: TimeSeries,
     /// All together.
     pub process: Option<Process>,
     /// Procedures that measure it.
@@ -72,7 +72,7 @@ pub struct Trend {
 }
 
 /// Values over time.
-pub enum Course {
+pub enum TimeSeries {
     /// Of one unit.
     Points(Vec<TrendPoint>),
     /// Of all.
@@ -133,8 +133,8 @@ impl TrendArguments {
             return Err(Failure::usage(self.nothing(store, &query, &procedures)?));
         };
         let course = match query.unit {
-            Some(_) => Course::Points(store.trend(&query)?),
-            None => Course::Days(store.trend_by_day(&query)?, store.trend_by_unit(&query)?),
+            Some(_) => TimeSeries::Points(store.trend(&query)?),
+            None => TimeSeries::Days(store.trend_by_day(&query)?, store.trend_by_unit(&query)?),
         };
         Ok(Trend {
             process: Process::of(&course.samples()),
@@ -196,7 +196,7 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-impl Course {
+impl TimeSeries {
     /// How its days are called: those of a fleet are counted in UTC, and begin the evening before in its west.
     pub fn day_name(&self) -> fn(i64) -> String {
         match self {
@@ -236,7 +236,7 @@ impl Trend {
     /// Keys of the values, or of the days, in their order.
     fn keys(&self) -> &'static [&'static str] {
         match self.course {
-            Course::Points(_) => &[
+            TimeSeries::Points(_) => &[
                 "at",
                 "run_id",
                 "unit_serial",
@@ -246,14 +246,14 @@ impl Trend {
                 "high",
                 "verdict",
             ],
-            Course::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
+            TimeSeries::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
         }
     }
 
     /// The values, or the days.
     fn rows(&self) -> Vec<Value> {
         match &self.course {
-            Course::Points(points) => points
+            TimeSeries::Points(points) => points
                 .iter()
                 .map(|point| {
                     json!({
@@ -263,7 +263,7 @@ impl Trend {
                     })
                 })
                 .collect(),
-            Course::Days(days, _) => days
+            TimeSeries::Days(days, _) => days
                 .iter()
                 .map(|day| {
                     json!({
@@ -281,8 +281,8 @@ impl Trend {
             "low": self.limits.low, "high": self.limits.high, "procedures": self.procedures,
         });
         match &self.course {
-            Course::Points(_) => value["points"] = self.rows().into(),
-            Course::Days(_, units) => {
+            TimeSeries::Points(_) => value["points"] = self.rows().into(),
+            TimeSeries::Days(_, units) => {
                 value["days"] = self.rows().into();
                 value["units"] = json!(units);
             }

@@ -1,6 +1,6 @@
 //! A trend drawn on a page: values, limits, control limits, the line through them.
 
-use super::trend::{Course, Trend};
+use super::trend::{TimeSeries, Trend};
 use ptu_report::plot::{Plot, Series, Style};
 
 /// Microseconds of a day.
@@ -33,8 +33,8 @@ fn plot(trend: &Trend) -> Plot {
     };
     let mut series = vec![Series {
         name: match trend.course {
-            Course::Points(_) => "value".to_owned(),
-            Course::Days(..) => "mean of the day".to_owned(),
+            TimeSeries::Points(_) => "value".to_owned(),
+            TimeSeries::Days(..) => "mean of the day".to_owned(),
         },
         colour: 0,
         style: Style::Dots,

@@ -3,7 +3,7 @@
 use diagnosis::process::{Process, Sign};
 use fault_db::{TrendDay, TrendPoint, TrendUnit};
 
-use super::trend::{Course, Trend};
+use super::trend::{TimeSeries, Trend};
 use crate::sparkline::sparkline_of;
 use ptu_bench::clock::{local, utc_month};
 use ptu_bench::table::Table;
@@ -22,14 +22,14 @@ const STANDS_OUT: f64 = 3.0;
 pub fn text(trend: &Trend, limit: usize) -> String {
     let unit = &trend.limits.unit;
     let mut text = match &trend.course {
-        Course::Points(points) => points_table(points, unit, limit),
-        Course::Days(days, _) => months_table(days, limit),
+        TimeSeries::Points(points) => points_table(points, unit, limit),
+        TimeSeries::Days(days, _) => months_table(days, limit),
     };
     let Some(process) = &trend.process else {
         return text + "\nno value could be measured";
     };
     text += &format!("\n\n{}", process_text(trend, process));
-    if let Course::Days(_, units) = &trend.course {
+    if let TimeSeries::Days(_, units) = &trend.course {
         text += &outstanding(units, limit);
     }
     if trend.procedures.len() > 1 && trend.query.procedure.is_none() {

@@ -74,11 +74,11 @@ impl DiffArguments {
         } else if self.expected == "twin" {
             let original = Original::read(store, a)?;
             let (twin, rule) = good_twin(&original, &self.scripts.find()?)?;
-            Sides::new("twin".to_owned(), came, twin, rule)
+            ComparedTraces::new("twin".to_owned(), came, twin, rule)
         } else {
             let b = store.resolve_trace(&self.expected)?;
             let rule = rule_between(store, a, b)?;
-            Sides::new(b.to_string(), came, store.trace(b)?, rule)
+            ComparedTraces::new(b.to_string(), came, store.trace(b)?, rule)
         };
         let mut comparison = compare(&sides.came, &sides.expected, &sides.rule, &self.signals)?;
         if let Some(window_s) = sides.window_s {
@@ -104,7 +104,7 @@ impl DiffArguments {
         a: Id,
         came: TraceData,
         file: &Path,
-    ) -> Result<Sides, Failure> {
+    ) -> Result<ComparedTraces, Failure> {
         let import = import(file, &came.channels)?;
         let aligned = align(import, came, (self.shift * 1e6) as i64)?;
         // Nothing compared must not look like nothing that differs.
@@ -127,7 +127,7 @@ impl DiffArguments {
         } else {
             Rule::wall_clock()
         };
-        Ok(Sides {
+        Ok(ComparedTraces {
             name: self.expected.clone(),
             came: aligned.trace,
             expected: aligned.imported,
@@ -139,7 +139,7 @@ impl DiffArguments {
 }
 
 /// What is compared.
-struct Sides {
+struct ComparedTraces {
     /// What B is called.
     name: String,
     came: TraceData,
@@ -151,7 +151,7 @@ struct Sides {
     window_s: Option<(f64, f64)>,
 }
 
-impl Sides {
+impl ComparedTraces {
     fn new(name: String, came: TraceData, expected: TraceData, rule: Rule) -> Self {
         Self {
             name,
@@ -171,9 +171,9 @@ fn shift_argument(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| format!("\"{text}\" is no number of seconds"))
 }
 
-fn text(a: Id, sides: &Sides, found: &Comparison) -> String {
+fn text(a: Id, sides: &ComparedTraces, found: &Comparison) -> String {
     let (from_s, to_s) = found.window_s;
-    let Sides {
+    let ComparedTraces {
         name: b,
         came,
         expected,

@@ -12,7 +12,7 @@ use crate::cli::reports::ReportOption;
 use crate::cli::{Database, ScriptsOption, answered, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
-use ptu_bench::replay::{Likeness, Original, Rerun, Rerunning, rerun};
+use ptu_bench::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
 use ptu_bench::stop::Stop;
 
 /// Do again what was done in a trace, on the embedded unit or one on a port, and compare what comes
@@ -102,7 +102,7 @@ fn text(original: &Original, rerun: &Rerun) -> String {
         text,
         "compared from {from_s:.2} s to {to_s:.2} s of the trigger"
     );
-    if let (Likeness::Otherwise, Some((signal, again))) = (rerun.likeness, &rerun.first_again) {
+    if let (ReplayMatch::Otherwise, Some((signal, again))) = (rerun.likeness, &rerun.first_again) {
         let again = if *again {
             "deviates again"
         } else {
@@ -116,10 +116,13 @@ fn text(original: &Original, rerun: &Rerun) -> String {
     if !rerun.refused.is_empty() {
         let _ = writeln!(text, "refused by the bench: {}", rerun.refused.join("; "));
     }
-    if matches!(rerun.likeness, Likeness::AsTwin | Likeness::Otherwise) {
+    if matches!(rerun.likeness, ReplayMatch::AsTwin | ReplayMatch::Otherwise) {
         text.push_str(&deviations_text(&rerun.from_original, "REPLAY", "TRACE"));
     }
-    if matches!(rerun.likeness, Likeness::Reproduced | Likeness::Otherwise) {
+    if matches!(
+        rerun.likeness,
+        ReplayMatch::Reproduced | ReplayMatch::Otherwise
+    ) {
         text.push_str(&deviations_text(&rerun.from_twin, "REPLAY", "GOOD TWIN"));
     }
     text.trim_end().to_owned()

@@ -8,7 +8,7 @@ use eframe::egui::{
 
 use crate::gui::Palette;
 use ptu_report::ticks::Ticks;
-use ptu_report::trace_view::{Column, Shown, Span, Window};
+use ptu_report::trace_view::{Column, Span, SpanKind, Window};
 
 /// Size of the text beside an axis and in boxes.
 pub const TEXT: f32 = 11.5;
@@ -149,10 +149,10 @@ pub fn choice(
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
     let text = palette.ink();
     let ground = colour.gamma_multiply(0.18);
-    let mut narrow = Slabs::new(&painter);
+    let mut narrow = RectangleMesh::new(&painter);
     for span in spans {
         let area = span_rect(rect, span);
-        let Shown::Value(value) = span.shown else {
+        let SpanKind::Value(value) = span.shown else {
             narrow.busy(area, colour);
             continue;
         };
@@ -180,11 +180,11 @@ pub fn choice(
 pub fn bit(painter: &Painter, rect: Rect, spans: &[Span], colour: Color32) {
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
     let inner = rect.shrink2(vec2(0.0, FREE));
-    let mut slabs = Slabs::new(&painter);
+    let mut slabs = RectangleMesh::new(&painter);
     let mut before: Option<(f32, f32)> = None;
     for span in spans {
         let area = span_rect(inner, span);
-        let Shown::Value(value) = span.shown else {
+        let SpanKind::Value(value) = span.shown else {
             slabs.busy(area, colour);
             before = None;
             continue;
@@ -211,12 +211,12 @@ pub fn bit(painter: &Painter, rect: Rect, spans: &[Span], colour: Color32) {
 }
 
 /// Many rectangles as one mesh, at whole pixels: an hour of a lane may have hundreds.
-struct Slabs {
+struct RectangleMesh {
     mesh: Mesh,
     pixels_per_point: f32,
 }
 
-impl Slabs {
+impl RectangleMesh {
     fn new(painter: &Painter) -> Self {
         Self {
             mesh: Mesh::default(),

@@ -9,7 +9,7 @@ use ptu_bench::bench_worker::{Phase, Wake};
 use ptu_bench::failure::Failure;
 use ptu_bench::run::BenchChoice;
 use ptu_report::words::Words;
-use unit::Said;
+use unit::UnitMessages;
 
 /// All units of the window; there is always one.
 pub struct Units {
@@ -145,7 +145,7 @@ impl Units {
         let several = !self.more.is_empty();
         for (place, unit) in (1..).zip(self.iter_mut()) {
             let unit_said = several.then(|| format!("{place} {}", unit.name()));
-            let mut said = Said {
+            let mut said = UnitMessages {
                 unit: unit_said,
                 messages,
             };

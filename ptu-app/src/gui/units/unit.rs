@@ -118,7 +118,7 @@ impl Unit {
     }
 
     /// Takes what happened since the last time, and tells the person what matters.
-    pub(super) fn poll(&mut self, words: &Words, said: &mut Said<'_>) {
+    pub(super) fn poll(&mut self, words: &Words, said: &mut UnitMessages<'_>) {
         if self.setup.poll() {
             match &self.setup {
                 Request::Ready(setup) => {
@@ -134,7 +134,7 @@ impl Unit {
         }
     }
 
-    fn on_event(&mut self, event: BenchEvent, words: &Words, said: &mut Said<'_>) {
+    fn on_event(&mut self, event: BenchEvent, words: &Words, said: &mut UnitMessages<'_>) {
         let frame = &words.frame;
         match event {
             BenchEvent::Connected { serial } => {
@@ -198,7 +198,7 @@ impl Unit {
     }
 
     /// Said once, though every procedure of a run finds it out for itself.
-    fn lose(&mut self, why: String, words: &Words, said: &mut Said<'_>) {
+    fn lose(&mut self, why: String, words: &Words, said: &mut UnitMessages<'_>) {
         if !std::mem::replace(&mut self.lost, true) {
             said.trouble(words.frame.link_lost, why);
         }
@@ -206,12 +206,12 @@ impl Unit {
 }
 
 /// Messages that say which unit they are about when there are several.
-pub(super) struct Said<'a> {
+pub(super) struct UnitMessages<'a> {
     pub unit: Option<String>,
     pub messages: &'a mut Messages,
 }
 
-impl Said<'_> {
+impl UnitMessages<'_> {
     fn named(&self, text: impl Into<String>) -> String {
         let text = text.into();
         match &self.unit {
@@ -252,9 +252,9 @@ mod tests {
 
     /// Blocks the bench thread, once it shows an idle unit, until it is released.
     #[derive(Default)]
-    struct HeldUp(OnceLock<Arc<LiveState>>, OnceLock<()>);
+    struct BlockedBench(OnceLock<Arc<LiveState>>, OnceLock<()>);
 
-    impl HeldUp {
+    impl BlockedBench {
         fn look(&self) {
             let on_bench = std::thread::current().name() == Some("bench");
             let idle = |live_state: &Arc<LiveState>| live_state.read().phase == Phase::Idle;
@@ -265,9 +265,9 @@ mod tests {
     }
 
     /// Lets it go also when the test fails: a unit waits for its bench's thread.
-    struct LetGo(Arc<HeldUp>);
+    struct ReleaseOnDrop(Arc<BlockedBench>);
 
-    impl Drop for LetGo {
+    impl Drop for ReleaseOnDrop {
         fn drop(&mut self) {
             let _ = self.0.1.set(());
         }
@@ -300,13 +300,13 @@ mod tests {
     /// ordered meanwhile is refused, until the run is over.
     #[test]
     fn a_run_that_a_bench_has_not_begun_yet_is_not_ordered_again() {
-        let held_up = Arc::<HeldUp>::default();
+        let held_up = Arc::<BlockedBench>::default();
         let wake = {
             let held_up = held_up.clone();
             Arc::new(move || held_up.look())
         };
         let mut unit = Unit::new(0, BenchChoice::default(), wake).expect("a thread");
-        let let_go = LetGo(held_up.clone());
+        let let_go = ReleaseOnDrop(held_up.clone());
         assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
         let setup = unit.choice.setup(&scripts()).expect("its configuration");
         let connection = unit.choice.connection();
@@ -316,7 +316,7 @@ mod tests {
             let mut messages = Messages::default();
             while !holds(unit) {
                 assert!(began.elapsed() < PATIENCE, "waited in vain");
-                let mut said = Said {
+                let mut said = UnitMessages {
                     unit: None,
                     messages: &mut messages,
                 };

@@ -85,26 +85,26 @@ fn a_log_is_read_to_its_end_and_reading_adds_nothing_to_it() {
 }
 
 /// A unit that answers as told: what a real one does only after days.
-struct Told {
+struct ScriptedUnit {
     link: Link,
     entries: Vec<LogEntry>,
     uptime_ms: u32,
     serial: [u8; 3],
     asked_from: Option<u32>,
     /// What happens at a time, ms.
-    happens: Option<(u64, Happening)>,
+    happens: Option<(u64, ScriptedEvent)>,
     /// Entries it sends in each scan once it was asked, without end.
     endless: u32,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Happening {
+enum ScriptedEvent {
     CableOff,
     Restart,
     OtherUnit,
 }
 
-impl Told {
+impl ScriptedUnit {
     /// A unit with these entries in its log.
     fn new(entries: impl IntoIterator<Item = (u32, u16, u32)>) -> Self {
         let entries = entries.into_iter().map(|(index, code, at_ms)| LogEntry {
@@ -129,7 +129,7 @@ impl Told {
     }
 }
 
-impl UnitLink for Told {
+impl UnitLink for ScriptedUnit {
     fn exchange(
         &mut self,
         now: Instant,
@@ -140,18 +140,18 @@ impl UnitLink for Told {
             .happens
             .filter(|(at_ms, _)| now >= Instant::from_ms(*at_ms))
         {
-            Some((_, Happening::CableOff)) => {
+            Some((_, ScriptedEvent::CableOff)) => {
                 return Err(LinkFailure {
                     link: "tcp:told".into(),
                     reason: "closed at the other end".into(),
                 });
             }
-            Some((_, Happening::Restart)) => {
+            Some((_, ScriptedEvent::Restart)) => {
                 self.happens = None;
                 self.uptime_ms = 100;
                 self.entries = Self::new([(0, 100, 0), (1, 222, 50)]).entries;
             }
-            Some((_, Happening::OtherUnit)) => self.serial = *b"U-2",
+            Some((_, ScriptedEvent::OtherUnit)) => self.serial = *b"U-2",
             None => {}
         }
         self.link.push(to_unit);
@@ -214,7 +214,7 @@ impl UnitLink for Told {
 
 #[test]
 fn lost_entries_are_counted_and_unknown_codes_are_kept() {
-    let mut unit = Told::new((40..90).map(|index| (index, 999, index * 1000)));
+    let mut unit = ScriptedUnit::new((40..90).map(|index| (index, 999, index * 1000)));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     assert_eq!(log.overwritten, 40);
     assert_eq!(log.entries.len(), 50);
@@ -224,8 +224,8 @@ fn lost_entries_are_counted_and_unknown_codes_are_kept() {
 
 #[test]
 fn entries_read_before_the_cable_was_unplugged_are_kept() {
-    let mut unit = Told::new((0..90).map(|index| (index, 221, index * 1000)));
-    unit.happens = Some((2_000, Happening::CableOff));
+    let mut unit = ScriptedUnit::new((0..90).map(|index| (index, 221, index * 1000)));
+    unit.happens = Some((2_000, ScriptedEvent::CableOff));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     let why = log.broken_off.expect("broken off");
     assert!(why.contains("closed at the other end"), "{why}");
@@ -237,8 +237,8 @@ fn entries_read_before_the_cable_was_unplugged_are_kept() {
 /// Each entry is dated by the clock of its own power-up.
 #[test]
 fn a_unit_that_starts_again_while_it_is_read_has_two_clocks() {
-    let mut unit = Told::new((0..90).map(|index| (index, 221, 900_000 + index)));
-    unit.happens = Some((2_000, Happening::Restart));
+    let mut unit = ScriptedUnit::new((0..90).map(|index| (index, 221, 900_000 + index)));
+    unit.happens = Some((2_000, ScriptedEvent::Restart));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     assert_eq!(log.restarts, 1);
     let last = log.entries.last().expect("entries");
@@ -256,7 +256,7 @@ fn a_unit_that_starts_again_while_it_is_read_has_two_clocks() {
 #[test]
 fn an_endless_log_is_kept_up_to_the_capacity_of_a_unit() {
     for endless in [1, 100] {
-        let mut unit = Told::new([(0, 100, 0)]);
+        let mut unit = ScriptedUnit::new([(0, 100, 0)]);
         unit.endless = endless;
         let log = read(&mut unit, Instant::ZERO).expect("a log");
         assert!(log.broken_off.is_some());
@@ -268,8 +268,8 @@ fn an_endless_log_is_kept_up_to_the_capacity_of_a_unit() {
 
 #[test]
 fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
-    let mut unit = Told::new((0..190).map(|index| (index, 221, 1)));
-    unit.happens = Some((2_000, Happening::OtherUnit));
+    let mut unit = ScriptedUnit::new((0..190).map(|index| (index, 221, 1)));
+    unit.happens = Some((2_000, ScriptedEvent::OtherUnit));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     let why = log.broken_off.expect("broken off");
     assert!(why.contains("was \"U-1\" and is \"U-2\""), "{why}");
@@ -277,12 +277,12 @@ fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
 
 #[test]
 fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
-    struct Nobody;
-    impl UnitLink for Nobody {
+    struct SilentUnit;
+    impl UnitLink for SilentUnit {
         fn exchange(&mut self, _: Instant, _: &[u8], _: &mut Vec<u8>) -> Result<(), LinkFailure> {
             Ok(())
         }
     }
-    let why = read(&mut Nobody, Instant::ZERO).expect_err("no log");
+    let why = read(&mut SilentUnit, Instant::ZERO).expect_err("no log");
     assert!(why.contains("unit silent"), "{why}");
 }

@@ -39,7 +39,7 @@ fn a_search_ends_with_the_step_that_found_the_part() {
     let faults = directory().faults().expect("faults");
     setup.faults = vec![faults.fault("tra.dead").expect("mode").clone()];
     let plan = search(&[], &setup);
-    let (_, detail) = recorded(&Arc::new(Presser::default()), &plan, setup);
+    let (_, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup);
     let last = detail.steps.last().expect("a step");
     assert_eq!(
         last.verdict,

@@ -11,7 +11,7 @@ use protocol::{Duration, Instant};
 use super::Session;
 use crate::run::event::{RecordedStimuli, SessionEvent};
 use crate::run::fault_watch::{self, FaultSeen};
-use crate::run::repetitions::Rounds;
+use crate::run::repetitions::RepetitionTally;
 use crate::run::settle::between_procedures;
 
 /// The state of one procedure's run.
@@ -58,7 +58,7 @@ impl<L: UnitLink> Session<L> {
             began: self.bench.now(),
             record: StimulusRecord::default(),
         };
-        let mut rounds = Rounds::new(options.repeat);
+        let mut rounds = RepetitionTally::new(options.repeat);
         let mut runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
         let mut progress = Progress::new(procedure, self.bench.now());
         for fault in found {
@@ -96,7 +96,7 @@ impl<L: UnitLink> Session<L> {
             }
             self.wait_with(false);
             self.finish_window(sink);
-            let failed = |rounds: &Rounds, progress: &Progress<'_>| {
+            let failed = |rounds: &RepetitionTally, progress: &Progress<'_>| {
                 options.stop_on_fail && (!rounds.passed() || progress.faults > 0)
             };
             if !rounds.left() || link_lost || !go_on() || failed(&rounds, &progress) {
@@ -135,7 +135,7 @@ impl<L: UnitLink> Session<L> {
     fn emit(
         &mut self,
         runner: &mut Runner,
-        rounds: &mut Rounds,
+        rounds: &mut RepetitionTally,
         progress: &mut Progress<'_>,
         sink: &mut dyn FnMut(SessionEvent),
     ) {
@@ -151,7 +151,7 @@ impl<L: UnitLink> Session<L> {
     /// pressed: then it is not begun.
     fn settle_again(
         &mut self,
-        rounds: &mut Rounds,
+        rounds: &mut RepetitionTally,
         progress: &mut Progress<'_>,
         sink: &mut dyn FnMut(SessionEvent),
     ) -> bool {

@@ -85,7 +85,7 @@ fn end(verdict: Verdict) -> RunEnd {
 }
 
 /// A run that begins, with so much patience, and another program that holds its file from then on.
-fn held(folder: &std::path::Path, patience: Patience) -> (RunStore, Stop, Connection) {
+fn held(folder: &std::path::Path, patience: BusyTimeout) -> (RunStore, Stop, Connection) {
     let file = folder.join("history.db");
     let options = OpenOptions::new(clock::ids()).busy_timeout_ms(1);
     let store = Store::open(&file, options).expect("a database");
@@ -116,7 +116,7 @@ fn a_run_under_way_waits_for_another_writer() {
 #[test]
 fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     let folder = tempfile::tempdir().expect("a folder");
-    let patience = Patience {
+    let patience = BusyTimeout {
         stops_ms: 20,
         gives_up: Duration::from_secs(600),
     };
@@ -147,7 +147,7 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
 #[test]
 fn records_that_a_busy_database_refuses_can_be_imported_later() {
     let folder = tempfile::tempdir().expect("a folder");
-    let patience = Patience {
+    let patience = BusyTimeout {
         stops_ms: 10,
         gives_up: Duration::from_millis(40),
     };

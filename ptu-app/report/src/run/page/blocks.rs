@@ -1,6 +1,6 @@
 //! Lays blocks out as pieces that are not divided between pages.
 
-use super::font::Letters;
+use super::font::FontMetrics;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
 use super::{plot, table};
 use crate::run::block::{Block, Tone};
@@ -12,11 +12,11 @@ const LINE: f32 = 11.2;
 const NAMES: f32 = 130.0;
 
 /// All blocks, in order.
-pub fn pieces(blocks: &[Block], letters: &Letters) -> Vec<Piece> {
+pub fn pieces(blocks: &[Block], letters: &FontMetrics) -> Vec<Piece> {
     blocks.iter().flat_map(|one| block(one, letters)).collect()
 }
 
-fn block(block: &Block, letters: &Letters) -> Vec<Piece> {
+fn block(block: &Block, letters: &FontMetrics) -> Vec<Piece> {
     match block {
         Block::Title(title, below) => {
             let mut all = words(title, 19.0, 24.0, Ink::Black, 2.0, letters);
@@ -54,7 +54,14 @@ fn block(block: &Block, letters: &Letters) -> Vec<Piece> {
 }
 
 /// Lines of running words, each a piece; `below` is free after the last.
-fn words(text: &str, size: f32, line: f32, ink: Ink, below: f32, letters: &Letters) -> Vec<Piece> {
+fn words(
+    text: &str,
+    size: f32,
+    line: f32,
+    ink: Ink,
+    below: f32,
+    letters: &FontMetrics,
+) -> Vec<Piece> {
     let lines = letters.lines(text, size, INSIDE).into_iter().enumerate();
     let mut all: Vec<_> = lines
         .map(|(number, words)| Piece {
@@ -82,7 +89,7 @@ fn heading(text: &str) -> Piece {
     }
 }
 
-fn subheading(text: &str, end: &str, letters: &Letters) -> Piece {
+fn subheading(text: &str, end: &str, letters: &FontMetrics) -> Piece {
     let size = 9.5;
     let beside = MARGIN + letters.width(text, size) + 10.0;
     Piece {
@@ -97,7 +104,7 @@ fn subheading(text: &str, end: &str, letters: &Letters) -> Piece {
 }
 
 /// The verdict within a frame.
-fn framed(tone: Tone, verdict: &str, beside: &str, letters: &Letters) -> Piece {
+fn framed(tone: Tone, verdict: &str, beside: &str, letters: &FontMetrics) -> Piece {
     let ink = table::ink(tone);
     let (high, size) = (34.0, 17.0);
     let after = MARGIN + 24.0 + letters.width(verdict, size);
@@ -124,7 +131,7 @@ fn framed(tone: Tone, verdict: &str, beside: &str, letters: &Letters) -> Piece {
     }
 }
 
-fn fact(name: &str, value: &str, letters: &Letters) -> Piece {
+fn fact(name: &str, value: &str, letters: &FontMetrics) -> Piece {
     let names = letters.lines(name, SIZE, NAMES - 8.0);
     let values = letters.lines(value, SIZE, INSIDE - NAMES);
     let lines = names.len().max(values.len());

@@ -8,14 +8,14 @@ use crate::fonts::PRETENDARD;
 use ptu_bench::failure::Failure;
 
 /// The shipped font, measured.
-pub struct Letters {
+pub struct FontMetrics {
     face: Face<'static>,
     per_em: f32,
     /// The letters that most texts are made of, looked up once.
     ascii: [(u32, f32); 128],
 }
 
-impl Letters {
+impl FontMetrics {
     /// Reads the shipped font.
     ///
     /// # Errors
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn lines_are_no_wider_than_asked_for_and_nothing_is_lost() {
-        let letters = Letters::new().expect("the font");
+        let letters = FontMetrics::new().expect("the font");
         let text = "비상제동 계전기가 늦게\n떨어진다 and 0123456789abcdef0123456789abcdef0123456789abcdef ends";
         for width in [30.0, 60.0, 200.0] {
             let lines = letters.lines(text, 8.0, width);
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn every_letter_of_the_catalogue_is_in_the_font() {
-        let letters = Letters::new().expect("the font");
+        let letters = FontMetrics::new().expect("the font");
         let special = "–−…→±×·°²³";
         for letter in special.chars().chain("가힣한글AZaz09".chars()) {
             assert_ne!(letters.letter(letter).0, 0, "{letter}");

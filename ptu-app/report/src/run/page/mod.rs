@@ -8,7 +8,7 @@ mod item;
 mod plot;
 mod table;
 
-use font::Letters;
+use font::FontMetrics;
 pub use item::{DASH, HEIGHT, Ink, Item, Text, WIDTH};
 use item::{INSIDE, MARGIN};
 
@@ -29,7 +29,7 @@ pub type Page = Vec<Item>;
 /// # Errors
 /// The shipped font does not serve.
 pub fn pages(sheet: &Sheet, words: &Words) -> Result<Vec<Page>, Failure> {
-    let letters = Letters::new()?;
+    let letters = FontMetrics::new()?;
     let mut pages = flow::pages(&blocks::pieces(&content::blocks(sheet, words), &letters));
     let run = &sheet.run.run;
     let of = pages.len();

@@ -1,6 +1,6 @@
 //! Tables on pages: each row is a piece, and its cells wrap.
 
-use super::font::Letters;
+use super::font::FontMetrics;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
 use crate::run::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 
@@ -18,7 +18,7 @@ const BAR: (f32, f32) = (64.0, 5.0);
 const MOST_LINES: usize = 40;
 
 /// The heading and the rows.
-pub fn pieces(table: &Table, letters: &Letters) -> Vec<Piece> {
+pub fn pieces(table: &Table, letters: &FontMetrics) -> Vec<Piece> {
     let names = table.columns.iter();
     let heading = Row {
         kind: RowKind::Head,
@@ -49,7 +49,7 @@ pub fn pieces(table: &Table, letters: &Letters) -> Vec<Piece> {
     pieces
 }
 
-fn row(row: &Row, columns: &[Column], letters: &Letters) -> Piece {
+fn row(row: &Row, columns: &[Column], letters: &FontMetrics) -> Piece {
     let mut items = Vec::new();
     let mut lines = 1;
     let (mut place, mut x) = (0, MARGIN);

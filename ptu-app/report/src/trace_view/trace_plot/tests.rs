@@ -10,7 +10,7 @@ fn scene() -> TracePlot {
     let way: Vec<f64> = (0..100).map(|row| f64::from(row) * 0.5).collect();
     let mut data = trace(&[("speed", &ramp), ("train_position", &way)]);
     data.trigger_row = Some(40);
-    let opened = Opened {
+    let opened = OpenTrace {
         id: Id::from_bytes([1; 16]),
         run: None,
         view: TraceView::new(data),

@@ -6,14 +6,14 @@ use ptu_bench::bench_worker::{BenchWorker, Phase};
 
 /// The bench as it was at the beginning of the frame.
 #[derive(Debug, Default)]
-pub struct Seen {
+pub struct BenchSnapshot {
     pub phase: Phase,
     /// Counts benches made anew and made safe.
     pub bench_epoch: u64,
     pub sample: Sample,
 }
 
-impl Seen {
+impl BenchSnapshot {
     /// A copy of the latest cycle.
     pub fn of(worker: &BenchWorker) -> Self {
         let live = worker.live();

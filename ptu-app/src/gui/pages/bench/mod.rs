@@ -20,12 +20,12 @@ use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 use crate::gui::PageContext;
 use forms::Forms;
 use live::{View, view};
-use live_copy::Seen;
+use live_copy::BenchSnapshot;
 use plot::Plot;
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::run::BenchSetup;
 use rolling::chosen;
-use stimuli::{Given, Hand, stimuli};
+use stimuli::{StimuliGiven, StimulusPanel, stimuli};
 
 /// Width of the stimuli, and the least that is left of it in a small window.
 const STIMULI: f32 = 454.0;
@@ -47,7 +47,7 @@ struct Sheet {
     /// Of the bench when something was given.
     bench_epoch: u64,
     forms: Forms,
-    given: Given,
+    given: StimuliGiven,
 }
 
 #[derive(Default)]
@@ -66,14 +66,14 @@ impl BenchPage {
             ui.label(context.words.bench.connect_first);
             return;
         };
-        let seen = Seen::of(&unit.bench);
+        let seen = BenchSnapshot::of(&unit.bench);
         let sheet = sheet(&mut self.sheets, unit.id, setup, seen.bench_epoch);
         // A run lays its own track; what was given before it is gone already.
         if seen.phase != Phase::Idle {
-            sheet.given = Given::default();
+            sheet.given = StimuliGiven::default();
         }
         stimuli_panel(ui).show(ui, |ui| {
-            let mut hand = Hand {
+            let mut hand = StimulusPanel {
                 bench: &unit.bench,
                 seen: &seen,
                 words: context.words,
@@ -111,7 +111,7 @@ fn sheet<'a>(
         of,
         bench_epoch,
         forms: Forms::new(setup),
-        given: Given::default(),
+        given: StimuliGiven::default(),
     };
     let sheet = sheets.entry(unit).or_insert_with(new);
     if sheet.of != of {
@@ -119,7 +119,7 @@ fn sheet<'a>(
     }
     if sheet.bench_epoch != bench_epoch {
         sheet.bench_epoch = bench_epoch;
-        sheet.given = Given::default();
+        sheet.given = StimuliGiven::default();
     }
     sheet
 }

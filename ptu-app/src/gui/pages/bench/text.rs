@@ -2,14 +2,14 @@
 
 use protocol::signal::{Kind, Signal};
 
-use super::live_copy::Seen;
+use super::live_copy::BenchSnapshot;
 use ptu_report::words::{Bench, fill};
 
 /// Shown in place of an unknown value.
 pub const UNKNOWN: &str = "—";
 
 /// A signal's value: a word, or a number with its unit.
-pub fn value(words: &Bench, signal: Signal, seen: &Seen) -> String {
+pub fn value(words: &Bench, signal: Signal, seen: &BenchSnapshot) -> String {
     match seen.value(signal) {
         Some(value) => known(words, signal, value),
         None => UNKNOWN.to_owned(),
@@ -38,7 +38,7 @@ pub fn known(words: &Bench, signal: Signal, value: f64) -> String {
 }
 
 /// The bits that are set, by name; none of them = "none".
-pub fn bits(words: &Bench, signal: Signal, seen: &Seen) -> String {
+pub fn bits(words: &Bench, signal: Signal, seen: &BenchSnapshot) -> String {
     let Some(bits) = seen.bits(signal) else {
         return UNKNOWN.to_owned();
     };
@@ -57,7 +57,7 @@ pub fn bits(words: &Bench, signal: Signal, seen: &Seen) -> String {
 }
 
 /// The lever by its notch. A half notch is told as a whole one by the unit's input.
-pub fn controller(seen: &Seen) -> String {
+pub fn controller(seen: &BenchSnapshot) -> String {
     match seen.value(Signal::Controller) {
         None => UNKNOWN.to_owned(),
         Some(notch) if notch <= -8.0 => "EB".to_owned(),
@@ -78,8 +78,8 @@ mod tests {
     use super::*;
     use ptu_report::words::Language;
 
-    fn seen(signal: Signal, value: f64) -> Seen {
-        let mut seen = Seen::default();
+    fn seen(signal: Signal, value: f64) -> BenchSnapshot {
+        let mut seen = BenchSnapshot::default();
         seen.sample.set(signal, value);
         seen
     }
@@ -102,14 +102,14 @@ mod tests {
             assert_eq!(value(words, signal, &seen), english);
             assert_eq!(value(korean, signal, &seen), korean_word);
         }
-        assert_eq!(value(words, Signal::Eb, &Seen::default()), UNKNOWN);
+        assert_eq!(value(words, Signal::Eb, &BenchSnapshot::default()), UNKNOWN);
     }
 
     #[test]
     fn bits_are_named_and_one_without_a_name_is_given_by_its_number() {
         let words = &Language::English.words().bench;
         let signal = Signal::EbSources;
-        assert_eq!(bits(words, signal, &Seen::default()), UNKNOWN);
+        assert_eq!(bits(words, signal, &BenchSnapshot::default()), UNKNOWN);
         assert_eq!(bits(words, signal, &seen(signal, 0.0)), "none");
         let set = f64::from(0b1000_0000_1001_u16);
         assert_eq!(

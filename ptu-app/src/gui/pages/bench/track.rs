@@ -4,7 +4,7 @@ use btu_rig::stimulus::StationData;
 use protocol::line::{Line, Section};
 use protocol::signal::Signal;
 
-use super::live_copy::Seen;
+use super::live_copy::BenchSnapshot;
 
 /// Room before the start and behind the end that is shown, m.
 const AROUND_M: f64 = 60.0;
@@ -31,7 +31,7 @@ pub struct Strip {
 
 impl Strip {
     /// The section that was laid by hand, or else that of which the wayside tells.
-    pub fn of(line: &Line, laid: Option<u16>, seen: &Seen) -> Option<Self> {
+    pub fn of(line: &Line, laid: Option<u16>, seen: &BenchSnapshot) -> Option<Self> {
         let by_hand = laid.and_then(|number| line.section(number));
         let section = by_hand.or_else(|| section_of_wayside(line, seen))?;
         let share = |at_m: f64| {
@@ -55,7 +55,7 @@ impl Strip {
 }
 
 /// The section that begins or ends at the loop the wayside sends.
-fn section_of_wayside<'a>(line: &'a Line, seen: &Seen) -> Option<&'a Section> {
+fn section_of_wayside<'a>(line: &'a Line, seen: &BenchSnapshot) -> Option<&'a Section> {
     let number = |signal| seen.value(signal).map(|value| value as u16);
     let loop_id = number(Signal::WaysideLoop)?;
     let station = number(Signal::WaysideStation)?;
@@ -70,15 +70,15 @@ fn section_of_wayside<'a>(line: &'a Line, seen: &Seen) -> Option<&'a Section> {
 /// What no signal tells of the wayside's frame: known from what was given by hand as long as the
 /// wayside still sends that, else from the line.
 #[derive(Debug, Default, PartialEq)]
-pub struct Sent {
+pub struct WaysideFrame {
     pub next_station: Option<u16>,
     /// Ordered speed; the inner none = no order.
     pub fixed_speed_kmh: Option<Option<u8>>,
     pub train_number: Option<u16>,
 }
 
-impl Sent {
-    pub fn of(line: &Line, given: Option<&StationData>, seen: &Seen) -> Self {
+impl WaysideFrame {
+    pub fn of(line: &Line, given: Option<&StationData>, seen: &BenchSnapshot) -> Self {
         let still = given.filter(|data| {
             seen.is(Signal::WaysideStation, f64::from(data.station))
                 && seen.is(Signal::WaysideLoop, f64::from(data.loop_id))
@@ -108,8 +108,8 @@ mod tests {
 
     const LINE8: &str = include_str!("../../../../../scripts/lines/line8.toml");
 
-    fn seen(values: &[(Signal, f64)]) -> Seen {
-        let mut seen = Seen::default();
+    fn seen(values: &[(Signal, f64)]) -> BenchSnapshot {
+        let mut seen = BenchSnapshot::default();
         for (signal, value) in values {
             seen.sample.set(*signal, *value);
         }
@@ -144,7 +144,7 @@ mod tests {
         ];
         let strip = Strip::of(&line, None, &seen(&wayside)).expect("strip");
         assert_eq!((strip.section, strip.detected), (58, Some(2)));
-        assert_eq!(Strip::of(&line, None, &Seen::default()), None);
+        assert_eq!(Strip::of(&line, None, &BenchSnapshot::default()), None);
     }
 
     #[test]
@@ -170,11 +170,11 @@ mod tests {
             (Signal::WaysideDoorSide, 0.0),
             (Signal::Departure, 1.0),
         ];
-        let sent = Sent::of(&line, Some(&given), &seen(&wayside));
+        let sent = WaysideFrame::of(&line, Some(&given), &seen(&wayside));
         assert_eq!(sent.fixed_speed_kmh, Some(Some(45)));
         assert_eq!(sent.next_station, Some(900));
         wayside[4].1 = 0.0;
-        let sent = Sent::of(&line, Some(&given), &seen(&wayside));
+        let sent = WaysideFrame::of(&line, Some(&given), &seen(&wayside));
         assert_eq!(sent.fixed_speed_kmh, None);
         assert_eq!(sent.next_station, Some(section.to_station));
     }

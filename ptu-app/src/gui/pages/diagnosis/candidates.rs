@@ -3,7 +3,7 @@
 use diagnosis::Candidate;
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 
-use super::Named;
+use super::NamedAnswer;
 use crate::gui::parts::share_bar;
 use crate::gui::{Destination, PageContext, Palette};
 use ptu_bench::run_diagnosis::Answer;
@@ -24,7 +24,7 @@ pub fn parts(answer: &Answer) -> String {
 }
 
 /// Candidates, two faults at once, and the rest.
-pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &Named) {
+pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
     let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
     for (place, candidate) in diagnosis.candidates.iter().enumerate() {
@@ -48,7 +48,7 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
 fn show(
     ui: &mut Ui,
     context: &mut PageContext<'_>,
-    named: &Named,
+    named: &NamedAnswer,
     candidate: &Candidate,
     open: bool,
 ) {

@@ -18,16 +18,16 @@ use ptu_report::words::{Language, Words, fill};
 pub struct DiagnosisPage {
     runs: RunList,
     run: Option<Id>,
-    answer: Request<Named>,
+    answer: Request<NamedAnswer>,
 }
 
 /// An answer, and what people call the parts.
-pub struct Named {
+pub struct NamedAnswer {
     answer: Answer,
     parts: Vec<Lru>,
 }
 
-impl Named {
+impl NamedAnswer {
     /// What people call a part, in their language.
     fn part(&self, id: &str, words: &Words) -> String {
         let known = self.parts.iter().find(|part| part.id == id);
@@ -65,7 +65,7 @@ impl DiagnosisPage {
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.run = Some(run);
         self.answer = Request::Pending(context.queries.run(move |paths| {
-            Ok(Named {
+            Ok(NamedAnswer {
                 answer: diagnose_run(&paths.read()?, &paths.scripts, run)?,
                 parts: paths.scripts.faults()?.lrus,
             })

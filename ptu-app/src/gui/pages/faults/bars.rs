@@ -3,7 +3,7 @@
 use eframe::egui::{Align2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use fault_db::DailyCount;
 
-use super::charts::{DAY_US, OverTime, by_name, over_time};
+use super::charts::{CountsOverTime, DAY_US, by_name, over_time};
 use crate::gui::Palette;
 use ptu_bench::clock;
 use ptu_report::words::{Words, fill};
@@ -27,7 +27,7 @@ pub fn charts(ui: &mut Ui, words: &Words, counts: &[&DailyCount]) {
     });
 }
 
-fn in_time(ui: &mut Ui, words: &Words, chart: &OverTime, width: f32) {
+fn in_time(ui: &mut Ui, words: &Words, chart: &CountsOverTime, width: f32) {
     let title = fill(words.faults.over_time, &[("days", &chart.days)]);
     let Some(rect) = frame(ui, &title, width, chart.bars.iter().sum()) else {
         return;

@@ -13,7 +13,7 @@ const MOST_NAMES: usize = 6;
 
 /// Counts over time: `days` to a bar, the first bar beginning at `from_us`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OverTime {
+pub struct CountsOverTime {
     /// Beginning of the first bar.
     pub from_us: i64,
     /// Days to a bar.
@@ -23,7 +23,7 @@ pub struct OverTime {
 }
 
 /// Counts of what `counts` has, as long bars as it takes to show all of it.
-pub fn over_time(counts: &[&DailyCount]) -> Option<OverTime> {
+pub fn over_time(counts: &[&DailyCount]) -> Option<CountsOverTime> {
     let first = counts.iter().map(|count| count.day_us).min()?;
     let last = counts.iter().map(|count| count.day_us).max()?;
     let all_days = (last - first) / DAY_US + 1;
@@ -35,7 +35,7 @@ pub fn over_time(counts: &[&DailyCount]) -> Option<OverTime> {
             *bar += count.count;
         }
     }
-    Some(OverTime {
+    Some(CountsOverTime {
         from_us: first,
         days,
         bars,

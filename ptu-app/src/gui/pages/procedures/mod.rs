@@ -16,11 +16,11 @@ use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use crate::gui::parts::RunNoteForm;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use prepare::{How, Prepared, ShownSuite};
+use prepare::{Prepared, RunSettings, ShownSuite};
 use ptu_bench::run::{BenchChoice, Suite};
 use ptu_bench::run_diagnosis::diagnose_run;
 use ptu_report::words::fill;
-use results::Shown;
+use results::ResultsView;
 use selection::Selection;
 
 pub struct ProceduresPage {
@@ -32,20 +32,20 @@ pub struct ProceduresPage {
     find: String,
     repeat: u32,
     stop_on_fail: bool,
-    orders: Vec<Ordered>,
+    orders: Vec<PendingOrder>,
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
     /// A step to run as soon as the suite is there: procedure, step, unit by its own number.
     wanted: Option<(String, String, u64)>,
-    shown: Shown,
+    shown: ResultsView,
     /// The conclusion of the diagnosis of the last run.
     conclusion: Request<String>,
     concluded: Option<fault_db::Id>,
     note: RunNoteForm,
 }
 
-/// An order that is being made.
-struct Ordered {
+/// An order that is being prepared.
+struct PendingOrder {
     /// The unit it is for, by its own number.
     unit: u64,
     order: Request<Prepared>,
@@ -63,7 +63,7 @@ impl Default for ProceduresPage {
             orders: Vec::new(),
             stops: 0,
             wanted: None,
-            shown: Shown::default(),
+            shown: ResultsView::default(),
             conclusion: Request::Idle,
             concluded: None,
             note: RunNoteForm::default(),
@@ -171,7 +171,7 @@ impl ProceduresPage {
                 .trouble(context.words.procedures.no_such_step, what);
             return;
         };
-        let how = How {
+        let how = RunSettings {
             operator: context.settings.operator.clone(),
             repeat: 1,
             stop_on_fail: false,
@@ -192,7 +192,7 @@ impl ProceduresPage {
 
     /// Has an order of what is chosen made for a unit.
     fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
-        let how = How {
+        let how = RunSettings {
             operator: context.settings.operator.clone(),
             repeat: if adaptive { 1 } else { self.repeat },
             stop_on_fail: !adaptive && self.stop_on_fail,
@@ -208,7 +208,13 @@ impl ProceduresPage {
         }
     }
 
-    fn order_of(&mut self, id: u64, selection: Selection, how: How, context: &mut PageContext<'_>) {
+    fn order_of(
+        &mut self,
+        id: u64,
+        selection: Selection,
+        how: RunSettings,
+        context: &mut PageContext<'_>,
+    ) {
         let (Some(suite), Some(loaded_for)) = (self.suite.value(), &self.loaded_for) else {
             return;
         };
@@ -223,7 +229,7 @@ impl ProceduresPage {
         let order = context
             .queries
             .run(move |paths| prepare::order(paths, &choice, &serial, &selection, how, &shown));
-        self.orders.push(Ordered {
+        self.orders.push(PendingOrder {
             unit: id,
             order: Request::Pending(order),
         });
@@ -238,7 +244,7 @@ impl ProceduresPage {
                 Request::Ready(Prepared::Order(order)) => {
                     let unit = context.units.of_id(ordered.unit);
                     if unit.is_some_and(|unit| unit.begin(*order)) {
-                        self.shown = Shown::default();
+                        self.shown = ResultsView::default();
                     } else {
                         context.messages.trouble(words.not_begun, "");
                     }
@@ -248,7 +254,7 @@ impl ProceduresPage {
                     self.load(context);
                 }
                 Request::Failed(why) => context.messages.trouble(words.not_begun, why),
-                order => self.orders.push(Ordered { order, ..ordered }),
+                order => self.orders.push(PendingOrder { order, ..ordered }),
             }
         }
     }

@@ -9,9 +9,9 @@ use ptu_bench::failure::Failure;
 use ptu_bench::run::{BenchChoice, RunPlan, Suite};
 use ptu_bench::run_diagnosis;
 
-/// How what is chosen is run.
+/// How the chosen procedures are run.
 #[derive(Clone, Debug)]
-pub struct How {
+pub struct RunSettings {
     pub operator: String,
     pub repeat: u32,
     /// End after the first step that does not pass.
@@ -57,7 +57,7 @@ pub fn order(
     choice: &BenchChoice,
     serial: &str,
     selection: &Selection,
-    how: How,
+    how: RunSettings,
     shown: &ShownSuite,
 ) -> Result<Prepared, Failure> {
     let setup = choice.clone().with_offered_faults().setup(&paths.scripts)?;
@@ -148,7 +148,7 @@ mod tests {
 
     fn prepared(paths: &DataPaths, choice: &BenchChoice, shown: &ShownSuite) -> Prepared {
         let selection = Selection::usual(&shown.suite.procedures, choice.connection());
-        let how = How {
+        let how = RunSettings {
             operator: String::new(),
             repeat: 1,
             stop_on_fail: false,

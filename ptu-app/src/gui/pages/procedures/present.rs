@@ -9,7 +9,7 @@ use super::results::{measurements, source};
 use super::tree::{minutes, title};
 use crate::gui::Palette;
 use crate::gui::parts::verdict_chip;
-use ptu_bench::bench_worker::{Present, Progress};
+use ptu_bench::bench_worker::{Progress, RunPosition};
 use ptu_report::words::{Words, fill};
 
 /// Lines shown before and after the script's present one.
@@ -86,7 +86,7 @@ fn head(ui: &mut Ui, words: &Words, run: &Progress) {
     });
 }
 
-fn waits(ui: &mut Ui, words: &Words, present: &Present) {
+fn waits(ui: &mut Ui, words: &Words, present: &RunPosition) {
     let palette = Palette::of(ui);
     if let Some(next) = &present.paused {
         let said = fill(words.procedures.paused, &[("step", next)]);
@@ -101,7 +101,7 @@ fn waits(ui: &mut Ui, words: &Words, present: &Present) {
     }
 }
 
-fn prompt(ui: &mut Ui, words: &Words, present: &Present) -> Option<bool> {
+fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
     let prompt = present.prompt.as_ref()?;
     let mut answer = None;
     let warn = Palette::of(ui).warn;

@@ -17,9 +17,9 @@ use ptu_report::words::{Words, fill};
 /// Lines shown before and after a step's.
 const AROUND: Range<u32> = 1..4;
 
-/// What of the results is shown.
+/// Which of the results are shown.
 #[derive(Default)]
-pub struct Shown {
+pub struct ResultsView {
     all: bool,
     /// Places of the procedure and of the result in it.
     chosen: Option<(usize, usize)>,
@@ -55,7 +55,7 @@ pub fn results(
     ui: &mut Ui,
     words: &Words,
     run: &Progress,
-    shown: &mut Shown,
+    shown: &mut ResultsView,
     texts: Option<&BTreeMap<String, String>>,
 ) {
     ui.separator();
@@ -101,7 +101,7 @@ fn row(
     place: (usize, usize),
     result: &StepResult,
     on: bool,
-    shown: &mut Shown,
+    shown: &mut ResultsView,
 ) {
     ui.horizontal(|ui| {
         verdict_chip(ui, result.verdict, words);
@@ -117,7 +117,7 @@ fn row(
     });
 }
 
-fn chosen<'a>(run: &'a Progress, shown: &Shown) -> Option<(usize, &'a StepResult)> {
+fn chosen<'a>(run: &'a Progress, shown: &ResultsView) -> Option<(usize, &'a StepResult)> {
     let (procedure, result) = shown.chosen?;
     Some((
         procedure,

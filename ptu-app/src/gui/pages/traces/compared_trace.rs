@@ -10,7 +10,7 @@ use crate::gui::parts::named_combo;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use ptu_report::trace_view::{Against, Overlay, Parting, TracePlot};
+use ptu_report::trace_view::{FirstDifference, Overlay, OverlaySource, TracePlot};
 use ptu_report::words::fill;
 
 /// Traces offered to compare with.
@@ -19,13 +19,13 @@ const OFFERED: usize = 100;
 const DEVIATING: usize = 12;
 
 #[derive(Default)]
-pub struct BehindAsked {
-    against: Option<Against>,
+pub struct OverlayRequest {
+    against: Option<OverlaySource>,
     overlay: Request<Overlay>,
-    parting: Option<Pending<Parting>>,
+    parting: Option<Pending<FirstDifference>>,
 }
 
-impl BehindAsked {
+impl OverlayRequest {
     /// Takes what has come, and asks where the traces part when that is not known.
     pub fn poll(&mut self, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.overlay.poll() {
@@ -85,12 +85,12 @@ impl BehindAsked {
             .selected_text(&chosen)
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut against, None, words.no_overlay);
-                ui.selectable_value(&mut against, Some(Against::Twin), words.good_twin);
+                ui.selectable_value(&mut against, Some(OverlaySource::Twin), words.good_twin);
                 let own = scene.opened().id;
                 for (run, trace) in list.all().filter(|(_, t)| t.id != own).take(OFFERED) {
                     let name = format!("{} {} {}", run.unit, run.began, trace.id.short());
                     let faults = trace.faults.join(", ");
-                    ui.selectable_value(&mut against, Some(Against::Trace(trace.id)), name)
+                    ui.selectable_value(&mut against, Some(OverlaySource::Trace(trace.id)), name)
                         .on_hover_text(faults);
                 }
             });
@@ -101,7 +101,7 @@ impl BehindAsked {
         if matches!(self.overlay, Request::Pending(_)) {
             ui.spinner();
             ui.label(match self.against {
-                Some(Against::Twin) => words.making_twin,
+                Some(OverlaySource::Twin) => words.making_twin,
                 _ => context.words.common.loading,
             });
         }
@@ -111,7 +111,12 @@ impl BehindAsked {
         }
     }
 
-    fn ask(&mut self, against: Option<Against>, scene: &mut TracePlot, context: &PageContext<'_>) {
+    fn ask(
+        &mut self,
+        against: Option<OverlaySource>,
+        scene: &mut TracePlot,
+        context: &PageContext<'_>,
+    ) {
         self.against = against;
         self.parting = None;
         scene.lay_nothing_behind();
@@ -129,8 +134,8 @@ impl BehindAsked {
     fn name(&self, list: &TraceList, context: &PageContext<'_>) -> String {
         match self.against {
             None => context.words.traces.no_overlay.to_owned(),
-            Some(Against::Twin) => context.words.traces.good_twin.to_owned(),
-            Some(Against::Trace(id)) => {
+            Some(OverlaySource::Twin) => context.words.traces.good_twin.to_owned(),
+            Some(OverlaySource::Trace(id)) => {
                 let run = list.all().find(|(_, trace)| trace.id == id);
                 let unit = run.map_or("", |(run, _)| &run.unit);
                 format!("{unit} {}", id.short())

@@ -12,7 +12,7 @@ use super::row::{self, GAP, Scratch, Sheet};
 use crate::gui::Palette;
 use crate::gui::parts::lane::{self, AXIS_HEIGHT};
 use ptu_bench::clock;
-use ptu_report::trace_view::{Against, Cursor, Kind, TracePlot};
+use ptu_report::trace_view::{Cursor, Kind, OverlaySource, TracePlot};
 use ptu_report::words::Words;
 
 /// Room for names left of the lanes, and for the values beside their axes.
@@ -24,14 +24,14 @@ const VALUE: f32 = 92.0;
 const NARROWEST: f32 = 50.0;
 
 /// What painting keeps from one frame to the next.
-pub struct Painted {
+pub struct LaneCache {
     /// Where the lanes with all around them were painted.
     pub rect: Rect,
     drag: Drag,
     scratch: Scratch,
 }
 
-impl Default for Painted {
+impl Default for LaneCache {
     fn default() -> Self {
         Self {
             rect: Rect::NOTHING,
@@ -43,7 +43,7 @@ impl Default for Painted {
 
 /// Where the parts of the picture are, from left to right.
 #[derive(Clone, Copy)]
-pub struct Places {
+pub struct LaneColumns {
     /// Left edge of the names.
     pub names: f32,
     /// Left edge of the lanes.
@@ -54,7 +54,7 @@ pub struct Places {
     pub end: f32,
 }
 
-impl Places {
+impl LaneColumns {
     /// Where the values of a column are, at the height of `beside`.
     pub fn value(&self, column: usize, beside: Rect) -> Rect {
         let right = self.right + (column + 1) as f32 * VALUE;
@@ -74,14 +74,14 @@ impl Places {
     }
 }
 
-impl Painted {
+impl LaneCache {
     /// Shows them in all the room there is.
     pub fn lanes(&mut self, ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
         let palette = Palette::of(ui);
         let all = ui.available_rect_before_wrap();
         self.rect = all;
         let both = scene.cursor(Cursor::A).is_some() && scene.cursor(Cursor::B).is_some();
-        let places = Places::of(ui, all, if both { 3 } else { 1 });
+        let places = LaneColumns::of(ui, all, if both { 3 } else { 1 });
         let middle = Rect::from_x_y_ranges(
             places.left..=places.right,
             all.top() + STRIP..=all.bottom() - AXIS_HEIGHT,
@@ -168,8 +168,8 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     line(0.0, own, sheet.palette.accent);
     if let Some(behind) = sheet.scene.behind() {
         let name = match behind.overlay.against {
-            Against::Twin => sheet.words.traces.good_twin.to_owned(),
-            Against::Trace(id) => {
+            OverlaySource::Twin => sheet.words.traces.good_twin.to_owned(),
+            OverlaySource::Trace(id) => {
                 let when = clock::local(behind.overlay.view.data().t0_us);
                 format!("{}  {when}", id.short())
             }

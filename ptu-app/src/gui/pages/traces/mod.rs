@@ -18,12 +18,12 @@ use fault_db::Id;
 
 use crate::gui::query_worker::Pending;
 use crate::gui::{Destination, PageContext, Palette};
-use compared_trace::BehindAsked;
+use compared_trace::OverlayRequest;
 use export::Export;
-use lanes::Painted;
+use lanes::LaneCache;
 use list::TraceList;
 use ptu_report::trace_view::TracePlot;
-use ptu_report::trace_view::listing::{self, Opened};
+use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::fill;
 
 /// Height of a row of controls.
@@ -32,12 +32,12 @@ const ROW: f32 = 24.0;
 #[derive(Default)]
 pub struct TracesPage {
     list: TraceList,
-    opening: Option<Pending<(Opened, String)>>,
+    opening: Option<Pending<(OpenTrace, String)>>,
     scene: Option<TracePlot>,
     trouble: Option<String>,
-    behind: BehindAsked,
+    behind: OverlayRequest,
     export: Export,
-    painted: Painted,
+    painted: LaneCache,
     find_signal: String,
     choosing: bool,
     told: bool,
@@ -84,7 +84,7 @@ impl TracesPage {
             match answer {
                 Ok((opened, name)) => {
                     self.export.name_after(name);
-                    self.behind = BehindAsked::default();
+                    self.behind = OverlayRequest::default();
                     self.scene = Some(TracePlot::new(Arc::new(opened), &context.settings.lanes));
                 }
                 Err(failure) => {

@@ -4,13 +4,13 @@ use eframe::egui::{
     Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
-use super::lanes::{Places, TICKS};
+use super::lanes::{LaneColumns, TICKS};
 use super::table;
 use crate::gui::Palette;
 use crate::gui::parts::lane;
 use ptu_report::trace_view::value::named;
 use ptu_report::trace_view::{
-    Axis, Behind, Column, Edges, Lane, Span, Summary, TracePlot, TraceView,
+    Axis, Column, Edges, Lane, OverlayTrace, Span, Summary, TracePlot, TraceView,
 };
 use ptu_report::words::Words;
 
@@ -30,7 +30,7 @@ pub struct Sheet<'a> {
     /// The trace as it is looked at.
     pub scene: &'a TracePlot,
     /// Where the parts of the picture are.
-    pub places: Places,
+    pub places: LaneColumns,
     /// Rows whose values are told.
     pub rows: [Option<usize>; 2],
     pub words: &'a Words,
@@ -270,7 +270,7 @@ impl Sheet<'_> {
     }
 
     /// Rows in which the signal deviates from the trace behind: a tint, and a bar along the lower edge.
-    fn shade(&self, ui: &Ui, behind: &Behind, signal: &str, rect: Rect) {
+    fn shade(&self, ui: &Ui, behind: &OverlayTrace, signal: &str, rect: Rect) {
         let parting = behind.parting.as_ref();
         let Some(stretches) = parting.and_then(|parting| parting.stretches.get(signal)) else {
             return;

@@ -10,7 +10,7 @@ use ptu_report::words::fill;
 const TALLER: f32 = 1.25;
 
 /// What was pressed at a lane.
-enum Pressed {
+enum LaneAction {
     Up(usize),
     Down(usize),
     Stretch(usize, f32),
@@ -76,18 +76,18 @@ pub fn name_input(response: &Response, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, response.enabled(), name));
 }
 
-fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<Pressed> {
+fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<LaneAction> {
     let words = &context.words.traces;
     let mut pressed = None;
     for (i, lane) in scene.lanes().iter().enumerate() {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for (sign, name, what) in [
-                ("▲", words.up, Pressed::Up(i)),
-                ("▼", words.down, Pressed::Down(i)),
-                ("+", words.higher, Pressed::Stretch(i, TALLER)),
-                ("−", words.lower, Pressed::Stretch(i, 1.0 / TALLER)),
-                ("×", words.hide, Pressed::Hide(i)),
+                ("▲", words.up, LaneAction::Up(i)),
+                ("▼", words.down, LaneAction::Down(i)),
+                ("+", words.higher, LaneAction::Stretch(i, TALLER)),
+                ("−", words.lower, LaneAction::Stretch(i, 1.0 / TALLER)),
+                ("×", words.hide, LaneAction::Hide(i)),
             ] {
                 let name = fill(name, &[("signal", &lane.signal)]);
                 let button = ui.small_button(sign);
@@ -102,16 +102,16 @@ fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<Pr
     pressed
 }
 
-fn act(pressed: Pressed, signals: &mut Vec<String>, scene: &mut TracePlot) {
+fn act(pressed: LaneAction, signals: &mut Vec<String>, scene: &mut TracePlot) {
     match pressed {
-        Pressed::Up(i) if i > 0 => signals.swap(i, i - 1),
-        Pressed::Down(i) if i + 1 < signals.len() => signals.swap(i, i + 1),
-        Pressed::Up(_) | Pressed::Down(_) => {}
-        Pressed::Stretch(i, times) => scene.stretch(i, times),
+        LaneAction::Up(i) if i > 0 => signals.swap(i, i - 1),
+        LaneAction::Down(i) if i + 1 < signals.len() => signals.swap(i, i + 1),
+        LaneAction::Up(_) | LaneAction::Down(_) => {}
+        LaneAction::Stretch(i, times) => scene.stretch(i, times),
         // The last one stays: without any the usual ones would come back.
-        Pressed::Hide(i) if signals.len() > 1 => {
+        LaneAction::Hide(i) if signals.len() > 1 => {
             signals.remove(i);
         }
-        Pressed::Hide(_) => {}
+        LaneAction::Hide(_) => {}
     }
 }

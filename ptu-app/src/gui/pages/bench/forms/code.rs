@@ -3,7 +3,7 @@
 use btu_rig::stimulus::Stimulus;
 use protocol::config::{SpeedCode, UnitConfig};
 
-use super::Way;
+use super::StimulusPath;
 
 #[derive(Clone, Debug)]
 pub struct CodeForm {
@@ -36,12 +36,12 @@ impl CodeForm {
     }
 
     /// The signal as it is filled in.
-    pub fn free(&self, way: Way) -> Stimulus {
+    pub fn free(&self, way: StimulusPath) -> Stimulus {
         self.signal(self.carrier_hz, self.rate_hz, way)
     }
 
     /// A code of the table at the level filled in.
-    pub fn of_table(&self, code: &SpeedCode, way: Way) -> Stimulus {
+    pub fn of_table(&self, code: &SpeedCode, way: StimulusPath) -> Stimulus {
         self.signal(code.carrier_hz, code.rate_hz, way)
     }
 
@@ -53,15 +53,15 @@ impl CodeForm {
         }
     }
 
-    fn signal(&self, carrier_hz: f64, rate_hz: f64, way: Way) -> Stimulus {
+    fn signal(&self, carrier_hz: f64, rate_hz: f64, way: StimulusPath) -> Stimulus {
         let level_mv = self.level_mv;
         match way {
-            Way::Harness => Stimulus::Code {
+            StimulusPath::Harness => Stimulus::Code {
                 carrier_hz,
                 rate_hz,
                 level_mv,
             },
-            Way::TestBoard => Stimulus::PtuCode {
+            StimulusPath::TestBoard => Stimulus::PtuCode {
                 carrier_hz,
                 rate_hz,
                 level_mv,
@@ -94,7 +94,7 @@ mod tests {
             carrier_hz,
             rate_hz,
             level_mv,
-        } = form.of_table(code, Way::Harness)
+        } = form.of_table(code, StimulusPath::Harness)
         else {
             panic!("a signal in the antenna");
         };
@@ -103,7 +103,7 @@ mod tests {
             carrier_hz,
             rate_hz,
             level_mv,
-        } = form.of_table(code, Way::TestBoard)
+        } = form.of_table(code, StimulusPath::TestBoard)
         else {
             panic!("a signal in the test coil");
         };
@@ -120,7 +120,7 @@ mod tests {
             ..CodeForm::new(&config)
         };
         assert_eq!(
-            form.free(Way::Harness),
+            form.free(StimulusPath::Harness),
             Stimulus::Code {
                 carrier_hz: 3_040.0,
                 rate_hz: 0.0,

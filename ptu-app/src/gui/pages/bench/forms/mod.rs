@@ -15,9 +15,9 @@ pub use train::TrainForm;
 
 use ptu_bench::run::BenchSetup;
 
-/// The way a stimulus takes to the unit.
+/// The path of a stimulus to the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum StimulusPath {
     /// The bench harness, in place of train and wayside.
     Harness,
     /// The unit's own TEST board.

@@ -4,7 +4,7 @@ use btu_rig::stimulus::{StationData, Stimulus};
 use protocol::line::{Line, Section};
 use protocol::message::{DoorSide, RunningMode};
 
-use super::Way;
+use super::StimulusPath;
 
 /// TWC station data. An ordered speed that is switched off keeps its number.
 #[derive(Clone, Debug)]
@@ -75,10 +75,10 @@ impl StationForm {
     }
 
     /// Sent on the way chosen.
-    pub fn send(&self, way: Way) -> Stimulus {
+    pub fn send(&self, way: StimulusPath) -> Stimulus {
         match way {
-            Way::Harness => Stimulus::Station(self.station()),
-            Way::TestBoard => Stimulus::PtuTwc(self.station()),
+            StimulusPath::Harness => Stimulus::Station(self.station()),
+            StimulusPath::TestBoard => Stimulus::PtuTwc(self.station()),
         }
     }
 }
@@ -119,7 +119,7 @@ mod tests {
         );
         assert_eq!(sent.door_side.label(), section.door_side);
         assert_eq!(sent.fixed_speed_kmh, None);
-        assert_eq!(form.send(Way::Harness), Stimulus::Station(sent));
-        assert_eq!(form.send(Way::TestBoard), Stimulus::PtuTwc(sent));
+        assert_eq!(form.send(StimulusPath::Harness), Stimulus::Station(sent));
+        assert_eq!(form.send(StimulusPath::TestBoard), Stimulus::PtuTwc(sent));
     }
 }

@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 use super::View;
 use super::card::{Fact, card, facts};
 use crate::gui::Palette;
-use crate::gui::pages::bench::live_copy::Seen;
+use crate::gui::pages::bench::live_copy::BenchSnapshot;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
 use ptu_report::words::Bench;
 
@@ -58,7 +58,7 @@ fn code(view: &View<'_>, words: &Bench) -> String {
     }
 }
 
-fn ato(words: &Bench, seen: &Seen) -> String {
+fn ato(words: &Bench, seen: &BenchSnapshot) -> String {
     let state = text::value(words, Signal::AtoState, seen);
     match seen.on(Signal::AtoReady) {
         None => state,

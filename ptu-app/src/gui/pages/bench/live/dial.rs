@@ -25,13 +25,13 @@ const FINE: usize = 48;
 const LEGEND: f32 = 158.0;
 
 /// The dial's face.
-struct Face {
+struct DialFace {
     middle: Pos2,
     radius: f32,
     scale: Dial,
 }
 
-impl Face {
+impl DialFace {
     fn at(&self, kmh: f64, radius: f32) -> Pos2 {
         let angle = BEGIN + ROUND * self.scale.share(kmh);
         self.middle + radius * Vec2::angled(angle)
@@ -74,7 +74,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
 
     let room = area.with_max_x(area.right() - LEGEND);
     let radius = (room.width() / 2.0 - 12.0).min(room.height() * 0.53);
-    let face = Face {
+    let face = DialFace {
         middle: pos2(room.center().x, room.top() + radius + 11.0),
         radius,
         scale,
@@ -109,7 +109,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
 /// Marks at limit and target, needles at the true and the measured speed.
 fn paint_speeds(
     painter: &Painter,
-    face: &Face,
+    face: &DialFace,
     [measured, truth, limit, target]: [Option<f64>; 4],
     colours: [Color32; 4],
 ) {
@@ -149,7 +149,7 @@ fn paint_speeds(
     }
 }
 
-fn paint_face(painter: &Painter, face: &Face, limit: Option<f64>, palette: &Palette) {
+fn paint_face(painter: &Painter, face: &DialFace, limit: Option<f64>, palette: &Palette) {
     let full = face.scale.full_kmh;
     let ring = Stroke::new(3.0, palette.quiet);
     face.arc(painter, 0.0, full, face.radius, ring);

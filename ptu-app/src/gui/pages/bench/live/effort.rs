@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 use super::View;
 use super::card::{Fact, facts, named, put};
 use crate::gui::Palette;
-use crate::gui::pages::bench::live_copy::Seen;
+use crate::gui::pages::bench::live_copy::BenchSnapshot;
 use crate::gui::pages::bench::scale::from_middle;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
 use ptu_report::words::Bench;
@@ -82,14 +82,14 @@ fn of_value(value: Option<f64>, letters: &str) -> Bar {
     }
 }
 
-fn ato(seen: &Seen) -> Bar {
+fn ato(seen: &BenchSnapshot) -> Bar {
     of_value(
         seen.value(Signal::Effort),
         letters(seen, Signal::Power, Signal::Brake),
     )
 }
 
-fn tcms(seen: &Seen, words: &Bench) -> Bar {
+fn tcms(seen: &BenchSnapshot, words: &Bench) -> Bar {
     let coasting = seen.on(Signal::TcmsCoast) == Some(true);
     let letters = if coasting {
         words.coast
@@ -99,7 +99,7 @@ fn tcms(seen: &Seen, words: &Bench) -> Bar {
     of_value(seen.value(Signal::TcmsValue), letters)
 }
 
-fn letters(seen: &Seen, power: Signal, brake: Signal) -> &'static str {
+fn letters(seen: &BenchSnapshot, power: Signal, brake: Signal) -> &'static str {
     match (seen.on(power), seen.on(brake)) {
         (Some(true), Some(true)) => "P B",
         (Some(true), _) => "P",
@@ -108,7 +108,7 @@ fn letters(seen: &Seen, power: Signal, brake: Signal) -> &'static str {
     }
 }
 
-fn train(seen: &Seen) -> Bar {
+fn train(seen: &BenchSnapshot) -> Bar {
     let given = [Signal::Traction, Signal::ElectricBrake, Signal::AirBrake];
     let [Some(traction), Some(electric), Some(air)] = given.map(|signal| seen.value(signal)) else {
         return of_value(None, "");

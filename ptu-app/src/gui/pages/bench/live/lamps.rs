@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 
 use super::card::{named, put};
 use crate::gui::Palette;
-use crate::gui::pages::bench::live_copy::Seen;
+use crate::gui::pages::bench::live_copy::BenchSnapshot;
 use ptu_report::words::Bench;
 
 /// Lamps beside each other.
@@ -14,9 +14,9 @@ const COLUMNS: usize = 2;
 /// Room between lamps.
 const BETWEEN: f32 = 4.0;
 
-/// How a lamp is.
+/// Whether a lamp is lit; unknown without a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Lit {
+enum LampState {
     On,
     Off,
     Unknown,
@@ -26,12 +26,12 @@ struct Lamp {
     name: &'static str,
     /// What it says when it is on, and when it is off.
     says: [&'static str; 2],
-    lit: Lit,
+    lit: LampState,
     colour: Color32,
 }
 
 /// All lamps in an area of this size.
-pub fn lamps(ui: &mut Ui, size: Vec2, seen: &Seen, words: &Bench, palette: &Palette) {
+pub fn lamps(ui: &mut Ui, size: Vec2, seen: &BenchSnapshot, words: &Bench, palette: &Palette) {
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let lamps = of(seen, words, palette);
     let rows = lamps.len().div_ceil(COLUMNS);
@@ -46,9 +46,9 @@ pub fn lamps(ui: &mut Ui, size: Vec2, seen: &Seen, words: &Bench, palette: &Pale
         );
         let rect = Rect::from_min_size(area.min + offset, each);
         let says = match lamp.lit {
-            Lit::On => lamp.says[0],
-            Lit::Off => lamp.says[1],
-            Lit::Unknown => words.not_known,
+            LampState::On => lamp.says[0],
+            LampState::Off => lamp.says[1],
+            LampState::Unknown => words.not_known,
         };
         paint(&ui.painter_at(rect), rect, lamp, says, palette);
         named(ui, rect, ("lamp", place), || {
@@ -57,7 +57,7 @@ pub fn lamps(ui: &mut Ui, size: Vec2, seen: &Seen, words: &Bench, palette: &Pale
     }
 }
 
-fn of(seen: &Seen, words: &Bench, palette: &Palette) -> [Lamp; 8] {
+fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 8] {
     let lamp = |name, says, signal, lit_at: bool, colour| Lamp {
         name,
         says,
@@ -98,24 +98,24 @@ fn of(seen: &Seen, words: &Bench, palette: &Palette) -> [Lamp; 8] {
     ]
 }
 
-fn lit(value: Option<bool>, lit_at: bool) -> Lit {
+fn lit(value: Option<bool>, lit_at: bool) -> LampState {
     match value {
-        None => Lit::Unknown,
-        Some(value) if value == lit_at => Lit::On,
-        Some(_) => Lit::Off,
+        None => LampState::Unknown,
+        Some(value) if value == lit_at => LampState::On,
+        Some(_) => LampState::Off,
     }
 }
 
 fn paint(painter: &Painter, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
     let bulb = pos2(rect.left() + 20.0, rect.center().y);
     let (name, state) = match lamp.lit {
-        Lit::On => {
+        LampState::On => {
             painter.rect_filled(rect, 4.0, lamp.colour);
             let ink = ink_on(lamp.colour);
             painter.circle_filled(bulb, 9.0, ink);
             (ink, ink)
         }
-        Lit::Off => {
+        LampState::Off => {
             let inside = StrokeKind::Inside;
             painter.rect(
                 rect,
@@ -127,7 +127,7 @@ fn paint(painter: &Painter, rect: Rect, lamp: &Lamp, says: &str, palette: &Palet
             painter.circle_stroke(bulb, 8.0, Stroke::new(1.5, palette.quiet));
             (palette.quiet, palette.quiet)
         }
-        Lit::Unknown => {
+        LampState::Unknown => {
             let line = Stroke::new(1.0, palette.quiet);
             let edge = rect.shrink(1.0);
             let corners = [
@@ -181,11 +181,11 @@ mod tests {
 
     #[test]
     fn a_lamp_of_unknown_state_is_neither_on_nor_off() {
-        assert_eq!(lit(None, true), Lit::Unknown);
-        assert_eq!(lit(None, false), Lit::Unknown);
-        assert_eq!(lit(Some(true), true), Lit::On);
-        assert_eq!(lit(Some(true), false), Lit::Off);
-        assert_eq!(lit(Some(false), false), Lit::On);
+        assert_eq!(lit(None, true), LampState::Unknown);
+        assert_eq!(lit(None, false), LampState::Unknown);
+        assert_eq!(lit(Some(true), true), LampState::On);
+        assert_eq!(lit(Some(true), false), LampState::Off);
+        assert_eq!(lit(Some(false), false), LampState::On);
     }
 
     #[test]

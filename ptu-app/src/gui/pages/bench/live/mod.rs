@@ -18,9 +18,9 @@ use eframe::egui::{Ui, vec2};
 pub use card::{framed, heading, put};
 pub use log::log;
 
-use super::live_copy::Seen;
+use super::live_copy::BenchSnapshot;
 use super::scale::Dial;
-use super::track::{Sent, Strip};
+use super::track::{Strip, WaysideFrame};
 use crate::gui::Palette;
 use card::card;
 use ptu_bench::run::BenchSetup;
@@ -29,7 +29,7 @@ use ptu_report::words::Words;
 pub struct View<'a> {
     pub words: &'static Words,
     /// The bench as it is now.
-    pub seen: &'a Seen,
+    pub seen: &'a BenchSnapshot,
     /// What the bench is made of.
     pub setup: &'a BenchSetup,
     /// Section laid along the way by hand.
@@ -81,7 +81,7 @@ pub fn view(ui: &mut Ui, view: &View<'_>) {
     cab::cab(ui, view, &palette);
     let strip = Strip::of(&view.setup.line.content, view.laid, view.seen);
     strip::strip(ui, strip.as_ref(), view, &palette);
-    let sent = Sent::of(&view.setup.line.content, view.given, view.seen);
+    let sent = WaysideFrame::of(&view.setup.line.content, view.given, view.seen);
     if width >= WIDE {
         ui.columns(2, |columns| {
             card(&mut columns[0], words.effort, |ui| {

@@ -7,10 +7,10 @@ use super::View;
 use super::card::{Fact, facts};
 use crate::gui::Palette;
 use crate::gui::pages::bench::text::{self, UNKNOWN};
-use crate::gui::pages::bench::track::Sent;
+use crate::gui::pages::bench::track::WaysideFrame;
 
 /// What wayside and unit tell each other.
-pub fn twc(ui: &mut Ui, view: &View<'_>, sent: &Sent, palette: &Palette) {
+pub fn twc(ui: &mut Ui, view: &View<'_>, sent: &WaysideFrame, palette: &Palette) {
     let (words, seen) = (&view.words.bench, view.seen);
     let fact = |name, signal| Fact::new(name, text::value(words, signal, seen));
     let link = |name, signal| {

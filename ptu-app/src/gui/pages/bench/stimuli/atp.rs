@@ -5,8 +5,8 @@ use eframe::egui::Ui;
 use protocol::config::UnitConfig;
 use protocol::signal::Signal;
 
-use super::buttons::{Hand, named_number, number, row};
-use crate::gui::pages::bench::forms::{CodeForm, NO_DRIFT, Way};
+use super::buttons::{StimulusPanel, named_number, number, row};
+use crate::gui::pages::bench::forms::{CodeForm, NO_DRIFT, StimulusPath};
 use ptu_report::words::Bench;
 
 /// What a 16-bit field holds.
@@ -17,9 +17,9 @@ const MAX_MV: f64 = 65_535.0;
 const MAX_DRIFT_HZ_PER_S: f64 = 100.0;
 const MAX_DRIFT_MV_PER_S: f64 = 10_000.0;
 
-pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
-    codes(ui, form, config, Way::Harness, hand);
+    codes(ui, form, config, StimulusPath::Harness, hand);
     row(ui, words.codes_along, |ui, _| {
         hand.switch(ui, words.codes_along, None, |on| Stimulus::CodesAlong {
             on,
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut Ha
     });
     free(ui, form, words);
     row(ui, "", |ui, _| {
-        hand.button(ui, words.give_signal, form.free(Way::Harness));
+        hand.button(ui, words.give_signal, form.free(StimulusPath::Harness));
     });
     row(ui, words.rate_drift, |ui, label| {
         let range = -MAX_DRIFT_HZ_PER_S..=MAX_DRIFT_HZ_PER_S;
@@ -48,15 +48,21 @@ pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut Ha
 }
 
 /// A button for each code of the table.
-pub fn codes(ui: &mut Ui, form: &CodeForm, config: &UnitConfig, way: Way, hand: &mut Hand<'_>) {
+pub fn codes(
+    ui: &mut Ui,
+    form: &CodeForm,
+    config: &UnitConfig,
+    way: StimulusPath,
+    hand: &mut StimulusPanel<'_>,
+) {
     let words = &hand.words().bench;
     let name = match way {
-        Way::Harness => words.speed_code,
-        Way::TestBoard => words.test_code,
+        StimulusPath::Harness => words.speed_code,
+        StimulusPath::TestBoard => words.test_code,
     };
     row(ui, name, |ui, _| {
         for code in &config.codes {
-            let in_force = way == Way::Harness
+            let in_force = way == StimulusPath::Harness
                 && hand.seen.is(Signal::CarrierHz, code.carrier_hz)
                 && hand.seen.is(Signal::CodeRateHz, code.rate_hz)
                 && hand
@@ -65,7 +71,7 @@ pub fn codes(ui: &mut Ui, form: &CodeForm, config: &UnitConfig, way: Way, hand: 
                     .is_some_and(|level| level > 0.0);
             hand.choice(ui, name, &code.name, in_force, form.of_table(code, way));
         }
-        if way == Way::Harness {
+        if way == StimulusPath::Harness {
             hand.button(ui, words.code_off, Stimulus::CodeOff);
         }
     });

@@ -10,7 +10,7 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-use crate::gui::pages::bench::live_copy::Seen;
+use crate::gui::pages::bench::live_copy::BenchSnapshot;
 use crate::gui::{Messages, Palette};
 use ptu_bench::bench_worker::BenchWorker;
 use ptu_report::words::{Words, fill};
@@ -20,22 +20,22 @@ const NAME: f32 = 138.0;
 
 /// What the page remembers of what was given, because no signal tells it.
 #[derive(Debug, Default)]
-pub struct Given {
+pub struct StimuliGiven {
     pub laid: Option<u16>,
     pub station: Option<StationData>,
 }
 
-/// The hand that gives stimuli.
-pub struct Hand<'a> {
+/// Controls of one frame that give stimuli to the bench.
+pub struct StimulusPanel<'a> {
     pub bench: &'a BenchWorker,
     /// The bench at the beginning of the frame.
-    pub seen: &'a Seen,
+    pub seen: &'a BenchSnapshot,
     pub words: &'static Words,
     pub messages: &'a mut Messages,
-    pub given: &'a mut Given,
+    pub given: &'a mut StimuliGiven,
 }
 
-impl Hand<'_> {
+impl StimulusPanel<'_> {
     /// As what the bench is connected.
     pub fn connection(&self) -> Connection {
         self.bench.connection()

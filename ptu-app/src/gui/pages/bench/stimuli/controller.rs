@@ -5,14 +5,14 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Slider, Ui};
 use protocol::signal::Signal;
 
-use super::buttons::{Hand, number, row};
+use super::buttons::{StimulusPanel, number, row};
 use crate::gui::pages::bench::forms::TrainForm;
 use ptu_report::words::Bench;
 
 const MAX_VOLTS: f64 = 10.0;
 const SLIDER: f32 = 190.0;
 
-pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     lever(ui, form, hand, words);
     row(ui, words.reverser, |ui, _| {
@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut Hand<'_>) {
 }
 
 /// A slider that moves the lever as it is moved, and a button for each notch.
-fn lever(ui: &mut Ui, form: &mut TrainForm, hand: &mut Hand<'_>, words: &Bench) {
+fn lever(ui: &mut Ui, form: &mut TrainForm, hand: &mut StimulusPanel<'_>, words: &Bench) {
     row(ui, words.lever, |ui, label| {
         let may = hand.may(&form.controller());
         let slider = Slider::new(&mut form.lever, 0..=Lever::ALL.len() - 1)

@@ -5,7 +5,7 @@ use eframe::egui::Ui;
 use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 
-use super::buttons::{Hand, row};
+use super::buttons::{StimulusPanel, row};
 use ptu_report::words::Bench;
 
 /// Switches of the train, with their names.
@@ -25,7 +25,7 @@ fn switches(words: &Bench) -> [(TrainSwitch, &'static str); 11] {
     ]
 }
 
-pub fn show(ui: &mut Ui, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     row(ui, words.doors, |ui, _| {
         for (closed, text) in [(true, words.doors_closed), (false, words.doors_open)] {

@@ -4,13 +4,13 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::Ui;
 use protocol::line::Line;
 
-use super::buttons::{Hand, named_number, one_of, row};
+use super::buttons::{StimulusPanel, named_number, one_of, row};
 use crate::gui::pages::bench::forms::MarkerForm;
 
 /// Farthest a marker can be moved, m.
 const MAX_MOVE_M: f64 = 100.0;
 
-pub fn show(ui: &mut Ui, form: &mut MarkerForm, line: &Line, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, form: &mut MarkerForm, line: &Line, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     row(ui, words.marker_pulse, |ui, _| {
         for psm in 1..=4 {

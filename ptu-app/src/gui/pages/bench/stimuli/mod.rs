@@ -13,7 +13,7 @@ mod twc;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-pub use buttons::{Given, Hand};
+pub use buttons::{StimuliGiven, StimulusPanel};
 
 use super::forms::Forms;
 use ptu_bench::run::BenchSetup;
@@ -67,7 +67,7 @@ impl Group {
 }
 
 /// All groups; the TEST board's first for a laptop, which has nothing else.
-pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut Hand<'_>) {
+pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut StimulusPanel<'_>) {
     let connection = hand.connection();
     let mut groups = Group::ALL;
     if connection == Connection::Ptu {
@@ -100,7 +100,13 @@ fn follow_focus(ui: &Ui) {
     }
 }
 
-fn show(ui: &mut Ui, group: Group, forms: &mut Forms, setup: &BenchSetup, hand: &mut Hand<'_>) {
+fn show(
+    ui: &mut Ui,
+    group: Group,
+    forms: &mut Forms,
+    setup: &BenchSetup,
+    hand: &mut StimulusPanel<'_>,
+) {
     let (config, line) = (&setup.config.content, &setup.line.content);
     match group {
         Group::TestBoard => test_board::show(ui, forms, config, line, hand),

@@ -4,7 +4,7 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::Ui;
 use protocol::signal::Signal;
 
-use super::buttons::{Hand, named_number, number, row};
+use super::buttons::{StimulusPanel, named_number, number, row};
 use crate::gui::pages::bench::forms::{MotionForm, TachoKind};
 use ptu_report::words::fill;
 
@@ -16,7 +16,7 @@ const MAX_TRAVEL_M: f64 = 100_000.0;
 const MAX_NOISE_PER_S: f64 = 5_000.0;
 const MAX_FACTOR: f64 = 10.0;
 
-pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     row(ui, words.to_speed, |ui, label| {
         number(ui, label, &mut form.to_kmh, 0.0..=MAX_KMH, "km/h");

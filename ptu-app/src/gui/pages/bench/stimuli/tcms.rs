@@ -4,13 +4,13 @@ use btu_rig::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TcmsCondition};
 use btu_rig::train::TrainData;
 use eframe::egui::Ui;
 
-use super::buttons::{Hand, number, row};
+use super::buttons::{StimulusPanel, number, row};
 use crate::gui::pages::bench::forms::TrainForm;
 
 /// Adhesion beyond this is glue.
 const MAX_ADHESION: f64 = 1.0;
 
-pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     row(ui, words.tcms_link, |ui, _| {
         for (condition, text) in [

@@ -6,16 +6,22 @@ use protocol::config::UnitConfig;
 use protocol::line::Line;
 use protocol::signal::Signal;
 
-use super::buttons::{Hand, check, named_number, number, one_of, row};
+use super::buttons::{StimulusPanel, check, named_number, number, one_of, row};
 use super::{atp, speed, twc};
-use crate::gui::pages::bench::forms::{Forms, MotionForm, Way};
+use crate::gui::pages::bench::forms::{Forms, MotionForm, StimulusPath};
 use crate::gui::pages::bench::text;
 use ptu_report::words::Bench;
 
 /// Greatest acceleration the request carries, km/h/s.
 const MAX_KMHPS: f64 = 235.0;
 
-pub fn show(ui: &mut Ui, forms: &mut Forms, config: &UnitConfig, line: &Line, hand: &mut Hand<'_>) {
+pub fn show(
+    ui: &mut Ui,
+    forms: &mut Forms,
+    config: &UnitConfig,
+    line: &Line,
+    hand: &mut StimulusPanel<'_>,
+) {
     let words = &hand.words().bench;
     row(ui, words.maintenance, |ui, _| {
         hand.button(ui, words.arm, Stimulus::PtuArm);
@@ -27,10 +33,10 @@ pub fn show(ui: &mut Ui, forms: &mut Forms, config: &UnitConfig, line: &Line, ha
             hand.choice(ui, words.maintenance, text, false, stimulus);
         }
     });
-    atp::codes(ui, &forms.test_code, config, Way::TestBoard, hand);
+    atp::codes(ui, &forms.test_code, config, StimulusPath::TestBoard, hand);
     atp::free(ui, &mut forms.test_code, words);
     row(ui, "", |ui, _| {
-        let stimulus = forms.test_code.free(Way::TestBoard);
+        let stimulus = forms.test_code.free(StimulusPath::TestBoard);
         hand.choice(ui, words.test_code, words.give_signal, false, stimulus);
     });
     motion(ui, &mut forms.test_motion, hand, words);
@@ -49,7 +55,7 @@ pub fn show(ui: &mut Ui, forms: &mut Forms, config: &UnitConfig, line: &Line, ha
     ui.separator();
     twc::fields(ui, &mut forms.test_station, line, words);
     row(ui, words.test_twc, |ui, _| {
-        let stimulus = forms.test_station.send(Way::TestBoard);
+        let stimulus = forms.test_station.send(StimulusPath::TestBoard);
         hand.choice(ui, words.test_twc, words.send_frame, false, stimulus);
     });
     ui.separator();
@@ -59,7 +65,7 @@ pub fn show(ui: &mut Ui, forms: &mut Forms, config: &UnitConfig, line: &Line, ha
     });
 }
 
-fn motion(ui: &mut Ui, form: &mut MotionForm, hand: &mut Hand<'_>, words: &Bench) {
+fn motion(ui: &mut Ui, form: &mut MotionForm, hand: &mut StimulusPanel<'_>, words: &Bench) {
     row(ui, words.test_speed, |ui, label| {
         number(ui, label, &mut form.to_kmh, 0.0..=speed::MAX_KMH, "km/h");
         let accel = &mut form.accel_kmhps;

@@ -6,9 +6,9 @@ use protocol::line::Line;
 use protocol::message::{DoorSide, RunningMode};
 use protocol::signal::Signal;
 
-use super::buttons::{Hand, check, named_number, number, one_of, row};
+use super::buttons::{StimulusPanel, check, named_number, number, one_of, row};
 use super::markers::sections;
-use crate::gui::pages::bench::forms::{StationForm, Way};
+use crate::gui::pages::bench::forms::{StationForm, StimulusPath};
 use ptu_report::words::Bench;
 
 /// In the order of the labels of the signal `wayside`.
@@ -21,7 +21,7 @@ const CONDITIONS: [WaysideCondition; 3] = [
 const MAX_ORDER_KMH: u8 = 254;
 
 /// The group.
-pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Hand<'_>) {
+pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     row(ui, words.wayside, |ui, _| {
         let states = words.states(Signal::Wayside);
@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Hand<'_
     });
     fields(ui, form, line, words);
     row(ui, "", |ui, _| {
-        hand.button(ui, words.send_frame, form.send(Way::Harness));
+        hand.button(ui, words.send_frame, form.send(StimulusPath::Harness));
     });
 }
 
