@@ -32,6 +32,6 @@ pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
 pub use observation::{CheckName, Observation, ObservedStep, Sign, is_observed};
-pub use settings::Settings;
+pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, Settings};
 pub use strategy::{Effort, Strategy, fixed_order, replayed};
 pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

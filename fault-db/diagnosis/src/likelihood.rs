@@ -8,26 +8,7 @@ use protocol::Verdict;
 
 use super::cell::{Cell, Signature, Values};
 use super::observation::{ObservedStep, Sign};
-
-/// Greatest number of runs that count: more would pretend that all benches are alike.
-const MOST_RUNS: f64 = 50.0;
-/// Probability of each verdict if nothing is known.
-const fn nothing_known(verdict: Verdict) -> f64 {
-    match verdict {
-        Verdict::Passed => 0.50,
-        Verdict::Failed => 0.35,
-        Verdict::Error => 0.15,
-        Verdict::Skipped | Verdict::Aborted => 0.0,
-    }
-}
-/// Probability of a sign if nothing is known.
-const SIGN_UNKNOWN: f64 = 0.05;
-/// Probability of a missing value if nothing is known.
-const MISSING_UNKNOWN: f64 = 0.1;
-/// Share of values that are uniformly distributed.
-const ANYWHERE: f64 = 0.1;
-/// Smallest standard deviation of a value, as a share of the range under all hypotheses.
-const LEAST_SPREAD: f64 = 0.01;
+use super::settings::LikelihoodSettings;
 
 /// The range of a measurement's values under all hypotheses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,13 +37,13 @@ impl Scale {
         }
     }
 
-    fn least_sd(&self) -> f64 {
+    /// Smallest standard deviation of a value, at least `share` of the range. The last two terms are no
+    /// parameters: they keep the density finite where all values are the same, and are far below what a
+    /// bench resolves.
+    fn least_sd(&self, share: f64) -> f64 {
         let range = self.high - self.low;
         let size = self.low.abs().max(self.high.abs());
-        self.spread
-            .max(LEAST_SPREAD * range)
-            .max(1e-6 * size)
-            .max(1e-9)
+        self.spread.max(share * range).max(1e-6 * size).max(1e-9)
     }
 }
 
@@ -75,11 +56,13 @@ pub struct Expected<'a> {
     pub runs: u32,
     /// See [`super::Settings::doubt_runs`].
     pub doubt: f64,
+    /// Probabilities where nothing was counted.
+    pub settings: &'a LikelihoodSettings,
 }
 
 impl Expected<'_> {
     fn runs(&self) -> f64 {
-        f64::from(self.runs.min(self.cell.runs())).min(MOST_RUNS)
+        f64::from(self.runs.min(self.cell.runs())).min(self.settings.most_runs)
     }
 
     fn smoothed(&self, share: f64, nothing_known: f64) -> f64 {
@@ -96,12 +79,13 @@ impl Expected<'_> {
 
     /// Probability of a result.
     pub fn result(&self, result: Verdict) -> f64 {
-        self.smoothed(self.share(self.cell.count(result)), nothing_known(result))
+        let share = self.share(self.cell.count(result));
+        self.smoothed(share, nothing_known(self.settings, result))
     }
 
     /// Probability of a sign.
     pub fn sign(&self, sign: &Sign) -> f64 {
-        self.smoothed(self.share(self.cell.count_sign(sign)), SIGN_UNKNOWN)
+        self.smoothed(self.share(self.cell.count_sign(sign)), self.settings.sign)
     }
 
     /// Probability of a signature: as counted, or, if never seen, the product of its parts.
@@ -124,26 +108,42 @@ impl Expected<'_> {
         self.result(signature.result) * showing * silent
     }
 
-    /// Probability density of a measured value, relative to the uniform one, with a share [`ANYWHERE`] of
-    /// uniform values.
+    /// Probability density of a measured value, relative to the uniform one, with a share of uniform
+    /// values. The range is extended by three times the smallest standard deviation at each end, so that it is
+    /// not zero where all values are the same.
     pub fn value(&self, name: &str, value: Option<f64>, scale: &Scale) -> f64 {
+        let LikelihoodSettings {
+            anywhere,
+            least_spread,
+            ..
+        } = *self.settings;
         let Some(values) = self.cell.values.get(name) else {
-            return ANYWHERE;
+            return anywhere;
         };
         let seen = f64::from(values.n + values.missing);
         let missing =
-            (f64::from(values.missing) + self.doubt * MISSING_UNKNOWN) / (seen + self.doubt);
+            (f64::from(values.missing) + self.doubt * self.settings.missing) / (seen + self.doubt);
         let Some(value) = value.filter(|value| value.is_finite()) else {
             return missing;
         };
         if values.n == 0 {
-            return (1.0 - missing) * ANYWHERE;
+            return (1.0 - missing) * anywhere;
         }
-        let least = scale.least_sd();
+        let least = scale.least_sd(least_spread);
         let sd = values.sd().hypot(least) * (1.0 + 1.0 / f64::from(values.n)).sqrt();
         let range = (scale.high - scale.low) + 6.0 * least;
         let near = range * student4((value - values.mean) / sd) / sd;
-        (1.0 - missing) * (ANYWHERE + (1.0 - ANYWHERE) * near)
+        (1.0 - missing) * (anywhere + (1.0 - anywhere) * near)
+    }
+}
+
+/// Probability of each verdict if nothing is known.
+const fn nothing_known(settings: &LikelihoodSettings, verdict: Verdict) -> f64 {
+    match verdict {
+        Verdict::Passed => settings.passed,
+        Verdict::Failed => settings.failed,
+        Verdict::Error => settings.error,
+        Verdict::Skipped | Verdict::Aborted => 0.0,
     }
 }
 
@@ -167,20 +167,25 @@ pub fn likelihood<'s>(
 
 /// The same if nothing is known.
 pub fn likelihood_of_anything<'s>(
+    settings: &LikelihoodSettings,
     step: &ObservedStep,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
-    let signs = SIGN_UNKNOWN.powi(step.signs.len() as i32);
+    let signs = settings.sign.powi(step.signs.len() as i32);
     let measured = step.values.iter().filter(|(name, _)| scale(name).is_some());
-    nothing_known(step.result) * signs * ANYWHERE.powi(measured.count() as i32)
+    let values = settings.anywhere.powi(measured.count() as i32);
+    nothing_known(settings, step.result) * signs * values
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+    use std::sync::LazyLock;
 
     use super::*;
     use crate::observation::CheckName;
+
+    static SETTINGS: LazyLock<LikelihoodSettings> = LazyLock::new(LikelihoodSettings::default);
 
     fn step(result: Verdict, value: Option<f64>) -> ObservedStep {
         ObservedStep {
@@ -206,6 +211,7 @@ mod tests {
             cell,
             runs: cell.runs(),
             doubt: 0.5,
+            settings: &SETTINGS,
         }
     }
 

@@ -8,7 +8,7 @@ use super::cell::Cell;
 use super::dictionary::{Column, Dictionary};
 use super::likelihood::{Expected, Scale, likelihood, likelihood_of_anything};
 use super::observation::ObservedStep;
-use super::settings::Settings;
+use super::settings::{LogSettings, Settings};
 
 /// Index of [`Hypothesis::NoFault`] in every model.
 pub const NO_FAULT: usize = 0;
@@ -137,6 +137,7 @@ impl<'a> Model<'a> {
                 Hypothesis::NoFault => f64::from(column.runs) * self.false_alarms,
                 _ => self.settings.doubt_runs,
             },
+            settings: &self.settings.likelihood,
         }
     }
 
@@ -149,7 +150,7 @@ impl<'a> Model<'a> {
         let settings = self.settings;
         let scale = |name: &str| self.scales.get(&place)?.get(name);
         let counted = |hypothesis| likelihood(self.expected(hypothesis, place), step, scale);
-        let anything = likelihood_of_anything(step, scale);
+        let anything = likelihood_of_anything(&settings.likelihood, step, scale);
         let healthy = counted(Hypothesis::NoFault);
         let like_healthy = |i: usize| self.is_like_healthy(self.hypotheses[i], place);
         let mut likelihoods = vec![healthy; self.hypotheses.len()];
@@ -208,20 +209,18 @@ impl<'a> Model<'a> {
         hypothesis: Hypothesis,
         signs: &std::collections::BTreeSet<super::Sign>,
     ) -> f64 {
-        /// Weight of a sign that did not show.
-        const SILENCE: f64 = 0.2;
-        /// Probability of a sign unrelated to the fault, as a log also holds the acts of testers. The same
-        /// under every hypothesis, however many runs it rests on.
-        const STRAY: f64 = 0.02;
-        /// Probability of each sign under a fault that is not in the dictionary.
-        const OF_UNKNOWN: f64 = 0.1;
+        let LogSettings {
+            silence,
+            stray,
+            of_unknown,
+        } = self.settings.log;
         if hypothesis == Hypothesis::Unknown {
-            return signs.len() as f64 * OF_UNKNOWN.ln();
+            return signs.len() as f64 * of_unknown.ln();
         }
         let column = self.column(hypothesis);
         let chance = |count: u32| {
             let share = f64::from(count) / f64::from(column.runs.max(1));
-            (STRAY + (1.0 - STRAY) * share).min(1.0 - STRAY)
+            (stray + (1.0 - stray) * share).min(1.0 - stray)
         };
         let known = |sign| column.signs.iter().find(|(s, _)| s == sign);
         let showing = signs
@@ -231,7 +230,7 @@ impl<'a> Model<'a> {
             .signs
             .iter()
             .filter(|(sign, _)| !signs.contains(sign))
-            .map(|(_, count)| SILENCE * (1.0 - chance(*count)).ln());
+            .map(|(_, count)| silence * (1.0 - chance(*count)).ln());
         showing.chain(silent).sum()
     }
 }
@@ -249,6 +248,9 @@ fn mixed(one: f64, other: f64, share: f64) -> f64 {
     (1.0 - share) * one + share * other
 }
 
+/// Share of checks that a healthy unit does not pass. Half a check is added to either outcome (the estimate
+/// with Jeffreys' prior), so that the share is neither 0 nor 1: the usual estimate from counts, not a
+/// parameter of the bench.
 fn false_alarms(dictionary: &Dictionary) -> f64 {
     let cells = dictionary.healthy.cells.values();
     let (wrong, all) = cells.fold((0, 0), |(wrong, all), cell| {

@@ -42,6 +42,67 @@ pub struct Settings {
     pub replaced_in_vain_factor: f64,
     /// How far back a unit's history counts, days.
     pub history_days: u32,
+    /// Probabilities where nothing was counted. Defaults if the file has no such table, as in the next two.
+    #[serde(default)]
+    pub likelihood: LikelihoodSettings,
+    /// Weights of the signs in a unit's own log.
+    #[serde(default)]
+    pub log: LogSettings,
+    /// What a conclusion says and shows.
+    #[serde(default)]
+    pub conclusion: ConclusionSettings,
+}
+
+/// Probabilities where nothing was counted, and how far counts and measured values are trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LikelihoodSettings {
+    /// Probability that a check passes if nothing is known. With the next two it makes 1, as a check that was
+    /// skipped or aborted is no evidence.
+    pub passed: f64,
+    /// Probability that it fails if nothing is known.
+    pub failed: f64,
+    /// Probability that it ends in an error if nothing is known.
+    pub error: f64,
+    /// Probability of a sign if nothing is known.
+    pub sign: f64,
+    /// Probability that a measured value is missing if nothing is known.
+    pub missing: f64,
+    /// Share of measured values that are uniformly distributed over the measurement's range.
+    pub anywhere: f64,
+    /// Smallest standard deviation of a measured value, as a share of the measurement's range.
+    pub least_spread: f64,
+    /// Greatest number of runs that count: more would pretend that all benches are alike.
+    pub most_runs: f64,
+}
+
+/// Weights of the signs in a unit's own log.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LogSettings {
+    /// Weight of a sign that did not show, beside 1 of a sign that did.
+    pub silence: f64,
+    /// Probability of a sign unrelated to the fault, as a log also holds the acts of testers. The same under
+    /// every hypothesis, however many runs it rests on.
+    pub stray: f64,
+    /// Probability of each sign under a fault that is not in the dictionary.
+    pub of_unknown: f64,
+}
+
+/// What a conclusion says and shows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ConclusionSettings {
+    /// Two faults are concluded at this probability of all pairs together.
+    pub two_faults_at: f64,
+    /// An unknown fault is concluded at this probability.
+    pub unknown_fault_at: f64,
+    /// Parts from this probability on are named when it cannot be told which has failed.
+    pub named_at: f64,
+    /// Candidates and pairs less likely than this are not shown, except for the first candidate.
+    pub least_shown: f64,
+    /// Greatest number of candidates shown.
+    pub most_shown: usize,
 }
 
 impl Settings {
@@ -50,6 +111,7 @@ impl Settings {
     /// # Errors
     /// The key, its value and its range.
     pub fn check(&self) -> Result<(), String> {
+        let (likelihood, log, conclusion) = (&self.likelihood, &self.log, &self.conclusion);
         let shares = [
             ("no_fault", self.no_fault),
             ("unknown_fault", self.unknown_fault),
@@ -62,6 +124,20 @@ impl Settings {
             ("new_hits_intermittent", self.new_hits_intermittent),
             ("unknown_hits", self.unknown_hits),
             ("weight_of_step", self.weight_of_step),
+            ("likelihood.passed", likelihood.passed),
+            ("likelihood.failed", likelihood.failed),
+            ("likelihood.error", likelihood.error),
+            ("likelihood.sign", likelihood.sign),
+            ("likelihood.missing", likelihood.missing),
+            ("likelihood.anywhere", likelihood.anywhere),
+            ("likelihood.least_spread", likelihood.least_spread),
+            ("log.silence", log.silence),
+            ("log.stray", log.stray),
+            ("log.of_unknown", log.of_unknown),
+            ("conclusion.two_faults_at", conclusion.two_faults_at),
+            ("conclusion.unknown_fault_at", conclusion.unknown_fault_at),
+            ("conclusion.named_at", conclusion.named_at),
+            ("conclusion.least_shown", conclusion.least_shown),
         ];
         for (key, value) in shares {
             if !(value > 0.0 && value < 1.0) {
@@ -76,7 +152,12 @@ impl Settings {
                 "doubt_same_part and doubt_anything leave nothing for a healthy check".into(),
             );
         }
+        if (likelihood.passed + likelihood.failed + likelihood.error - 1.0).abs() > 1e-9 {
+            return Err("passed, failed and error of likelihood do not make 1".into());
+        }
         let positive = [
+            ("likelihood.most_runs", likelihood.most_runs),
+            ("conclusion.most_shown", conclusion.most_shown as f64),
             ("least_gain_bits", self.least_gain_bits),
             ("doubt_runs", self.doubt_runs),
             ("doubt_runs_intermittent", self.doubt_runs_intermittent),
@@ -114,6 +195,46 @@ impl Default for Settings {
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,
             history_days: 90,
+            likelihood: LikelihoodSettings::default(),
+            log: LogSettings::default(),
+            conclusion: ConclusionSettings::default(),
+        }
+    }
+}
+
+impl Default for LikelihoodSettings {
+    fn default() -> Self {
+        Self {
+            passed: 0.50,
+            failed: 0.35,
+            error: 0.15,
+            sign: 0.05,
+            missing: 0.1,
+            anywhere: 0.1,
+            least_spread: 0.01,
+            most_runs: 50.0,
+        }
+    }
+}
+
+impl Default for LogSettings {
+    fn default() -> Self {
+        Self {
+            silence: 0.2,
+            stray: 0.02,
+            of_unknown: 0.1,
+        }
+    }
+}
+
+impl Default for ConclusionSettings {
+    fn default() -> Self {
+        Self {
+            two_faults_at: 0.5,
+            unknown_fault_at: 0.5,
+            named_at: 0.05,
+            least_shown: 0.005,
+            most_shown: 10,
         }
     }
 }

@@ -12,11 +12,7 @@ use super::next_check::NextCheck;
 use super::observation::Observation;
 use super::pairs::{Pair, pairs};
 use super::reasons::{Reasons, reasons};
-
-/// Candidates less likely than this are not shown, beyond the first.
-const LEAST_SHOWN: f64 = 0.005;
-/// Candidates shown at most.
-const MOST_SHOWN: usize = 10;
+use super::settings::ConclusionSettings;
 
 /// A fault mode that may be the one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,14 +100,17 @@ impl Diagnosis {
         };
         let weights = Weights::new(&belief, &pairs, single);
         let candidates = weights.candidates(&belief, seen);
-        let two = pairs.iter().map(|pair| pair.probability).sum::<f64>() >= 0.5;
+        let settings = &model.settings.conclusion;
+        let together: f64 = pairs.iter().map(|pair| pair.probability).sum();
+        let two = together >= settings.two_faults_at;
         let next_check = weights.next_check(&belief, seen, two);
         let (finding, conclusion) = weights.conclusion(model, seen, two, next_check.as_ref());
         let fault = |hypothesis: Hypothesis| match hypothesis {
             Hypothesis::Mode { mode, .. } => model.dictionary.modes[mode].name.id.clone(),
             _ => String::new(),
         };
-        let shown = pairs.iter().filter(|pair| pair.probability >= LEAST_SHOWN);
+        let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
+        let shown = pairs.iter().filter(is_shown);
         Self {
             candidates,
             next_check,
@@ -211,6 +210,11 @@ impl Weights {
 
     fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
         let names = &belief.model.dictionary.modes;
+        let ConclusionSettings {
+            least_shown,
+            most_shown,
+            ..
+        } = belief.model.settings.conclusion;
         let rank = |lru: &LruId| self.lrus.iter().position(|part| part.lru == *lru);
         let mut places: Vec<usize> = (0..names.len()).collect();
         places.sort_by(|a, b| {
@@ -220,12 +224,12 @@ impl Weights {
                 .then(self.modes[*b].total_cmp(&self.modes[*a]))
         });
         let likely =
-            |(shown, place): &(usize, usize)| *shown == 0 || self.modes[*place] >= LEAST_SHOWN;
+            |(shown, place): &(usize, usize)| *shown == 0 || self.modes[*place] >= least_shown;
         let places = places
             .into_iter()
             .enumerate()
             .filter(likely)
-            .take(MOST_SHOWN);
+            .take(most_shown);
         places
             .map(|(_, mode)| {
                 let column = self.levels[mode];
@@ -322,7 +326,7 @@ impl Weights {
                 ),
             );
         }
-        if self.unknown >= 0.5 {
+        if self.unknown >= settings.conclusion.unknown_fault_at {
             return (
                 Finding::UnknownFault,
                 format!(
@@ -334,7 +338,7 @@ impl Weights {
         let likely: Vec<_> = self
             .lrus
             .iter()
-            .filter(|part| part.probability >= 0.05)
+            .filter(|part| part.probability >= settings.conclusion.named_at)
             .map(|part| format!("{} ({})", part.lru, percent(part.probability)))
             .collect();
         (

@@ -65,3 +65,38 @@ pub fn settings(directory: &ScriptsDirectory) -> Result<Settings, Failure> {
     settings.check().map_err(wrong)?;
     Ok(settings)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHIPPED: &str = include_str!("../../../../scripts/diagnosis.toml");
+
+    #[test]
+    fn the_shipped_settings_are_the_defaults_and_a_file_without_tables_has_them() {
+        let flat = SHIPPED.split("[likelihood]").next().expect("a beginning");
+        for text in [SHIPPED, flat, &format!("{flat}[log]\nstray = 0.02\n")] {
+            let settings: Settings = toml::from_str(text).expect("settings");
+            assert_eq!(settings, Settings::default());
+            assert_eq!(settings.check(), Ok(()));
+        }
+    }
+
+    #[test]
+    fn a_setting_out_of_range_is_named_with_its_table() {
+        for (from, to, said) in [
+            ("stray = 0.02", "stray = 1.5", "log.stray = 1.5"),
+            (
+                "most_shown = 10",
+                "most_shown = 0",
+                "conclusion.most_shown = 0",
+            ),
+            ("failed = 0.35", "failed = 0.30", "do not make 1"),
+        ] {
+            let text = SHIPPED.replace(from, to);
+            let settings: Settings = toml::from_str(&text).expect("settings");
+            let wrong = settings.check().expect_err("out of range");
+            assert!(wrong.contains(said), "{wrong}");
+        }
+    }
+}
