@@ -1,0 +1,231 @@
+//! Faults, repairs and runs counted by month, and how often a fault was seen.
+
+use crate::common::{Place, Said, number, text};
+use crate::questions::within_a_day;
+use chrono::NaiveDate;
+use fault_db::{
+    FaultRecord, FaultState, Id, MeasurementRecord, RepairRecord, RunEnd, RunRecord, RunWriter,
+    StepRecord, Store, UnitRecord, Verdict,
+};
+use serde_json::Value;
+
+/// Noon of a day of 2025, UTC.
+fn noon_us(month: u32, day: u32) -> i64 {
+    let date = NaiveDate::from_ymd_opt(2025, month, day).expect("a day");
+    let noon = date.and_hms_opt(12, 0, 0).expect("noon");
+    noon.and_utc().timestamp_micros()
+}
+
+/// A run that measured something, and found a fault if there is one.
+fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
+    let record = RunRecord {
+        unit: UnitRecord {
+            serial: "U-1".into(),
+            kind: "ATC".into(),
+            config_name: "default".into(),
+            sw_versions: std::collections::BTreeMap::new(),
+        },
+        line: "line8".into(),
+        train: String::new(),
+        seed: 1,
+        operator: String::new(),
+        source: "sim".into(),
+        started_at_us: at_us,
+        app_version: "1".into(),
+        scripts_sha256: String::new(),
+        unit_config_sha256: String::new(),
+        injected: None,
+        owner: String::new(),
+        scripts: Vec::new(),
+    };
+    let mut writer = RunWriter::begin(store, &record).expect("begun");
+    let measured = MeasurementRecord {
+        name: "eb_reaction".into(),
+        value: Some(0.4),
+        unit: "s".into(),
+        low: None,
+        high: Some(0.5),
+        verdict: Verdict::Passed,
+    };
+    let step = StepRecord {
+        index: 0,
+        procedure: "atp/overspeed".into(),
+        name: "step".into(),
+        verdict: Verdict::Passed,
+        started_bench_us: 0,
+        bench_time_us: 1,
+        message: String::new(),
+        script_line: None,
+        measurements: vec![measured],
+    };
+    writer.step(step).expect("kept");
+    let id = fault.map(|lru| {
+        let record = FaultRecord {
+            code: 9000,
+            code_name: "check_failed".into(),
+            lru: lru.into(),
+            severity: "major".into(),
+            at_us,
+            bench_us: 0,
+            step_index: Some(0),
+            message: String::new(),
+            freeze: Vec::new(),
+        };
+        writer.fault(&record).expect("stored").fault
+    });
+    let verdict = match fault {
+        Some(_) => Verdict::Failed,
+        None => Verdict::Passed,
+    };
+    let end = RunEnd {
+        verdict,
+        finished_at_us: at_us,
+        bench_time_us: 1,
+        wall_time_us: 1,
+    };
+    writer.finish(&end).expect("finished");
+    id
+}
+
+/// The history of a place, to write to.
+fn store(place: &Place) -> Store {
+    let options = ptu_bench::clock::open_options();
+    Store::open(&place.path("history.db"), options).expect("a history")
+}
+
+/// The answer where local time is so (POSIX: `EST5` is five hours behind UTC).
+fn in_zone(place: &Place, zone: &str, arguments: &[&str]) -> Said {
+    let output = place.command(arguments).env("TZ", zone).output();
+    Said::from(output.expect("ptu starts")).exits(0)
+}
+
+/// Goal: what is done to a fault counts in the month it is done, after the last occurrence, too. Method: a unit
+/// is known from 15 February on, has its only fault on 5 March, is repaired on the 10th, and the fault is
+/// closed on 2 April.
+#[test]
+fn months_count_all_that_was_done_in_them() {
+    within_a_day(count_all_that_was_done_in_them);
+}
+
+fn count_all_that_was_done_in_them() {
+    let place = Place::new();
+    let history = store(&place);
+    record(&history, noon_us(2, 15), None);
+    let fault = record(&history, noon_us(3, 5), Some("eb_relay")).expect("a fault");
+    let repair = RepairRecord {
+        part: "eb_relay".into(),
+        serial_old: None,
+        serial_new: None,
+        note: String::new(),
+    };
+    history
+        .record_repair(fault, &repair, "kim", noon_us(3, 10))
+        .expect("repaired");
+    let act = |state, day| {
+        let at_us = noon_us(4, day);
+        history
+            .set_state(fault, state, "kim", "", at_us)
+            .expect("may")
+    };
+    act(FaultState::Verified, 1);
+    act(FaultState::Closed, 2);
+    drop(history);
+
+    let stats = |by: &str, more: &[&str]| -> Vec<Value> {
+        let arguments = [&["faults", "stats", "--json", "--by", by], more].concat();
+        let said = in_zone(&place, "UTC0", &arguments);
+        serde_json::from_str(&said.out).expect("a list")
+    };
+    let months = stats("month", &[]);
+    let counts: Vec<_> = months
+        .iter()
+        .take(4)
+        .map(|month| {
+            let counts = ["faults", "repairs", "closed"].map(|key| number(&month[key]));
+            (text(&month["key"]), counts)
+        })
+        .collect();
+    assert_eq!(
+        counts,
+        [
+            ("2025-02", [0.0, 0.0, 0.0]),
+            ("2025-03", [1.0, 1.0, 0.0]),
+            ("2025-04", [0.0, 0.0, 1.0]),
+            ("2025-05", [0.0, 0.0, 0.0]),
+        ]
+    );
+    let march = &months[1];
+    let last = in_zone(
+        &place,
+        "UTC0",
+        &["faults", "stats", "--by", "month", "--limit", "1"],
+    );
+    let earlier = format!("… {} earlier months; see --limit\n", months.len() - 1);
+    assert!(last.out.starts_with(&earlier), "{}", last.out);
+    let this = text(&months.last().expect("months")["key"]);
+    assert!(last.out.contains(&format!("\n{this} ")), "{}", last.out);
+    assert_eq!(number(&march["mtbf_days"]), 31.0, "the whole of March");
+    assert_eq!(number(&march["mttr_hours"]), 5.0 * 24.0);
+    let all = &stats("lru", &[])[0];
+    for key in ["faults", "repairs", "closed", "occurrences"] {
+        let sum: f64 = months.iter().map(|month| number(&month[key])).sum();
+        assert_eq!(sum, number(&all[key]), "{key}");
+    }
+
+    let same = |by: &str, span: &str| {
+        let mut rows = stats(by, &["--when", span]);
+        for row in &mut rows {
+            row["key"] = Value::Null;
+            row["name"] = Value::Null;
+        }
+        rows
+    };
+    for span in ["2025-02", "2025-03", "2025-03-08..2025-03-20", "2025-04"] {
+        assert_eq!(same("month", span), same("code", span), "{span}");
+    }
+    // No month is made up before the history or after today.
+    for span in ["2999-01", "1990-01", "2999-01..", "..1990"] {
+        assert!(stats("month", &["--when", span]).is_empty(), "{span}");
+    }
+    assert_eq!(stats("month", &["--when", "1800..2999"]), months);
+}
+
+#[test]
+fn a_history_without_faults_has_no_months_of_them() {
+    let place = Place::new();
+    let history = store(&place);
+    let by_month = ["faults", "stats", "--by", "month"];
+    let said = |why: &str| {
+        let said = place.ptu(&by_month).exits(0).out;
+        assert_eq!(said, "no faults recorded\n", "{why}");
+    };
+    said("empty");
+    record(&history, noon_us(2, 15), None);
+    said("a run that passed");
+}
+
+/// Goal: what is counted by days of UTC has months of UTC. Method: west of Greenwich, 1 March there begins on
+/// the last evening of February.
+#[test]
+fn months_of_a_fleet_are_named_as_they_are_counted() {
+    let place = Place::new();
+    record(&store(&place), noon_us(3, 1), None);
+    for zone in ["EST5", "UTC0", "NZST-12"] {
+        let said = in_zone(&place, zone, &["faults", "trend", "eb_reaction"]).out;
+        assert!(
+            said.contains("2025-03") && !said.contains("2025-02"),
+            "{zone}: {said}"
+        );
+    }
+}
+
+#[test]
+fn a_fault_is_said_to_be_seen_once_or_so_many_times() {
+    let place = Place::new();
+    let history = store(&place);
+    for (day, said) in [(5, "  seen once, 2025-03-0"), (6, "  seen 2 times, ")] {
+        let fault = record(&history, noon_us(3, day), Some("eb_relay")).expect("a fault");
+        let shown = place.ptu(&["faults", "show", &fault.to_string()]).exits(0);
+        assert!(shown.out.contains(said), "{}", shown.out);
+    }
+}
