@@ -13,18 +13,19 @@
 use std::path::Path;
 use std::time::Instant;
 
-use fault_db::{FaultFilter, FaultState, StatKey, StatQuery, Store, StoreError, TrendQuery};
+use Span::{Month, Whole, Year};
+use StatKey::{Code, Line, Lru, Unit};
+use fault_db::{
+    FaultFilter, FaultState, FaultSummary, StatKey, StatQuery, Store, StoreError, TrendQuery,
+};
 
 const DAY_US: i64 = 86_400_000_000;
 const YEAR_US: i64 = 365 * DAY_US;
 const TIMES: usize = 200;
 const MEASUREMENT: &str = "eb_reaction";
 
-/// What is asked, and how.
-struct Question {
-    name: &'static str,
-    ask: fn(&Store, &Asked) -> Result<usize, StoreError>,
-}
+/// Asks a question; returns the number of rows.
+type Ask = Box<dyn Fn(&Store, &Asked) -> Result<usize, StoreError>>;
 
 /// What differs from one time to the next.
 struct Asked {
@@ -33,280 +34,139 @@ struct Asked {
     now_us: i64,
 }
 
-const QUESTIONS: [Question; 26] = [
-    question("unit: last 50 faults", |store, asked| {
-        list(
-            store,
-            FaultFilter {
-                unit: Some(asked.unit.clone()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("unit: one fault whole", |store, asked| {
-        let filter = FaultFilter {
-            unit: Some(asked.unit.clone()),
-            limit: Some(1),
-            ..FaultFilter::default()
-        };
-        let fault = store.faults(&filter)?;
-        Ok(fault
-            .first()
-            .map(|fault| store.fault(fault.id))
-            .transpose()?
-            .map_or(0, |_| 1))
-    }),
-    question("unit: a year by code", |store, asked| {
-        stats(store, asked, StatKey::Code, Some(&asked.unit))
-    }),
-    question("unit: a year by part", |store, asked| {
-        stats(store, asked, StatKey::Lru, Some(&asked.unit))
-    }),
-    question("unit: eb_reaction", |store, asked| {
-        Ok(store
-            .trend(&TrendQuery {
-                unit: Some(asked.unit.clone()),
-                ..measurement()
-            })?
-            .len())
-    }),
-    question("fleet: a year by code", |store, asked| {
-        stats(store, asked, StatKey::Code, None)
-    }),
-    question("fleet: a year by part", |store, asked| {
-        stats(store, asked, StatKey::Lru, None)
-    }),
-    question("fleet: a year by unit", |store, asked| {
-        stats(store, asked, StatKey::Unit, None)
-    }),
-    question("fleet: a year by line", |store, asked| {
-        stats(store, asked, StatKey::Line, None)
-    }),
-    question("fleet: a month by code", |store, asked| {
-        let asked = Asked {
-            since_us: asked.since_us,
-            now_us: asked.since_us + 30 * DAY_US,
-            unit: String::new(),
-        };
-        stats(store, &asked, StatKey::Code, None)
-    }),
-    question("fleet: eb_reaction in a year by day", |store, asked| {
-        Ok(store.trend_by_day(&in_year(asked))?.len())
-    }),
-    question("fleet: eb_reaction in a year by unit", |store, asked| {
-        Ok(store.trend_by_unit(&in_year(asked))?.len())
-    }),
-    question("fleet: last 50 open faults", |store, _| {
-        list(
-            store,
-            FaultFilter {
-                states: vec![FaultState::Open],
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: last 50 with 교체 in a note", |store, _| {
-        list(
-            store,
-            FaultFilter {
-                note: Some("교체".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: a year, critical, by part", |store, asked| {
-        filtered(
-            store,
-            asked,
-            StatKey::Lru,
-            FaultFilter {
-                severity: Some("critical".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: a year, critical, by unit", |store, asked| {
-        filtered(
-            store,
-            asked,
-            StatKey::Unit,
-            FaultFilter {
-                severity: Some("critical".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: a year, open, by code", |store, asked| {
-        filtered(
-            store,
-            asked,
-            StatKey::Code,
-            FaultFilter {
-                states: vec![FaultState::Open],
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: a year, closed, by line", |store, asked| {
-        filtered(
-            store,
-            asked,
-            StatKey::Line,
-            FaultFilter {
-                states: vec![FaultState::Closed],
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: critical by part", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Lru,
-            FaultFilter {
-                severity: Some("critical".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: minor by unit", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Unit,
-            FaultFilter {
-                severity: Some("minor".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: open by code", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Code,
-            FaultFilter {
-                states: vec![FaultState::Open],
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: closed by line", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Line,
-            FaultFilter {
-                states: vec![FaultState::Closed],
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: atp/overspeed by code", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Code,
-            FaultFilter {
-                procedure: Some("atp/overspeed".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: eb_relay by unit", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Unit,
-            FaultFilter {
-                lru: Some("eb_relay".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question("fleet: 교체 in a note, by part", |store, asked| {
-        filtered_whole(
-            store,
-            asked,
-            StatKey::Lru,
-            FaultFilter {
-                note: Some("교체".into()),
-                ..FaultFilter::default()
-            },
-        )
-    }),
-    question(
+/// How much of the history is counted.
+#[derive(Clone, Copy)]
+enum Span {
+    Month,
+    Year,
+    Whole,
+}
+
+/// Changes the filter that selects what is counted.
+type Select = fn(&mut FaultFilter, &Asked);
+
+const UNIT: Select = |filter, asked| filter.unit = Some(asked.unit.clone());
+const ALL: Select = |_, _| {};
+const CRITICAL: Select = |filter, _| filter.severity = Some("critical".into());
+const MINOR: Select = |filter, _| filter.severity = Some("minor".into());
+const OPEN: Select = |filter, _| filter.states = vec![FaultState::Open];
+const CLOSED: Select = |filter, _| filter.states = vec![FaultState::Closed];
+const OVERSPEED: Select = |filter, _| filter.procedure = Some("atp/overspeed".into());
+const RELAY: Select = |filter, _| filter.lru = Some("eb_relay".into());
+const REPLACED: Select = |filter, _| filter.note = Some("교체".into());
+const CLOSED_MINOR_ON_A_LINE: Select = |filter, asked| {
+    CLOSED(filter, asked);
+    MINOR(filter, asked);
+    filter.line = Some("line5".into());
+};
+
+/// Questions for counts: name, span, key and filter.
+const COUNTS: [(&str, Span, StatKey, Select); 19] = [
+    ("unit: a year by code", Year, Code, UNIT),
+    ("unit: a year by part", Year, Lru, UNIT),
+    ("fleet: a year by code", Year, Code, ALL),
+    ("fleet: a year by part", Year, Lru, ALL),
+    ("fleet: a year by unit", Year, Unit, ALL),
+    ("fleet: a year by line", Year, Line, ALL),
+    ("fleet: a month by code", Month, Code, ALL),
+    ("fleet: a year, critical, by part", Year, Lru, CRITICAL),
+    ("fleet: a year, critical, by unit", Year, Unit, CRITICAL),
+    ("fleet: a year, open, by code", Year, Code, OPEN),
+    ("fleet: a year, closed, by line", Year, Line, CLOSED),
+    ("fleet: critical by part", Whole, Lru, CRITICAL),
+    ("fleet: minor by unit", Whole, Unit, MINOR),
+    ("fleet: open by code", Whole, Code, OPEN),
+    ("fleet: closed by line", Whole, Line, CLOSED),
+    ("fleet: atp/overspeed by code", Whole, Code, OVERSPEED),
+    ("fleet: eb_relay by unit", Whole, Unit, RELAY),
+    ("fleet: 교체 in a note, by part", Whole, Lru, REPLACED),
+    (
         "fleet: closed, minor, on a line, by part",
-        |store, asked| {
-            filtered_whole(
-                store,
-                asked,
-                StatKey::Lru,
-                FaultFilter {
-                    states: vec![FaultState::Closed],
-                    severity: Some("minor".into()),
-                    line: Some("line5".into()),
-                    ..FaultFilter::default()
-                },
-            )
-        },
+        Whole,
+        Lru,
+        CLOSED_MINOR_ON_A_LINE,
     ),
 ];
 
-const fn question(
-    name: &'static str,
-    ask: fn(&Store, &Asked) -> Result<usize, StoreError>,
-) -> Question {
-    Question { name, ask }
+/// All questions, by name.
+fn questions() -> Vec<(&'static str, Ask)> {
+    let lists = [
+        ("unit: last 50 faults", UNIT),
+        ("fleet: last 50 open faults", OPEN),
+        ("fleet: last 50 with 교체 in a note", REPLACED),
+    ];
+    let lists = lists.map(|(name, select)| {
+        let ask: Ask = Box::new(move |store, asked| Ok(list(store, asked, select, 50)?.len()));
+        (name, ask)
+    });
+    let others: [(_, Ask); 4] = [
+        (
+            "unit: one fault whole",
+            Box::new(|store, asked| {
+                let found = list(store, asked, UNIT, 1)?;
+                let whole = found.first().map(|fault| store.fault(fault.id));
+                Ok(whole.transpose()?.map_or(0, |_| 1))
+            }),
+        ),
+        (
+            "unit: eb_reaction",
+            Box::new(|store, asked| {
+                let unit = Some(asked.unit.clone());
+                let query = TrendQuery {
+                    unit,
+                    ..measurement()
+                };
+                Ok(store.trend(&query)?.len())
+            }),
+        ),
+        (
+            "fleet: eb_reaction in a year by day",
+            Box::new(|store, asked| Ok(store.trend_by_day(&in_year(asked))?.len())),
+        ),
+        (
+            "fleet: eb_reaction in a year by unit",
+            Box::new(|store, asked| Ok(store.trend_by_unit(&in_year(asked))?.len())),
+        ),
+    ];
+    let counts = COUNTS.map(|(name, span, by, select)| {
+        let ask: Ask = Box::new(move |store, asked| count(store, asked, span, by, select));
+        (name, ask)
+    });
+    lists.into_iter().chain(others).chain(counts).collect()
 }
 
-fn list(store: &Store, filter: FaultFilter) -> Result<usize, StoreError> {
-    let limit = filter.limit.or(Some(50));
-    Ok(store.faults(&FaultFilter { limit, ..filter })?.len())
-}
-
-fn stats(
+fn list(
     store: &Store,
     asked: &Asked,
-    by: StatKey,
-    unit: Option<&String>,
-) -> Result<usize, StoreError> {
-    let query = StatQuery {
-        by,
-        filter: FaultFilter {
-            unit: unit.cloned(),
-            since_us: Some(asked.since_us),
-            until_us: Some((asked.since_us + YEAR_US).min(asked.now_us)),
-            ..FaultFilter::default()
-        },
-        now_us: asked.now_us,
-        back_within_days: 30,
+    select: Select,
+    limit: u32,
+) -> Result<Vec<FaultSummary>, StoreError> {
+    let mut filter = FaultFilter {
+        limit: Some(limit),
+        ..FaultFilter::default()
     };
-    Ok(store.stats(&query)?.len())
+    select(&mut filter, asked);
+    store.faults(&filter)
 }
 
-/// Counts with a filter, in a year.
-fn filtered(
+fn count(
     store: &Store,
     asked: &Asked,
+    span: Span,
     by: StatKey,
-    filter: FaultFilter,
+    select: Select,
 ) -> Result<usize, StoreError> {
-    let filter = FaultFilter {
-        since_us: Some(asked.since_us),
-        until_us: Some((asked.since_us + YEAR_US).min(asked.now_us)),
-        ..filter
+    let until_us = match span {
+        Month => Some(asked.since_us + 30 * DAY_US),
+        Year => Some((asked.since_us + YEAR_US).min(asked.now_us)),
+        Whole => None,
     };
-    filtered_whole(store, asked, by, filter)
-}
-
-/// Counts with a filter, in the whole history.
-fn filtered_whole(
-    store: &Store,
-    asked: &Asked,
-    by: StatKey,
-    filter: FaultFilter,
-) -> Result<usize, StoreError> {
+    let mut filter = FaultFilter {
+        since_us: until_us.map(|_| asked.since_us),
+        until_us,
+        ..FaultFilter::default()
+    };
+    select(&mut filter, asked);
     let query = StatQuery {
         by,
         filter,
@@ -362,7 +222,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     let mut results = Vec::new();
-    for question in &QUESTIONS {
+    for (name, ask) in questions() {
         let mut rows = 0;
         let mut times: Vec<f64> = (0..TIMES)
             .map(|time| {
@@ -375,7 +235,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     now_us: last_us,
                 };
                 let began = Instant::now();
-                rows = (question.ask)(&store, &asked)?;
+                rows = ask(&store, &asked)?;
                 Ok(began.elapsed().as_secs_f64() * 1e3)
             })
             .collect::<Result<_, StoreError>>()?;
@@ -383,11 +243,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (p50, p99) = (times[TIMES / 2], times[TIMES * 99 / 100]);
         if as_json {
             results.push(format!(
-                "{{\"question\": \"{}\", \"p50_ms\": {p50:.4}, \"p99_ms\": {p99:.4}}}",
-                question.name
+                "{{\"question\": \"{name}\", \"p50_ms\": {p50:.4}, \"p99_ms\": {p99:.4}}}"
             ));
         } else {
-            println!("{:40} {p50:9.3} {p99:9.3} {rows:7}", question.name);
+            println!("{name:40} {p50:9.3} {p99:9.3} {rows:7}");
         }
     }
     if as_json {
