@@ -14,7 +14,7 @@
 //! * [`procedure`]: check procedures built by Starlark at load, checked, and run by a polled state
 //!   machine.
 //!
-//! No clock, no thread, no port: the edge steps everything.
+//! No clock, no thread, no port: the caller steps everything.
 
 pub mod bench_scatter;
 pub mod conditions;

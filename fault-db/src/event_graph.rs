@@ -6,7 +6,7 @@
 //! the most work stands until a later event names all heads as parents. `opened` and `recurred` are
 //! observations, not decisions: `recurred` yields to an acknowledgement, `opened` to every other event.
 //!
-//! The columns keep their first names: `follows` holds the parents, `turn` the Lamport number, `seen` the
+//! The columns keep their old names: `follows` holds the parents, `turn` the Lamport number, `seen` the
 //! occurrences known, `disputed` whether the fault is in conflict.
 
 use std::collections::BTreeSet;

@@ -1,4 +1,4 @@
-//! Spreads bytes that arrived while the program did not run over the scans that it makes up afterwards.
+//! Distributes bytes that arrived while the program was held up among the scans that it makes up afterwards.
 //!
 //! If all of them were read in the first of those scans, frames would be ahead of the program's own time,
 //! every later frame would seem late, and a partner that has sent all the while would seem silent.

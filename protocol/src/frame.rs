@@ -2,7 +2,7 @@
 //!
 //! A frame is `7E`, the stuffed body, `7E`. The body is version, channel, source, destination,
 //! sequence number, time stamp, payload and FCS. Inside the body `7E` is sent as `7D 5E` and `7D`
-//! as `7D 5D`; nothing else is escaped, so a frame has exactly one spelling.
+//! as `7D 5D`; nothing else is escaped, so each frame has exactly one encoding.
 
 use alloc::vec::Vec;
 

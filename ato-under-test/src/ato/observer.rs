@@ -1,7 +1,7 @@
 //! Observer: predicts speed and distance of the train for the time at which the effort of this cycle takes
 //! effect.
 //!
-//! The printed laws act on the present speed of a train whose effort is there at once. A measured speed
+//! The papers' control laws act on the present speed of a train whose effort is there at once. A measured speed
 //! is the mean of a window that lies in the past, and effort follows its command after a dead time and
 //! with a lag, slower for air than for inverters. The observer runs the train model over that time with
 //! the efforts already asked for, and looks ahead by the lag: of a first-order lag, `v + lag·a` follows

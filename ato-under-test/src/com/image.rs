@@ -1,4 +1,4 @@
-//! Input image: the last I/O frame, and whether the harness still sends.
+//! Input image: the last I/O frame, and whether I/O frames still arrive.
 
 use protocol::message::IoInput;
 use protocol::{Duration, Instant};

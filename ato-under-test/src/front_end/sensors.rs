@@ -8,7 +8,7 @@ use crate::signals::Pulses;
 #[derive(Debug, Default)]
 pub struct PulseSensor {
     last_count: Option<u16>,
-    /// Share of a pulse owed by a sensor that gives too many or too few.
+    /// Fraction of a pulse not emitted yet, for a sensor that gives too many or too few.
     owed: f64,
     last: Pulses,
     turned: u32,

@@ -1,8 +1,8 @@
 //! Plausibility of a marker: accepted within a window around its place, whose width is some metres and what
 //! the wheels may have measured wrong since the last fix. A pulse outside its window corrects nothing. Two
 //! such pulses in order, as far apart as their places, are accepted together: then the position was wrong and
-//! not the markers. One alone that comes early, by no more than uncalibrated wheels of a wrong diameter
-//! explain, tells how much further the train may be ([`further_m`]).
+//! not the markers. If one pulse alone comes early, by no more than
+//! uncalibrated wheels of a wrong diameter explain, the train may be that much further ([`further_m`]).
 
 use protocol::config::MarkerConfig;
 use protocol::line::Section;

@@ -2,7 +2,8 @@
 //! the rig. Sans-IO: stepped once a scan after [`crate::rig::Bench::tick`], it gives the unit what
 //! a wayside and a cab would, watches the train, and ends with an [`Outcome`].
 //!
-//! It knows of the unit what frames say. TrueMotion (position, speed, acceleration) is the rig's own.
+//! It knows of the unit what frames say. The train's true motion (position, speed, acceleration) is known to
+//! the rig alone.
 //!
 //! * `plan`: what is run; `watch`: what is looked at each scan;
 //! * `row`, `recording`: what is recorded each cycle;

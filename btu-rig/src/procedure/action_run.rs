@@ -4,7 +4,7 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::Driver;
-use super::condition::{Captured, TrueMotion};
+use super::condition::{Answer, Captured};
 use super::describe::bits_seen;
 use super::plan::Action;
 use super::report::RunEvent;
@@ -170,12 +170,12 @@ impl ActionRun {
 }
 
 /// Whether a wait for a condition is over, or how to make the problem it ended with.
-fn until(truth: TrueMotion, late: bool) -> Result<bool, fn(String) -> Problem> {
+fn until(truth: Answer, late: bool) -> Result<bool, fn(String) -> Problem> {
     match truth {
-        TrueMotion::Yes => Ok(true),
-        TrueMotion::No if late => Err(Problem::Failed),
-        TrueMotion::NoData(_) if late => Err(Problem::NoData),
-        TrueMotion::No | TrueMotion::NoData(_) => Ok(false),
+        Answer::Yes => Ok(true),
+        Answer::No if late => Err(Problem::Failed),
+        Answer::NoData(_) if late => Err(Problem::NoData),
+        Answer::No | Answer::NoData(_) => Ok(false),
     }
 }
 

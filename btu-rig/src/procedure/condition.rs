@@ -93,7 +93,7 @@ impl std::fmt::Display for MissingData {
 
 /// Answer to a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TrueMotion {
+pub(super) enum Answer {
     Yes,
     No,
     /// It cannot be told.
@@ -117,15 +117,15 @@ impl Operand {
 
 impl Condition {
     /// Whether it holds in `sample`.
-    pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> TrueMotion {
+    pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> Answer {
         match self {
             Self::Compare {
                 signal,
                 comparison,
                 operand,
             } => compare(*signal, *comparison, operand, sample, captured),
-            Self::All(parts) => fold(parts, sample, captured, TrueMotion::Yes, TrueMotion::No),
-            Self::Any(parts) => fold(parts, sample, captured, TrueMotion::No, TrueMotion::Yes),
+            Self::All(parts) => fold(parts, sample, captured, Answer::Yes, Answer::No),
+            Self::Any(parts) => fold(parts, sample, captured, Answer::No, Answer::Yes),
         }
     }
 
@@ -160,14 +160,14 @@ fn fold(
     parts: &[Condition],
     sample: &Sample,
     captured: &Captured,
-    otherwise: TrueMotion,
-    decisive: TrueMotion,
-) -> TrueMotion {
+    otherwise: Answer,
+    decisive: Answer,
+) -> Answer {
     let mut result = otherwise;
     for part in parts {
         match part.truth(sample, captured) {
             truth if truth == decisive => return decisive,
-            missing_data @ TrueMotion::NoData(_) => result = missing_data,
+            missing_data @ Answer::NoData(_) => result = missing_data,
             _ => {}
         }
     }
@@ -182,13 +182,13 @@ fn compare(
     operand: &Operand,
     sample: &Sample,
     captured: &Captured,
-) -> TrueMotion {
+) -> Answer {
     let Some(found) = sample.get(signal).filter(|v| v.is_finite()) else {
-        return TrueMotion::NoData(MissingData::Signal(signal));
+        return Answer::NoData(MissingData::Signal(signal));
     };
     let wanted = match operand.value(captured) {
         Ok(wanted) => wanted,
-        Err(missing_data) => return TrueMotion::NoData(missing_data),
+        Err(missing_data) => return Answer::NoData(missing_data),
     };
     let lsb = match signal.definition().kind {
         Kind::Number { lsb } => lsb,
@@ -207,11 +207,7 @@ fn compare(
         Comparison::Has => bits(found) & bits(wanted) == bits(wanted),
         Comparison::Lacks => bits(found) & bits(wanted) == 0,
     };
-    if holds {
-        TrueMotion::Yes
-    } else {
-        TrueMotion::No
-    }
+    if holds { Answer::Yes } else { Answer::No }
 }
 
 /// A value as the set of bits it stands for.
@@ -252,14 +248,11 @@ mod tests {
         for (comparison, expected) in table {
             for (value, expected) in [54.0, wire_55, 56.0].into_iter().zip(expected) {
                 let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
-                assert_eq!(truth == TrueMotion::Yes, expected, "{comparison:?} {value}");
+                assert_eq!(truth == Answer::Yes, expected, "{comparison:?} {value}");
             }
             for value in [f64::NAN, f64::INFINITY] {
                 let truth = is(Signal::Limit, comparison, 55.0).truth(&sample(value), &[]);
-                assert_eq!(
-                    truth,
-                    TrueMotion::NoData(MissingData::Signal(Signal::Limit))
-                );
+                assert_eq!(truth, Answer::NoData(MissingData::Signal(Signal::Limit)));
             }
         }
     }
@@ -279,12 +272,8 @@ mod tests {
             for (comparison, expected) in [(Comparison::Has, has), (Comparison::Lacks, lacks)] {
                 let condition = is(Signal::Lamps, comparison, f64::from(wanted));
                 let truth = condition.truth(&sample, &[]);
-                assert_eq!(
-                    truth == TrueMotion::Yes,
-                    expected,
-                    "{found:b} {condition:?}"
-                );
-                let missing_data = TrueMotion::NoData(MissingData::Signal(Signal::Lamps));
+                assert_eq!(truth == Answer::Yes, expected, "{found:b} {condition:?}");
+                let missing_data = Answer::NoData(MissingData::Signal(Signal::Lamps));
                 assert_eq!(condition.truth(&Sample::default(), &[]), missing_data);
             }
         }
@@ -295,7 +284,7 @@ mod tests {
         let known = is(Signal::Limit, Comparison::Above, 50.0);
         let known_false = is(Signal::Limit, Comparison::Below, 50.0);
         let missing = is(Signal::Eb, Comparison::Equal, 1.0);
-        let missing_data = TrueMotion::NoData(MissingData::Signal(Signal::Eb));
+        let missing_data = Answer::NoData(MissingData::Signal(Signal::Eb));
         let cases = [
             (
                 Condition::All(vec![known.clone(), missing.clone()]),
@@ -303,12 +292,9 @@ mod tests {
             ),
             (
                 Condition::All(vec![missing.clone(), known_false.clone()]),
-                TrueMotion::No,
+                Answer::No,
             ),
-            (
-                Condition::Any(vec![missing.clone(), known]),
-                TrueMotion::Yes,
-            ),
+            (Condition::Any(vec![missing.clone(), known]), Answer::Yes),
             (Condition::Any(vec![known_false, missing]), missing_data),
         ];
         for (condition, expected) in cases {
@@ -331,18 +317,12 @@ mod tests {
                 offset: 1.0,
             },
         };
-        assert_eq!(
-            condition.truth(&sample(55.0), &[Some(53.0)]),
-            TrueMotion::Yes
-        );
-        assert_eq!(
-            condition.truth(&sample(55.0), &[Some(54.5)]),
-            TrueMotion::No
-        );
+        assert_eq!(condition.truth(&sample(55.0), &[Some(53.0)]), Answer::Yes);
+        assert_eq!(condition.truth(&sample(55.0), &[Some(54.5)]), Answer::No);
         for captured in [&[None][..], &[Some(f64::NAN)], &[]] {
             assert_eq!(
                 condition.truth(&sample(55.0), captured),
-                TrueMotion::NoData(MissingData::Measurement)
+                Answer::NoData(MissingData::Measurement)
             );
         }
     }

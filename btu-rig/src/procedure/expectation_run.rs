@@ -4,7 +4,7 @@ use protocol::Instant;
 
 use super::EventSource;
 use super::action_run::{Problem, Scan};
-use super::condition::{MissingData, TrueMotion};
+use super::condition::{Answer, MissingData};
 use super::describe::bits_seen;
 use super::event_set::EventSet;
 use super::evidence::LogState;
@@ -36,14 +36,14 @@ impl ExpectationRun {
             Expectation::Becomes { condition, within } => {
                 let Some(waited) = since_end else { return };
                 match condition.truth(scan.sample, scan.captured) {
-                    TrueMotion::Yes => self.decided = true,
+                    Answer::Yes => self.decided = true,
                     truth if waited >= *within => {
                         self.fail(truth, || {
                             let seen = bits_seen(condition, scan.sample);
                             format!("{condition} did not come within {within}{seen}")
                         });
                     }
-                    TrueMotion::No | TrueMotion::NoData(_) => {}
+                    Answer::No | Answer::NoData(_) => {}
                 }
             }
             Expectation::Holds {
@@ -52,14 +52,14 @@ impl ExpectationRun {
             } => {
                 let Some(waited) = since_end else { return };
                 match condition.truth(scan.sample, scan.captured) {
-                    TrueMotion::Yes => self.decided = waited >= *duration,
+                    Answer::Yes => self.decided = waited >= *duration,
                     truth => self.fail(truth, || format!("{condition} held only for {waited}")),
                 }
             }
             Expectation::Never { condition } => match condition.truth(scan.sample, scan.captured) {
-                truth @ TrueMotion::Yes => self.fail(truth, || format!("{condition} came true")),
-                TrueMotion::NoData(missing_data) => self.missing_data = Some(missing_data),
-                TrueMotion::No => {}
+                truth @ Answer::Yes => self.fail(truth, || format!("{condition} came true")),
+                Answer::NoData(missing_data) => self.missing_data = Some(missing_data),
+                Answer::No => {}
             },
             Expectation::Logs { event, within } => {
                 let who = EventSource::of(*event).who();
@@ -70,7 +70,7 @@ impl ExpectationRun {
                     // It may be among those that are not read yet.
                     && log == LogState::Read
                 {
-                    self.fail(TrueMotion::No, || {
+                    self.fail(Answer::No, || {
                         format!("{who} did not log {name} within {within}")
                     });
                 }
@@ -79,7 +79,7 @@ impl ExpectationRun {
                 let who = EventSource::of(*event).who();
                 let name = event.definition().name;
                 if logged.contains(*event) {
-                    self.fail(TrueMotion::Yes, || format!("{who} logged {name}"));
+                    self.fail(Answer::Yes, || format!("{who} logged {name}"));
                 }
             }
         }
@@ -106,13 +106,11 @@ impl ExpectationRun {
         }
     }
 
-    fn fail(&mut self, truth: TrueMotion, text: impl FnOnce() -> String) {
+    fn fail(&mut self, truth: Answer, text: impl FnOnce() -> String) {
         self.decided = true;
         self.problem = Some(match truth {
-            TrueMotion::NoData(missing_data) => {
-                Problem::NoData(format!("{}: {missing_data}", text()))
-            }
-            TrueMotion::Yes | TrueMotion::No => Problem::Failed(text()),
+            Answer::NoData(missing_data) => Problem::NoData(format!("{}: {missing_data}", text())),
+            Answer::Yes | Answer::No => Problem::Failed(text()),
         });
     }
 }

@@ -5,7 +5,7 @@ use protocol::signal::Signal;
 
 use super::Verdict;
 use super::action_run::Scan;
-use super::condition::{Captured, MissingData, TrueMotion};
+use super::condition::{Answer, Captured, MissingData};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::Measurement;
@@ -25,12 +25,12 @@ impl Edge {
         missing_data: &mut Option<MissingData>,
     ) -> bool {
         match condition.truth(scan.sample, scan.captured) {
-            TrueMotion::Yes => self.was_false,
-            TrueMotion::No => {
+            Answer::Yes => self.was_false,
+            Answer::No => {
                 self.was_false = true;
                 false
             }
-            TrueMotion::NoData(missing) => {
+            Answer::NoData(missing) => {
                 *missing_data = Some(missing);
                 false
             }
@@ -56,7 +56,7 @@ pub(super) struct MeasurementRun {
 }
 
 impl MeasurementRun {
-    /// Looks at one scan; `actions_end` as in [`super::expectation_run::Watch::look`].
+    /// Looks at one scan; `actions_end` as in [`super::expectation_run::ExpectationRun::look`].
     pub(super) fn look(
         &mut self,
         measure: &Measure,

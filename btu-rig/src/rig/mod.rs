@@ -198,8 +198,8 @@ impl Rig {
         rig
     }
 
-    /// Faults of the train and its wiring, each from its time after `power_at`; those of the unit are
-    /// its own affair.
+    /// Faults of the train and its wiring, each from its time after `power_at`; faults of
+    /// the unit are injected in the unit.
     pub fn inject(&mut self, modes: &[FaultMode], power_at: Instant) {
         self.injected.begin(modes, power_at);
     }

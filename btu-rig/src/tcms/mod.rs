@@ -6,7 +6,7 @@
 //! `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`equipment_monitor`,
 //! `not_released`), the full service brake (`full_service_brake`), the holding brake
 //! (`holding_brake`), what cuts powering (`causes`), the value (`driving_control`, `controller`), the
-//! effort of each car (`effort`: `powering`, `braking`, `consist`), and what to tell of it (`view`,
+//! effort of each car (`effort`: `powering`, `braking`, `consist`), and what is reported (`view`,
 //! `feedback`, `report`).
 
 mod atc_link;

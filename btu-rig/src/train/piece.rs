@@ -1,4 +1,4 @@
-//! A piece of motion at constant acceleration.
+//! A segment of motion at constant acceleration.
 
 /// Constant acceleration for a part of a scan; the sign of speed never changes within it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

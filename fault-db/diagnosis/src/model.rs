@@ -186,7 +186,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    fn doubt(&self, hypothesis: Hypothesis) -> Reliability {
+    fn doubt(&self, hypothesis: Hypothesis) -> Doubt {
         let settings = self.settings;
         let (runs, new_hits) = if self.is_intermittent(hypothesis) {
             (
@@ -196,7 +196,7 @@ impl<'a> Model<'a> {
         } else {
             (settings.doubt_runs, settings.new_hits)
         };
-        Reliability {
+        Doubt {
             otherwise: runs / (f64::from(self.column(hypothesis).runs) + runs),
             new_hits,
         }
@@ -235,8 +235,8 @@ impl<'a> Model<'a> {
     }
 }
 
-/// How reliably a mode behaves as counted.
-struct Reliability {
+/// How far a mode may behave otherwise than counted.
+struct Doubt {
     /// Share of runs in which an affected check behaves otherwise.
     otherwise: f64,
     /// Share of unaffected checks that it affects nevertheless.

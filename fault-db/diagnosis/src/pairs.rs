@@ -1,7 +1,7 @@
 //! Double faults, considered when no single fault explains the results.
 //!
-//! A check passes under two faults only if it passes under each, and fails if either makes it fail. So the
-//! likelihood of a passed check is the lesser of the two, of any other result the greater.
+//! A check passes under two faults only if it passes under each, and fails if either makes it fail. So a
+//! passed check has the lesser of the two likelihoods; any other result has the greater.
 
 use protocol::Verdict;
 

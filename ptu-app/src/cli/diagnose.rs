@@ -13,7 +13,7 @@ use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 
 /// Find the part that failed, why it is that one, and the next best check
 ///
-/// A run is held against the fault dictionary (`ptu campaign`); a matrix stands for itself.
+/// A run is compared with the fault dictionary (`ptu campaign`); a matrix stands for itself.
 ///
 /// Examples:
 ///   ptu diagnose latest                                        the last run

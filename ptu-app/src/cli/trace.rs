@@ -1,4 +1,4 @@
-//! `ptu trace`: recorded traces, what was expected beside what came, and the same again; to and from
+//! `ptu trace`: shows recorded traces, compares them with a good unit's, replays them, and exchanges them with
 //! other programs' files.
 
 mod diff;

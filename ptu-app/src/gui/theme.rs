@@ -1,4 +1,4 @@
-//! Colours of meaning, in light and dark. Nothing is told by colour alone: a word or a shape stands
+//! Colours that carry a meaning, in light and dark. None stands alone: a word or a shape stands
 //! beside it.
 
 use btu_rig::procedure::Verdict;

@@ -2,7 +2,7 @@
 //!
 //! Layers, bottom up:
 //! * `quantity`, `item`: the values of the script language, free of Starlark;
-//! * `verb`, `param_type`, `args`, `verbs`: its words, each a table entry with typed parameters;
+//! * `verb`, `param_type`, `args`, `verbs`: its verbs, each a table entry with typed parameters;
 //! * `context`, `globals`: unit configuration, line, signals: the names a script knows;
 //! * `handle`: those values inside Starlark;
 //! * `nesting`, `check`: find errors without running a script, also where it would never run;

@@ -1,4 +1,4 @@
-//! Pause and single step: between steps the bench keeps what it does, and the next step waits.
+//! Pause and single step: between steps the outputs stay as they are, and the next step waits.
 
 use protocol::Instant;
 

@@ -8,7 +8,7 @@ use protocol::{Duration, Instant};
 use super::schedule::ScheduledStep;
 use super::{Phase, Runner};
 use crate::procedure::action_run::{ActionRun, Scan};
-use crate::procedure::condition::TrueMotion;
+use crate::procedure::condition::Answer;
 use crate::procedure::plan::{OnFail, Step};
 use crate::procedure::report::{RunEvent, StepResult};
 use crate::procedure::step_run::StepRun;
@@ -72,14 +72,14 @@ impl Runner {
         let truth = step
             .when
             .as_ref()
-            .map_or(TrueMotion::Yes, |when| when.truth(sample, &self.captured));
+            .map_or(Answer::Yes, |when| when.truth(sample, &self.captured));
         match truth {
-            TrueMotion::Yes => {}
-            TrueMotion::No => {
+            Answer::Yes => {}
+            Answer::No => {
                 self.pass_over(turn, now, Verdict::Skipped, "its condition does not hold");
                 return false;
             }
-            TrueMotion::NoData(missing_data) => {
+            Answer::NoData(missing_data) => {
                 self.pass_over(
                     turn,
                     now,

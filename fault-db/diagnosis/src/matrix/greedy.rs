@@ -1,5 +1,5 @@
-//! Greedy trees: information gain per cost, with one step of rollout. Of the few tests with the most gain,
-//! the one is chosen whose branches, completed by plain gain, cost least.
+//! Greedy trees: information gain per cost, with one step of lookahead: of the few tests with the most
+//! gain, the one is chosen whose branches, completed by plain gain, cost least.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,8 +1,12 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
-//! A file answers from the counts that its triggers maintain if the filter allows it, with the incomplete days
-//! at both ends of the span counted row by row; a unit's counts by code, part or line row by row; and whatever
-//! else is asked, and several spans at once, from the packed faults. A server always counts row by row.
+//! A file answers in one of three ways:
+//! * from the counts that its triggers maintain, if the filter allows it; the incomplete days at both ends of
+//!   the span are counted row by row;
+//! * row by row for one unit's counts by code, part or line;
+//! * from the packed faults for every other filter, and for several spans at once.
+//!
+//! A server always counts row by row.
 
 mod by_row;
 mod counts;

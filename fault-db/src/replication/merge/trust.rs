@@ -1,4 +1,4 @@
-//! What is believed of a file to be merged: runs that match their seals, refer to rows that are there, and are
+//! Which runs of a file to be merged are accepted: those that match their seals, refer to rows that are there, and are
 //! the same as here.
 
 use super::Merge;

@@ -1,6 +1,6 @@
 //! The position of each signal on the path from the unit's inputs to the motion of the train.
 //!
-//! Two signals that part from what is expected within one report of the unit are told in this order,
+//! Two signals that deviate from what is expected within one report of the unit are listed in this order,
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.

@@ -1,5 +1,5 @@
-//! A run that isolates a fault by itself: after every step it knows what would tell the most, and does
-//! that next. Dictionary and strategy are of `diagnosis`; here they drive a bench.
+//! A run that isolates a fault by itself: after every step it works out which check gives the most
+//! information, and runs that next. Dictionary and strategy are of `diagnosis`; here they drive a bench.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};

@@ -39,7 +39,7 @@ pub(super) fn start<'scope>(
         connected @ Connected::Port(..) => {
             scope.spawn(move || {
                 let mut worker = Worker::new(connected, stop);
-                // What is due and not begun ends without a word.
+                // What is due and not begun ends with no event.
                 while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
                     first_failure.watch(place, sender, |sink, go_on| worker.run(task, sink, go_on));
                 }

@@ -68,7 +68,7 @@ pub fn diagnose_run(
     let model = Model::new(&dictionary, &settings, &history.factors);
     let mut diagnosis = Diagnosis::of(&model, &seen);
     history.explain(&mut diagnosis);
-    admit_what_was_left_out(&run, &mut diagnosis);
+    cannot_tell_unless_passed(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
         let of_part = traces.entry(occurrence.lru.clone()).or_default();
@@ -84,8 +84,8 @@ pub fn diagnose_run(
     })
 }
 
-/// A run that did not pass is not healthy because what did not pass could not be weighed.
-fn admit_what_was_left_out(run: &RunDetail, diagnosis: &mut Diagnosis) {
+/// A run that did not pass is not called healthy because its failed steps could not be weighed.
+fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
     let passed = matches!(
         run.run.verdict,
         Some(Verdict::Passed | Verdict::Skipped) | None
@@ -140,7 +140,7 @@ pub fn adaptive(
     })
 }
 
-/// Leaves out what cannot be held against this dictionary, and says so: steps of scripts that were
+/// Leaves out what cannot be compared with this dictionary, and warns of it: steps of scripts that were
 /// others then, steps it does not know.
 fn comparable(
     run: &RunDetail,

@@ -1,4 +1,4 @@
-//! Which dictionary a run is held against: one made by a campaign on this machine, or the one that
+//! Which dictionary a run is compared with: one made by a campaign on this machine, or the one that
 //! comes with the scripts.
 
 use diagnosis::{Basis, Dictionary};

@@ -1,5 +1,5 @@
 //! Line plots: axes with round ticks, light grid, legend, named places as vertical lines. A plot
-//! becomes marks, and those SVG or whatever else can draw them.
+//! becomes marks, which SVG or any other output can draw.
 
 mod curve;
 mod mark;

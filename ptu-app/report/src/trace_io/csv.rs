@@ -1,6 +1,6 @@
 //! Exports traces as comma-separated values, with a description in a file beside.
 //!
-//! A line a row: the time in seconds from the trigger, then a column a signal, headed by its name and its
+//! One line per row: the time in seconds from the trigger, then one column per signal, headed by its name and its
 //! unit; words and bits are numbers, an unknown sample is empty. `FILE-metadata.json` beside it says what
 //! the signals are, as the W3C's "CSV on the Web" has it.
 

@@ -1,7 +1,7 @@
-//! Traces as MCAP: one message of JSON a row, under one topic, for Foxglove, PlotJuggler and the like.
+//! Traces as MCAP: one message of JSON per row, under one topic, for Foxglove, PlotJuggler and the like.
 //!
-//! A field a signal, null where a sample is not known; words and bits are numbers, so that they plot. The
-//! schema has each signal's unit and words, the file's metadata [`TraceInfo`](super::About) under its name.
+//! One field per signal, null where a sample is not known; words and bits are numbers, so that they plot. The
+//! schema has each signal's unit and words, the file's metadata [`TraceInfo`](super::TraceInfo) under its name.
 
 use std::collections::BTreeMap;
 use std::io::{self, Seek, Write};

@@ -1,7 +1,7 @@
-//! Traces as Apache Parquet: a column of times, then a column a signal.
+//! Traces as Apache Parquet: a column of times, then one column per signal.
 //!
 //! Numbers are doubles, bits booleans, enums their words; an unknown sample is null. The file's metadata
-//! has [`TraceInfo`](super::About) under its name.
+//! has [`TraceInfo`](super::TraceInfo) under its name.
 
 use std::io::Write;
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! What people read, in their language: the one catalogue of the window and of printed reports.
 //!
 //! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
-//! the field writes them; what scripts say is theirs and stays in their language.
+//! technicians write them; texts of scripts are not translated.
 
 mod bench;
 mod common;

@@ -1,5 +1,5 @@
 //! One lane of a plot: a quantity, a choice or a bit along an axis that lanes share. Paints columns and
-//! stretches of pixels ([`ptu_report::trace_view`]); samples are none of its business.
+//! stretches of pixels ([`ptu_report::trace_view`]); it reads no samples.
 
 use eframe::egui::epaint::Vertex;
 use eframe::egui::{

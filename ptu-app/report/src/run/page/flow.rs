@@ -1,4 +1,4 @@
-//! Pieces onto pages, in order: a piece is never cut, a heading never the last of its page, and a
+//! Places pieces on pages, in order: a piece is never cut, a heading never the last of its page, and a
 //! table's heading is on every page the table is on.
 
 use super::item::{BOTTOM, HEIGHT, Item, Piece, TOP};

@@ -1,6 +1,6 @@
 //! The bench page: the unit live as in its cab, manual stimuli, and a rolling plot.
 //!
-//! What is shown is copied once per frame ([`seen`]), what is filled in becomes stimuli in [`forms`];
+//! What is shown is copied once per frame ([`live_copy`]), what is filled in becomes stimuli in [`forms`];
 //! both know nothing of widgets.
 
 mod forms;

@@ -235,7 +235,7 @@ impl ProceduresPage {
         });
     }
 
-    /// Begins what is ready, unless something else has the bench since.
+    /// Begins what is ready, unless something else has taken the bench meanwhile.
     fn poll_orders(&mut self, context: &mut PageContext<'_>) {
         let words = &context.words.procedures;
         for mut ordered in std::mem::take(&mut self.orders) {
