@@ -270,3 +270,20 @@ impl Atp {
         self.fsb_cause
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No input leads to such values: a processor that holds them has failed, and ATP must notice.
+    #[test]
+    fn a_limit_that_no_processor_may_hold_breaks_an_invariant() {
+        let text = include_str!("../../../scripts/units/sg100.toml");
+        let mut atp = Atp::new(&UnitConfig::from_toml(text).unwrap());
+        assert_eq!(atp.broken_invariant(), None);
+        for mps in [f64::NAN, f64::INFINITY, -1.0] {
+            atp.limit = Speed::from_mps(mps);
+            assert_eq!(atp.broken_invariant(), Some(1), "{mps}");
+        }
+    }
+}
