@@ -107,7 +107,7 @@ impl<'a> RunWriter<'a> {
     ///
     /// # Errors
     /// The other file does not take the run; the steps stay buffered here.
-    pub fn go_on_in<'b>(
+    pub fn continue_in<'b>(
         &mut self,
         store: &'b Store,
         record: &RunRecord,

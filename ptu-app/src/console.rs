@@ -149,7 +149,7 @@ impl Listener for Console {
         }
     }
 
-    fn speaker(&self) -> Option<LinePrinter> {
+    fn line_printer(&self) -> Option<LinePrinter> {
         let (shown, left_out) = (self.shown.clone(), self.left_out.clone());
         Some(Box::new(move |line| {
             if shown.try_send(Shown::Line(line)).is_err() {

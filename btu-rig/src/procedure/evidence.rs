@@ -26,9 +26,9 @@ pub enum LogState {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineState {
     /// Since the bench began.
-    pub harmed: u64,
+    pub lost_or_damaged: u64,
     /// In the last seconds.
-    pub harmed_lately: u64,
+    pub lost_or_damaged_lately: u64,
 }
 
 /// How far a driver can trust what it receives.
@@ -59,7 +59,7 @@ impl Default for Evidence {
 impl Evidence {
     /// Whether frames that did not get through may be why the unit or TCMS logged this.
     pub fn explains(&self, event: Option<Event>, parameter: i32) -> bool {
-        self.line.harmed_lately > 0
+        self.line.lost_or_damaged_lately > 0
             && event.is_some_and(|event| match event {
                 Event::InputsLost
                 | Event::FramesRejected

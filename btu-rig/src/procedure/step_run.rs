@@ -40,7 +40,7 @@ pub(super) struct StepRun {
     /// Since when the step waits for nothing but the unit's log.
     awaits_log: Option<Instant>,
     /// Frames that had not come through when the step began, and by now.
-    harmed: Option<(u64, u64)>,
+    lost_or_damaged: Option<(u64, u64)>,
 }
 
 pub(super) struct StepEnd {
@@ -68,7 +68,7 @@ impl StepRun {
             behind: Duration::ZERO,
             log: LogState::Read,
             awaits_log: None,
-            harmed: None,
+            lost_or_damaged: None,
         }
     }
 
@@ -133,9 +133,11 @@ impl StepRun {
     /// Takes note of how far what is heard in this scan can be trusted.
     pub(super) fn note_evidence(&mut self, evidence: &Evidence) {
         self.log = evidence.log;
-        let harmed = evidence.line.harmed;
-        let (before, _) = self.harmed.unwrap_or((harmed, harmed));
-        self.harmed = Some((before, harmed));
+        let lost_or_damaged = evidence.line.lost_or_damaged;
+        let (before, _) = self
+            .lost_or_damaged
+            .unwrap_or((lost_or_damaged, lost_or_damaged));
+        self.lost_or_damaged = Some((before, lost_or_damaged));
     }
 
     fn hold(&mut self, problem: Problem) {
@@ -261,7 +263,7 @@ impl StepRun {
                 )));
             }
             let lost = self
-                .harmed
+                .lost_or_damaged
                 .map_or(0, |(before, now)| now.saturating_sub(before));
             if lost > 0 {
                 self.hold(Problem::Bench(format!(

@@ -41,7 +41,7 @@ struct Counts {
 }
 
 impl Counts {
-    fn harmed(self) -> u64 {
+    fn lost_or_damaged(self) -> u64 {
         self.from_unit + self.to_unit
     }
 }
@@ -171,10 +171,13 @@ impl LineWatch {
 
     /// What got lost until now, and in the last seconds.
     pub fn state(&self) -> LineState {
-        let before = self.past.front().map_or(0, |(_, counts)| counts.harmed());
+        let before = self
+            .past
+            .front()
+            .map_or(0, |(_, counts)| counts.lost_or_damaged());
         LineState {
-            harmed: self.counts.harmed(),
-            harmed_lately: self.counts.harmed().saturating_sub(before),
+            lost_or_damaged: self.counts.lost_or_damaged(),
+            lost_or_damaged_lately: self.counts.lost_or_damaged().saturating_sub(before),
         }
     }
 

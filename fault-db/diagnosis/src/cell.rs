@@ -9,7 +9,7 @@ use super::observation::{ObservedStep, Sign, observed};
 
 /// The result of a step with the signs that showed: what can be compared as equal or not.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Signature {
+pub struct StepOutcome {
     /// The step's verdict.
     #[serde(deserialize_with = "observed")]
     pub result: Verdict,
@@ -18,7 +18,7 @@ pub struct Signature {
     pub signs: BTreeSet<Sign>,
 }
 
-impl Signature {
+impl StepOutcome {
     /// The signature of an observed step.
     pub fn of(step: &ObservedStep) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Values {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// How often each signature occurred.
-    pub signatures: Vec<(Signature, u32)>,
+    pub signatures: Vec<(StepOutcome, u32)>,
     /// Mean bench time, s.
     pub time_s: f64,
     /// Statistics of its measurements.
@@ -100,7 +100,7 @@ pub struct Cell {
 impl Cell {
     /// Counts a step.
     pub fn add(&mut self, step: &ObservedStep) {
-        let signature = Signature::of(step);
+        let signature = StepOutcome::of(step);
         match self.signatures.iter_mut().find(|(s, _)| *s == signature) {
             Some((_, count)) => *count += 1,
             None => self.signatures.push((signature, 1)),
@@ -141,7 +141,7 @@ impl Cell {
 
     /// Whether it equals a healthy unit's: no other signatures, and values that agree.
     pub fn is_like(&self, healthy: &Self) -> bool {
-        let known = |(signature, _): &(Signature, u32)| {
+        let known = |(signature, _): &(StepOutcome, u32)| {
             let of_healthy = healthy.signatures.iter().find(|(s, _)| s == signature);
             // A signature seen once in many healthy runs is an accident.
             of_healthy.is_some_and(|(_, count)| 2 * count >= healthy.runs())

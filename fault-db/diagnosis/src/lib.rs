@@ -27,7 +27,7 @@ mod strategy;
 mod verdict;
 
 pub use belief::{Belief, Settled};
-pub use cell::{Cell, Signature, Values};
+pub use cell::{Cell, StepOutcome, Values};
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;

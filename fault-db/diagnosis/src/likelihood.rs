@@ -6,7 +6,7 @@
 
 use protocol::Verdict;
 
-use super::cell::{Cell, Signature, Values};
+use super::cell::{Cell, StepOutcome, Values};
 use super::observation::{ObservedStep, Sign};
 use super::settings::LikelihoodSettings;
 
@@ -89,13 +89,13 @@ impl Expected<'_> {
     }
 
     /// Probability of a signature: as counted, or, if never seen, the product of its parts.
-    pub fn signature(&self, signature: &Signature) -> f64 {
+    pub fn signature(&self, signature: &StepOutcome) -> f64 {
         let counted = self.cell.signatures.iter().find(|(s, _)| s == signature);
         let share = self.share(counted.map_or(0, |(_, count)| *count));
         self.smoothed(share, self.of_parts(signature))
     }
 
-    fn of_parts(&self, signature: &Signature) -> f64 {
+    fn of_parts(&self, signature: &StepOutcome) -> f64 {
         let absent = self
             .cell
             .signatures
@@ -162,7 +162,7 @@ pub fn likelihood<'s>(
     let of_values: f64 = values
         .filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?)))
         .product();
-    expected.signature(&Signature::of(step)) * of_values
+    expected.signature(&StepOutcome::of(step)) * of_values
 }
 
 /// The same if nothing is known.

@@ -9,7 +9,7 @@ use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
-use super::cell::Signature;
+use super::cell::StepOutcome;
 use super::observation::CheckName;
 
 /// A recommended check.
@@ -127,7 +127,7 @@ impl Belief<'_, '_> {
         {
             return 0.0;
         }
-        let mut joint: BTreeMap<Signature, Vec<f64>> = BTreeMap::new();
+        let mut joint: BTreeMap<StepOutcome, Vec<f64>> = BTreeMap::new();
         for (i, hypothesis) in model.hypotheses.iter().enumerate() {
             let p = classes.probabilities[i];
             if p < 1e-9 {

@@ -154,7 +154,7 @@ mod tests {
     fn a_step_that_was_not_run_to_its_end_cannot_be_read_as_evidence() {
         for verdict in Verdict::ALL {
             let json = format!(r#"{{"result":"{verdict}"}}"#);
-            let read = serde_json::from_str::<crate::Signature>(&json);
+            let read = serde_json::from_str::<crate::StepOutcome>(&json);
             assert_eq!(read.is_ok(), is_observed(verdict), "{verdict}");
         }
     }

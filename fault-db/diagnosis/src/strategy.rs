@@ -17,18 +17,18 @@ use super::observation::{CheckName, Observation, ObservedStep};
 pub struct Strategy<'m, 'd> {
     belief: Belief<'m, 'd>,
     done: BTreeSet<CheckName>,
-    may: Option<BTreeSet<String>>,
+    allowed: Option<BTreeSet<String>>,
     target: Option<NextCheck>,
     seen: Observation,
 }
 
 impl<'m, 'd> Strategy<'m, 'd> {
-    /// Starts without evidence. Only procedures in `may` can be run, if given.
-    pub fn new(model: &'m Model<'d>, may: Option<BTreeSet<String>>) -> Self {
+    /// Starts without evidence. Only procedures in `allowed` can be run, if given.
+    pub fn new(model: &'m Model<'d>, allowed: Option<BTreeSet<String>>) -> Self {
         Self {
             belief: Belief::new(model),
             done: BTreeSet::new(),
-            may,
+            allowed,
             target: None,
             seen: Observation::default(),
         }
@@ -74,7 +74,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
             None
         } else {
             self.belief
-                .next_check(&self.done, under_way, self.may.as_ref())
+                .next_check(&self.done, under_way, self.allowed.as_ref())
         };
     }
 }

@@ -5,6 +5,7 @@ mod distinct_names;
 mod fault_filter;
 mod faults;
 mod filter;
+mod filter_names;
 mod history;
 mod note_filter;
 mod run_occurrences;
@@ -16,8 +17,9 @@ mod traces;
 mod trend;
 
 pub use daily::DailyCount;
-pub use fault_filter::{FaultFilter, code_number};
+pub use fault_filter::FaultFilter;
 pub use faults::{FaultDetail, FaultEvent, FaultSummary, Occurrence};
+pub use filter_names::code_number;
 pub use history::{LOG_SOURCE, PartHistory, PartRepair, SAME_ENTRY_US};
 pub use run_occurrences::RunOccurrence;
 pub use runs::{RunDetail, RunFault, RunFilter, RunState, RunSummary};

@@ -88,7 +88,7 @@ impl Runner {
             if asks_for_brake(step) {
                 return;
             }
-            if self.evidence.line.harmed_lately > 0 {
+            if self.evidence.line.lost_or_damaged_lately > 0 {
                 live.hold_against_line("the emergency brake was applied");
                 return;
             }

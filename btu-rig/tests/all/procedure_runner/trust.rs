@@ -197,12 +197,12 @@ fn an_event_that_lost_frames_explain_is_an_error_and_no_fault() {
     let script = format!("{HEAD}step('a', do = wait(s(2)))");
     let expects =
         format!("{HEAD}step('a', do = wait(s(2)), expect = becomes(alarm, True, within = s(1)))");
-    let came_to = |script: &str, harmed: u64, event: Option<Event>, brake: bool| {
+    let came_to = |script: &str, lost_or_damaged: u64, event: Option<Event>, brake: bool| {
         let outcome = run(script, |world| {
             world.sample.set(Signal::Alarm, 0.0);
             if world.ms() == 500 {
-                world.fake.evidence.line.harmed = harmed;
-                world.fake.evidence.line.harmed_lately = harmed;
+                world.fake.evidence.line.lost_or_damaged = lost_or_damaged;
+                world.fake.evidence.line.lost_or_damaged_lately = lost_or_damaged;
                 event.into_iter().for_each(|event| world.log(event));
                 if brake {
                     world.sample.set(Signal::Eb, 1.0);

@@ -1,12 +1,9 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
 //! A file answers in one of three ways:
-//! * from the counts that its triggers maintain, if the filter allows it; the incomplete days at both ends of
-//!   the span are counted row by row;
-//! * row by row for one unit's counts by code, part or line;
+//! * if the filter allows it, from the counts that its triggers maintain, and incomplete days row by row;
+//! * row by row for one unit's counts by code, part or line, as a server always does;
 //! * from the packed faults for every other filter, and for several spans at once.
-//!
-//! A server always counts row by row.
 
 mod by_row;
 mod counts;

@@ -250,10 +250,10 @@ impl BenchThread {
         if let Connected::Sim(made) = connected {
             made.realtime = order.realtime;
         }
-        let mut ear = EventForwarder(self);
+        let mut forwarder = EventForwarder(self);
         let began = RunStart::now();
         let (plan, store) = (&order.plan, order.store);
-        let result = run_on(connected, &began, plan, setup, store, stop, &mut ear);
+        let result = run_on(connected, &began, plan, setup, store, stop, &mut forwarder);
         let closed = result.and_then(|(store, outcome)| {
             store.close()?;
             Ok(outcome)

@@ -26,7 +26,7 @@ pub trait Listener {
     }
 
     /// Prints these lines.
-    fn speaker(&self) -> Option<LinePrinter> {
+    fn line_printer(&self) -> Option<LinePrinter> {
         None
     }
 }

@@ -34,7 +34,7 @@ impl FirstFailure {
 
     /// Runs the procedure with this place, noting whether it passes. `run` is given where its events go, and
     /// what says after each step whether to go on.
-    pub(super) fn watch(
+    pub(super) fn run_noting_failure(
         &self,
         place: usize,
         sender: SyncSender<SessionEvent>,

@@ -140,7 +140,7 @@ pub fn run_on(
 ) -> Result<(Store, Outcome), Failure> {
     connected.set_stop(stop);
     let record = run_record(plan, setup, connected.serial(), began.at_us);
-    let run_store = RunStore::begin(store, record, listener.speaker(), stop)?;
+    let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
     let made = BenchContents::of(setup, connected.serial());
     let mut collector = Collector::new(run_store, listener, made);

@@ -30,7 +30,7 @@ struct BusyTimeout {
     gives_up: Duration,
 }
 
-const PATIENCE: BusyTimeout = BusyTimeout {
+const BUSY_TIMEOUT: BusyTimeout = BusyTimeout {
     stops_ms: 30_000,
     gives_up: Duration::from_secs(180),
 };
@@ -54,7 +54,7 @@ pub type LinePrinter = Box<dyn FnMut(String) + Send>;
 /// Lines that are printed once the records they report are in the file.
 #[derive(Default)]
 struct Lines {
-    speaker: Option<LinePrinter>,
+    line_printer: Option<LinePrinter>,
     waiting: Vec<String>,
 }
 
@@ -62,8 +62,8 @@ impl Lines {
     /// Prints the waiting lines: their records are in the file.
     fn stored(&mut self) {
         for line in self.waiting.drain(..) {
-            if let Some(speaker) = &mut self.speaker {
-                speaker(line);
+            if let Some(line_printer) = &mut self.line_printer {
+                line_printer(line);
             }
         }
     }
@@ -78,7 +78,7 @@ pub struct RunStore {
 }
 
 impl RunStore {
-    /// Begins the run: its row is on the disk when this returns. What is to be said goes to `speaker`. Should
+    /// Begins the run: its row is on the disk when this returns. What is to be said goes to `line_printer`. Should
     /// writing fail later, `stop` is pressed at once: a unit is not driven for a run that is not stored.
     ///
     /// # Errors
@@ -86,17 +86,17 @@ impl RunStore {
     pub fn begin(
         store: Store,
         record: RunRecord,
-        speaker: Option<LinePrinter>,
+        line_printer: Option<LinePrinter>,
         stop: &Stop,
     ) -> Result<Self, Failure> {
-        Self::begin_with(PATIENCE, store, record, speaker, stop)
+        Self::begin_with(BUSY_TIMEOUT, store, record, line_printer, stop)
     }
 
     fn begin_with(
-        patience: BusyTimeout,
+        busy_timeout: BusyTimeout,
         store: Store,
         record: RunRecord,
-        speaker: Option<LinePrinter>,
+        line_printer: Option<LinePrinter>,
         stop: &Stop,
     ) -> Result<Self, Failure> {
         let (entries, receiver) = mpsc::sync_channel(QUEUE);
@@ -106,8 +106,15 @@ impl RunStore {
             .name("store".into())
             .spawn(move || {
                 let mut kept = RecordedIds::default();
-                kept.lines.speaker = speaker;
-                let result = write(&store, &record, &receiver, kept, &begun, (patience, &stop));
+                kept.lines.line_printer = line_printer;
+                let result = write(
+                    &store,
+                    &record,
+                    &receiver,
+                    kept,
+                    &begun,
+                    (busy_timeout, &stop),
+                );
                 (store, result)
             })
             .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
@@ -174,13 +181,13 @@ fn write(
     entries: &Receiver<Entry>,
     mut kept: RecordedIds,
     begun: &SyncSender<Id>,
-    (patience, stop): (BusyTimeout, &Stop),
+    (busy_timeout, stop): (BusyTimeout, &Stop),
 ) -> Result<(), Failure> {
     // Nothing is lost yet: a file that is locked is said as soon as any.
     let mut writer = RunWriter::begin(store, record)?;
-    store.set_busy_timeout_ms(patience.stops_ms)?;
+    store.set_busy_timeout_ms(busy_timeout.stops_ms)?;
     let _ = begun.send(writer.id());
-    let result = write_entries(&mut writer, &mut kept, entries, (patience, stop));
+    let result = write_entries(&mut writer, &mut kept, entries, (busy_timeout, stop));
     let Err((error, at_hand)) = result else {
         return Ok(());
     };
@@ -221,7 +228,7 @@ fn write_entries(
     writer: &mut RunWriter<'_>,
     kept: &mut RecordedIds,
     entries: &Receiver<Entry>,
-    (patience, stop): (BusyTimeout, &Stop),
+    (busy_timeout, stop): (BusyTimeout, &Stop),
 ) -> Result<(), (StoreError, Option<Box<Entry>>)> {
     let mut flushed = Instant::now();
     loop {
@@ -229,7 +236,7 @@ fn write_entries(
             Ok(entry) => Some(entry),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
-                let done = patiently(patience, stop, |_| writer.flush());
+                let done = retry_while_locked(busy_timeout, stop, |_| writer.flush());
                 done.map_err(|error| (error, None))?;
                 kept.lines.stored();
                 return Ok(());
@@ -237,7 +244,9 @@ fn write_entries(
         };
         if let Some(entry) = entry {
             let is_end = matches!(entry, Entry::Finish(_));
-            let done = patiently(patience, stop, |again| keep(writer, kept, &entry, again));
+            let done = retry_while_locked(busy_timeout, stop, |again| {
+                keep(writer, kept, &entry, again)
+            });
             match done {
                 Ok(()) if is_end => {
                     kept.lines.stored();
@@ -248,7 +257,7 @@ fn write_entries(
             }
         }
         if flushed.elapsed() >= FLUSH {
-            let done = patiently(patience, stop, |_| writer.flush());
+            let done = retry_while_locked(busy_timeout, stop, |_| writer.flush());
             done.map_err(|error| (error, None))?;
             flushed = Instant::now();
         }
@@ -259,8 +268,8 @@ fn write_entries(
 }
 
 /// Does it until the file is free. A unit is not driven meanwhile for longer than a moment.
-fn patiently(
-    patience: BusyTimeout,
+fn retry_while_locked(
+    busy_timeout: BusyTimeout,
     stop: &Stop,
     mut work: impl FnMut(bool) -> Result<(), StoreError>,
 ) -> Result<(), StoreError> {
@@ -268,7 +277,7 @@ fn patiently(
     let mut again = false;
     loop {
         match work(again) {
-            Err(error @ StoreError::Locked { .. }) if begun.elapsed() < patience.gives_up => {
+            Err(error @ StoreError::Locked { .. }) if begun.elapsed() < busy_timeout.gives_up => {
                 stop.press_because(store_message(&error));
                 again = true;
             }
@@ -324,7 +333,7 @@ fn keep_rest(
     name.push(format!(".run-{}.db", writer.id().short()));
     let path = PathBuf::from(name);
     let store = Store::open(&path, clock::open_options()).ok()?;
-    let mut rest = writer.go_on_in(&store, record).ok()?;
+    let mut rest = writer.continue_in(&store, record).ok()?;
     for entry in at_hand
         .map(|entry| *entry)
         .into_iter()

@@ -47,11 +47,11 @@ impl<L> FaultyLink<L> {
             return bytes.to_vec();
         };
         let random = &mut self.random;
-        let harmed = bytes.iter().map(|byte| match random.unit() < share {
+        let lost_or_damaged = bytes.iter().map(|byte| match random.unit() < share {
             true => byte ^ (1 << random.below(8)),
             false => *byte,
         });
-        harmed.collect()
+        lost_or_damaged.collect()
     }
 
     /// The unit's frames, those of the tester's channel changed.

@@ -41,7 +41,9 @@ pub(super) fn start<'scope>(
                 let mut worker = Worker::new(connected, stop);
                 // What is due and not begun ends with no event.
                 while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
-                    first_failure.watch(place, sender, |sink, go_on| worker.run(task, sink, go_on));
+                    first_failure.run_noting_failure(place, sender, |sink, go_on| {
+                        worker.run(task, sink, go_on)
+                    });
                 }
             });
         }
@@ -53,7 +55,7 @@ pub(super) fn start<'scope>(
                     while let Some((place, task, sender)) =
                         take(&work).filter(|due| may_begin(due.0))
                     {
-                        first_failure.watch(place, sender, |sink, go_on| {
+                        first_failure.run_noting_failure(place, sender, |sink, go_on| {
                             run_on_fresh(setup, task, stop, sink, go_on);
                         });
                     }

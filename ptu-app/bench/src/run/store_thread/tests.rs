@@ -84,13 +84,13 @@ fn end(verdict: Verdict) -> RunEnd {
     }
 }
 
-/// A run that begins, with so much patience, and another program that holds its file from then on.
-fn held(folder: &std::path::Path, patience: BusyTimeout) -> (RunStore, Stop, Connection) {
+/// A run that begins, with so much busy_timeout, and another program that holds its file from then on.
+fn held(folder: &std::path::Path, busy_timeout: BusyTimeout) -> (RunStore, Stop, Connection) {
     let file = folder.join("history.db");
     let options = OpenOptions::new(clock::ids()).busy_timeout_ms(1);
     let store = Store::open(&file, options).expect("a database");
     let stop = Stop::default();
-    let run = RunStore::begin_with(patience, store, record(), None, &stop).expect("begun");
+    let run = RunStore::begin_with(busy_timeout, store, record(), None, &stop).expect("begun");
     let other = Connection::open(&file).expect("the database");
     let wait = other.busy_timeout(Duration::from_secs(60));
     wait.expect("it waits for the writer");
@@ -102,7 +102,7 @@ fn held(folder: &std::path::Path, patience: BusyTimeout) -> (RunStore, Stop, Con
 #[test]
 fn a_run_under_way_waits_for_another_writer() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (run, stop, other) = held(folder.path(), PATIENCE);
+    let (run, stop, other) = held(folder.path(), BUSY_TIMEOUT);
     let id = run.id;
     let ends = std::thread::spawn(move || run.finish(end(Verdict::Passed)));
     std::thread::sleep(Duration::from_millis(300));
@@ -116,11 +116,11 @@ fn a_run_under_way_waits_for_another_writer() {
 #[test]
 fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     let folder = tempfile::tempdir().expect("a folder");
-    let patience = BusyTimeout {
+    let busy_timeout = BusyTimeout {
         stops_ms: 20,
         gives_up: Duration::from_secs(600),
     };
-    let (run, stop, other) = held(folder.path(), patience);
+    let (run, stop, other) = held(folder.path(), busy_timeout);
     let id = run.id;
     run.step(step(0));
     run.fault(fault());
@@ -147,11 +147,11 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
 #[test]
 fn records_that_a_busy_database_refuses_can_be_imported_later() {
     let folder = tempfile::tempdir().expect("a folder");
-    let patience = BusyTimeout {
+    let busy_timeout = BusyTimeout {
         stops_ms: 10,
         gives_up: Duration::from_millis(40),
     };
-    let (run, stop, other) = held(folder.path(), patience);
+    let (run, stop, other) = held(folder.path(), busy_timeout);
     let id = run.id;
     run.step(step(0));
     run.fault(fault());

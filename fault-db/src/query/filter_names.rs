@@ -1,0 +1,67 @@
+//! Resolves the names of a filter: units, codes and parts by their stored numbers and spellings.
+
+use crate::backend::values;
+use crate::error::StoreError;
+use crate::full_text::Search;
+use crate::store::Store;
+
+/// The words to search for.
+///
+/// # Errors
+/// [`StoreError::NoWords`] if the text has none.
+pub(super) fn search(note: &str) -> Result<Search, StoreError> {
+    Search::new(note).ok_or_else(|| StoreError::NoWords {
+        asked: note.to_owned(),
+    })
+}
+
+/// The numbers of codes: given as such, or by the name of the fault.
+pub(super) fn codes(store: &Store, asked: &str) -> Result<Vec<i64>, StoreError> {
+    let mut numbers = Vec::new();
+    let mut known = None;
+    for code in asked.split(',').map(str::trim) {
+        if let Some(number) = code_number(code) {
+            numbers.push(number);
+            continue;
+        }
+        if known.is_none() {
+            known = Some(store.known_codes()?);
+        }
+        let named = known.iter().flatten();
+        let named = named.filter(|(_, name)| name.eq_ignore_ascii_case(code));
+        numbers.extend(named.map(|(number, _)| *number));
+    }
+    numbers.sort_unstable();
+    numbers.dedup();
+    Ok(numbers)
+}
+
+/// A code written as a number: decimal, or hex after `0x`.
+pub fn code_number(code: &str) -> Option<i64> {
+    match code.strip_prefix("0x") {
+        Some(hex) => i64::from_str_radix(hex, 16).ok(),
+        None => code.parse().ok(),
+    }
+}
+
+/// The stored spellings of a part's name, in capitals or not.
+pub(super) fn lrus(store: &Store, lru: &str) -> Result<Vec<String>, StoreError> {
+    let mut known = store.known_lrus()?;
+    known.retain(|known| known.eq_ignore_ascii_case(lru));
+    Ok(known)
+}
+
+impl Store {
+    pub(super) fn unit_seq(&self, serial: &str) -> Result<i64, StoreError> {
+        let found = self.first(
+            "looking up a unit",
+            "SELECT seq FROM unit WHERE serial = ?1",
+            &values![serial],
+            |row| row.get(0),
+        )?;
+        found.ok_or_else(|| StoreError::NotFound {
+            what: "unit",
+            asked: serial.to_owned(),
+        })
+    }
+}
