@@ -44,8 +44,8 @@ pub(crate) fn each_block(
     backend.each(&sql, &[], take)
 }
 
-/// As many empty blocks are packed by each reader in a few milliseconds. Fewer are left to it, because the
-/// same blocks change again with the next runs.
+/// Up to this many blocks are left empty at the end of a run: the next runs change the same blocks again, and a
+/// reader packs them for itself in a few milliseconds.
 const FEW_EMPTY: u32 = 64;
 
 /// Packs the empty blocks of a file if they are more than a few. A server has none.

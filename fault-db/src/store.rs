@@ -19,7 +19,7 @@ use crate::schema::SCHEMA_VERSION;
 use crate::trace::{Channel, TraceCodec, TraceError};
 use crate::{schema, schema_guard, seal};
 
-/// The schema since which all that is said is sealed.
+/// The first schema with a chain of seals over events and notes.
 const SEALED_SINCE: i32 = 5;
 
 /// More than the number of distinct repeated statements in this crate.

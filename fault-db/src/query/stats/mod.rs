@@ -98,8 +98,8 @@ struct CountedSpan {
     bins: Bins,
 }
 
-/// How a query is answered.
-enum Way {
+/// Which of the three ways of the module's document counts.
+enum Method {
     Tally(TallyPart),
     Rows,
     Packed,
@@ -209,15 +209,15 @@ impl Store {
         Ok((stats, total.stat(days)))
     }
 
-    fn way(&self, resolved: &Resolved<'_>, by: StatKey) -> Way {
+    fn method(&self, resolved: &Resolved<'_>, by: StatKey) -> Method {
         if let Backend::Server(_) = self.backend() {
-            return Way::Rows;
+            return Method::Rows;
         }
         let is_of_unit = resolved.identity_filters_only().is_some() && resolved.unit().is_some();
         match from_tally::part_for(resolved, by) {
-            Some(part) => Way::Tally(part),
-            None if is_of_unit => Way::Rows,
-            None => Way::Packed,
+            Some(part) => Method::Tally(part),
+            None if is_of_unit => Method::Rows,
+            None => Method::Packed,
         }
     }
 
@@ -228,15 +228,15 @@ impl Store {
         span: &CountedSpan,
     ) -> Result<CountsByKey, StoreError> {
         let backend = self.backend();
-        let counted = match self.way(resolved, query.by) {
-            Way::Tally(part) => from_tally::count(backend, &part, &query.filter, &span.bins)
+        let counted = match self.method(resolved, query.by) {
+            Method::Tally(part) => from_tally::count(backend, &part, &query.filter, &span.bins)
                 .and_then(|counted| add_state_and_repairs(backend, resolved, query, counted, true)),
-            Way::Rows => {
+            Method::Rows => {
                 by_row::count(backend, resolved, query.by, &span.bins).and_then(|counted| {
                     add_state_and_repairs(backend, resolved, query, counted, false)
                 })
             }
-            Way::Packed => {
+            Method::Packed => {
                 let spans = std::slice::from_ref(span);
                 from_packed::count(backend, resolved, query, spans)
                     .map(|mut counted| counted.pop().unwrap_or_default())

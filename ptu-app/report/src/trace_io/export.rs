@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::csv::{self, beside};
-use super::part::Chosen;
+use super::part::TracePart;
 use super::{mcap_write, parquet};
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::{NewFile, cannot_write};
@@ -42,7 +42,7 @@ impl Format {
 ///
 /// # Errors
 /// The file cannot be written, or the trace cannot be read.
-pub fn export(chosen: &Chosen<'_>, to: &Path, force: bool) -> Result<(), Failure> {
+pub fn export(chosen: &TracePart<'_>, to: &Path, force: bool) -> Result<(), Failure> {
     let format = Format::of(to)?;
     let begin = match force {
         true => NewFile::begin,
@@ -68,7 +68,7 @@ pub fn export(chosen: &Chosen<'_>, to: &Path, force: bool) -> Result<(), Failure
     file.finish()
 }
 
-fn put_csv(out: &mut impl Write, chosen: &Chosen<'_>, to: &Path) -> Result<(), Failure> {
+fn put_csv(out: &mut impl Write, chosen: &TracePart<'_>, to: &Path) -> Result<(), Failure> {
     let about = &chosen.about;
     let failed = |error: std::io::Error| cannot_write(to, &error);
     csv::put_headings(out, &[], about.channels.iter()).map_err(failed)?;

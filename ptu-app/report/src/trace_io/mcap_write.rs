@@ -13,7 +13,7 @@ use mcap::{Compression, McapError, WriteOptions};
 use serde_json::{Map, Value, json};
 
 use super::about::{NAME, TraceInfo};
-use super::part::Chosen;
+use super::part::TracePart;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
 
@@ -24,7 +24,7 @@ const CHUNK_BYTES: u64 = 1 << 20;
 
 pub(super) fn put(
     out: &mut (impl Write + Seek),
-    chosen: &Chosen<'_>,
+    chosen: &TracePart<'_>,
     to: &Path,
 ) -> Result<(), Failure> {
     let failed = |error: McapError| cannot_write(to, &error);

@@ -20,5 +20,5 @@ mod series;
 pub use about::TraceInfo;
 pub use align::{Aligned, align};
 pub use export::{Format, export};
-pub use part::{Chosen, Seconds};
+pub use part::{Seconds, TracePart};
 pub use series::{Import, import, is_importable};

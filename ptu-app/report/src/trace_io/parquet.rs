@@ -18,7 +18,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::about::NAME;
-use super::part::Chosen;
+use super::part::TracePart;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
 
@@ -31,7 +31,7 @@ const UTC: &str = "time_utc";
 
 pub(super) fn put(
     out: &mut (impl Write + Send),
-    chosen: &Chosen<'_>,
+    chosen: &TracePart<'_>,
     to: &Path,
 ) -> Result<(), Failure> {
     let failed = |error: ParquetError| cannot_write(to, &error);
@@ -95,7 +95,7 @@ fn schema(channels: &[Channel]) -> Result<Type, ParquetError> {
 
 fn put_seconds(
     column: &mut SerializedColumnWriter<'_>,
-    chosen: &Chosen<'_>,
+    chosen: &TracePart<'_>,
     rows: Range<usize>,
 ) -> Result<(), ParquetError> {
     let times: Vec<f64> = rows
@@ -109,7 +109,7 @@ fn put_seconds(
 
 fn put_utc(
     column: &mut SerializedColumnWriter<'_>,
-    chosen: &Chosen<'_>,
+    chosen: &TracePart<'_>,
     rows: Range<usize>,
 ) -> Result<(), ParquetError> {
     let about = &chosen.about;

@@ -74,7 +74,7 @@ impl Seconds {
 }
 
 /// The part of a stored trace that is asked for.
-pub struct Chosen<'s> {
+pub struct TracePart<'s> {
     store: &'s Store,
     id: Id,
     rows: Range<usize>,
@@ -82,7 +82,7 @@ pub struct Chosen<'s> {
     pub about: TraceInfo,
 }
 
-impl<'s> Chosen<'s> {
+impl<'s> TracePart<'s> {
     /// Of these signals, or of all where none is named, the rows in the span.
     ///
     /// # Errors

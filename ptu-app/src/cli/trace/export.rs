@@ -8,7 +8,7 @@ use fault_db::Store;
 use super::PartArguments;
 use crate::cli::print_out;
 use ptu_bench::failure::{Exit, Failure};
-use ptu_report::trace_io::{Chosen, Format, export};
+use ptu_report::trace_io::{Format, TracePart, export};
 
 /// Write a trace to a .csv, .parquet or .mcap file
 ///
@@ -42,7 +42,7 @@ impl ExportArguments {
         // Before anything is looked for.
         Format::of(&self.to)?;
         let id = store.resolve_trace(&self.id)?;
-        let chosen = Chosen::new(store, id, &self.part.signals, self.part.window)?;
+        let chosen = TracePart::new(store, id, &self.part.signals, self.part.window)?;
         export(&chosen, &self.to, self.force)?;
         print_out(&format!(
             "trace {}: {} rows of {} signals to {}",
