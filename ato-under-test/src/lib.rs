@@ -9,6 +9,7 @@
 //! * `test_board`: test signals of an armed tester;
 //! * `front_end`: antennas, sensors and relays, where injected faults act.
 //!
+//! It has two ports ([`Port`]): the harness carries everything, the maintenance port a tester alone.
 //! [`Unit`] is stepped every 10 ms of virtual time; nothing here knows a clock, a thread or a file,
 //! and `no_std` keeps it so.
 #![no_std]
@@ -29,6 +30,7 @@ mod timer;
 mod twc;
 mod unit;
 
+pub use com::Port;
 pub use kernel::{LOG_CAPACITY, RUN_ROWS};
 pub use setup::Setup;
 pub use unit::Unit;

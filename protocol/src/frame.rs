@@ -72,7 +72,7 @@ pub enum Reject {
     Checksum,
     /// Another version of the wire.
     Version,
-    /// No channel has this number.
+    /// No channel has this number, or it is none of this end.
     Channel,
     /// Nobody has this address, or the frame is not from and for those whom this end expects.
     Address,

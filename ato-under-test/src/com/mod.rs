@@ -2,10 +2,12 @@
 
 mod image;
 mod maintenance;
+mod ports;
 mod reject_watch;
 mod tcms;
 
 pub use image::IoImage;
 pub use maintenance::{ArmConditions, Maintenance};
+pub use ports::{Port, Ports};
 pub use reject_watch::RejectWatch;
 pub use tcms::TcmsLink;

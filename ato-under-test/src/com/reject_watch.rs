@@ -1,10 +1,10 @@
-//! Counts frames that each channel loses, and logs when they are too many.
+//! Counts frames that each channel loses, on whichever port, and logs when they are too many.
 
 use protocol::event::Event;
-use protocol::link::Counters;
 use protocol::message::Channel;
 use protocol::{Duration, Instant};
 
+use super::Ports;
 use crate::kernel::EventLog;
 
 /// Span over which losses are counted.
@@ -37,10 +37,10 @@ impl RejectWatch {
         self.lost[place(channel)] += 1;
     }
 
-    pub fn step(&mut self, now: Instant, counters: &Counters, log: &mut EventLog) {
+    pub fn step(&mut self, now: Instant, ports: &Ports, log: &mut EventLog) {
         for channel in Channel::ALL {
             let i = place(channel);
-            let total = counters.rejected_on(channel) + self.lost[i];
+            let total = ports.rejected_on(channel) + self.lost[i];
             if !self.reported[i] && total - self.at_begin[i] >= self.threshold {
                 self.reported[i] = true;
                 log.push(now, Event::FramesRejected, i32::from(channel.code()));

@@ -8,7 +8,7 @@ mod wire;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use ato_under_test::Unit;
+use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
 use protocol::frame::SCAN_END;
 use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
@@ -114,10 +114,10 @@ fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
         let wait = deadlines.next(clock()).since(clock());
         std::thread::sleep(std::time::Duration::from_micros(wait.as_us()));
         let behind = deadlines.behind(clock());
-        let another = wire.attend(now, behind, unit.frames_accepted());
+        let another = wire.attend(now, behind, unit.frames_accepted(Port::Harness));
         if another.context("attending to the wire")? {
             backlog = Backlog::default();
-            unit.reset_connection();
+            unit.reset_connection(Port::Harness);
         }
         let count = wire.read(&mut read).context("reading from the wire")?;
         received.clear();

@@ -24,8 +24,7 @@ impl Unit {
         }
         self.tra.step(now, self.inputs.tra_answers, &mut self.log);
         self.report_tcms(now);
-        self.reject_watch
-            .step(now, self.link.counters(), &mut self.log);
+        self.reject_watch.step(now, &self.ports, &mut self.log);
         let mode_inputs = self.mode_inputs();
         self.atp.cycle(now, mode_inputs, &mut self.log);
         self.operate(now);
@@ -218,15 +217,13 @@ impl Unit {
         let to_tcms = report::to_tcms(self);
         self.send_through(Place::TcmsTransmitter, now, &to_tcms, out);
         if self.maintenance.listened_to(now) {
-            self.link.send(now, &report::status(self), out);
+            self.ports.send(now, &report::status(self), out);
             self.maintenance.read_log(&self.log, &mut self.replies);
             if self.replies.is_empty() {
                 self.maintenance
                     .read_run(&self.run_record, &mut self.replies);
             }
-            for reply in self.replies.drain(..) {
-                self.link.send(now, &reply, out);
-            }
+            self.send_replies(now, out);
         }
     }
 }

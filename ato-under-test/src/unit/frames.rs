@@ -18,14 +18,19 @@ const DAMAGE: u8 = 0x12;
 impl Unit {
     /// Latches received inputs and answers requests of the tester.
     pub(super) fn receive_frames(&mut self, now: Instant, out: &mut Vec<u8>) {
-        while let Some(Received { header, message }) = self.link.poll(now) {
+        while let Some((port, Received { header, message })) = self.ports.poll(now) {
+            if header.channel == Channel::Ptu && port != self.ports.tester_at() {
+                // What was asked at the other port is answered there.
+                self.send_replies(now, out);
+                self.ports.hear_tester(port);
+            }
             match message {
                 Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
                 Message::TcmsToAtc(frame) => self.on_tcms(now, frame),
                 Message::TwcWayside(data) => self.take_station(now, Some(header.seq), data, out),
                 Message::Identify(_) => {
                     let identity = report::identity(self, now);
-                    self.link.send(now, &identity, out);
+                    self.ports.send(now, &identity, out);
                 }
                 other if header.channel == Channel::Ptu => {
                     let conditions = self.arm_conditions();
@@ -45,8 +50,12 @@ impl Unit {
             .maintenance
             .step(now, conditions, &mut self.board, &mut self.log);
         self.replies.extend(notice);
+        self.send_replies(now, out);
+    }
+
+    pub(super) fn send_replies(&mut self, now: Instant, out: &mut Vec<u8>) {
         for reply in self.replies.drain(..) {
-            self.link.send(now, &reply, out);
+            self.ports.send(now, &reply, out);
         }
     }
 
@@ -131,7 +140,7 @@ impl Unit {
             return;
         }
         let begin = out.len();
-        self.link.send(now, message, out);
+        self.ports.send(now, message, out);
         if self.faults.loses(place) {
             let middle = (begin + out.len()) / 2;
             if let Some(byte) = out.get_mut(middle) {

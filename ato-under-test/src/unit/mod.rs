@@ -11,13 +11,12 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
-use protocol::link::{End, Link};
 use protocol::message::{IoOutput, Message, Mode, Outputs, TwcWayside};
 use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, ScanContext};
-use crate::com::{IoImage, Maintenance, RejectWatch, TcmsLink};
+use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
 use crate::front_end::{
     DelayQueue, EffortOutput, Faults, FrontEnd, OutputStage, PowerAndClock, Supply,
     apply_stored_data_faults,
@@ -36,7 +35,7 @@ const SCANS_PER_CYCLE: u8 = 5;
 #[derive(Debug)]
 pub struct Unit {
     setup: Setup,
-    link: Link,
+    ports: Ports,
     log: EventLog,
     maintenance: Maintenance,
     board: TestBoard,
@@ -81,7 +80,7 @@ impl Unit {
         let mut log = EventLog::default();
         log.push(Instant::ZERO, Event::PowerUp, 0);
         Self {
-            link: Link::new(End::Unit),
+            ports: Ports::new(),
             log,
             maintenance: Maintenance::new(ms(link.tester_timeout_ms), setup.seed),
             board: TestBoard::new(config.metres_per_pulse()),
@@ -117,25 +116,37 @@ impl Unit {
         }
     }
 
-    /// Takes bytes from the wire; they are acted on in the next scan.
+    /// Takes bytes that came at the harness; they are acted on in the next scan.
     pub fn receive(&mut self, bytes: &[u8]) {
+        self.receive_at(Port::Harness, bytes);
+    }
+
+    /// Takes bytes that came at a port; they are acted on in the next scan.
+    pub fn receive_at(&mut self, port: Port, bytes: &[u8]) {
         if !self.power.down() {
-            self.link.push(bytes);
+            self.ports.link_mut(port).push(bytes);
         }
     }
 
-    /// Another tester is connected from now on: nothing the last one sent is continued.
-    pub fn reset_connection(&mut self) {
-        self.link.reset_connection();
+    /// Appends what the last scan sent on the maintenance port; nothing unless a tester was heard there last.
+    pub fn take_maintenance(&mut self, out: &mut Vec<u8>) {
+        self.ports.take_maintenance(out);
     }
 
-    /// Frames accepted since power-up, on all channels.
-    pub fn frames_accepted(&self) -> u64 {
-        self.link.counters().accepted_total()
+    /// Another tester is connected to a port from now on: nothing the last one sent there is continued.
+    pub fn reset_connection(&mut self, port: Port) {
+        self.ports.link_mut(port).reset_connection();
     }
 
-    /// One scan, every 10 ms; frames to send are appended to `out`.
+    /// Frames accepted at a port since power-up, on all its channels.
+    pub fn frames_accepted(&self, port: Port) -> u64 {
+        self.ports.link(port).counters().accepted_total()
+    }
+
+    /// One scan, every 10 ms; frames for the harness are appended to `out`, those for the maintenance port wait
+    /// for [`Self::take_maintenance`] until the next scan.
     pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
+        self.ports.begin_scan();
         self.faults.step(now);
         match self.power.supply(now, &mut self.faults) {
             Supply::Down => return,
@@ -261,6 +272,6 @@ impl Unit {
             marker: self.locator.last_marker(),
             marker_count: self.locator.count(),
         };
-        self.link.send(now, &output.into(), out);
+        self.ports.send(now, &output.into(), out);
     }
 }

@@ -46,7 +46,7 @@ pub fn status(unit: &Unit) -> Message {
         effort: unit.ato_outputs.effort,
         position_cm: libm::round(unit.locator.position_m() * 100.0) as i32,
         events: unit.log.next_index(),
-        rejected_frames: unit.link.counters().rejected_total() as u16,
+        rejected_frames: unit.ports.rejected_total() as u16,
         twc_received: unit.twc.received(),
         self_test: unit.self_tester.failed(),
         test_signals: unit.board.signals(),

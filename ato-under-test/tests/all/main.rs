@@ -6,6 +6,7 @@ mod automatic_operation;
 mod common;
 mod journey;
 mod maintenance;
+mod maintenance_port;
 mod plant;
 mod protection;
 mod robustness;

@@ -40,6 +40,8 @@ pub struct Received {
 #[derive(Debug)]
 pub struct Link {
     end: End,
+    /// Channels that are heard here.
+    hears: [bool; CHANNELS],
     decoder: Decoder,
     receivers: [Option<Receiver>; CHANNELS],
     next_seq: [u16; CHANNELS],
@@ -48,10 +50,22 @@ pub struct Link {
 }
 
 impl Link {
-    /// An end that has received nothing yet.
+    /// An end that hears every channel, and has received nothing yet.
     pub const fn new(end: End) -> Self {
+        Self::with_channels(end, &Channel::ALL)
+    }
+
+    /// An end that hears these channels alone: frames of any other are rejected as [`Reject::Channel`].
+    pub const fn with_channels(end: End, channels: &[Channel]) -> Self {
+        let mut hears = [false; CHANNELS];
+        let mut i = 0;
+        while i < channels.len() {
+            hears[channels[i] as usize] = true;
+            i += 1;
+        }
         Self {
             end,
+            hears,
             decoder: Decoder::new(),
             receivers: [None; CHANNELS],
             next_seq: [0; CHANNELS],
@@ -110,6 +124,9 @@ impl Link {
                     reason,
                     channel: Some(header.channel),
                 };
+                if !self.hears[header.channel as usize] {
+                    return Err(rejected(Reject::Channel));
+                }
                 let (own, partner) = addresses(self.end, header.channel);
                 if (header.source, header.destination) != (partner, own) {
                     return Err(rejected(Reject::Address));
@@ -138,7 +155,11 @@ impl Link {
             });
             match checked {
                 Ok(received) => break Some(received),
-                Err(rejected) => self.counters.reject(rejected),
+                Err(mut rejected) => {
+                    // A channel that is not heard here is counted like one that does not exist.
+                    rejected.channel = rejected.channel.filter(|c| self.hears[*c as usize]);
+                    self.counters.reject(rejected);
+                }
             }
         };
         self.counters.garbage = self.decoder.garbage();
@@ -171,7 +192,7 @@ const fn addresses(end: End, channel: Channel) -> (Address, Address) {
 mod tests {
     use super::*;
     use crate::Duration;
-    use crate::message::{Identify, KeepAlive, Status};
+    use crate::message::{Identify, IoInput, KeepAlive, Status, TcmsToAtc, TwcWayside};
 
     /// A tester whose numbers and clock begin anew is heard at once on a connection of its own, and half a
     /// frame of the one before it spoils none of its frames.
@@ -264,6 +285,42 @@ mod tests {
         assert_eq!(bench.last_heard(Channel::Ptu), Some(now));
         assert_eq!(unit.counters().accepted(Channel::Ptu), 2);
         assert_eq!(unit.counters().rejected_total(), 0);
+    }
+
+    /// Goal: what is not of an end's channels neither acts nor answers, and no channel is blamed for it. Method: a
+    /// unit's end for the tester alone gets a frame of each channel, and one of the I/O channel that is damaged.
+    #[test]
+    fn an_end_with_one_channel_rejects_frames_of_the_others() {
+        let mut unit = Link::with_channels(End::Unit, &[Channel::Ptu]);
+        let mut bench = Link::new(End::Bench);
+        let mut frames = Vec::new();
+        for message in [
+            IoInput::default().into(),
+            Message::from(TcmsToAtc::default()),
+            TwcWayside::default().into(),
+            Identify {}.into(),
+            IoInput::default().into(),
+        ] {
+            bench.send(Instant::ZERO, &message, &mut frames);
+        }
+        let last = frames.len() - 2;
+        frames[last] ^= 1;
+        unit.push(&frames);
+        let heard: Vec<_> = core::iter::from_fn(|| unit.poll(Instant::ZERO)).collect();
+        assert!(
+            matches!(
+                heard[..],
+                [Received {
+                    message: Message::Identify(_),
+                    ..
+                }]
+            ),
+            "{heard:?}"
+        );
+        let counters = unit.counters();
+        assert_eq!(counters.rejected_for(Reject::Channel, None), 3);
+        assert_eq!(counters.rejected_for(Reject::Checksum, None), 1);
+        assert_eq!(counters.rejected_total(), 4);
     }
 
     /// Goal: a line that gives frames twice is told from a sender that was started again. Method: each

@@ -1,0 +1,110 @@
+//! The unit's two ports: the harness, which carries all channels, and the maintenance port, a technician's
+//! RS-232 connector on a train, which carries the maintenance channel alone [S2 §2.2].
+
+use alloc::vec::Vec;
+
+use protocol::Instant;
+use protocol::link::{End, Link, Received};
+use protocol::message::{Channel, Message};
+
+/// One of the unit's ports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Port {
+    /// To I/O, TCMS and wayside, and to a tester that plays them.
+    Harness,
+    /// To a tester alone: frames of any other channel than [`Channel::Ptu`] are rejected here, so that no
+    /// laptop can play the train.
+    Maintenance,
+}
+
+/// A link on each port.
+#[derive(Debug)]
+pub struct Ports {
+    harness: Link,
+    maintenance: Link,
+    /// Where a tester was heard last: it is spoken to there.
+    tester_at: Port,
+    /// What goes out on the maintenance port.
+    to_maintenance: Vec<u8>,
+}
+
+impl Ports {
+    /// Nothing was received on either.
+    pub fn new() -> Self {
+        Self {
+            harness: Link::new(End::Unit),
+            maintenance: Link::with_channels(End::Unit, &[Channel::Ptu]),
+            tester_at: Port::Harness,
+            to_maintenance: Vec::new(),
+        }
+    }
+
+    /// The link on a port.
+    pub fn link(&self, port: Port) -> &Link {
+        match port {
+            Port::Harness => &self.harness,
+            Port::Maintenance => &self.maintenance,
+        }
+    }
+
+    /// The link on a port, to be given bytes.
+    pub fn link_mut(&mut self, port: Port) -> &mut Link {
+        match port {
+            Port::Harness => &mut self.harness,
+            Port::Maintenance => &mut self.maintenance,
+        }
+    }
+
+    /// The next accepted frame: those of the harness first.
+    pub fn poll(&mut self, now: Instant) -> Option<(Port, Received)> {
+        let harness = self.harness.poll(now).map(|frame| (Port::Harness, frame));
+        harness.or_else(|| {
+            let frame = self.maintenance.poll(now)?;
+            Some((Port::Maintenance, frame))
+        })
+    }
+
+    /// Where a tester was heard last.
+    pub fn tester_at(&self) -> Port {
+        self.tester_at
+    }
+
+    /// A tester was heard at `port`.
+    pub fn hear_tester(&mut self, port: Port) {
+        self.tester_at = port;
+    }
+
+    /// Sends to the partner of the message's channel; frames for the harness are appended to `out`.
+    pub fn send(&mut self, now: Instant, message: &Message, out: &mut Vec<u8>) {
+        if message.channel() == Channel::Ptu && self.tester_at == Port::Maintenance {
+            let out = &mut self.to_maintenance;
+            self.maintenance.send(now, message, out);
+        } else {
+            self.harness.send(now, message, out);
+        }
+    }
+
+    /// A scan begins: what nobody took of the last one's frames is lost, as on a line without a listener.
+    pub fn begin_scan(&mut self) {
+        self.to_maintenance.clear();
+    }
+
+    /// Appends what this scan sent on the maintenance port.
+    pub fn take_maintenance(&mut self, out: &mut Vec<u8>) {
+        out.append(&mut self.to_maintenance);
+    }
+
+    /// Frames rejected on both ports, for any reason.
+    pub fn rejected_total(&self) -> u64 {
+        self.sum(|link| link.counters().rejected_total())
+    }
+
+    /// Frames rejected on a channel, on both ports.
+    pub fn rejected_on(&self, channel: Channel) -> u64 {
+        self.sum(|link| link.counters().rejected_on(channel))
+    }
+
+    fn sum(&self, count: impl Fn(&Link) -> u64) -> u64 {
+        count(&self.harness) + count(&self.maintenance)
+    }
+}
