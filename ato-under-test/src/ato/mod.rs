@@ -95,7 +95,7 @@ pub struct AtoOutputs {
 }
 
 /// Automatic operation of one unit, stepped once a cycle.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Ato {
     state: AtoState,
     failure: AtoFailure,

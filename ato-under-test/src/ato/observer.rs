@@ -30,7 +30,7 @@ pub struct SpeedMeasurement {
     pub pulse_m: f64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Observer {
     config: ObserverConfig,
     measurement: SpeedMeasurement,

@@ -21,7 +21,7 @@ pub enum Code {
 
 /// The decoder: a code counts once it has been steady, and stays in force for a hold time after the
 /// last time it was heard.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct CodeDecoder {
     code: Code,
     heard: Instant,

@@ -8,7 +8,7 @@ use crate::kernel::EventLog;
 use crate::timer::Edge;
 
 /// Adds up the distance run against the reverser.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Rollback {
     against_m: f64,
     tripped: Edge,

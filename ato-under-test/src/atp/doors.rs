@@ -24,7 +24,7 @@ pub struct DoorInputs {
     pub speed: Speed,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Doors {
     open_moving: OnDelay,
     tripped: Edge,

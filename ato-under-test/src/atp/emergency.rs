@@ -22,7 +22,7 @@ pub struct BrakeInputs {
     pub alive: bool,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct EmergencyBrake {
     cause: EbCause,
     acknowledge: Edge,

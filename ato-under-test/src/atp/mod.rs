@@ -45,7 +45,7 @@ pub struct ScanContext {
 }
 
 /// State of the protection functions from scan to scan.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Atp {
     decoder: CodeDecoder,
     tachometers: Tachometers,

@@ -44,7 +44,7 @@ pub struct ModeInputs {
     pub arrived: bool,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ModeSequence {
     mode: Mode,
     start: Edge,

@@ -31,7 +31,7 @@ pub struct Overspeed {
 }
 
 /// Compares the speed with the limit in force, scan by scan.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OverspeedSupervision {
     limit: Speed,
     above_alarm: OnDelay,

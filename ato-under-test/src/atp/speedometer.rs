@@ -18,7 +18,7 @@ const JUMP_SCANS: usize = 10;
 /// Jump allowed beyond the plausible acceleration, for the first pulses after standing, m/s.
 const JUMP_ALLOWANCE_MPS: f64 = 0.5;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Speedometer {
     window: Duration,
     metres_per_pulse: f64,

@@ -18,7 +18,7 @@ const NOISE_SCANS: u32 = 6;
 /// Span in which they are counted.
 const NOISE_SPAN: Duration = Duration::from_ms(1000);
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Tachometers {
     meters: [Speedometer; 2],
     noise: [Noise; 2],
@@ -32,7 +32,7 @@ pub struct Tachometers {
     distance_channel: usize,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Noise {
     jumps: u32,
     since: Instant,

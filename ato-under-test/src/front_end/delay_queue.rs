@@ -8,7 +8,7 @@ use protocol::Instant;
 const MOST: usize = 32;
 
 /// A queue of things that are due at a time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct DelayQueue<T> {
     waiting: VecDeque<(Instant, T)>,
 }

@@ -9,7 +9,7 @@ use protocol::{CYCLE, Duration};
 const LATEST_CYCLES: usize = 100;
 
 /// The processor's output.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct EffortOutput {
     held_back: VecDeque<i16>,
 }

@@ -30,7 +30,7 @@ const AHEAD_SHARE: f64 = 0.5;
 const STANDS_S: f64 = 0.5;
 
 /// Section, position and marker order.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Locator {
     config: MarkerConfig,
     odometer: Odometer,

@@ -23,7 +23,7 @@ pub struct Movement {
     pub driven: bool,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Odometer {
     pulse_m: f64,
     window_s: f64,

@@ -16,7 +16,7 @@ pub struct TrainState {
     pub speed: Speed,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Twc {
     timeout: Duration,
     heard: Option<Instant>,

@@ -106,9 +106,11 @@ impl Unit {
         data: TwcWayside,
         out: &mut Vec<u8>,
     ) {
-        self.twc.take(now, data, &self.setup.line, &mut self.log);
+        self.functions
+            .twc
+            .take(now, data, &self.setup.line, &mut self.log);
         let Some(seq) = seq else { return };
-        let answer = self.twc.answer(seq, &data, self.train_state());
+        let answer = self.functions.twc.answer(seq, &data, self.train_state());
         if !self.loses(Place::TwcAntenna) {
             self.send_through(Place::FskTransmitter, now, &answer.into(), out);
         }
@@ -151,19 +153,27 @@ impl Unit {
 
     fn train_state(&self) -> TrainState {
         TrainState {
-            mode: self.atp.sequence().mode(),
-            doors_closed: self.inputs.lines.contains(TrainLines::DOORS_CLOSED),
-            aligned: self.aligned(),
-            standstill: self.atp.tachometers().standstill(),
-            speed: self.atp.tachometers().speed(),
+            mode: self.functions.atp.sequence().mode(),
+            doors_closed: self
+                .functions
+                .inputs
+                .lines
+                .contains(TrainLines::DOORS_CLOSED),
+            aligned: self.functions.aligned(&self.setup.config),
+            standstill: self.functions.atp.tachometers().standstill(),
+            speed: self.functions.atp.tachometers().speed(),
         }
     }
 
     fn arm_conditions(&self) -> ArmConditions {
         ArmConditions {
             started: self.self_tester.finished(),
-            key_on: self.inputs.lines.contains(TrainLines::MAINTENANCE_KEY),
-            standing: self.atp.tachometers().train_stands(),
+            key_on: self
+                .functions
+                .inputs
+                .lines
+                .contains(TrainLines::MAINTENANCE_KEY),
+            standing: self.functions.atp.tachometers().train_stands(),
         }
     }
 }

@@ -4,6 +4,7 @@
 
 mod cycle;
 mod frames;
+mod functions;
 mod report;
 mod self_test;
 
@@ -11,22 +12,18 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
-use protocol::message::{IoOutput, Message, Mode, Outputs, TwcWayside};
+use protocol::message::{IoOutput, Message, Outputs, TwcWayside};
 use protocol::{Duration, Instant};
 
-use crate::ato::{Ato, AtoOutputs};
-use crate::atp::{Atp, ScanContext};
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
 use crate::front_end::{
-    DelayQueue, EffortOutput, Faults, FrontEnd, OutputStage, PowerAndClock, Supply,
-    apply_stored_data_faults,
+    DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, Supply, apply_stored_data_faults,
 };
-use crate::kernel::{EventLog, FreezeFrame, RunRecord, SelfTester, Watchdog};
-use crate::psm::{Locator, Movement, Tra};
+use crate::kernel::{EventLog, RunRecord, SelfTester};
+use crate::psm::Tra;
 use crate::setup::Setup;
-use crate::signals::Inputs;
 use crate::test_board::TestBoard;
-use crate::twc::Twc;
+use functions::{Functions, Surroundings};
 
 /// Scans in a control cycle.
 const SCANS_PER_CYCLE: u8 = 5;
@@ -40,19 +37,10 @@ pub struct Unit {
     maintenance: Maintenance,
     board: TestBoard,
     self_tester: SelfTester,
-    atp: Atp,
-    twc: Twc,
-    locator: Locator,
+    functions: Functions,
     tra: Tra,
     tcms: TcmsLink,
-    ato_outputs: AtoOutputs,
-    effort_output: EffortOutput,
-    inputs: Inputs,
     image: IoImage,
-    ato: Ato,
-    /// Cycles ATO's processor has run, wrapping.
-    ato_cycles: u8,
-    ato_watchdog: Watchdog,
     run_record: RunRecord,
     faults: Faults,
     power: PowerAndClock,
@@ -90,18 +78,10 @@ impl Unit {
                 config,
                 &setup.line,
             ),
-            atp: Atp::new(config),
-            twc: Twc::new(ms(link.twc_timeout_ms)),
-            locator: Locator::new(config),
+            functions: Functions::new(config),
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms), config.ato.train.empty_kg),
-            ato: Ato::new(config),
-            ato_cycles: 0,
-            ato_watchdog: Watchdog::default(),
             run_record: RunRecord::default(),
-            ato_outputs: AtoOutputs::default(),
-            effort_output: EffortOutput::default(),
-            inputs: Inputs::default(),
             image: IoImage::new(ms(link.io_timeout_ms)),
             faults,
             power: PowerAndClock::default(),
@@ -159,8 +139,7 @@ impl Unit {
         self.receive_frames(now, out);
         self.read_inputs(now);
         self.test_self(now);
-        self.protect(now);
-        self.locate(now);
+        self.with_functions(|functions, around, log| functions.scan(now, around, log));
         if self.scan == 0 {
             self.cycle(now, out);
         }
@@ -188,89 +167,36 @@ impl Unit {
             .then(|| self.self_test_code())
             .flatten();
         let (image, board) = (&self.image, &mut self.board);
-        self.inputs = self
+        self.functions.inputs = self
             .front_end
             .scan(now, image, board, built_in, &mut self.faults);
     }
 
-    fn protect(&mut self, now: Instant) {
-        let context = ScanContext {
-            vital_passed: self.self_tester.vital_passed(),
-            started: self.self_tester.finished(),
-            ever_alive: self.image.ever_heard(),
-            aligned: self.aligned(),
-            at_platform: self.at_platform(),
-            door_side: self
-                .twc
-                .data()
-                .map(|data| data.door_side)
-                .unwrap_or_default(),
-            twc_up: self.twc.up(),
-            tcms_up: self.tcms.alive(),
-            ato_ready: self.ato_outputs.ready,
+    /// Lets every instance of the functions do a part of its work.
+    fn with_functions(&mut self, work: impl Fn(&mut Functions, &Surroundings<'_>, &mut EventLog)) {
+        let around = Surroundings {
+            setup: &self.setup,
+            self_tester: &self.self_tester,
+            tcms: &self.tcms,
+            tra: &self.tra,
+            faults: &self.faults,
+            ever_heard: self.image.ever_heard(),
         };
-        self.log.freeze(FreezeFrame {
-            speed: self.atp.tachometers().speed(),
-            limit: self.atp.limit(),
-            position_m: self.locator.position_m(),
-            mode: self.atp.sequence().mode(),
-            eb_cause: self.atp.brake().cause(),
-        });
-        self.atp.scan(
-            now,
-            &self.inputs,
-            context,
-            &self.setup.config,
-            &mut self.log,
-        );
-    }
-
-    fn locate(&mut self, now: Instant) {
-        let tachometers = self.atp.tachometers();
-        let channel = tachometers.distance_channel();
-        let pulses = &self.inputs.pulses[channel];
-        let movement = Movement {
-            moved_m: tachometers.moved_m(),
-            edge_age_s: pulses.sampled_at.since(pulses.edge_at).as_secs(),
-            speed_mps: tachometers.channel(channel).mps(),
-            standstill: tachometers.standstill(),
-            driven: self.atp.sequence().mode() == Mode::AutomaticRun,
-        };
-        self.locator
-            .step(now, movement, self.inputs.marker, &mut self.log);
-    }
-
-    fn aligned(&self) -> bool {
-        self.atp.tachometers().standstill()
-            && self.locator.aligned(self.setup.config.doors.aligned_m)
-    }
-
-    /// On the arrival station's loop, with valid station data.
-    fn at_platform(&self) -> bool {
-        let on_loop = self.twc.data().zip(self.locator.section());
-        self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
-    }
-
-    /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
-    fn holds(&self) -> bool {
-        let left_alone = self.atp.sequence().failed()
-            && self.atp.tachometers().standstill()
-            && self.inputs.controller == 0;
-        self.ato_outputs.holding_brake || left_alone
+        work(&mut self.functions, &around, &mut self.log);
     }
 
     /// Drives the contacts and tells the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
-        let healthy = self.self_tester.vital_passed() && self.inputs.alive;
-        let mut wanted = self.atp.outputs(healthy);
-        wanted.set(Outputs::HOLDING_BRAKE, self.holds());
+        let healthy = self.self_tester.vital_passed() && self.functions.inputs.alive;
+        let mut wanted = self.functions.atp.outputs(healthy);
+        wanted.set(Outputs::HOLDING_BRAKE, self.functions.holds());
         self.contacts = self.output_stage.drive(now, wanted, &self.faults);
         let output = IoOutput {
             outputs: self.contacts,
-            limit_cms: self.atp.limit().to_cms(),
-            speed_cms: self.atp.tachometers().speed().to_cms(),
-            marker: self.locator.last_marker(),
-            marker_count: self.locator.count(),
+            limit_cms: self.functions.atp.limit().to_cms(),
+            speed_cms: self.functions.atp.tachometers().speed().to_cms(),
+            marker: self.functions.locator.last_marker(),
+            marker_count: self.functions.locator.count(),
         };
         self.ports.send(now, &output.into(), out);
     }

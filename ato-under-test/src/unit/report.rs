@@ -26,36 +26,36 @@ pub fn identity(unit: &Unit, now: Instant) -> Message {
 
 /// The unit's state.
 pub fn status(unit: &Unit) -> Message {
-    let brake = unit.atp.brake();
-    let tachometers = unit.atp.tachometers();
-    let sequence = unit.atp.sequence();
+    let brake = unit.functions.atp.brake();
+    let tachometers = unit.functions.atp.tachometers();
+    let sequence = unit.functions.atp.sequence();
     let board_code = unit.board.code().unwrap_or_default();
     Status {
         bits: status_bits(unit),
         mode: sequence.mode(),
         refusals: sequence.refusals(),
-        code_index: match unit.atp.decoder().code() {
+        code_index: match unit.functions.atp.decoder().code() {
             Code::Known(index) => index,
             Code::None | Code::AbsoluteStop => NO_CODE,
         },
         eb_cause: brake.cause(),
-        fsb_cause: unit.atp.fsb_cause(),
+        fsb_cause: unit.functions.atp.fsb_cause(),
         speed1_cms: tachometers.channel(0).to_cms(),
         speed2_cms: tachometers.channel(1).to_cms(),
-        target_cms: unit.ato_outputs.target.to_cms(),
-        effort: unit.ato_outputs.effort,
-        position_cm: libm::round(unit.locator.position_m() * 100.0) as i32,
+        target_cms: unit.functions.ato_outputs.target.to_cms(),
+        effort: unit.functions.ato_outputs.effort,
+        position_cm: libm::round(unit.functions.locator.position_m() * 100.0) as i32,
         events: unit.log.next_index(),
         rejected_frames: unit.ports.rejected_total() as u16,
-        twc_received: unit.twc.received(),
+        twc_received: unit.functions.twc.received(),
         self_test: unit.self_tester.failed(),
         test_signals: unit.board.signals(),
         test_carrier_hz: libm::round(board_code.carrier_hz) as u16,
         test_code_rate_chz: libm::round(board_code.rate_hz * 100.0) as u16,
         test_level_mv: libm::round(board_code.level_mv) as u16,
         test_speed_cms: unit.board.speed().unwrap_or_default().to_cms(),
-        ato_state: unit.ato.state(),
-        wheel_correction_10ppm: libm::round(unit.locator.wheel_correction() * 1e5) as i16,
+        ato_state: unit.functions.ato.state(),
+        wheel_correction_10ppm: libm::round(unit.functions.locator.wheel_correction() * 1e5) as i16,
     }
     .into()
 }
@@ -63,19 +63,22 @@ pub fn status(unit: &Unit) -> Message {
 fn status_bits(unit: &Unit) -> StatusBits {
     let mut bits = StatusBits::empty();
     bits.set(StatusBits::ARMED, unit.maintenance.armed());
-    bits.set(StatusBits::TWC_OK, unit.twc.up());
+    bits.set(StatusBits::TWC_OK, unit.functions.twc.up());
     bits.set(StatusBits::TCMS_OK, unit.tcms.alive());
-    bits.set(StatusBits::STATION_VALID, unit.twc.valid());
-    bits.set(StatusBits::ALIGNED, unit.aligned());
+    bits.set(StatusBits::STATION_VALID, unit.functions.twc.valid());
+    bits.set(
+        StatusBits::ALIGNED,
+        unit.functions.aligned(&unit.setup.config),
+    );
     bits.set(StatusBits::TRA_OK, unit.tra.ok());
-    bits.set(StatusBits::ATO_READY, unit.ato_outputs.ready);
+    bits.set(StatusBits::ATO_READY, unit.functions.ato_outputs.ready);
     bits.set(StatusBits::STARTED, unit.self_tester.finished());
     bits.set(StatusBits::INPUTS_OK, unit.image.alive());
     bits
 }
 
 pub fn to_tcms(unit: &Unit) -> Message {
-    let ato = unit.ato_outputs;
+    let ato = unit.functions.ato_outputs;
     let mut bits = AtcToTcmsBits::empty();
     bits.set(AtcToTcmsBits::POWER, ato.effort > 0);
     bits.set(AtcToTcmsBits::BRAKE, ato.effort < 0);
@@ -87,10 +90,10 @@ pub fn to_tcms(unit: &Unit) -> Message {
     );
     AtcToTcms {
         bits,
-        mode: unit.atp.sequence().mode(),
+        mode: unit.functions.atp.sequence().mode(),
         effort: ato.effort,
         target_cms: ato.target.to_cms(),
-        speed_cms: unit.atp.tachometers().speed().to_cms(),
+        speed_cms: unit.functions.atp.tachometers().speed().to_cms(),
     }
     .into()
 }

@@ -19,14 +19,14 @@ impl Unit {
             return;
         }
         let seen = SelfTestInputs {
-            receiver_decoded: matches!(self.atp.decoder().candidate(), Code::Known(_)),
-            tra_answered: self.inputs.tra_answers,
+            receiver_decoded: matches!(self.functions.atp.decoder().candidate(), Code::Known(_)),
+            tra_answered: self.functions.inputs.tra_answers,
             modem_heard: self.loop_back(),
             test_board_answers: self.board.answers(),
-            brake_line_energised: self.inputs.lines.contains(TrainLines::EB_LOOP),
+            brake_line_energised: self.functions.inputs.lines.contains(TrainLines::EB_LOOP),
         };
         if self.self_tester.step(now, seen) {
-            self.atp.forget_test_code();
+            self.functions.atp.forget_test_code();
             let failed = self.self_tester.failed();
             if !failed.is_empty() {
                 self.log

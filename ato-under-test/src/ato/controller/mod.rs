@@ -70,11 +70,29 @@ pub struct Demand {
 }
 
 /// Turns a situation into a demand.
-pub trait SpeedController: Debug + Send {
+pub trait SpeedController: Debug + Send + CloneBoxed {
     /// One cycle.
     fn step(&mut self, input: &ControllerInput) -> Demand;
     /// Resets the controller's state; the train stands and is not driven.
     fn reset(&mut self);
+}
+
+/// Copies a controller with its state, whichever it is.
+pub trait CloneBoxed {
+    /// A copy of its own.
+    fn clone_boxed(&self) -> Box<dyn SpeedController>;
+}
+
+impl<T: SpeedController + Clone + 'static> CloneBoxed for T {
+    fn clone_boxed(&self) -> Box<dyn SpeedController> {
+        Box::new(self.clone())
+    }
+}
+
+impl Clone for Box<dyn SpeedController> {
+    fn clone(&self) -> Self {
+        (**self).clone_boxed()
+    }
 }
 
 /// The controller a configuration chooses.

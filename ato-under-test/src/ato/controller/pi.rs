@@ -18,7 +18,7 @@ use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::ReferenceGenerator;
 
 /// The controller.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pi {
     generator: ReferenceGenerator,
     plausibility: PlausibilityCheck,

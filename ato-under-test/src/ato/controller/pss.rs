@@ -19,7 +19,7 @@ use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::{Descent, Setpoint, correction_mps2};
 
 /// The controller.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pss {
     descent: Descent,
     plausibility: PlausibilityCheck,

@@ -28,7 +28,7 @@ const REST_CYCLES: u32 = 20;
 const ORDER_MPS: f64 = 0.05;
 
 /// What the profile is doing.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Phase {
     /// Toward or at the cruising speed by eq. (1).
     Cruise(SCurve),
@@ -39,7 +39,7 @@ enum Phase {
 }
 
 /// The controller.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Servo {
     config: ServoConfig,
     /// Gains for one kilogram.

@@ -58,7 +58,7 @@ fn centre_of_gravity(heights: [f64; SETS]) -> f64 {
 }
 
 /// Area and first moment.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Shape {
     area: f64,
     moment: f64,

@@ -24,7 +24,7 @@ use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::ReferenceGenerator;
 
 /// The controller.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Fuzzy {
     generator: ReferenceGenerator,
     plausibility: PlausibilityCheck,

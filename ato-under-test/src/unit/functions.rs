@@ -1,0 +1,308 @@
+//! What the unit knows and decides from one set of inputs: ATP, TWC data, PSM and ATO.
+//!
+//! A scan is protection and position, a cycle is station data, mode and ATO. Nothing here drives an output: the
+//! unit does that with what its functions ask for.
+
+use protocol::config::UnitConfig;
+use protocol::event::Event;
+use protocol::injection::{Effect, Place};
+use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
+use protocol::{Duration, Instant, Speed};
+
+use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
+use crate::atp::{Atp, Code, ModeInputs, ScanContext};
+use crate::com::TcmsLink;
+use crate::front_end::{EffortOutput, Faults};
+use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
+use crate::psm::{Locator, Movement, Tra};
+use crate::setup::Setup;
+use crate::signals::Inputs;
+use crate::twc::Twc;
+
+/// What the functions look at beside their inputs.
+pub struct Surroundings<'a> {
+    pub setup: &'a Setup,
+    pub self_tester: &'a SelfTester,
+    pub tcms: &'a TcmsLink,
+    pub tra: &'a Tra,
+    pub faults: &'a Faults,
+    /// The harness has been alive at least once.
+    pub ever_heard: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct Functions {
+    pub inputs: Inputs,
+    pub atp: Atp,
+    pub twc: Twc,
+    pub locator: Locator,
+    pub ato: Ato,
+    pub ato_outputs: AtoOutputs,
+    effort_output: EffortOutput,
+    /// Cycles ATO's processor has run, wrapping.
+    ato_cycles: u8,
+    ato_watchdog: Watchdog,
+}
+
+impl Functions {
+    /// As at power-up: nothing is known, the brake is applied.
+    pub fn new(config: &UnitConfig) -> Self {
+        Self {
+            inputs: Inputs::default(),
+            atp: Atp::new(config),
+            twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
+            locator: Locator::new(config),
+            ato: Ato::new(config),
+            ato_outputs: AtoOutputs::default(),
+            effort_output: EffortOutput::default(),
+            ato_cycles: 0,
+            ato_watchdog: Watchdog::default(),
+        }
+    }
+
+    /// One scan.
+    pub fn scan(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
+        self.protect(now, around, log);
+        self.locate(now, log);
+    }
+
+    /// One cycle.
+    pub fn cycle(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
+        self.twc.step(now, log);
+        if let Some(data) = self.twc.data().filter(|_| self.twc.valid()) {
+            let standstill = self.atp.tachometers().standstill();
+            self.locator.locate(data, &around.setup.line, standstill);
+        }
+        let mode_inputs = self.mode_inputs(around);
+        self.atp.cycle(now, mode_inputs, log);
+        self.operate(now, around, log);
+    }
+
+    fn protect(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
+        let context = ScanContext {
+            vital_passed: around.self_tester.vital_passed(),
+            started: around.self_tester.finished(),
+            ever_alive: around.ever_heard,
+            aligned: self.aligned(&around.setup.config),
+            at_platform: self.at_platform(),
+            door_side: self
+                .twc
+                .data()
+                .map(|data| data.door_side)
+                .unwrap_or_default(),
+            twc_up: self.twc.up(),
+            tcms_up: around.tcms.alive(),
+            ato_ready: self.ato_outputs.ready,
+        };
+        log.freeze(FreezeFrame {
+            speed: self.atp.tachometers().speed(),
+            limit: self.atp.limit(),
+            position_m: self.locator.position_m(),
+            mode: self.atp.sequence().mode(),
+            eb_cause: self.atp.brake().cause(),
+        });
+        self.atp
+            .scan(now, &self.inputs, context, &around.setup.config, log);
+    }
+
+    fn locate(&mut self, now: Instant, log: &mut EventLog) {
+        let tachometers = self.atp.tachometers();
+        let channel = tachometers.distance_channel();
+        let pulses = &self.inputs.pulses[channel];
+        let movement = Movement {
+            moved_m: tachometers.moved_m(),
+            edge_age_s: pulses.sampled_at.since(pulses.edge_at).as_secs(),
+            speed_mps: tachometers.channel(channel).mps(),
+            standstill: tachometers.standstill(),
+            driven: self.atp.sequence().mode() == Mode::AutomaticRun,
+        };
+        self.locator.step(now, movement, self.inputs.marker, log);
+    }
+
+    pub fn aligned(&self, config: &UnitConfig) -> bool {
+        self.atp.tachometers().standstill() && self.locator.aligned(config.doors.aligned_m)
+    }
+
+    /// On the arrival station's loop, with valid station data.
+    fn at_platform(&self) -> bool {
+        let on_loop = self.twc.data().zip(self.locator.section());
+        self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
+    }
+
+    /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
+    pub fn holds(&self) -> bool {
+        let left_alone = self.atp.sequence().failed()
+            && self.atp.tachometers().standstill()
+            && self.inputs.controller == 0;
+        self.ato_outputs.holding_brake || left_alone
+    }
+
+    fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {
+        let lines = self.inputs.lines;
+        let standstill = self.atp.tachometers().standstill();
+        let code = matches!(self.atp.decoder().code(), Code::Known(_));
+        let switch = self.inputs.mode_switch;
+        let mut lacking = Refusals::empty();
+        lacking.set(Refusals::NOT_STANDSTILL, !standstill);
+        lacking.set(
+            Refusals::DOORS_OPEN,
+            !lines.contains(TrainLines::DOORS_CLOSED),
+        );
+        lacking.set(Refusals::NO_TWC, !self.twc.up());
+        lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
+        lacking.set(Refusals::NO_CODE, !code);
+        lacking.set(Refusals::CAB_INACTIVE, !lines.contains(TrainLines::HCR));
+        lacking.set(Refusals::MODE_SWITCH, !Atp::switch_automatic(switch));
+        lacking.set(
+            Refusals::CONTROLLER_NOT_NEUTRAL,
+            self.inputs.controller != 0,
+        );
+        lacking.set(Refusals::EB_APPLIED, self.atp.brake().applied());
+        lacking.set(Refusals::TCMS_NOT_READY, !around.tcms.ready());
+        lacking.set(Refusals::ATO_NOT_READY, !self.ato_outputs.ready);
+        lacking.set(Refusals::TRA_FAILED, !around.tra.ok());
+        // The TEST board takes no part in running.
+        let failed = around.self_tester.failed().difference(SelfTest::TEST_BOARD);
+        lacking.set(Refusals::SELF_TEST, !failed.is_empty());
+        ModeInputs {
+            ready: around.self_tester.finished() && self.inputs.alive,
+            cab_active: lines.contains(TrainLines::HCR),
+            switch: if self.inputs.alive {
+                switch
+            } else {
+                ModeSwitch::Off
+            },
+            lacking,
+            departure: self.twc.data().is_some_and(|data| data.departure == 1),
+            start: lines.contains(TrainLines::START),
+            acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
+            arrived: self.ato.arrived(),
+        }
+    }
+
+    fn operate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
+        let was_ready = self.ato_outputs.ready;
+        let data = self.twc.data();
+        let tachometers = self.atp.tachometers();
+        let inputs = AtoInputs {
+            mode: self.atp.sequence().mode(),
+            limit: self.atp.limit(),
+            fixed_speed: data
+                .filter(|data| data.fixed_speed_kmh != u8::MAX)
+                .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),
+            running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
+            section: self.locator.section(),
+            position_m: self.locator.position_m(),
+            ahead_m: self.locator.ahead_m(),
+            aligned_m: around.setup.config.doors.aligned_m,
+            speed: self.wheel_speed(),
+            standstill: tachometers.standstill(),
+            power_cut: self.atp.power_cut() || around.tcms.cuts_power(),
+            train: TrainReport {
+                overrides: around.tcms.overrides(),
+                sent: self.ato_outputs.effort,
+                given: around.tcms.given(),
+            },
+            load_kg: around.tcms.load_kg(),
+            checks: self.ato_checks(around),
+        };
+        let fault = around.faults.at(Place::AtoCpu);
+        if matches!(fault, Some(Effect::Dead)) {
+            // A processor that has stopped leaves its outputs as they were and reports no new event.
+            self.ato_outputs.findings = Findings::default();
+            self.ato_outputs.slid_m = 0.0;
+        } else {
+            self.ato_outputs = self.ato.step(inputs, &around.setup.config.ato);
+            self.ato_cycles = self.ato_cycles.wrapping_add(1);
+            let effort = self.ato_outputs.effort;
+            self.ato_outputs.effort = self.effort_output.give(effort, fault);
+        }
+        self.watch_processor(&around.setup.config);
+        self.locator.slide(self.ato_outputs.slid_m);
+        self.report_ato(now, was_ready, log);
+    }
+
+    /// A stopped processor is reset and its outputs are taken from it; ATP brakes in its place.
+    fn watch_processor(&mut self, config: &UnitConfig) {
+        if self.ato_watchdog.step(self.ato_cycles) {
+            self.ato = Ato::new(config);
+            self.ato_outputs = AtoOutputs {
+                failure: AtoFailure::Processor,
+                ..AtoOutputs::default()
+            };
+        }
+    }
+
+    /// Speed ATO goes by: of the wheel that markers calibrate; ATP keeps its own, safe speed.
+    fn wheel_speed(&self) -> Speed {
+        let tachometers = self.atp.tachometers();
+        let wheel = 1.0 + self.locator.wheel_correction();
+        Speed::from_mps(tachometers.channel(tachometers.distance_channel()).mps() * wheel)
+    }
+
+    /// This cycle as the run record keeps it.
+    pub fn run_cycle(&self) -> RunCycle {
+        RunCycle {
+            position_m: self.locator.position_m(),
+            speed_cms: self.wheel_speed().to_cms(),
+            target_cms: self.ato_outputs.target.to_cms(),
+            effort: self.ato_outputs.effort,
+            marker: (self.locator.last_marker(), self.locator.count()),
+            state: self.ato.state(),
+        }
+    }
+
+    /// KRN's checks of what ATO needs [S0 §1, §3.3]; its processor is under the watchdog.
+    fn ato_checks(&self, around: &Surroundings<'_>) -> Checks {
+        let failed = around.self_tester.failed();
+        let run = self.atp.sequence().mode() == Mode::AutomaticRun;
+        let causes = [
+            (
+                failed.intersects(SelfTest::CONFIGURATION | SelfTest::TRACK_DATABASE),
+                AtoFailure::StoredData,
+            ),
+            (
+                failed.intersects(SelfTest::MEMORY | SelfTest::TRA | SelfTest::TWC_MODEM),
+                AtoFailure::SelfTest,
+            ),
+            (
+                run && self.atp.tachometers().faulty(),
+                AtoFailure::Tachometers,
+            ),
+            // On the way the train is better brought to its platform than stopped.
+            (!run && !around.tra.ok(), AtoFailure::Tra),
+        ];
+        match causes.iter().find(|(holds, _)| *holds) {
+            Some((_, failure)) => Checks::Failed(*failure),
+            None if around.self_tester.finished() => Checks::Passed,
+            None => Checks::Running,
+        }
+    }
+
+    /// Logs what ATO found, and that it failed.
+    fn report_ato(&self, now: Instant, was_ready: bool, log: &mut EventLog) {
+        let outputs = self.ato_outputs;
+        let found = outputs.findings;
+        let hundredths = |value: f64| libm::round(value * 100.0) as i32;
+        let failed = was_ready && !outputs.ready;
+        if failed && !found.absurd.is_empty() {
+            let bits = i32::from(found.absurd.bits());
+            log.push(now, Event::AtoInputAbsurd, bits);
+        }
+        let findings = [
+            (Event::AtoNotFollowing, found.not_following_mps),
+            (Event::TrainWithholds, found.withheld_mps),
+            (Event::StopOverrun, found.overrun_m),
+            (Event::StopShort, found.short_m),
+        ];
+        for (event, value) in findings {
+            if let Some(value) = value {
+                log.push(now, event, hundredths(value));
+            }
+        }
+        if failed {
+            let reason = i32::from(outputs.failure.code());
+            log.push(now, Event::AtoFailed, reason);
+        }
+    }
+}
