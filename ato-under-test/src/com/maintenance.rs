@@ -18,6 +18,8 @@ use crate::test_board::TestBoard;
 
 /// Time in which a challenge must be answered.
 const CHALLENGE_TIME: Duration = Duration::from_ms(1000);
+/// Time for which a subscription holds.
+const SUBSCRIPTION: Duration = Duration::from_ms(1000);
 /// Log entries sent in one cycle, so that the cycle's byte budget holds.
 const ENTRIES_PER_CYCLE: usize = 2;
 /// Rows of the run record sent in a cycle without log entries, for the same reason.
@@ -36,6 +38,8 @@ pub struct Maintenance {
     armed: Option<u32>,
     challenge: Option<(u32, u32, Instant)>,
     heard: Option<Instant>,
+    /// When `Subscribe` was heard, and whether it asked for changes at once.
+    subscribed: Option<(Instant, bool)>,
     session_heard: Instant,
     timeout: Duration,
     random: Random,
@@ -52,6 +56,7 @@ impl Maintenance {
             armed: None,
             challenge: None,
             heard: None,
+            subscribed: None,
             session_heard: Instant::ZERO,
             timeout,
             random: Random::new(seed),
@@ -68,6 +73,12 @@ impl Maintenance {
     pub fn listened_to(&self, now: Instant) -> bool {
         self.heard
             .is_some_and(|heard| now.since(heard) < self.timeout)
+    }
+
+    /// A tester wants `TrainState`; whether also at once in the scan of a change.
+    pub fn subscribed(&self, now: Instant) -> Option<bool> {
+        let (at, changes) = self.subscribed?;
+        (now.since(at) < SUBSCRIPTION).then_some(changes)
     }
 
     /// Moves on to the present; returns the notice to send when arming lapses.
@@ -127,6 +138,7 @@ impl Maintenance {
                 let refusal = ArmRefusal::Disarmed;
                 replies.push(self.disarm(now, request.session, refusal, board, log));
             }
+            Message::Subscribe(request) => self.subscribed = Some((now, request.changes != 0)),
             Message::KeepAlive(alive) => self.on_session(now, alive.session),
             Message::ReadLog(request) => self.reader = Some(request.from_index),
             Message::ReadRun(request) => self.run_reader = Some(request.from_index),

@@ -79,6 +79,11 @@ impl TcmsLink {
         before.map(|_| self.alive)
     }
 
+    /// The last frame that made sense.
+    pub fn last(&self) -> &TcmsToAtc {
+        &self.last
+    }
+
     /// Passenger load last reported, kg.
     pub fn load_kg(&self) -> f64 {
         load_kg(&self.last)

@@ -25,6 +25,7 @@ pub struct Twc {
     valid: bool,
     invalid_reported: Option<u16>,
     received: u16,
+    answers: u16,
 }
 
 impl Twc {
@@ -38,6 +39,7 @@ impl Twc {
             valid: false,
             invalid_reported: None,
             received: 0,
+            answers: 0,
         }
     }
 
@@ -75,7 +77,8 @@ impl Twc {
     }
 
     /// The answer to the frame with sequence number `seq`.
-    pub fn answer(&self, seq: u16, data: &TwcWayside, train: TrainState) -> TwcTrain {
+    pub fn answer(&mut self, seq: u16, data: &TwcWayside, train: TrainState) -> TwcTrain {
+        self.answers = self.answers.wrapping_add(1);
         let mut bits = TwcTrainBits::empty();
         bits.set(TwcTrainBits::DOORS_CLOSED, train.doors_closed);
         bits.set(TwcTrainBits::ALIGNED, train.aligned);
@@ -102,6 +105,11 @@ impl Twc {
 
     pub fn data(&self) -> Option<&TwcWayside> {
         self.data.as_ref()
+    }
+
+    /// Answers made since power-up, wrapping.
+    pub fn answers(&self) -> u16 {
+        self.answers
     }
 
     /// Frames accepted since power-up, wrapping.

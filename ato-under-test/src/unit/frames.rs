@@ -110,7 +110,8 @@ impl Unit {
             .twc
             .take(now, data, &self.setup.line, &mut self.log);
         let Some(seq) = seq else { return };
-        let answer = self.functions.twc.answer(seq, &data, self.train_state());
+        let train = self.train_state();
+        let answer = self.functions.twc.answer(seq, &data, train);
         if !self.loses(Place::TwcAntenna) {
             self.send_through(Place::FskTransmitter, now, &answer.into(), out);
         }

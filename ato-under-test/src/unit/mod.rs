@@ -7,6 +7,7 @@ mod frames;
 mod functions;
 mod report;
 mod self_test;
+mod train_state;
 
 use alloc::vec::Vec;
 
@@ -24,6 +25,7 @@ use crate::psm::Tra;
 use crate::setup::Setup;
 use crate::test_board::TestBoard;
 use functions::{Functions, Surroundings};
+use train_state::StateReport;
 
 /// Scans in a control cycle.
 const SCANS_PER_CYCLE: u8 = 5;
@@ -48,7 +50,12 @@ pub struct Unit {
     late_stations: DelayQueue<(Option<u16>, TwcWayside)>,
     front_end: FrontEnd,
     output_stage: OutputStage,
+    /// Contacts that ATP and ATO ask for; relays follow.
+    asked: Outputs,
     contacts: Outputs,
+    /// Count of markers, and when it last changed, ms since power-up.
+    marker_at: (u8, u32),
+    state_report: StateReport,
     reject_watch: RejectWatch,
     scan: u8,
     replies: Vec<Message>,
@@ -88,7 +95,10 @@ impl Unit {
             late_stations: DelayQueue::default(),
             front_end: FrontEnd::new(config.metres_per_pulse()),
             output_stage: OutputStage::default(),
+            asked: Outputs::empty(),
             contacts: Outputs::empty(),
+            marker_at: (0, 0),
+            state_report: StateReport::default(),
             reject_watch: RejectWatch::new(link.rejected_per_10s),
             scan: 0,
             replies: Vec::new(),
@@ -140,11 +150,13 @@ impl Unit {
         self.read_inputs(now);
         self.test_self(now);
         self.with_functions(|functions, around, log| functions.scan(now, around, log));
-        if self.scan == 0 {
+        let cycle = self.scan == 0;
+        if cycle {
             self.cycle(now, out);
         }
         self.scan = (self.scan + 1) % SCANS_PER_CYCLE;
         self.drive_outputs(now, out);
+        self.tell_train_state(now, cycle, out);
     }
 
     /// Restarts after a dip of the supply; the hardware and its injected faults stay.
@@ -188,9 +200,10 @@ impl Unit {
     /// Drives the contacts and tells the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
         let healthy = self.self_tester.vital_passed() && self.functions.inputs.alive;
-        let mut wanted = self.functions.atp.outputs(healthy);
-        wanted.set(Outputs::HOLDING_BRAKE, self.functions.holds());
-        self.contacts = self.output_stage.drive(now, wanted, &self.faults);
+        self.asked = self.functions.atp.outputs(healthy);
+        self.asked
+            .set(Outputs::HOLDING_BRAKE, self.functions.holds());
+        self.contacts = self.output_stage.drive(now, self.asked, &self.faults);
         let output = IoOutput {
             outputs: self.contacts,
             limit_cms: self.functions.atp.limit().to_cms(),

@@ -1,7 +1,9 @@
 //! Messages in which the unit reports its identity and state to the tester and TCMS.
 
 use protocol::Instant;
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits};
+use protocol::message::{
+    AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits, TrainState,
+};
 
 use super::Unit;
 use crate::atp::Code;
@@ -34,10 +36,7 @@ pub fn status(unit: &Unit) -> Message {
         bits: status_bits(unit),
         mode: sequence.mode(),
         refusals: sequence.refusals(),
-        code_index: match unit.functions.atp.decoder().code() {
-            Code::Known(index) => index,
-            Code::None | Code::AbsoluteStop => NO_CODE,
-        },
+        code_index: code_index(unit),
         eb_cause: brake.cause(),
         fsb_cause: unit.functions.atp.fsb_cause(),
         speed1_cms: tachometers.channel(0).to_cms(),
@@ -58,6 +57,54 @@ pub fn status(unit: &Unit) -> Message {
         wheel_correction_10ppm: libm::round(unit.functions.locator.wheel_correction() * 1e5) as i16,
     }
     .into()
+}
+
+fn code_index(unit: &Unit) -> u8 {
+    match unit.functions.atp.decoder().code() {
+        Code::Known(index) => index,
+        Code::None | Code::AbsoluteStop => NO_CODE,
+    }
+}
+
+/// What the unit does to the train and has from it, at the end of a scan.
+pub fn train_state(unit: &Unit) -> TrainState {
+    let tachometers = unit.functions.atp.tachometers();
+    let speeds = [0, 1].map(|channel| tachometers.channel(channel).to_cms());
+    let tcms = unit.tcms.last();
+    let station = unit.functions.twc.data().copied().unwrap_or_default();
+    let mode = unit.functions.atp.sequence().mode();
+    let effort = unit.functions.ato_outputs.effort;
+    TrainState {
+        held: 0,
+        outputs: unit.contacts,
+        asked: unit.asked,
+        mode,
+        asked_mode: mode,
+        effort,
+        asked_effort: effort,
+        code_index: code_index(unit),
+        eb_cause: unit.functions.atp.brake().cause(),
+        fsb_cause: unit.functions.atp.fsb_cause(),
+        limit_cms: unit.functions.atp.limit().to_cms(),
+        speed_cms: tachometers.speed().to_cms(),
+        train_speed1_cms: speeds[0],
+        train_speed2_cms: speeds[1],
+        lines: unit.functions.inputs.lines,
+        mode_switch: unit.functions.inputs.mode_switch,
+        controller: unit.functions.inputs.controller,
+        marker: unit.functions.locator.last_marker(),
+        marker_count: unit.functions.locator.count(),
+        marker_at_ms: unit.marker_at.1,
+        tcms_bits: tcms.bits,
+        tcms_effort: tcms.effort,
+        load_100kg: tcms.load_100kg,
+        twc_station: station.station,
+        twc_section: station.section,
+        twc_loop: station.loop_id,
+        twc_train_number: station.train_number,
+        twc_answers: unit.functions.twc.answers(),
+        ..TrainState::default()
+    }
 }
 
 fn status_bits(unit: &Unit) -> StatusBits {

@@ -10,7 +10,7 @@ use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
     IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, Status, StimulusAnswer,
-    TrainLines,
+    Subscribe, TrainLines,
 };
 use protocol::{Duration, Instant, SCAN};
 
@@ -268,7 +268,7 @@ fn the_test_board_refuses_what_it_cannot_make_and_nothing_else() {
 type Act = Box<dyn Fn(&mut Bench)>;
 
 /// All that a unit in automatic mode, ready to depart, says while this is done to it.
-fn said(act: &Act) -> Vec<(IoOutput, Status)> {
+fn said(act: &Act) -> (Vec<(IoOutput, Status)>, Vec<Message>) {
     let mut bench = Bench::new(&[]);
     bench.input.mode_switch = ModeSwitch::Automatic;
     bench.code("55");
@@ -278,7 +278,8 @@ fn said(act: &Act) -> Vec<(IoOutput, Status)> {
         bench.scan();
         (bench.output, bench.status)
     };
-    (0..90).map(scan).collect()
+    let scans = (0..90).map(scan).collect();
+    (scans, bench.answers)
 }
 
 /// The bench goes on with this value in the field.
@@ -305,6 +306,7 @@ fn holding(rule: &Rule, value: i64) -> Act {
                 bench.station = Some(data);
             }
         }
+        "Subscribe" => bench.send(set(Subscribe::default().into(), value)),
         other => panic!("{other}"),
     })
 }

@@ -3,7 +3,7 @@
 use crate::common::Bench;
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, CATALOGUE, Channel, ClearLog, Message, Outputs,
-    TestCode, TestSpeed, TrainLines,
+    ReadLog, Subscribe, TestCode, TestSpeed, TrainLines,
 };
 
 const SESSION: u32 = 0xBEEF;
@@ -145,7 +145,7 @@ fn the_log_is_read_and_cleared() {
 #[test]
 fn a_cycle_stays_within_its_bytes() {
     let mut bench = armed();
-    bench.send(protocol::message::ReadLog { from_index: 0 });
+    bench.send(ReadLog { from_index: 0 });
     for _ in 0..100 {
         let mut bytes = Vec::new();
         for _ in 0..5 {
@@ -154,6 +154,66 @@ fn a_cycle_stays_within_its_bytes() {
             bench.unit.step(bench.now, &mut bytes);
         }
         assert!(bytes.len() < 400, "{} bytes in 50 ms", bytes.len());
+    }
+}
+
+#[test]
+fn train_state_comes_only_to_a_tester_that_subscribed() {
+    let mut bench = Bench::new(&[]);
+    bench.run(1.0);
+    assert!(bench.answers.is_empty(), "{:?}", bench.answers);
+    bench.send(Subscribe { changes: 0 });
+    bench.run(1.0);
+    let count = bench.answers.len();
+    assert!((19..=21).contains(&count), "{count} in a second");
+    bench.run(1.0);
+    assert_eq!(bench.answers.len(), count, "lapses after a second");
+}
+
+#[test]
+fn a_change_is_told_in_its_scan() {
+    let mut bench = armed();
+    bench.station = None;
+    bench.run(1.5);
+    bench.send(code_75());
+    bench.send(Subscribe { changes: 1 });
+    bench.run(0.1);
+    bench.answers.clear();
+    bench.until(1.0, |bench| bench.output.limit_cms == 2083);
+    match bench.answers.last() {
+        Some(Message::TrainState(state)) => {
+            assert_eq!((state.limit_cms, state.held), (2083, 0));
+            assert_eq!(state.outputs, bench.output.outputs);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Goal: without a harness the line from the unit stays below 400 bytes in any 50 ms while all changes all the time and
+/// the log is read, and below 230, 40 % of what the line carries, while nothing changes.
+#[test]
+fn a_tester_without_harness_gets_all_within_its_bytes() {
+    for (changing, most) in [(false, 230), (true, 400)] {
+        let mut bench = armed();
+        let mut scans = Vec::new();
+        for i in 0..500 {
+            if i % 20 == 0 {
+                bench.send(Subscribe { changes: 1 });
+                bench.send(ReadLog { from_index: 0 });
+            }
+            bench.station = bench.station.filter(|_| changing);
+            if changing {
+                bench.input.lines.toggle(TrainLines::DOORS_CLOSED);
+                bench.input.lines.toggle(TrainLines::BACKWARD);
+            }
+            bench.scan();
+            scans.push(bench.ptu_bytes());
+        }
+        // The loss of the station data is a change.
+        for window in scans[150..].windows(5) {
+            let sum: usize = window.iter().sum();
+            assert!(sum <= most, "{sum} bytes in 50 ms: {window:?}");
+        }
     }
 }
 

@@ -6,6 +6,7 @@ mod io;
 mod layout;
 mod ptu;
 mod tcms;
+mod train_state;
 mod twc;
 
 use alloc::string::String;
@@ -25,6 +26,7 @@ pub use ptu::{
     StimulusAnswer, Taken, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
 };
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
+pub use train_state::{Subscribe, TrainState};
 pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
 
 /// The four channels of the wire.
@@ -186,6 +188,7 @@ messages!(
     ArmConfirm,
     Disarm,
     KeepAlive,
+    Subscribe,
     TestCode,
     TestSpeed,
     TestMarker,
@@ -199,6 +202,7 @@ messages!(
     ArmState,
     StimulusAnswer,
     Status,
+    TrainState,
     LogEntry,
     LogEnd,
     RunRow,

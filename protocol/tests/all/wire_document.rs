@@ -251,16 +251,29 @@ const fn person(address: Address) -> &'static str {
 }
 
 /// What is sent regularly: message, ms between two, and when.
-const REGULAR: [(&str, usize, &str); 8] = [
+const REGULAR: [(&str, usize, &str); 10] = [
     ("IoInput", 10, "always"),
     ("TcmsToAtc", 50, "always"),
     ("TwcWayside", 250, "over a loop"),
     ("KeepAlive", 500, "while a tester is at work; at the latest"),
+    (
+        "Subscribe",
+        500,
+        "while a tester wants `TrainState`; at the latest",
+    ),
     ("IoOutput", 10, "always"),
     ("AtcToTcms", 50, "always"),
     ("TwcTrain", 250, "in answer to each `TwcWayside`"),
     ("Status", 50, "while a tester was heard within 1 s"),
+    (
+        "TrainState",
+        50,
+        "while `Subscribe` was heard within 1 s; changes beside",
+    ),
 ];
+
+/// Most `TrainState` beside the regular ones in 50 ms, to a tester that asks for changes.
+const CHANGES: usize = 2;
 
 /// Two log entries in a cycle are the most a unit sends while its log is read.
 const LOG_ENTRIES: usize = 2;
@@ -270,12 +283,15 @@ fn budget() -> String {
         "| Message | Direction | Every | When | Bytes on the wire | in 50 ms |\n\
          |---|---|---:|---|---:|---:|\n",
     );
-    let mut sums = [0.0; 2];
+    let (mut sums, mut ptu) = ([0.0; 2], 0.0);
     for (name, every_ms, when) in REGULAR {
         let spec = message(name);
         let bytes = wire_len(spec);
         let in_cycle = bytes as f64 * 50.0 / every_ms as f64;
         sums[usize::from(spec.sent_by_unit())] += in_cycle;
+        if spec.channel == Channel::Ptu && spec.sent_by_unit() {
+            ptu += in_cycle;
+        }
         let way = direction(spec);
         let _ = writeln!(
             text,
@@ -285,14 +301,18 @@ fn budget() -> String {
     let log = (LOG_ENTRIES * wire_len(message("LogEntry"))) as f64;
     let [to_unit, from_unit] = sums;
     let busiest = from_unit + log;
+    let changing = ptu + log + (CHANGES * wire_len(message("TrainState"))) as f64;
     assert!(
-        to_unit.max(busiest) < BUDGET as f64,
-        "{to_unit} and {busiest} bytes in a cycle"
+        to_unit.max(busiest).max(changing) < BUDGET as f64,
+        "{to_unit}, {busiest} and {changing} bytes in a cycle"
     );
     let _ = writeln!(
         text,
         "\nTogether {to_unit:.0} bytes in 50 ms towards the unit and {from_unit:.0} from it, flags \
-         counted, stuffing not;\n{busiest:.0} while the log is read."
+         counted, stuffing not;\n{busiest:.0} while the log is read. Without a harness the unit sends \
+         {ptu:.0}, and {:.0} while the log is read;\n{changing:.0} in a cycle in which as much as \
+         possible changes.",
+        ptu + log
     );
     text
 }

@@ -11,7 +11,7 @@ use protocol::injection::{Effect, FaultMode, Occurrence, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{
-    IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs, ReadLog, Status,
+    Channel, IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs, ReadLog, Status,
     TcmsToAtc, TcmsToAtcBits, TrainLines, TwcWayside,
 };
 use protocol::{Instant, SCAN};
@@ -57,6 +57,8 @@ pub struct Bench {
     pub backward_bits: u8,
     pub answers: Vec<Message>,
     pub log: Vec<LogEntry>,
+    /// What the unit sent in the last scan.
+    pub sent: Vec<u8>,
     turned: [f64; 2],
     scans: u64,
     alive: u8,
@@ -130,6 +132,7 @@ impl Bench {
             backward_bits: 0,
             answers: Vec::new(),
             log: Vec::new(),
+            sent: Vec::new(),
             turned: [0.0; 2],
             scans: 0,
             alive: 0,
@@ -210,9 +213,9 @@ impl Bench {
         if let Some(station) = self.station.filter(|_| self.scans.is_multiple_of(25)) {
             self.send(station);
         }
-        let mut bytes = Vec::new();
-        self.unit.step(self.now, &mut bytes);
-        self.link.push(&bytes);
+        self.sent.clear();
+        self.unit.step(self.now, &mut self.sent);
+        self.link.push(&self.sent);
         while let Some(received) = self.link.poll(self.now) {
             match received.message {
                 Message::IoOutput(output) => self.output = output,
@@ -222,6 +225,13 @@ impl Bench {
                 other => self.answers.push(other),
             }
         }
+    }
+
+    /// Bytes of the maintenance channel that the unit sent in the last scan.
+    pub fn ptu_bytes(&self) -> usize {
+        let frames = self.sent.split(|&byte| byte == 0x7E);
+        let own = frames.filter(|frame| frame.get(1) == Some(&Channel::Ptu.code()));
+        own.map(|frame| frame.len() + 2).sum()
     }
 
     fn turn_wheels(&mut self) {

@@ -1,0 +1,138 @@
+//! `TrainState` for a subscribed tester: with each `Status`, and at once in the scan of a change, so that
+//! the frame's stamp dates the change.
+
+use alloc::vec::Vec;
+
+use protocol::Instant;
+use protocol::message::{EbCause, FsbCause, Message, Mode, Outputs, TrainLines, TrainState};
+
+use super::{Unit, report};
+
+/// Scans in which no second frame is sent for changes, so that the bytes of the line suffice.
+const SPACING: u8 = 3;
+
+/// What a frame dates to its scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Dated {
+    outputs: Outputs,
+    asked: Outputs,
+    lines: TrainLines,
+    modes: [Mode; 2],
+    causes: (EbCause, FsbCause),
+    code_index: u8,
+    limit_cms: u16,
+    marker_count: u8,
+    twc_counts: [u16; 3],
+}
+
+impl Dated {
+    fn of(state: &TrainState, twc_received: u16) -> Self {
+        Self {
+            outputs: state.outputs,
+            asked: state.asked,
+            lines: state.lines,
+            modes: [state.mode, state.asked_mode],
+            causes: (state.eb_cause, state.fsb_cause),
+            code_index: state.code_index,
+            limit_cms: state.limit_cms,
+            marker_count: state.marker_count,
+            twc_counts: [twc_received, state.twc_answers, state.test_answers],
+        }
+    }
+}
+
+/// When `TrainState` is due.
+#[derive(Debug, Default)]
+pub struct StateReport {
+    last: Dated,
+    /// Scans since the first change that no frame has shown yet.
+    unsent: Option<u8>,
+    /// Scans until a frame may be sent for a change again.
+    wait: u8,
+}
+
+impl StateReport {
+    /// One scan, with the state at its end; `changes`: the tester wants changes at once, `None` without
+    /// a subscribed tester. The age of what a frame sent now shows, in scans.
+    fn step(&mut self, state: Dated, changes: Option<bool>, cycle: bool) -> Option<u8> {
+        self.wait = self.wait.saturating_sub(1);
+        self.unsent = self.unsent.map(|age| age.saturating_add(1));
+        if core::mem::replace(&mut self.last, state) != state {
+            self.unsent = self.unsent.or(Some(0));
+        }
+        let Some(changes) = changes else {
+            self.unsent = None;
+            return None;
+        };
+        let at_once = changes && self.unsent.is_some() && self.wait == 0;
+        if !cycle && !at_once {
+            return None;
+        }
+        if !cycle {
+            self.wait = SPACING;
+        }
+        Some(self.unsent.take().unwrap_or_default())
+    }
+}
+
+impl Unit {
+    /// Sends the state at the end of a scan if it is due; `cycle`: `Status` is sent in this scan.
+    pub(super) fn tell_train_state(&mut self, now: Instant, cycle: bool, out: &mut Vec<u8>) {
+        if self.functions.locator.count() != self.marker_at.0 {
+            self.marker_at = (self.functions.locator.count(), now.stamp_ms());
+        }
+        let mut state = report::train_state(self);
+        let changes = self.maintenance.subscribed(now);
+        let dated = Dated::of(&state, self.functions.twc.received());
+        if let Some(held) = self.state_report.step(dated, changes, cycle) {
+            state.held = held;
+            self.ports.send(now, &Message::from(state), out);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(code_index: u8) -> Dated {
+        Dated {
+            code_index,
+            ..Dated::default()
+        }
+    }
+
+    /// Codes scan by scan from the first of a cycle, and the age told in each scan.
+    fn told(codes: &[u8], changes: bool) -> Vec<Option<u8>> {
+        let mut report = StateReport::default();
+        let scans = codes.iter().enumerate();
+        scans
+            .map(|(i, &code)| report.step(state(code), Some(changes), i % 5 == 0))
+            .collect()
+    }
+
+    #[test]
+    fn a_change_is_told_in_its_scan() {
+        let expected = [Some(0), None, Some(0), None, None, Some(0)];
+        assert_eq!(told(&[0, 0, 1, 1, 1, 1], true), expected);
+    }
+
+    #[test]
+    fn a_second_change_within_30_ms_waits_and_says_how_long() {
+        let expected = [Some(0), Some(0), None, None, Some(2), Some(0)];
+        assert_eq!(told(&[0, 1, 2, 3, 3, 3], true), expected);
+    }
+
+    #[test]
+    fn without_changes_at_once_the_cycle_says_how_old_the_first_one_is() {
+        let expected = [Some(0), None, None, None, None, Some(3)];
+        assert_eq!(told(&[0, 0, 1, 2, 2, 2], false), expected);
+    }
+
+    #[test]
+    fn what_changed_before_a_tester_subscribed_is_not_held() {
+        let mut report = StateReport::default();
+        assert_eq!(report.step(state(1), None, false), None);
+        assert_eq!(report.step(state(1), Some(true), true), Some(0));
+    }
+}
