@@ -193,8 +193,10 @@ signals! {
     TwcAnswerTrain "twc_answer_train" "" UNITY, 0 ..= 65535, Unit, "Train number in the train's TWC answer";
     TwcAnswers "twc_answers" "" UNITY, 0 ..= 65535, Unit, "TWC answers the wayside received";
     SelfTest "self_test" "" UNITY, 0 ..= 65535, Unit, "Self-test items that failed, as bits";
-    TestCodeRate "test_code_rate" "Hz" CENTI, 0 ..= 655, Unit, "Code rate read back from the TEST board";
-    TestSpeed "test_speed" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed read back from the TEST board";
+    TestCarrier "test_carrier" "Hz" UNITY, 0 ..= 65535, Unit, "Carrier measured where it leaves the TEST board";
+    TestCodeRate "test_code_rate" "Hz" CENTI, 0 ..= 655, Unit, "Code rate measured where it leaves the TEST board";
+    TestLevel "test_level" "mV" UNITY, 0 ..= 65535, Unit, "Code level measured where it leaves the TEST board";
+    TestSpeed "test_speed" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed of the pulses that leave the TEST board";
 }
 
 impl Signal {

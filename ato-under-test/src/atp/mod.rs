@@ -25,6 +25,7 @@ pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
 pub use overspeed::{Overspeed, OverspeedSupervision};
+pub use speedometer::Speedometer;
 pub use tachometers::Tachometers;
 
 /// What the other parts tell ATP for a scan.

@@ -57,7 +57,7 @@ impl FrontEnd {
         faults: &mut Faults,
     ) -> Inputs {
         let input = image.input();
-        board.set_speed_gain(faults.gain(Place::TestSpeed));
+        board.suffer(faults);
         let test_pulses = board.step_speed(now);
         let mut pulses = [Pulses::default(); 2];
         for (i, sensor) in self.sensors.iter_mut().enumerate() {
@@ -111,10 +111,6 @@ impl FrontEnd {
             rate_hz: f64::from(frame.code_rate_chz) / 100.0,
             level_mv: f64::from(frame.level_mv),
         };
-        let coil = coil.map(|coil| AntennaSignal {
-            level_mv: coil.level_mv * faults.gain(Place::TestCode),
-            ..coil
-        });
         let mut signal = match coil {
             Some(coil) if coil.level_mv >= track.level_mv => coil,
             _ => track,
@@ -154,7 +150,7 @@ impl FrontEnd {
             _ => None,
         };
         let pulse = board
-            .take_marker()
+            .take_marker(faults)
             .map(|marker| MarkerPulse { marker, age_us: 0 })
             .or(passed)
             // TRA has four inputs; anything else on the wire is no marker.

@@ -8,11 +8,12 @@ use protocol::injection::Place;
 use protocol::message::Mode;
 
 use super::{Unit, report};
+use crate::twc::StationSender;
 
 impl Unit {
     pub(super) fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
-        if let Some(data) = self.board.take_twc(now) {
-            self.take_station(now, None, data, out);
+        if let Some((seq, data)) = self.board.modem_mut().take(now) {
+            self.take_station(now, StationSender::TestModem(seq), data, out);
         }
         self.tra
             .step(now, self.functions.inputs.tra_answers, &mut self.log);

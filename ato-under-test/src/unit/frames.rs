@@ -1,4 +1,5 @@
-//! Frames in and out of the unit: requests of the tester, inputs, TCMS, and station data from the loop.
+//! Frames in and out of the unit: requests of the tester, inputs, TCMS, and station data from the loop or the
+//! TEST modem, which both pass the TWC antenna.
 //! Injected faults of receivers and transmitters act here.
 
 use alloc::vec::Vec;
@@ -10,7 +11,7 @@ use protocol::{Duration, Instant};
 
 use super::{Unit, report};
 use crate::com::ArmConditions;
-use crate::twc::TrainState;
+use crate::twc::{StationSender, TrainState};
 
 /// Bits that a damaged frame has wrong, in one byte.
 const DAMAGE: u8 = 0x12;
@@ -27,7 +28,9 @@ impl Unit {
             match message {
                 Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
                 Message::TcmsToAtc(frame) => self.on_tcms(now, frame),
-                Message::TwcWayside(data) => self.take_station(now, Some(header.seq), data, out),
+                Message::TwcWayside(data) => {
+                    self.take_station(now, StationSender::Loop(header.seq), data, out);
+                }
                 Message::Identify(_) => {
                     let identity = report::identity(self, now);
                     self.ports.send(now, &identity, out);
@@ -42,8 +45,8 @@ impl Unit {
                 _ => {}
             }
         }
-        while let Some((seq, data)) = self.late_stations.pop(now) {
-            self.handle_station(now, seq, data, out);
+        while let Some((sender, data)) = self.late_stations.pop(now) {
+            self.handle_station(now, sender, data, out);
         }
         let conditions = self.arm_conditions();
         let notice = self
@@ -65,55 +68,59 @@ impl Unit {
         }
     }
 
-    /// Station data from the loop (`seq` given, answered) or from the TWC TEST module.
+    /// Station data on their way through antenna, receiver and TWC CPU.
     pub(super) fn take_station(
         &mut self,
         now: Instant,
-        seq: Option<u16>,
+        sender: StationSender,
         mut data: TwcWayside,
         out: &mut Vec<u8>,
     ) {
-        // The TEST module is wired to the modem: only what comes from the loop passes the antenna.
-        if seq.is_some() && self.loses(Place::TwcAntenna) {
-            return;
-        }
-        if self.loses(Place::FskReceiver) {
-            return;
-        }
-        // While the TEST module talks to the modem the loop is not heard.
-        if seq.is_some() && self.board.makes_twc() {
+        if self.loses(Place::TwcAntenna) || self.loses(Place::FskReceiver) {
             return;
         }
         match self.faults.at(Place::TwcCpu) {
             Some(Effect::Dead) => return,
             Some(Effect::Delay { ms }) => {
                 let due = now + Duration::from_ms(u64::from(ms));
-                return self.late_stations.push(due, (seq, data));
+                return self.late_stations.push(due, (sender, data));
             }
             Some(Effect::Offset { by }) => {
                 data.station = data.station.wrapping_add_signed(by as i16);
             }
             _ => {}
         }
-        self.handle_station(now, seq, data, out);
+        self.handle_station(now, sender, data, out);
     }
 
-    /// Takes station data and answers those from the loop.
+    /// Takes station data and answers them. While the TEST modem sends, the loop is not heard; what is left of
+    /// a test that is over counts no more.
     fn handle_station(
         &mut self,
         now: Instant,
-        seq: Option<u16>,
+        sender: StationSender,
         data: TwcWayside,
         out: &mut Vec<u8>,
     ) {
+        if sender.is_test() != self.board.modem().sends() {
+            return;
+        }
         self.functions
             .twc
             .take(now, data, &self.setup.line, &mut self.log);
-        let Some(seq) = seq else { return };
         let train = self.train_state();
-        let answer = self.functions.twc.answer(seq, &data, train);
-        if !self.loses(Place::TwcAntenna) {
-            self.send_through(Place::FskTransmitter, now, &answer.into(), out);
+        let answer = self.functions.twc.answer(sender, &data, train);
+        if self.loses(Place::TwcAntenna) {
+            return;
+        }
+        match sender {
+            StationSender::Loop(_) => {
+                self.send_through(Place::FskTransmitter, now, &answer.into(), out);
+            }
+            StationSender::TestModem(_) if !self.faults.loses(Place::FskTransmitter) => {
+                self.board.modem_mut().hear(answer);
+            }
+            StationSender::TestModem(_) => {}
         }
     }
 

@@ -12,7 +12,7 @@ mod train_state;
 use alloc::vec::Vec;
 
 use protocol::event::Event;
-use protocol::injection::{Effect, Place};
+use protocol::injection::Place;
 use protocol::message::{IoOutput, Message, Outputs, TwcWayside};
 use protocol::{Duration, Instant};
 
@@ -24,6 +24,7 @@ use crate::kernel::{EventLog, RunRecord, SelfTester};
 use crate::psm::Tra;
 use crate::setup::Setup;
 use crate::test_board::TestBoard;
+use crate::twc::StationSender;
 use functions::{Functions, Surroundings};
 use train_state::StateReport;
 
@@ -47,7 +48,7 @@ pub struct Unit {
     faults: Faults,
     power: PowerAndClock,
     /// Station data that a slow TWC CPU has not handed on yet.
-    late_stations: DelayQueue<(Option<u16>, TwcWayside)>,
+    late_stations: DelayQueue<(StationSender, TwcWayside)>,
     front_end: FrontEnd,
     output_stage: OutputStage,
     /// Contacts that ATP and ATO ask for; relays follow.
@@ -171,10 +172,6 @@ impl Unit {
     fn read_inputs(&mut self, now: Instant) {
         self.image.step(now);
         self.tcms.step(now);
-        self.board.set_dead(matches!(
-            self.faults.at(Place::TestBoard),
-            Some(Effect::Dead)
-        ));
         let built_in = (!self.self_tester.finished())
             .then(|| self.self_test_code())
             .flatten();

@@ -74,6 +74,8 @@ pub fn train_state(unit: &Unit) -> TrainState {
     let station = unit.functions.twc.data().copied().unwrap_or_default();
     let mode = unit.functions.atp.sequence().mode();
     let effort = unit.functions.ato_outputs.effort;
+    let modem = unit.board.modem();
+    let test_answer = modem.last_answer();
     TrainState {
         held: 0,
         outputs: unit.contacts,
@@ -103,7 +105,11 @@ pub fn train_state(unit: &Unit) -> TrainState {
         twc_loop: station.loop_id,
         twc_train_number: station.train_number,
         twc_answers: unit.functions.twc.answers(),
-        ..TrainState::default()
+        test_answers: modem.answers(),
+        test_answer_station: test_answer.station,
+        test_answer_train: test_answer.train_number,
+        test_pulses: unit.board.pulses(),
+        test_markers: unit.board.markers(),
     }
 }
 

@@ -12,3 +12,4 @@ mod protection;
 mod robustness;
 mod speed_control;
 mod tcms;
+mod test_signals;

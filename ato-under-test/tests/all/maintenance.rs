@@ -1,12 +1,13 @@
 //! What the unit promises to a tester: arming, stimuli, the event log.
 
 use crate::common::Bench;
+use protocol::injection::FaultMode;
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, CATALOGUE, Channel, ClearLog, Message, Outputs,
     ReadLog, Subscribe, TestCode, TestSpeed, TrainLines,
 };
 
-const SESSION: u32 = 0xBEEF;
+pub const SESSION: u32 = 0xBEEF;
 
 fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
     bench.answers.clear();
@@ -31,7 +32,11 @@ fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
 }
 
 fn armed() -> Bench {
-    let mut bench = Bench::new(&[]);
+    armed_with(&[])
+}
+
+pub fn armed_with(faults: &[FaultMode]) -> Bench {
+    let mut bench = Bench::new(faults);
     bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
     bench.run(0.1);
     assert_eq!(arm(&mut bench), None);
@@ -47,10 +52,13 @@ fn code_75() -> TestCode {
     }
 }
 
-fn answer_to(bench: &mut Bench, request: impl Into<Message>) -> Answer {
+pub fn answer_to(bench: &mut Bench, request: impl Into<Message>) -> Answer {
     bench.answers.clear();
     bench.send(request);
     bench.run(0.1);
+    bench
+        .answers
+        .retain(|answer| !matches!(answer, Message::TrainState(_)));
     match bench.answers[..] {
         [Message::StimulusAnswer(answer)] => answer.answer,
         ref other => panic!("{other:?}"),

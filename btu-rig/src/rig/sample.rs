@@ -50,7 +50,7 @@ const IO_SIGNALS: [Signal; 14] = [
     Signal::MarkerCount,
 ];
 
-const STATUS_SIGNALS: [Signal; 23] = [
+const STATUS_SIGNALS: [Signal; 25] = [
     Signal::Refusals,
     Signal::CodeIndex,
     Signal::EbCause,
@@ -72,7 +72,9 @@ const STATUS_SIGNALS: [Signal; 23] = [
     Signal::RejectedFrames,
     Signal::TwcReceived,
     Signal::SelfTest,
+    Signal::TestCarrier,
     Signal::TestCodeRate,
+    Signal::TestLevel,
     Signal::TestSpeed,
 ];
 
@@ -181,10 +183,12 @@ impl LatestSample {
             (Signal::RejectedFrames, f64::from(status.rejected_frames)),
             (Signal::TwcReceived, f64::from(status.twc_received)),
             (Signal::SelfTest, f64::from(status.self_test.bits())),
+            (Signal::TestCarrier, f64::from(status.test_carrier_hz)),
             (
                 Signal::TestCodeRate,
                 f64::from(status.test_code_rate_chz) / 100.0,
             ),
+            (Signal::TestLevel, f64::from(status.test_level_mv)),
             (Signal::TestSpeed, kmh(status.test_speed_cms)),
         ] {
             sample.set(signal, value);

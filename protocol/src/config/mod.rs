@@ -174,6 +174,32 @@ pub struct MarkerConfig {
     pub tra_test_ms: u32,
 }
 
+/// How far what the TEST board makes may be from what it is asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TestBoardConfig {
+    /// Carrier, Hz.
+    pub carrier_tolerance_hz: f64,
+    /// Code rate, Hz.
+    pub rate_tolerance_hz: f64,
+    /// Level, share of it.
+    pub level_tolerance: f64,
+    /// Speed, share of it.
+    pub speed_tolerance: f64,
+}
+
+/// The values of `sg100`, for configurations without this table.
+impl Default for TestBoardConfig {
+    fn default() -> Self {
+        Self {
+            carrier_tolerance_hz: 5.0,
+            rate_tolerance_hz: 0.05,
+            level_tolerance: 0.05,
+            speed_tolerance: 0.02,
+        }
+    }
+}
+
 /// Start after power-up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -202,6 +228,9 @@ pub struct UnitConfig {
     pub link: LinkConfig,
     /// Supervision of markers and TRA.
     pub marker: MarkerConfig,
+    /// Accuracy of the TEST board.
+    #[serde(default)]
+    pub test_board: TestBoardConfig,
     /// Automatic operation.
     pub ato: AtoConfig,
     /// Start after power-up.
@@ -274,6 +303,10 @@ impl UnitConfig {
             marker.window_share: 0.0, 0.2;
             marker.scatter_m: 0.001, 2.0;
             marker.wheel_spread: 0.0001, 0.1;
+            test_board.carrier_tolerance_hz: 1.0, 100.0;
+            test_board.rate_tolerance_hz: 0.01, 5.0;
+            test_board.level_tolerance: 0.001, 0.5;
+            test_board.speed_tolerance: 0.001, 0.2;
             link.io_timeout_ms: 50.0, 900.0;
             link.tester_timeout_ms: 200.0, 1000.0;
         }

@@ -59,12 +59,16 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
         Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
         Place::TestCode => &[("gain", 0.0, 10.0)],
+        // Hz.
+        Place::TestCarrier => &[("offset", -1000.0, 1000.0)],
+        Place::TestRate => &[("offset", -100.0, 100.0)],
         Place::TestSpeed => &[GAIN],
         // Dips a second.
         Place::PowerSupply => &[DEAD, ("noise", 0.0, 1.0)],
         Place::Clock => &[("gain", 0.5, 2.0)],
         Place::Inverter => &[DEAD, ("gain", 0.0, 1.0)],
         Place::Tra
+        | Place::TestMarker
         | Place::TwcAntenna
         | Place::FskReceiver
         | Place::FskTransmitter

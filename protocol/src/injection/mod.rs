@@ -52,7 +52,7 @@ pub enum Place {
     MarkerAntenna,
     /// Trigger receiver assembly.
     Tra,
-    /// TWC antenna, both ways; the TWC TEST module's frames enter behind it.
+    /// TWC antenna, both ways.
     TwcAntenna,
     /// TWC modem, receiving side.
     FskReceiver,
@@ -68,8 +68,14 @@ pub enum Place {
     TestBoard,
     /// Level of the TEST board's code generator.
     TestCode,
+    /// Carrier of the TEST board's code generator.
+    TestCarrier,
+    /// Code rate of the TEST board's code generator.
+    TestRate,
     /// Pulses of the TEST board's speed generator.
     TestSpeed,
+    /// Pulses of the TEST board's marker generator.
+    TestMarker,
     /// The unit's power supply.
     PowerSupply,
     /// The unit's clock, which also times its pulse inputs.

@@ -63,7 +63,7 @@ wire_bits! {
         SPEED_1 = 1,
         /// Speed on tachometer input 2.
         SPEED_2 = 2,
-        /// Station data through the TWC TEST module.
+        /// Station data from the TEST modem into the TWC antenna.
         TWC = 3,
     }
 }
@@ -140,7 +140,7 @@ layout! {
     }
 }
 layout! {
-    /// Station data through the TWC TEST module, repeated by it every 250 ms. Tester → unit, answered.
+    /// Station data from the TEST modem into the TWC antenna, every 250 ms. Tester → unit, answered.
     TestTwc, Ptu, 0x13 {
         /// Session number.
         session: u32,
@@ -290,15 +290,15 @@ layout! {
         twc_received: u16,
         /// Self-test items that failed.
         self_test: SelfTest,
-        /// Signals the TEST board is making, read back from it.
+        /// Signals the TEST board was asked for and has not been told to take away.
         test_signals: TestSignals,
-        /// Carrier read back from the TEST board, Hz.
+        /// Carrier measured where it leaves the TEST board, Hz.
         test_carrier_hz: u16,
-        /// Code rate read back from the TEST board, 0.01 Hz.
+        /// Code rate measured where it leaves the TEST board, 0.01 Hz.
         test_code_rate_chz: u16,
-        /// Level read back from the TEST board, mV.
+        /// Level measured where it leaves the TEST board, mV.
         test_level_mv: u16,
-        /// Speed read back from the TEST board, cm/s.
+        /// Speed of the pulses that leave the TEST board, cm/s.
         test_speed_cms: u16,
         /// Operating state of ATO.
         ato_state: AtoState,

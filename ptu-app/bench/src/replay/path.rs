@@ -4,7 +4,7 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
-const PATH: [&str; 73] = [
+const PATH: [&str; 75] = [
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",
@@ -28,7 +28,9 @@ const PATH: [&str; 73] = [
     // What the unit's boards make of it.
     "self_test",
     "armed",
+    "test_carrier",
     "test_code_rate",
+    "test_level",
     "test_speed",
     "rejected_frames",
     "speed1",

@@ -41,9 +41,16 @@ pub fn show(
     });
     motion(ui, &mut forms.test_motion, hand, words);
     row(ui, words.read_back, |ui, _| {
-        let [code, speed] = [Signal::TestCodeRate, Signal::TestSpeed]
-            .map(|signal| text::value(words, signal, hand.seen));
-        ui.label(format!("{code}, {speed}"));
+        let made = [
+            Signal::TestCarrier,
+            Signal::TestCodeRate,
+            Signal::TestLevel,
+            Signal::TestSpeed,
+        ];
+        ui.label(
+            made.map(|signal| text::value(words, signal, hand.seen))
+                .join(", "),
+        );
     });
     row(ui, words.test_marker, |ui, _| {
         for psm in 1..=4 {

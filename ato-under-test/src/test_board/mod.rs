@@ -1,24 +1,29 @@
 //! TEST board: makes the test signals an armed tester asks for [S2 §2.2].
 //!
 //! Its code goes into the ATP test coil, its speed signal replaces the tachometers, its marker
-//! pulse goes to the test marker, its station data to the TWC TEST module. It reads back what it
-//! makes, for the status.
+//! pulse goes to the test marker; its TEST modem talks to the unit through the TWC antenna. What it reads
+//! back for the tester is measured where the signals leave it.
 
+mod defects;
+mod modem;
+mod speed_generator;
+
+use protocol::injection::Place;
 use protocol::message::{
     Answer, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc, TwcWayside,
 };
-use protocol::{Duration, Instant, SCAN, Speed};
+use protocol::{Instant, Speed};
 
+use crate::front_end::Faults;
 use crate::signals::{AntennaSignal, Pulses};
+use defects::Defects;
+use modem::TestModem;
+use speed_generator::SpeedGenerator;
 
 /// Greatest level of the code generator, mV.
 const LEVEL_MAX_MV: u16 = 3000;
 /// Greatest speed of the speed generator, cm/s.
 const SPEED_MAX_CMS: u16 = 3000;
-/// Acceleration of the speed generator when none is asked for, mm/s².
-const OWN_ACCEL_MMS2: u16 = 3000;
-/// Period in which the TWC TEST module repeats its station data.
-const TWC_PERIOD: Duration = Duration::from_ms(250);
 
 #[derive(Debug)]
 pub struct TestBoard {
@@ -26,17 +31,12 @@ pub struct TestBoard {
     code: Option<AntennaSignal>,
     speed: Option<SpeedGenerator>,
     marker: Option<u8>,
-    twc: Option<(TwcWayside, Instant)>,
-    dead: bool,
-    /// Pulses made for one that should be.
-    speed_gain: f64,
-}
-
-#[derive(Debug)]
-struct SpeedGenerator {
-    request: TestSpeed,
-    speed: Speed,
-    pulses: f64,
+    modem: TestModem,
+    defects: Defects,
+    /// Speed pulses made since power-up, wrapping.
+    pulses: u16,
+    /// Marker pulses made since power-up, wrapping.
+    markers: u8,
 }
 
 impl TestBoard {
@@ -47,35 +47,28 @@ impl TestBoard {
             code: None,
             speed: None,
             marker: None,
-            twc: None,
-            dead: false,
-            speed_gain: 1.0,
+            modem: TestModem::default(),
+            defects: Defects::default(),
+            pulses: 0,
+            markers: 0,
         }
     }
 
-    /// Whether the board works; a dead one makes nothing.
-    pub fn set_dead(&mut self, dead: bool) {
-        self.dead = dead;
-        if dead {
-            self.release(TestRelease {
-                session: 0,
-                signals: TestSignals::all(),
-            });
+    /// Takes over what is wrong with it in this scan; a dead board makes nothing.
+    pub fn suffer(&mut self, faults: &Faults) {
+        self.defects = Defects::of(faults);
+        if self.defects.dead {
+            self.release_all();
         }
-    }
-
-    /// How many pulses the speed generator makes for one that it should.
-    pub fn set_speed_gain(&mut self, gain: f64) {
-        self.speed_gain = gain;
     }
 
     /// The board answers its CPU.
     pub fn answers(&self) -> bool {
-        !self.dead
+        !self.defects.dead
     }
 
     fn take(&self, in_range: bool) -> Answer {
-        match (self.dead, in_range) {
+        match (self.defects.dead, in_range) {
             (true, _) => Answer::BoardFailed,
             (false, false) => Answer::OutOfRange,
             (false, true) => Answer::Accepted,
@@ -94,25 +87,16 @@ impl TestBoard {
         answer
     }
 
-    pub fn set_speed(&mut self, mut request: TestSpeed) -> Answer {
+    pub fn set_speed(&mut self, request: TestSpeed) -> Answer {
         let in_range = request.speed_cms <= SPEED_MAX_CMS
             && matches!(request.channels, 1..=3)
             && request.backward <= 1;
         let answer = self.take(in_range);
         if answer == Answer::Accepted {
-            if request.accel_mms2 == 0 {
-                request.accel_mms2 = OWN_ACCEL_MMS2;
-            }
-            match &mut self.speed {
-                Some(generator) => generator.request = request,
-                none => {
-                    *none = Some(SpeedGenerator {
-                        request,
-                        speed: Speed::ZERO,
-                        pulses: 0.0,
-                    });
-                }
-            }
+            let metres_per_pulse = self.metres_per_pulse;
+            self.speed
+                .get_or_insert_with(|| SpeedGenerator::new(metres_per_pulse))
+                .go(request);
         }
         answer
     }
@@ -143,7 +127,7 @@ impl TestBoard {
                 departure: request.departure,
                 train_number: request.train_number,
             };
-            self.twc = Some((data, now));
+            self.modem.send(now, data);
         }
         answer
     }
@@ -157,7 +141,7 @@ impl TestBoard {
             self.speed = None;
         }
         if signals.contains(TestSignals::TWC) {
-            self.twc = None;
+            self.modem.stop();
         }
         self.marker = None;
     }
@@ -169,23 +153,33 @@ impl TestBoard {
         });
     }
 
-    /// Code in the test coil.
+    /// Signal that leaves the code generator, into the ATP test coil.
     pub fn code(&self) -> Option<AntennaSignal> {
-        self.code
+        self.code.map(|asked| self.defects.leaves(asked))
     }
 
-    /// Speed the generator makes now.
+    /// Speed of the pulses that leave the speed generator.
     pub fn speed(&self) -> Option<Speed> {
-        self.speed.as_ref().map(|generator| generator.speed)
+        self.speed.as_ref().map(SpeedGenerator::measured)
+    }
+
+    /// Speed pulses that left the board since power-up, wrapping.
+    pub fn pulses(&self) -> u16 {
+        self.pulses
+    }
+
+    /// Marker pulses that left the board since power-up, wrapping.
+    pub fn markers(&self) -> u8 {
+        self.markers
     }
 
     pub fn signals(&self) -> TestSignals {
         let mut signals = TestSignals::empty();
         signals.set(TestSignals::CODE, self.code.is_some());
-        signals.set(TestSignals::TWC, self.twc.is_some());
+        signals.set(TestSignals::TWC, self.modem.sends());
         if let Some(generator) = &self.speed {
-            signals.set(TestSignals::SPEED_1, generator.request.channels & 1 != 0);
-            signals.set(TestSignals::SPEED_2, generator.request.channels & 2 != 0);
+            signals.set(TestSignals::SPEED_1, generator.drives(0));
+            signals.set(TestSignals::SPEED_2, generator.drives(1));
         }
         signals
     }
@@ -195,53 +189,26 @@ impl TestBoard {
         let Some(generator) = &mut self.speed else {
             return [None; 2];
         };
-        let request = generator.request;
-        let goal = f64::from(request.speed_cms) / 100.0;
-        let step = f64::from(request.accel_mms2) / 1000.0 * SCAN.as_secs();
-        let speed = generator.speed.mps();
-        let speed = speed + (goal - speed).clamp(-step, step);
-        generator.speed = Speed::from_mps(speed);
-
-        let speed = speed * self.speed_gain;
-        let made = speed * SCAN.as_secs() / self.metres_per_pulse;
-        let before = libm::floor(generator.pulses);
-        generator.pulses += made;
-        let count = libm::floor(generator.pulses) - before;
-        let beyond = generator.pulses - libm::floor(generator.pulses);
-        let age_s = if speed > 0.0 {
-            beyond * self.metres_per_pulse / speed
-        } else {
-            0.0
-        };
-        let pulses = Pulses {
-            count: count as u32,
-            edge_at: now.back(Duration::from_secs(age_s)),
-            sampled_at: now,
-            backward: request.backward != 0,
-        };
-        [
-            (request.channels & 1 != 0).then_some(pulses),
-            (request.channels & 2 != 0).then_some(pulses),
-        ]
+        let pulses = generator.step(now, self.defects.speed_gain);
+        self.pulses = self.pulses.wrapping_add(pulses.count as u16);
+        [0, 1].map(|channel| generator.drives(channel).then_some(pulses))
     }
 
-    /// The marker pulse asked for, once.
-    pub fn take_marker(&mut self) -> Option<u8> {
-        self.marker.take()
+    /// The marker pulse asked for, once, if one leaves the board.
+    pub fn take_marker(&mut self, faults: &mut Faults) -> Option<u8> {
+        let marker = self
+            .marker
+            .take()
+            .filter(|_| !faults.loses(Place::TestMarker))?;
+        self.markers = self.markers.wrapping_add(1);
+        Some(marker)
     }
 
-    /// Station data when they are due.
-    pub fn take_twc(&mut self, now: Instant) -> Option<TwcWayside> {
-        let (data, due) = self.twc.as_mut()?;
-        if now < *due {
-            return None;
-        }
-        *due = now + TWC_PERIOD;
-        Some(*data)
+    pub fn modem(&self) -> &TestModem {
+        &self.modem
     }
 
-    /// A TEST module is making station data.
-    pub fn makes_twc(&self) -> bool {
-        self.twc.is_some()
+    pub fn modem_mut(&mut self) -> &mut TestModem {
+        &mut self.modem
     }
 }
