@@ -1,5 +1,6 @@
 //! Runs procedures on units under test. Nothing here knows the window, and nothing writes a report.
 //!
+//! * [`aboard`]: the embedded unit aboard a simulated train, reached at its maintenance port;
 //! * [`link`]: links to the embedded unit and to units on ports;
 //! * [`run`]: runs procedures on benches, and stores and forwards their events;
 //! * [`bench_worker`]: one unit under test and its bench thread, for the window;
@@ -12,6 +13,7 @@
 //! * [`data`]: the scripts directory; [`clock`]: the computer's time; [`failure`]: what a person is told;
 //!   [`stop`]: interruption by a signal.
 
+pub mod aboard;
 pub mod bench_worker;
 pub mod campaign;
 pub mod clock;

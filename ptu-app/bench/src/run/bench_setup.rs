@@ -18,6 +18,7 @@ use super::connect_port::ReadyUnit;
 use super::fault_watch::FaultSeen;
 use super::session::Session;
 use super::{RunControl, unit_text};
+use crate::aboard::UnitAboard;
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
@@ -106,6 +107,26 @@ impl BenchSetup {
         rig
     }
 
+    /// The embedded unit, powered up at `power_at`.
+    fn unit(&self, seed: u64, power_at: Instant) -> SimLink {
+        let setup = Setup {
+            serial: self.serial.clone().unwrap_or(SIM_SERIAL.into()),
+            config: self.config.content.clone(),
+            config_crc: self.config.crc,
+            line: self.line.content.clone(),
+            tdb_crc: self.line.crc,
+            seed,
+            faults: of_unit(&self.faults),
+        };
+        SimLink::new(setup, power_at)
+    }
+
+    /// The embedded unit aboard the train, which stands in a depot, without a bench: powered up at `power_at`, with
+    /// the faults of both.
+    pub fn aboard(&self, seed: u64, power_at: Instant) -> UnitAboard {
+        UnitAboard::in_depot(self.rig(seed, power_at), self.unit(seed, power_at))
+    }
+
     /// What was drawn for this run.
     fn drawn(&self) -> Option<BenchDraw> {
         let scatter = self.scatter.as_ref()?;
@@ -125,18 +146,9 @@ impl BenchSetup {
         wired: impl FnOnce(Delayed<SimLink>) -> L,
     ) -> Session<L> {
         let seed = seed_for(self.seed, procedure);
-        let setup = Setup {
-            serial: self.serial.clone().unwrap_or(SIM_SERIAL.into()),
-            config: self.config.content.clone(),
-            config_crc: self.config.crc,
-            line: self.line.content.clone(),
-            tdb_crc: self.line.crc,
-            seed,
-            faults: of_unit(&self.faults),
-        };
         let timing = self.drawn().map(|drawn| drawn.timing).unwrap_or_default();
         let power_at = Instant::ZERO + BEFORE + timing.power_up;
-        let unit = SimLink::new(setup, power_at);
+        let unit = self.unit(seed, power_at);
         let link = Delayed::new(unit, &timing, seed ^ WIRE_SEQUENCE);
         let rig = self.rig(seed, power_at);
         let pace = if self.realtime {

@@ -1,0 +1,163 @@
+//! The embedded unit aboard a simulated train: the laptop's case, without a bench.
+//!
+//! A rig plays everything around the unit through the harness, as frames: cab, doors, wheels, TCMS, cars and
+//! wayside. Its own tester is silent. What is outside of the train reaches the unit at the maintenance port alone.
+//!
+//! [`UnitAboard`] is a [`UnitLink`], so a tester's [`Bench`] takes it in place of a unit on its harness, in virtual
+//! time, the same for the same seed:
+//!
+//! * `BenchSetup::aboard` builds one from unit configuration, line, train and faults, standing in a depot;
+//! * [`UnitAboard::exchange`](UnitLink::exchange) is one scan of unit and train, so it is called once a scan;
+//! * [`UnitAboard::apply`] does what a driver or the track does to the train: any [`Stimulus`] but those of a tester;
+//! * [`UnitAboard::push`] moves the train whatever its brakes do, [`UnitAboard::set_power`] switches the unit's
+//!   supply;
+//! * [`UnitAboard::drive`] is a run from station to station by the unit's ATO, in virtual time and without a tester;
+//!   [`UnitAboard::return_to_depot`] ends a service.
+
+mod service;
+
+use btu_rig::lever::Lever;
+use btu_rig::procedure::Refusal;
+use btu_rig::rig::{Bench, LinkFailure, Rig, UnitLink};
+use btu_rig::stimulus::{Stimulus, WaysideCondition};
+use protocol::message::ModeSwitch;
+use protocol::{Instant, Speed};
+
+use crate::link::SimLink;
+
+pub use service::{Arrival, Doors};
+
+/// How fast a pushed train gains and loses speed, m/s² [default].
+const PUSH_MPS2: f64 = 0.5;
+
+/// How a train stands in a depot: a manned cab, ready to be driven by hand, the maintenance key on, and neither
+/// code nor loop under it, so that the unit asks for the full service brake.
+const IN_DEPOT: [Stimulus; 12] = [
+    Stimulus::TrainDriven { on: false },
+    Stimulus::Direction { backward: false },
+    Stimulus::CodeOff,
+    Stimulus::MarkersAlong { section: None },
+    Stimulus::Wayside(WaysideCondition::Silent),
+    Stimulus::Hcr { on: true },
+    Stimulus::Reverser { position: 1 },
+    Stimulus::Controller {
+        lever: Lever::Neutral,
+    },
+    Stimulus::ModeSwitch(ModeSwitch::Manual),
+    Stimulus::Doors { closed: true },
+    Stimulus::MaintenanceKey { on: true },
+    Stimulus::TrainDriven { on: true },
+];
+
+/// A unit and the train it is built into.
+pub struct UnitAboard {
+    train: Bench<SimLink>,
+    /// The train is pushed, and is to go on by itself once it stands.
+    comes_to_rest: bool,
+}
+
+impl UnitAboard {
+    /// A train that stands in a depot. Neither rig nor unit may have been stepped.
+    pub fn in_depot(mut rig: Rig, unit: SimLink) -> Self {
+        // The only tester is outside of the train.
+        must(rig.apply(Instant::ZERO, &Stimulus::PtuSilent { on: true }));
+        let mut aboard = Self {
+            train: Bench::new(rig, unit),
+            comes_to_rest: false,
+        };
+        IN_DEPOT
+            .iter()
+            .for_each(|stimulus| must(aboard.apply(stimulus)));
+        aboard
+    }
+
+    /// Does something to train or track, from the next scan on.
+    ///
+    /// # Errors
+    /// What the train cannot do, and what only a tester does.
+    pub fn apply(&mut self, stimulus: &Stimulus) -> Result<(), Refusal> {
+        let now = self.train.now();
+        self.train.rig_mut().apply(now, stimulus)
+    }
+
+    /// Pushes the train up to a speed, backward below 0; 0 brings it to rest, and there it is left to itself.
+    ///
+    /// # Errors
+    /// A speed out of range, or another direction while it moves.
+    pub fn push(&mut self, to: Speed) -> Result<(), Refusal> {
+        let stands = self.train.rig().truth().speed_mps == 0.0;
+        self.apply(&Stimulus::TrainDriven { on: false })?;
+        self.comes_to_rest = to == Speed::ZERO;
+        if !self.comes_to_rest || stands {
+            let backward = to < Speed::ZERO;
+            self.apply(&Stimulus::Direction { backward })?;
+        }
+        self.apply(&Stimulus::Speed {
+            to: Speed::from_mps(to.mps().abs()),
+            accel_mps2: PUSH_MPS2,
+        })
+    }
+
+    /// Switches the unit's supply off, or on again: it is powered up anew then.
+    pub fn set_power(&mut self, on: bool) {
+        let now = self.train.now();
+        self.train.link_mut().set_power(now, on);
+    }
+
+    /// The unit has its supply.
+    pub fn powered(&self) -> bool {
+        self.train.link().powered()
+    }
+
+    /// What is around the unit, to be looked at: true motion, contacts, mode.
+    pub fn rig(&self) -> &Rig {
+        self.train.rig()
+    }
+
+    /// Time of the last scan.
+    pub fn now(&self) -> Instant {
+        self.train.now()
+    }
+
+    /// Another tester is connected from now on.
+    pub fn reset_connection(&mut self) {
+        self.train.link_mut().reset_maintenance();
+    }
+
+    /// Frames of testers that the unit accepted since it was powered up.
+    pub fn frames_accepted(&self) -> u64 {
+        self.train.link().maintenance_accepted()
+    }
+
+    /// One scan of unit and train.
+    fn scan(&mut self) -> Result<(), LinkFailure> {
+        self.train.tick()?;
+        if self.comes_to_rest && self.train.rig().motion_settled() {
+            self.comes_to_rest = false;
+            must(self.apply(&Stimulus::TrainDriven { on: true }));
+        }
+        Ok(())
+    }
+}
+
+impl UnitLink for UnitAboard {
+    fn exchange(
+        &mut self,
+        _now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        self.train.link_mut().receive_maintenance(to_unit);
+        self.scan()?;
+        self.train.link_mut().take_maintenance(from_unit);
+        Ok(())
+    }
+}
+
+/// What a standing train can always do.
+fn must(done: Result<(), Refusal>) {
+    debug_assert!(done.is_ok(), "{done:?}");
+}
+
+#[cfg(test)]
+mod tests;
