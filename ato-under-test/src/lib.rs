@@ -11,10 +11,13 @@
 //!
 //! It has two ports ([`Port`]): the harness carries everything, the maintenance port a tester alone.
 //! [`Unit`] is stepped every 10 ms of virtual time; nothing here knows a clock, a thread or a file,
-//! and `no_std` keeps it so.
+//! and `no_std` keeps it so. [`serve`], a feature of its own, needs the standard library: it serves a
+//! unit on a port in real time.
 #![no_std]
 
 extern crate alloc;
+#[cfg(feature = "serve")]
+extern crate std;
 
 pub mod ato;
 mod atp;
@@ -23,6 +26,8 @@ mod front_end;
 mod kernel;
 mod psm;
 mod random;
+#[cfg(feature = "serve")]
+pub mod serve;
 mod setup;
 mod signals;
 mod test_board;

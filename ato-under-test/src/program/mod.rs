@@ -1,21 +1,20 @@
-//! The program around the unit: arguments, data files, pacing and the wire's far end.
+//! The program around the unit: arguments and data files.
 
 mod data;
 mod stdio;
-mod tcp;
-mod wire;
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
+use ato_under_test::serve::{Place, Served, Wire, in_real_time};
 use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
 use protocol::frame::SCAN_END;
-use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
+use protocol::{Instant, SCAN};
 
 pub use data::UsageError;
 pub use stdio::note;
-use wire::Wire;
 
 /// An on-board ATC unit (ATP + ATO + TWC) to be tested over a wire.
 ///
@@ -31,8 +30,8 @@ pub struct Arguments {
     #[arg(long)]
     pty: bool,
     /// Serve on a serial port
-    #[arg(long, value_name = "PATH[@BAUD]")]
-    serial: Option<String>,
+    #[arg(long, value_name = "PATH[@BAUD]", value_parser = Place::serial)]
+    serial: Option<Place>,
     /// Serve one TCP client at a time; others are told that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
@@ -67,65 +66,65 @@ pub struct Arguments {
 /// Serves until the process is ended.
 pub fn serve(arguments: &Arguments) -> Result<()> {
     let setup = data::setup(arguments)?;
-    let mut wire = Wire::open(arguments)?;
+    let mut wire = match (&arguments.serial, &arguments.tcp) {
+        (Some(port), _) => Wire::open(port)?,
+        (_, Some(address)) => Wire::open(&Place::Tcp(address.clone()))?,
+        _ if arguments.lock_step => Wire::open_lock_step()?,
+        _ => Wire::open(&Place::Pty)?,
+    };
+    stdio::place(wire.name())?;
     stdio::note(&format!(
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name
     ));
-    let unit = Unit::new(setup);
+    let mut unit = OnHarness {
+        unit: Unit::new(setup),
+        now: Instant::ZERO,
+    };
     if arguments.lock_step {
         return run_in_lock_step(unit, &mut wire);
     }
-    run(unit, &mut wire, arguments.slower)
+    Ok(in_real_time(&mut unit, &mut wire, arguments.slower)?)
+}
+
+/// The unit, served at its harness.
+struct OnHarness {
+    unit: Unit,
+    /// Time of the next scan since power-up.
+    now: Instant,
+}
+
+impl Served for OnHarness {
+    fn scan(&mut self, received: &[u8], to_send: &mut Vec<u8>) -> ControlFlow<()> {
+        self.unit.receive(received);
+        self.unit.step(self.now, to_send);
+        self.now += SCAN;
+        ControlFlow::Continue(())
+    }
+
+    fn frames_accepted(&self) -> u64 {
+        self.unit.frames_accepted(Port::Harness)
+    }
+
+    fn reset_connection(&mut self) {
+        self.unit.reset_connection(Port::Harness);
+    }
 }
 
 /// One scan for each that the tester has sent, and the answer to it at once.
-fn run_in_lock_step(mut unit: Unit, wire: &mut Wire) -> Result<()> {
-    let mut now = Instant::ZERO;
+fn run_in_lock_step(mut unit: OnHarness, wire: &mut Wire) -> Result<()> {
     let mut received = Vec::with_capacity(1024);
     let mut to_send = Vec::with_capacity(1024);
     loop {
         received.clear();
         while !received.ends_with(&SCAN_END) {
             let mut read = [0u8; 4096];
-            let count = wire.read(&mut read).context("reading from the wire")?;
+            let count = wire.read(&mut read)?;
             received.extend_from_slice(&read[..count]);
         }
-        unit.receive(&received);
         to_send.clear();
-        unit.step(now, &mut to_send);
+        let _ = unit.scan(&received, &mut to_send);
         to_send.extend(SCAN_END);
-        wire.write(&to_send).context("writing to the wire")?;
-        now += SCAN;
-    }
-}
-
-/// One scan every 10 ms of the monotonic clock, or so many times that; a late scan is made up, not skipped.
-fn run(mut unit: Unit, wire: &mut Wire, slower: u32) -> Result<()> {
-    let began = std::time::Instant::now();
-    let clock = || Instant::from_us(began.elapsed().as_micros() as u64);
-    let mut deadlines = ScanDeadlines::new(clock(), slower);
-    let mut now = Instant::ZERO;
-    let mut read = [0u8; 4096];
-    let mut backlog = Backlog::default();
-    let mut received = Vec::with_capacity(1024);
-    let mut to_send = Vec::with_capacity(1024);
-    loop {
-        let wait = deadlines.next(clock()).since(clock());
-        std::thread::sleep(std::time::Duration::from_micros(wait.as_us()));
-        let behind = deadlines.behind(clock());
-        let another = wire.attend(now, behind, unit.frames_accepted(Port::Harness));
-        if another.context("attending to the wire")? {
-            backlog = Backlog::default();
-            unit.reset_connection(Port::Harness);
-        }
-        let count = wire.read(&mut read).context("reading from the wire")?;
-        received.clear();
-        backlog.share(&read[..count], behind, &mut received);
-        unit.receive(&received);
-        to_send.clear();
-        unit.step(now, &mut to_send);
-        wire.write(&to_send).context("writing to the wire")?;
-        now += SCAN;
+        wire.write(&to_send)?;
     }
 }

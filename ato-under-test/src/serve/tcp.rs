@@ -3,14 +3,13 @@
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::vec;
+use std::vec::Vec;
 
-use anyhow::{Context, Result};
 use protocol::link::{End, Link, MAX_DELAY};
 use protocol::message::Taken;
 use protocol::{Duration, Instant};
 use socket2::{SockRef, TcpKeepalive};
-
-use super::stdio;
 
 /// A client of which no frame was accepted for so long is let go.
 const SILENT: Duration = Duration::from_ms(10_000);
@@ -52,18 +51,18 @@ struct SecondClient {
 }
 
 impl Server {
-    /// Listens, and prints where.
-    pub fn listen(address: &str) -> Result<Self> {
-        let listener =
-            TcpListener::bind(address).with_context(|| format!("listening on {address}"))?;
+    /// Listens, and tells where.
+    pub fn listen(address: &str) -> io::Result<(Self, SocketAddr)> {
+        let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
-        stdio::place(&listener.local_addr()?.to_string())?;
-        Ok(Self {
+        let at = listener.local_addr()?;
+        let server = Self {
             listener,
             client: None,
             coming: Vec::new(),
             unheard: vec![0; 4096],
-        })
+        };
+        Ok((server, at))
     }
 
     /// Takes the first who comes, turns others away and lets a silent one go; true when there is another

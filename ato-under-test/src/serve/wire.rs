@@ -1,23 +1,68 @@
 //! The far end of the wire: pseudo-terminal, serial port or TCP socket. Only a pseudo-terminal in lock step
 //! waits for its tester.
 
+use std::boxed::Box;
+use std::format;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
+use std::string::{String, ToString};
+use std::vec::Vec;
 
-use anyhow::{Context, Result};
 use protocol::{Duration, Instant};
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::OpenptFlags;
 use rustix::termios::OptionalActions;
 
+use super::ServeError;
 use super::tcp::Server;
-use super::{Arguments, stdio};
 
 /// Baud rate of a serial port when none is given.
 const BAUD: u32 = 115_200;
 
+/// Where something is served.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// On a new pseudo-terminal.
+    Pty,
+    /// On a serial port.
+    Serial {
+        /// Its path.
+        path: String,
+        /// Its rate.
+        baud: u32,
+    },
+    /// At an address, `HOST:PORT`, to one TCP client at a time.
+    Tcp(String),
+}
+
+impl Place {
+    /// A serial port, `PATH` or `PATH@BAUD`.
+    ///
+    /// # Errors
+    /// The rate is no number.
+    pub fn serial(text: &str) -> Result<Self, String> {
+        let (path, baud) = match text.rsplit_once('@') {
+            Some((path, baud)) => (
+                path,
+                baud.parse()
+                    .map_err(|_| format!("\"{baud}\" is not a baud rate"))?,
+            ),
+            None => (text, BAUD),
+        };
+        Ok(Self::Serial {
+            path: path.into(),
+            baud,
+        })
+    }
+}
+
 /// An open wire.
-pub enum Wire {
+pub struct Wire {
+    name: String,
+    end: FarEnd,
+}
+
+enum FarEnd {
     /// The master side; the slave is kept open so that testers can come and go.
     Pty { master: File, _slave: File },
     /// A real port.
@@ -27,84 +72,118 @@ pub enum Wire {
 }
 
 impl Wire {
-    /// Opens what the arguments ask for and prints where it is.
-    pub fn open(arguments: &Arguments) -> Result<Self> {
-        if let Some(port) = &arguments.serial {
-            return Self::open_serial(port);
+    /// Opens it.
+    ///
+    /// # Errors
+    /// The system has no such place, or somebody else has it.
+    pub fn open(place: &Place) -> Result<Self, ServeError> {
+        match place {
+            Place::Pty => Self::open_pty(false),
+            Place::Serial { path, baud } => {
+                let port = serialport::new(path, *baud)
+                    .timeout(std::time::Duration::ZERO)
+                    .open()
+                    .map_err(io::Error::from)
+                    .map_err(ServeError::new(format!("opening serial port {path}")))?;
+                Ok(Self {
+                    name: path.clone(),
+                    end: FarEnd::Serial(port),
+                })
+            }
+            Place::Tcp(address) => {
+                let (server, at) = Server::listen(address)
+                    .map_err(ServeError::new(format!("listening on {address}")))?;
+                Ok(Self {
+                    name: at.to_string(),
+                    end: FarEnd::Tcp(server),
+                })
+            }
         }
-        if let Some(address) = &arguments.tcp {
-            return Ok(Self::Tcp(Server::listen(address)?));
-        }
-        Self::open_pty(arguments.lock_step)
     }
 
-    fn open_pty(waits: bool) -> Result<Self> {
-        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
-        let master = rustix::pty::openpt(flags).context("opening a pseudo-terminal")?;
-        rustix::pty::grantpt(&master)?;
-        rustix::pty::unlockpt(&master)?;
-        let name = rustix::pty::ptsname(&master, Vec::new())?;
-        let slave = rustix::fs::open(&name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty())
-            .context("opening the pseudo-terminal's slave side")?;
-        let mut raw = rustix::termios::tcgetattr(&slave)?;
-        raw.make_raw();
-        rustix::termios::tcsetattr(&slave, OptionalActions::Now, &raw)?;
-        if !waits {
-            rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
-        }
-        stdio::place(&name.to_string_lossy())?;
-        Ok(Self::Pty {
-            master: File::from(master),
-            _slave: File::from(slave),
-        })
+    /// A new pseudo-terminal whose reads wait, for a unit that goes by its tester instead of the clock.
+    ///
+    /// # Errors
+    /// The system has none left.
+    pub fn open_lock_step() -> Result<Self, ServeError> {
+        Self::open_pty(true)
     }
 
-    fn open_serial(port: &str) -> Result<Self> {
-        let (path, baud) = match port.rsplit_once('@') {
-            Some((path, baud)) => (
-                path,
-                baud.parse()
-                    .with_context(|| format!("{baud} is not a baud rate"))?,
-            ),
-            None => (port, BAUD),
+    fn open_pty(waits: bool) -> Result<Self, ServeError> {
+        let open = || {
+            let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+            let master = rustix::pty::openpt(flags)?;
+            rustix::pty::grantpt(&master)?;
+            rustix::pty::unlockpt(&master)?;
+            let name = rustix::pty::ptsname(&master, Vec::new())?;
+            let flags = OFlags::RDWR | OFlags::NOCTTY;
+            let slave = rustix::fs::open(&name, flags, Mode::empty())?;
+            let mut raw = rustix::termios::tcgetattr(&slave)?;
+            raw.make_raw();
+            rustix::termios::tcsetattr(&slave, OptionalActions::Now, &raw)?;
+            if !waits {
+                rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
+            }
+            Ok(Self {
+                name: name.to_string_lossy().into_owned(),
+                end: FarEnd::Pty {
+                    master: File::from(master),
+                    _slave: File::from(slave),
+                },
+            })
         };
-        let port = serialport::new(path, baud)
-            .timeout(std::time::Duration::ZERO)
-            .open()
-            .with_context(|| format!("opening serial port {path}"))?;
-        stdio::place(path)?;
-        Ok(Self::Serial(port))
+        open().map_err(ServeError::new("opening a pseudo-terminal"))
+    }
+
+    /// Where testers reach it.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// Attends to who comes and goes; true when another tester has the wire from now on. This program is
-    /// `behind` its time; `accepted` counts the frames that the unit accepted.
-    pub fn attend(&mut self, now: Instant, behind: Duration, accepted: u64) -> io::Result<bool> {
-        match self {
-            Self::Tcp(server) => server.attend(now, behind, accepted),
+    /// `behind` its time; `accepted` counts the frames that were accepted.
+    pub fn attend(
+        &mut self,
+        now: Instant,
+        behind: Duration,
+        accepted: u64,
+    ) -> Result<bool, ServeError> {
+        match &mut self.end {
+            FarEnd::Tcp(server) => server
+                .attend(now, behind, accepted)
+                .map_err(ServeError::new("attending to the wire")),
             _ => Ok(false),
         }
     }
 
     /// Reads what is there, 0 when there is nothing.
-    pub fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Self::Pty { master, .. } => nothing_is_zero(master.read(into)),
-            Self::Serial(port) => nothing_is_zero(port.read(into)),
-            Self::Tcp(server) => Ok(server.read(into)),
-        }
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn read(&mut self, into: &mut [u8]) -> Result<usize, ServeError> {
+        let read = match &mut self.end {
+            FarEnd::Pty { master, .. } => nothing_is_zero(master.read(into)),
+            FarEnd::Serial(port) => nothing_is_zero(port.read(into)),
+            FarEnd::Tcp(server) => Ok(server.read(into)),
+        };
+        read.map_err(ServeError::new("reading from the wire"))
     }
 
     /// Writes what fits; as on a real line, nobody waits for a listener.
-    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let written = match self {
-            Self::Pty { master, .. } => master.write(bytes),
-            Self::Serial(port) => port.write(bytes),
-            Self::Tcp(server) => {
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), ServeError> {
+        let written = match &mut self.end {
+            FarEnd::Pty { master, .. } => master.write(bytes),
+            FarEnd::Serial(port) => port.write(bytes),
+            FarEnd::Tcp(server) => {
                 server.write(bytes);
                 return Ok(());
             }
         };
-        nothing_is_zero(written).map(|_| ())
+        let written = nothing_is_zero(written).map_err(ServeError::new("writing to the wire"));
+        written.map(|_| ())
     }
 }
 

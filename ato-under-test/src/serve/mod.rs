@@ -1,0 +1,92 @@
+//! Serves a unit on a pseudo-terminal, a serial port or a TCP socket, in real time. The only part of this library
+//! that needs the standard library: feature `serve`.
+//!
+//! What is served is anything [`Served`]: the unit at its harness, or one at the maintenance port of a train.
+
+mod tcp;
+mod wire;
+
+use core::ops::ControlFlow;
+use std::fmt;
+use std::io;
+use std::string::String;
+use std::time::Instant as WallClock;
+use std::vec::Vec;
+
+use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
+
+pub use wire::{Place, Wire};
+
+/// What is at the far end of a wire.
+pub trait Served {
+    /// One scan: takes what came and appends what goes out. A break ends serving.
+    fn scan(&mut self, received: &[u8], to_send: &mut Vec<u8>) -> ControlFlow<()>;
+
+    /// Frames accepted at this wire: a TCP client of which none is accepted is let go.
+    fn frames_accepted(&self) -> u64;
+
+    /// Another tester is connected from now on: nothing the last one sent is continued.
+    fn reset_connection(&mut self);
+}
+
+/// The wire does not work.
+#[derive(Debug)]
+pub struct ServeError {
+    /// What was done to it.
+    doing: String,
+    source: io::Error,
+}
+
+impl ServeError {
+    fn new(doing: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        let doing = doing.into();
+        move |source| Self { doing, source }
+    }
+}
+
+impl fmt::Display for ServeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.doing, self.source)
+    }
+}
+
+impl std::error::Error for ServeError {}
+
+/// One scan every 10 ms of the monotonic clock, or so many times that, until `served` ends it; a late scan is made up,
+/// not skipped.
+///
+/// # Errors
+/// The wire broke.
+pub fn in_real_time(
+    served: &mut impl Served,
+    wire: &mut Wire,
+    slower: u32,
+) -> Result<(), ServeError> {
+    let began = WallClock::now();
+    let clock = || Instant::from_us(began.elapsed().as_micros() as u64);
+    let mut deadlines = ScanDeadlines::new(clock(), slower);
+    let mut now = Instant::ZERO;
+    let mut read = [0u8; 4096];
+    let mut backlog = Backlog::default();
+    let mut received = Vec::with_capacity(1024);
+    let mut to_send = Vec::with_capacity(1024);
+    loop {
+        let wait = deadlines.next(clock()).since(clock());
+        std::thread::sleep(std::time::Duration::from_micros(wait.as_us()));
+        let behind = deadlines.behind(clock());
+        if wire.attend(now, behind, served.frames_accepted())? {
+            backlog = Backlog::default();
+            served.reset_connection();
+        }
+        let count = wire.read(&mut read)?;
+        received.clear();
+        backlog.share(&read[..count], behind, &mut received);
+        to_send.clear();
+        let flow = served.scan(&received, &mut to_send);
+        wire.write(&to_send)?;
+        if flow.is_break() {
+            return Ok(());
+        }
+        now += SCAN;
+    }
+}
