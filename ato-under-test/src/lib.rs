@@ -6,13 +6,14 @@
 //! * `com`: links, input image, maintenance session;
 //! * `atp`: speed code, speed, overspeed supervision, brakes, doors, direction, modes;
 //! * `twc`, `psm`, [`ato`]: wayside data, markers and TRA, automatic operation;
+//! * [`flash`]: event log and run record over power-ups;
 //! * `test_board`: test signals of an armed tester;
 //! * `front_end`: antennas, sensors and relays, where injected faults act.
 //!
 //! It has two ports ([`Port`]): the harness carries everything, the maintenance port a tester alone.
 //! [`Unit`] is stepped every 10 ms of virtual time; nothing here knows a clock, a thread or a file,
 //! and `no_std` keeps it so. [`serve`], a feature of its own, needs the standard library: it serves a
-//! unit on a port in real time.
+//! unit on a port in real time, and `flash::FileFlash` beside it keeps its memory in a file.
 #![no_std]
 
 extern crate alloc;
@@ -22,6 +23,7 @@ extern crate std;
 pub mod ato;
 mod atp;
 mod com;
+pub mod flash;
 mod front_end;
 mod kernel;
 mod psm;

@@ -46,6 +46,11 @@ pub const ESCAPE_XOR: u8 = 0x20;
 /// Sixteen bytes a step: at one byte a step the check sequence would be the dearest part of a frame.
 static FCS: Crc<u32, Table<16>> = Crc::<u32, Table<16>>::new(&CRC_32_ISO_HDLC);
 
+/// Frame check sequence over `bytes`: the CRC of Ethernet, zlib and zip.
+pub fn fcs(bytes: &[u8]) -> u32 {
+    FCS.checksum(bytes)
+}
+
 /// What precedes the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
@@ -147,10 +152,10 @@ pub fn encode(header: &Header, payload: &[u8], out: &mut Vec<u8>) {
     body[4..6].copy_from_slice(&header.seq.to_be_bytes());
     body[6..10].copy_from_slice(&header.stamp_ms.to_be_bytes());
     body[HEADER_LEN..end].copy_from_slice(payload);
-    let fcs = FCS.checksum(&body[..end]);
+    let sequence = fcs(&body[..end]);
     // RFC 1662 sends the coefficient of the highest power first, which in this reflected form is
     // the least significant octet.
-    body[end..end + FCS_LEN].copy_from_slice(&fcs.to_le_bytes());
+    body[end..end + FCS_LEN].copy_from_slice(&sequence.to_le_bytes());
 
     out.reserve(end + FCS_LEN + 8);
     out.push(FLAG);

@@ -35,6 +35,8 @@ VALUES = {
     "TestRelease": {"session": SESSION, "signals": "CODE|SPEED_1|SPEED_2"},
     "ReadLog": {"from_index": 65541},
     "ReadRun": {"from_index": 4801},
+    "ReadStored": {"store": "runs", "from_sequence": 70000, "per_cycle": 3},
+    "SetClock": {"utc_ms": 1767225600000, "uncertainty_ms": 250},
     "ClearLog": {"session": SESSION},
     "Identity": {
         "serial": "SG-0042", "config": "sg100", "config_crc": 0xDEADBEEF, "tdb_crc": 0x01234567,
@@ -73,6 +75,21 @@ VALUES = {
         "target_cms": 1528, "effort": -300, "marker": 2, "ato_state": "run",
     },
     "RunEnd": {"next_index": 4900, "oldest_index": 100},
+    "StoredEntry": {
+        "sequence": 70001, "power_up": 41, "index": 16, "code": 212, "at_ms": 123456, "parameter": -305,
+        "speed_cms": 1833, "limit_cms": 1528, "position_cm": 98765, "mode": "automatic_run",
+        "eb_cause": "overspeed",
+    },
+    "StoredClock": {
+        "sequence": 70002, "power_up": 41, "at_ms": 123500, "utc_ms": 1767225600000, "uncertainty_ms": 250,
+    },
+    "StoredRow": {
+        "sequence": 90001, "power_up": 41, "index": 4801, "run": 3, "at_ms": 123450, "position_cm": -2,
+        "speed_cms": 1667, "target_cms": 1528, "effort": -300, "marker": 2, "ato_state": "run",
+    },
+    "StoredEnd": {
+        "store": "events", "next_sequence": 70003, "oldest_sequence": 63600, "power_up": 41, "works": 1,
+    },
     "IoInput": {
         "carrier_hz": 3000, "code_rate_chz": 1500, "level_mv": 500, "tacho1_count": 65530,
         "tacho1_edge_us": 4321, "tacho2_count": 12, "tacho2_edge_us": 1234, "tacho_backward": 2,

@@ -35,7 +35,7 @@ class Wire:
             size = int(found[1])
             digits = re.fullmatch(f"[0-9a-f]{{{2 * size}}}", value)
             return bytes.fromhex(value) if digits else value.encode().ljust(size, b"\0")
-        if found := re.fullmatch(r"([ui])(8|16|32)", kind):
+        if found := re.fullmatch(r"([ui])(8|16|32|64)", kind):
             return int(value).to_bytes(int(found[2]) // 8, "big", signed=found[1] == "i")
         if kind in self.words:
             return bytes([next(code for code, label, _ in self.words[kind] if label == value)])
@@ -46,7 +46,7 @@ class Wire:
         """A value for a field nobody gave one: its bytes count up from its offset."""
         if found := re.fullmatch(r"u8\[(\d+)\]", kind):
             return bytes(range(offset, offset + int(found[1]))).hex()
-        if found := re.fullmatch(r"[ui](8|16|32)", kind):
+        if found := re.fullmatch(r"[ui](8|16|32|64)", kind):
             return int.from_bytes(bytes(range(offset, offset + int(found[1]) // 8)), "big")
         if kind in self.words:
             return self.words[kind][-1][1]

@@ -1,4 +1,4 @@
-//! The tester's session: identity, arm exchange, stimuli, event log, run record.
+//! The tester's session: identity, arm exchange, stimuli, event log, run record, stored memory.
 //!
 //! Stimuli act only while armed. Arming needs the maintenance key and standstill, and lapses when
 //! the key goes off or the tester falls silent; the TEST board then removes every test signal.
@@ -8,10 +8,11 @@ use alloc::vec::Vec;
 use protocol::event::Event;
 use protocol::message::{
     Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, LogEnd, Message, RunEnd,
-    StimulusAnswer,
+    StimulusAnswer, StoreKind,
 };
 use protocol::{Duration, Instant};
 
+use crate::flash::{Memory, SetClockError};
 use crate::kernel::{EventLog, Ring, RunRecord};
 use crate::random::Random;
 use crate::test_board::TestBoard;
@@ -24,6 +25,8 @@ const SUBSCRIPTION: Duration = Duration::from_ms(1000);
 const ENTRIES_PER_CYCLE: usize = 2;
 /// Rows of the run record sent in a cycle without log entries, for the same reason.
 const ROWS_PER_CYCLE: usize = 2;
+/// Most stored entries that a tester may ask for in a cycle without those.
+const STORED_PER_CYCLE: usize = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArmConditions {
@@ -47,6 +50,8 @@ pub struct Maintenance {
     reader: Option<u32>,
     /// Index of the next row of the run record to send.
     run_reader: Option<u32>,
+    /// What of the stored memory is to be sent, its next number and how much in a cycle.
+    stored_reader: Option<(StoreKind, u32, usize)>,
 }
 
 impl Maintenance {
@@ -62,6 +67,7 @@ impl Maintenance {
             random: Random::new(seed),
             reader: None,
             run_reader: None,
+            stored_reader: None,
         }
     }
 
@@ -125,7 +131,7 @@ impl Maintenance {
         now: Instant,
         (seq, message): (u16, Message),
         conditions: ArmConditions,
-        (board, log): (&mut TestBoard, &mut EventLog),
+        (board, log, memory): (&mut TestBoard, &mut EventLog, &mut Memory),
         replies: &mut Vec<Message>,
     ) {
         self.heard = Some(now);
@@ -142,6 +148,24 @@ impl Maintenance {
             Message::KeepAlive(alive) => self.on_session(now, alive.session),
             Message::ReadLog(request) => self.reader = Some(request.from_index),
             Message::ReadRun(request) => self.run_reader = Some(request.from_index),
+            Message::SetClock(told) => {
+                let answer = match memory.set_clock(now, told) {
+                    Ok(()) => Answer::Accepted,
+                    Err(SetClockError::OutOfRange) => Answer::OutOfRange,
+                    Err(SetClockError::Failed) => Answer::BoardFailed,
+                };
+                replies.push(
+                    StimulusAnswer {
+                        request_seq: seq,
+                        answer,
+                    }
+                    .into(),
+                );
+            }
+            Message::ReadStored(request) if request.store.is_known() => {
+                let per_cycle = usize::from(request.per_cycle).clamp(1, STORED_PER_CYCLE);
+                self.stored_reader = Some((request.store, request.from_sequence, per_cycle));
+            }
             other => {
                 if let Some(answer) = self.stimulate(now, other, board, log) {
                     replies.push(
@@ -292,6 +316,17 @@ impl Maintenance {
                 oldest_index: rows.oldest_index(),
             };
             replies.push(end.into());
+        }
+    }
+
+    /// Stored entries to send in this cycle.
+    pub fn read_stored(&mut self, memory: &Memory, replies: &mut Vec<Message>) {
+        let Some((store, next, per_cycle)) = &mut self.stored_reader else {
+            return;
+        };
+        if memory.read(*store, next, *per_cycle, replies) {
+            replies.push(memory.end(*store).into());
+            self.stored_reader = None;
         }
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use ato_under_test::Setup;
+use ato_under_test::flash::{BlockDevice, FileFlash};
 use protocol::config::UnitConfig;
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::Line;
@@ -42,6 +43,14 @@ pub fn setup(arguments: &Arguments) -> Result<Setup> {
         seed: arguments.seed,
         faults: faults(&scripts, &arguments.inject)?,
     })
+}
+
+/// The memory that the unit had before.
+pub fn flash(file: &Path) -> Result<Box<dyn BlockDevice>> {
+    match FileFlash::open(file) {
+        Ok(flash) => Ok(Box::new(flash)),
+        Err(why) => Err(UsageError(why).into()),
+    }
 }
 
 fn scripts_directory(given: Option<&Path>) -> Result<PathBuf> {

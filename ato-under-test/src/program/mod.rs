@@ -58,6 +58,9 @@ pub struct Arguments {
     /// lockstep:PATH`
     #[arg(long, requires = "pty", conflicts_with = "slower")]
     lock_step: bool,
+    /// Keep event log and run record in this file from start to start; made if it is not there
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
     /// Directory with units/ and lines/
     #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
     scripts: Option<PathBuf>,
@@ -66,6 +69,7 @@ pub struct Arguments {
 /// Serves until the process is ended.
 pub fn serve(arguments: &Arguments) -> Result<()> {
     let setup = data::setup(arguments)?;
+    let flash = arguments.flash.as_deref().map(data::flash).transpose()?;
     let mut wire = match (&arguments.serial, &arguments.tcp) {
         (Some(port), _) => Wire::open(port)?,
         (_, Some(address)) => Wire::open(&Place::Tcp(address.clone()))?,
@@ -78,7 +82,10 @@ pub fn serve(arguments: &Arguments) -> Result<()> {
         setup.serial, setup.config.name
     ));
     let mut unit = OnHarness {
-        unit: Unit::new(setup),
+        unit: match flash {
+            Some(flash) => Unit::with_flash(setup, flash),
+            None => Unit::new(setup),
+        },
         now: Instant::ZERO,
     };
     if arguments.lock_step {

@@ -51,6 +51,10 @@ impl Unit {
                 self.maintenance
                     .read_run(&self.run_record, &mut self.replies);
             }
+            if self.replies.is_empty() {
+                self.maintenance
+                    .read_stored(&self.memory, &mut self.replies);
+            }
             self.send_replies(now, out);
         }
     }

@@ -37,7 +37,7 @@ impl Unit {
                 }
                 other if header.channel == Channel::Ptu => {
                     let conditions = self.arm_conditions();
-                    let parts = (&mut self.board, &mut self.log);
+                    let parts = (&mut self.board, &mut self.log, &mut self.memory);
                     let request = (header.seq, other);
                     self.maintenance
                         .handle(now, request, conditions, parts, &mut self.replies);

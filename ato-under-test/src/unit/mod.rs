@@ -9,6 +9,7 @@ mod report;
 mod self_test;
 mod train_state;
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use protocol::event::Event;
@@ -17,6 +18,7 @@ use protocol::message::{IoOutput, Message, Outputs, TwcWayside};
 use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
+use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
     DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, Supply, apply_stored_data_faults,
 };
@@ -45,6 +47,8 @@ pub struct Unit {
     tcms: TcmsLink,
     image: IoImage,
     run_record: RunRecord,
+    /// Log and record over power-ups.
+    memory: Memory,
     faults: Faults,
     power: PowerAndClock,
     /// Station data that a slow TWC CPU has not handed on yet.
@@ -63,13 +67,23 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Powers a unit up at [`Instant::ZERO`].
+    /// Powers a unit up at [`Instant::ZERO`], with a flash of its own that is erased.
     pub fn new(setup: Setup) -> Self {
-        let faults = Faults::new(&setup.faults, setup.seed ^ 0x5EED);
-        Self::powered_up(apply_stored_data_faults(setup), faults)
+        Self::with_flash(setup, Box::new(RamFlash::default()))
     }
 
-    fn powered_up(setup: Setup, faults: Faults) -> Self {
+    /// Powers a unit up at [`Instant::ZERO`] with the flash that it had before.
+    pub fn with_flash(setup: Setup, flash: Box<dyn BlockDevice>) -> Self {
+        let faults = Faults::new(&setup.faults, setup.seed ^ 0x5EED);
+        Self::powered_up(apply_stored_data_faults(setup), faults, flash)
+    }
+
+    /// Powers the unit off; its flash is for the next power-up.
+    pub fn power_off(mut self) -> Box<dyn BlockDevice> {
+        self.memory.take_device()
+    }
+
+    fn powered_up(setup: Setup, faults: Faults, flash: Box<dyn BlockDevice>) -> Self {
         let config = &setup.config;
         let link = &config.link;
         let ms = |ms: u32| Duration::from_ms(u64::from(ms));
@@ -90,6 +104,7 @@ impl Unit {
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms), config.ato.train.empty_kg),
             run_record: RunRecord::default(),
+            memory: Memory::power_up(flash),
             image: IoImage::new(ms(link.io_timeout_ms)),
             faults,
             power: PowerAndClock::default(),
@@ -158,12 +173,21 @@ impl Unit {
         self.scan = (self.scan + 1) % SCANS_PER_CYCLE;
         self.drive_outputs(now, out);
         self.tell_train_state(now, cycle, out);
+        self.store(now);
+    }
+
+    /// Stores what is new in log and record, a few entries a scan.
+    fn store(&mut self, now: Instant) {
+        if self.memory.step(&self.log, &self.run_record) {
+            self.log.push(now, Event::MemoryFailed, 0);
+        }
     }
 
     /// Restarts after a dip of the supply; the hardware and its injected faults stay.
     fn restart(&mut self, now: Instant) {
         let faults = core::mem::replace(&mut self.faults, Faults::new(&[], 0));
-        *self = Self::powered_up(self.setup.clone(), faults);
+        let flash = self.memory.take_device();
+        *self = Self::powered_up(self.setup.clone(), faults, flash);
         self.power = PowerAndClock::restarted(now);
         self.log.push(Instant::ZERO, Event::SupplyDip, 0);
     }

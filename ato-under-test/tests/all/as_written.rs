@@ -9,8 +9,8 @@ use ato_under_test::{Setup, Unit};
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
-    IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, Status, StimulusAnswer,
-    Subscribe, TrainLines,
+    IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status,
+    StimulusAnswer, Subscribe, TrainLines,
 };
 use protocol::{Duration, Instant, SCAN};
 
@@ -324,6 +324,11 @@ fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
                     refuses_to_arm(rule.set(ArmRequest { session: SESSION }, value));
                     continue;
                 }
+                "not answered" => {
+                    let request = ReadStored::default();
+                    answers_nothing_to(rule.set(request, value));
+                    continue;
+                }
                 // What changes nothing is accepted, and held above.
                 "passed over" if rule.spec.name == "TestRelease" => continue,
                 "passed over" => (beside(&rule, value), beside(&rule, 0)),
@@ -342,6 +347,15 @@ fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
             assert!(same, "{name} is not {}", rule.otherwise);
         }
     }
+}
+
+#[track_caller]
+fn answers_nothing_to(request: Message) {
+    let mut bench = Bench::new(&[]);
+    bench.answers.clear();
+    bench.send(request);
+    bench.run(0.2);
+    assert!(bench.answers.is_empty(), "{:?}", bench.answers);
 }
 
 #[track_caller]

@@ -11,5 +11,6 @@ mod plant;
 mod protection;
 mod robustness;
 mod speed_control;
+mod stored_memory;
 mod tcms;
 mod test_signals;

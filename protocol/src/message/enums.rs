@@ -181,6 +181,16 @@ wire_enum! {
 }
 
 wire_enum! {
+    /// What the unit stores over power-ups.
+    StoreKind {
+        /// The event log.
+        Events = 0 "events",
+        /// The record of automatic runs.
+        Runs = 1 "runs",
+    }
+}
+
+wire_enum! {
     /// Why arming was refused or lapsed.
     ArmRefusal {
         /// Not refused.

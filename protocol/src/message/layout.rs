@@ -169,7 +169,7 @@ macro_rules! integer_fields {
         }
     )*};
 }
-integer_fields!(u8, i8, u16, i16, u32, i32);
+integer_fields!(u8, i8, u16, i16, u32, i32, u64);
 
 impl<const N: usize> Field for [u8; N] {
     const SIZE: usize = N;

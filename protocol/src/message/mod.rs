@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 
 pub use enums::{
     AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause, Mode,
-    ModeSwitch, Refusals, RunningMode,
+    ModeSwitch, Refusals, RunningMode, StoreKind,
 };
 pub use io::{IoInput, IoOutput, Outputs, TrainLines};
 pub use layout::{
@@ -22,8 +22,9 @@ pub use layout::{
 };
 pub use ptu::{
     ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
-    KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, RunEnd, RunRow, SelfTest, Status, StatusBits,
-    StimulusAnswer, Taken, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
+    KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, ReadStored, RunEnd, RunRow, SelfTest, SetClock,
+    Status, StatusBits, StimulusAnswer, StoredClock, StoredEnd, StoredEntry, StoredRow, Taken,
+    TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
 };
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use train_state::{Subscribe, TrainState};
@@ -196,6 +197,8 @@ messages!(
     TestRelease,
     ReadLog,
     ReadRun,
+    ReadStored,
+    SetClock,
     ClearLog,
     Identity,
     ArmChallenge,
@@ -207,6 +210,10 @@ messages!(
     LogEnd,
     RunRow,
     RunEnd,
+    StoredEntry,
+    StoredClock,
+    StoredRow,
+    StoredEnd,
     Taken,
     IoInput,
     IoOutput,
@@ -226,6 +233,7 @@ pub const ENUMS: &[WordSpec] = &[
     FsbCause::SPEC,
     Answer::SPEC,
     ArmRefusal::SPEC,
+    StoreKind::SPEC,
     AtoState::SPEC,
     AtoFailure::SPEC,
 ];

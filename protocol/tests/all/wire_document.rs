@@ -79,8 +79,10 @@ fn every_type_is_described_once() {
         );
     }
     for field in CATALOGUE.iter().flat_map(|spec| spec.fields) {
-        let primitive = matches!(field.ty, "u8" | "i8" | "u16" | "i16" | "u32" | "i32")
-            || field.ty.starts_with("[u8");
+        let primitive = matches!(
+            field.ty,
+            "u8" | "i8" | "u16" | "i16" | "u32" | "i32" | "u64"
+        ) || field.ty.starts_with("[u8");
         assert!(
             primitive || words.contains(&field.ty),
             "{} is not described",
