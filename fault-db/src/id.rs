@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use rusqlite::types::{FromSql, FromSqlError, FromSqlResult, ToSql, ToSqlOutput, ValueRef};
 use serde::{Serialize, Serializer};
+use sha2::{Digest as _, Sha256};
 use uuid::{Builder, Uuid};
 
 /// The id of a run, fault, occurrence, event or trace, the same in every file.
@@ -21,6 +22,20 @@ impl Id {
                 .into_uuid()
                 .into_bytes(),
         )
+    }
+
+    /// A UUIDv8 that follows from what it names: the first 16 bytes of the SHA-256 over `kind` and `parts`, each
+    /// after its length, so that every store makes the same one of the same thing.
+    pub fn of_content(kind: &str, parts: &[&[u8]]) -> Self {
+        let mut hash = Sha256::new();
+        for part in std::iter::once(&kind.as_bytes()).chain(parts) {
+            hash.update((part.len() as u64).to_be_bytes());
+            hash.update(part);
+        }
+        let digest: [u8; 32] = hash.finalize().into();
+        let mut bytes = [0; 16];
+        bytes.copy_from_slice(&digest[..16]);
+        Self(Builder::from_custom_bytes(bytes).into_uuid().into_bytes())
     }
 
     /// Takes the 16 bytes as they are.
@@ -120,5 +135,14 @@ mod tests {
         assert_eq!(id.to_string(), "017f22e2-79b0-7cc3-98c4-dc0c0c07398f");
         assert_eq!(id.to_string().parse::<Id>().expect("its own text"), id);
         assert_eq!(id.short(), "0c07398f");
+    }
+
+    #[test]
+    fn an_id_of_content_is_the_same_everywhere_and_no_other_contents() {
+        let id = Id::of_content("entry", &[b"SG-0042", b"7"]);
+        assert_eq!(id, Id::of_content("entry", &[b"SG-0042", b"7"]));
+        assert_ne!(id, Id::of_content("entry", &[b"SG-0042", b"8"]));
+        assert_ne!(id, Id::of_content("entry", &[b"SG-004", b"27"]));
+        assert_eq!(id.to_string().as_bytes()[14], b'8', "version 8 of RFC 9562");
     }
 }

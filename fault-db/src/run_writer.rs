@@ -187,6 +187,27 @@ impl<'a> RunWriter<'a> {
     /// It belongs to the fault of the same unit, code and part that is not closed; if there is none, it
     /// begins one. A repaired or verified fault is reopened.
     pub fn fault(&mut self, record: &FaultRecord) -> Result<FaultStored, StoreError> {
+        let occurrence = self.store.mint()?;
+        self.fault_as(occurrence, record)
+    }
+
+    /// The same for an entry of a unit's own log, under an id that follows from the entry: other stores that import
+    /// it make the same, and where their histories meet it is one occurrence. It must not be known here.
+    pub fn logged_fault(
+        &mut self,
+        occurrence: Id,
+        record: &FaultRecord,
+    ) -> Result<FaultStored, StoreError> {
+        let stored = self.fault_as(occurrence, record)?;
+        self.seal.share_occurrence(occurrence);
+        Ok(stored)
+    }
+
+    fn fault_as(
+        &mut self,
+        occurrence: Id,
+        record: &FaultRecord,
+    ) -> Result<FaultStored, StoreError> {
         const DOING: &str = "storing a fault";
         self.check_unfinished()?;
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
@@ -199,7 +220,7 @@ impl<'a> RunWriter<'a> {
         };
         let ids = FaultIds {
             fault: store.mint()?,
-            occurrence: store.mint()?,
+            occurrence,
             event: store.mint()?,
         };
         let (stored, digest) = store.write(DOING, |conn| {
@@ -217,9 +238,26 @@ impl<'a> RunWriter<'a> {
     /// Commits a trace and links it to occurrences of this store; there may be none.
     pub fn trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Result<Id, StoreError> {
         self.check_unfinished()?;
-        let (id, digest) = self.store.insert_trace(self.run, occurrences, trace)?;
-        self.seal.trace(id, digest);
+        let id = self.store.mint()?;
+        self.trace_as(id, occurrences, trace)?;
         Ok(id)
+    }
+
+    /// Commits a trace of a unit's own record, under an id that follows from it; it must not be known here.
+    pub fn recorded_trace(&mut self, id: Id, trace: &TraceData) -> Result<(), StoreError> {
+        self.check_unfinished()?;
+        self.trace_as(id, &[], trace)
+    }
+
+    fn trace_as(
+        &mut self,
+        id: Id,
+        occurrences: &[Id],
+        trace: &TraceData,
+    ) -> Result<(), StoreError> {
+        let digest = self.store.insert_trace(id, self.run, occurrences, trace)?;
+        self.seal.trace(id, digest);
+        Ok(())
     }
 
     /// Commits the buffered steps and the verdict, and verifies repairs that a passed run has proven. After

@@ -26,6 +26,7 @@ mod rolling;
 mod sample;
 mod section_codes;
 mod step_profile;
+mod store_reader;
 mod tacho;
 mod tcms;
 mod tcms_port;
@@ -36,6 +37,7 @@ mod tests;
 mod track;
 mod train_faults;
 mod true_motion;
+mod unit_clock;
 mod wayside;
 mod wheel;
 
@@ -56,9 +58,11 @@ use crate::train::{Train, TrainData, TrainInputs, TrainState};
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use log_session::LogSession;
 pub use random::Random;
+pub use store_reader::StoredData;
 pub use tcms::PAIR_DEMANDS;
 pub use train_faults::{Misplaced, check_places};
 pub use true_motion::{PairEfforts, TrueMotion};
+pub use unit_clock::TimeOfDay;
 
 use antenna::Antenna;
 use cab_desk::CabDesk;
@@ -328,6 +332,11 @@ impl Rig {
     /// What the unit logged before it was first heard is not read.
     pub fn leave_log_before_contact(&mut self) {
         self.tester.leave_log_before_contact();
+    }
+
+    /// Tells the unit the time, now and after each restart.
+    pub fn tell_time(&mut self, time: TimeOfDay) {
+        self.tester.tell_time(time);
     }
 
     /// Times the unit was started again since it was first heard.

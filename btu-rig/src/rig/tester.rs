@@ -11,6 +11,7 @@ use crate::procedure::{LogState, Refusal, UnitEvent};
 use super::exchange::{Exchange, Request};
 use super::log_reader::LogReader;
 use super::test_signals;
+use super::unit_clock::{TimeOfDay, UnitClock};
 
 /// Period of the keep-alive: the unit disarms after one second without.
 const KEEP_ALIVE: Duration = Duration::from_ms(200);
@@ -42,6 +43,9 @@ pub struct Tester {
     restarts: u32,
     exchange: Exchange,
     log: LogReader,
+    /// The log is not read: what is stored is, instead.
+    holds_log: bool,
+    clock: UnitClock,
     /// The log was to be cleared: what is gone from it then is gone on purpose.
     clears_log: bool,
     /// Entries logged since contact that were gone before they could be read.
@@ -67,6 +71,8 @@ impl Tester {
             restarts: 0,
             exchange: Exchange::new(session),
             log: LogReader::default(),
+            holds_log: false,
+            clock: UnitClock::default(),
             clears_log: false,
             missed: 0,
         }
@@ -96,7 +102,12 @@ impl Tester {
             link.send(now, &KeepAlive { session }.into(), out);
         }
         self.exchange.step(now, link, out);
-        self.log.step(now, link, out);
+        if self.identity.is_some() {
+            self.clock.step(now, link, out);
+        }
+        if !self.holds_log {
+            self.log.step(now, link, out);
+        }
     }
 
     /// Takes a message of the PTU channel.
@@ -106,7 +117,10 @@ impl Tester {
             Message::Status(status) => self.on_status(now, status),
             Message::ArmChallenge(challenge) => self.exchange.on_challenge(challenge),
             Message::ArmState(state) => self.exchange.on_arm_state(now, state),
-            Message::StimulusAnswer(answer) => self.exchange.on_answer(answer),
+            Message::StimulusAnswer(answer) => {
+                self.clock.on_answer(answer);
+                self.exchange.on_answer(answer);
+            }
             Message::LogEntry(entry) => self.log.on_entry(now, entry),
             Message::LogEnd(end) => self.on_log_end(now, end),
             _ => {}
@@ -159,6 +173,7 @@ impl Tester {
         self.identify_due = now;
         self.self_test = SelfTest::empty();
         self.exchange.on_restart();
+        self.clock.restart();
         self.log.restart();
     }
 
@@ -239,6 +254,21 @@ impl Tester {
     /// Entries the unit's log had when it was first heard.
     pub fn events_at_contact(&self) -> Option<u32> {
         self.events_at_contact
+    }
+
+    /// The log is not read, or from now on it is.
+    pub fn hold_log(&mut self, holds: bool) {
+        self.holds_log = holds;
+    }
+
+    /// Tells the unit the time, now and after each restart.
+    pub fn tell_time(&mut self, time: TimeOfDay) {
+        self.clock.tell(time);
+    }
+
+    /// The unit has the time, or does not take it.
+    pub fn time_settled(&self) -> bool {
+        self.clock.settled()
     }
 
     /// What the unit logged before it was first heard is not read.

@@ -172,6 +172,33 @@ impl Store {
         Ok(found.is_some())
     }
 
+    /// Whether an occurrence has this id.
+    pub fn has_occurrence(&self, id: Id) -> Result<bool, StoreError> {
+        let known = "SELECT 1 FROM fault_occurrence WHERE id = ?1";
+        let found = self.first("looking for an occurrence", known, &values![id], |_| Ok(()));
+        Ok(found?.is_some())
+    }
+
+    /// Whether a trace has this id.
+    pub fn has_trace(&self, id: Id) -> Result<bool, StoreError> {
+        let known = "SELECT 1 FROM trace WHERE id = ?1";
+        let found = self.first("looking for a trace", known, &values![id], |_| Ok(()));
+        Ok(found?.is_some())
+    }
+
+    /// The freeze frame of the entry of a unit's log that was imported last, as JSON.
+    pub fn last_logged(&self, unit: &str) -> Result<Option<String>, StoreError> {
+        self.first(
+            "looking for a unit's log",
+            "SELECT o.freeze_json FROM unit u JOIN run r ON r.unit = u.seq
+                JOIN fault_occurrence o ON o.run = r.seq
+             WHERE u.serial = ?1 AND r.source LIKE ?2
+             ORDER BY r.started_at_us DESC, o.seq DESC LIMIT 1",
+            &values![unit, format!("{LOG_SOURCE}%")],
+            |row| row.get(0),
+        )
+    }
+
     /// The times at which the unit itself, on a port, was under test: start and end, µs UTC. An interrupted
     /// run lasted until its last step.
     pub fn tested_spans(&self, unit: &str) -> Result<Vec<(i64, i64)>, StoreError> {

@@ -59,12 +59,12 @@ impl Store {
     /// Compresses and commits a trace of a run, and links it to occurrences; returns its digest, too.
     pub(crate) fn insert_trace(
         &self,
+        id: Id,
         run: i64,
         occurrences: &[Id],
         trace: &TraceData,
-    ) -> Result<(Id, [u8; 32]), StoreError> {
+    ) -> Result<[u8; 32], StoreError> {
         const DOING: &str = "storing a trace";
-        let id = self.mint()?;
         let data = self.codec().encode(trace);
         let data = data.map_err(|source| StoreError::Trace { trace: id, source })?;
         let gaps = trace.gaps || trace.has_gaps();
@@ -131,7 +131,7 @@ impl Store {
             let channels = trace.channels.as_slice().into();
             self.channel_sets.borrow_mut().insert(channel_set, channels);
         }
-        Ok((id, digest))
+        Ok(digest)
     }
 
     /// The row number of a channel list that was read or written before.

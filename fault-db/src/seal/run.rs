@@ -14,13 +14,18 @@ use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 use crate::record::{MeasurementRecord, RunEnd, RunRecord, StepRecord};
 
-/// The payload of a run's seal: its traces and recordings, which may be deleted or arrive later.
+/// The payload of a run's seal: its traces and recordings, which may be deleted or arrive later, and occurrences
+/// that another run may have brought before.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunPayload {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub traces: Vec<TracePayload>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<RecordingPayload>,
+    /// Of an imported log: its entries that are faults. Where two laptops imported the same, the one that a store
+    /// knew first stays with its run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub entries: Vec<EntryPayload>,
     /// How the run came, if it came without a seal and was sealed as found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
@@ -34,6 +39,13 @@ pub(crate) struct TracePayload {
     /// The recording it was cut from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording: Option<i64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EntryPayload {
+    pub id: String,
+    /// Digest of the occurrence.
+    pub sha256: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -139,6 +151,16 @@ impl RunDigest {
         self.occurrences.insert(id, digest);
     }
 
+    /// Names an occurrence that other runs may bring, too.
+    pub fn share_occurrence(&mut self, id: Id) {
+        if let Some(digest) = self.occurrences.get(&id) {
+            self.payload.entries.push(EntryPayload {
+                id: id.to_string(),
+                sha256: hex(digest),
+            });
+        }
+    }
+
     pub fn trace(&mut self, id: Id, digest: [u8; 32]) {
         self.payload.traces.push(TracePayload {
             id: id.to_string(),
@@ -230,19 +252,54 @@ pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u
         *part = hash.finish();
     }
     let width = columns(OCCURRENCES);
-    let mut all = CanonicalHash::new();
+    let mut occurrences = brought_by_others(backend, run, payload)?;
     backend.each(OCCURRENCES, &of_run, |row| {
         let mut hash = CanonicalHash::new();
         for column in 0..width {
             hash.take(row.field(column)?);
         }
-        all.plain(&hash.finish());
+        occurrences.insert(row.get(0)?, hash.finish());
         Ok(())
     })?;
-    parts[3] = all.finish();
+    parts[3] = joined(occurrences.values());
     let mut whole_run = CanonicalHash::of("run");
     take_rows(&mut whole_run, backend, RUN, &of_run)?;
     Ok(whole(whole_run, parts, payload))
+}
+
+/// Entries of an imported log that stand under another run, with the digests that this run's seal has of them.
+fn brought_by_others(
+    backend: &Backend,
+    run: i64,
+    payload: &str,
+) -> SqlResult<BTreeMap<Id, [u8; 32]>> {
+    const BY_OTHER: &str = "SELECT 1 FROM fault_occurrence WHERE id = ?1 AND run <> ?2";
+    let mut brought = BTreeMap::new();
+    // Most runs are no logs, and are not parsed.
+    let payload = payload
+        .contains("\"entries\"")
+        .then(|| RunPayload::of(payload));
+    for entry in payload.flatten().unwrap_or_default().entries {
+        if let (Ok(id), Some(digest)) = (entry.id.parse::<Id>(), from_hex(&entry.sha256))
+            && backend
+                .first(BY_OTHER, &values![id, run], |_| Ok(()))?
+                .is_some()
+        {
+            brought.insert(id, digest);
+        }
+    }
+    Ok(brought)
+}
+
+fn from_hex(text: &str) -> Option<[u8; 32]> {
+    let mut bytes = [0; 32];
+    if text.len() != 64 || !text.is_ascii() {
+        return None;
+    }
+    for (place, byte) in bytes.iter_mut().enumerate() {
+        *byte = u8::from_str_radix(&text[2 * place..2 * place + 2], 16).ok()?;
+    }
+    Some(bytes)
 }
 
 /// The payload of a stored run that is sealed as found.

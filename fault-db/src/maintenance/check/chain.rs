@@ -182,7 +182,14 @@ fn check_traces_and_recordings(
         };
         match traces.iter().find(|(_, trace, _)| *trace == of) {
             None => {
-                summary.missing.insert((of, None));
+                // Two laptops that read the same record of a unit: the seal of the other's run covers it.
+                let elsewhere = "SELECT 1 FROM trace WHERE id = ?1";
+                if backend
+                    .first(elsewhere, &values![of], |_| Ok(()))?
+                    .is_none()
+                {
+                    summary.missing.insert((of, None));
+                }
             }
             Some((seq, _, recording)) => {
                 if hex(&trace::digest(backend, *seq)?) != said.sha256

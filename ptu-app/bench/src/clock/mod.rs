@@ -9,6 +9,10 @@ use fault_db::{IdSource, OpenOptions};
 
 pub use span::{Span, months};
 
+/// A time that a unit is told may be wrong by so much, ms [default]: a laptop that is set by the network now and then,
+/// and the way to the unit.
+pub const UNCERTAINTY_MS: u16 = 500;
+
 /// Microseconds since 1970, UTC.
 pub fn now_us() -> i64 {
     let since = SystemTime::now()

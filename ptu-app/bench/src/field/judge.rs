@@ -186,6 +186,7 @@ mod tests {
             .map(|(index, code)| Entry {
                 event: event(index, *code, index * 500),
                 at_us: Some(i64::from(index) * 500_000),
+                stored: None,
             })
             .collect();
         let judged = judge(&entries, tested, None);
@@ -267,10 +268,12 @@ mod tests {
                 ..event(0, Event::FramesRejected, at_ms)
             },
             at_us: None,
+            stored: None,
         };
         let lost = |at_ms| Entry {
             event: event(0, Event::TwcLost, at_ms),
             at_us: None,
+            stored: None,
         };
         let bad_line = [
             refused(Channel::Twc, 1_000),
@@ -298,6 +301,7 @@ mod tests {
         let entry = |at_us| Entry {
             event: event(0, Event::TachoDead1, 0),
             at_us,
+            stored: None,
         };
         let judged = judge(&[entry(Some(1)), entry(Some(3)), entry(None)], &[], Some(2));
         assert_eq!(judged.faults.len(), 2);

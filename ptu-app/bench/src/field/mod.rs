@@ -3,14 +3,15 @@
 //! ```text
 //! unit → LogSession → read (entries, dated) → judge (which are the unit's) → store (what is new)
 //! ```
-//! The unit is listened to and asked for its log; it is given no input and no stimulus, and nothing is
-//! armed.
+//! The unit is listened to and asked for its log, over all power-ups if it stores it; it is told the time, and given
+//! no input and no stimulus, and nothing is armed.
 
 mod date;
 mod judge;
 mod read;
 mod store;
 
+pub use date::{StoredClocks, StoredDate};
 pub use judge::{ExcludedEntries, JudgedLog, judge};
-pub use read::{Entry, LogRead, read_log};
-pub use store::{Imported, Source, import};
+pub use read::{Entry, LogRead, StoredPlace, StoredRead, read_log};
+pub use store::{Imported, Source, against_history, import};

@@ -1,16 +1,19 @@
 //! Reads a unit's log to its end, or until the link fails.
 
-use btu_rig::procedure::UnitEvent;
-use btu_rig::rig::{LogSession, UnitLink};
-use protocol::message::{Identity, StatusBits};
-use protocol::{Duration, Instant, SCAN};
+use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::rig::{LogSession, StoredData, TimeOfDay, UnitLink};
+use protocol::message::{Identity, StatusBits, StoredClock, StoredEntry, StoredRow};
+use protocol::{Duration, Instant, SCAN, Speed};
 
-use super::date::{ClockPair, dates};
+use super::date::{ClockPair, StoredClocks, dates};
+use crate::clock::UNCERTAINTY_MS;
 use crate::link::Pace;
 use crate::stop::Stop;
 
-/// Time a log may take: a full one takes a tenth of it.
+/// Time a log may take, beside that for stored entries: a full one takes a tenth of it.
 const READ_WITHIN: Duration = Duration::from_ms(60_000);
+/// Time a stored entry may take: twice what it does.
+const PER_STORED_US: u64 = 34_000;
 
 /// An entry with its date.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +22,37 @@ pub struct Entry {
     pub event: UnitEvent,
     /// When it was made, µs UTC; none where the unit's clock does not tell.
     pub at_us: Option<i64>,
+    /// Where it is stored in the unit; none of a unit without stored memory.
+    pub stored: Option<StoredPlace>,
+}
+
+/// The place of an entry in the unit's stored memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StoredPlace {
+    /// Power-up that it was made in.
+    pub power_up: u32,
+    /// Its number over all power-ups.
+    pub sequence: u32,
+    /// It was made not later than this, µs UTC: the date of the next entry that has one.
+    pub not_after_us: Option<i64>,
+    /// Its date may be wrong by so much, µs.
+    pub uncertainty_us: i64,
+}
+
+/// What was read of the unit's stored memory.
+#[derive(Clone, Debug, Default)]
+pub struct StoredRead {
+    /// Present power-up.
+    pub power_up: u32,
+    /// Rows of the run record, if they were asked for.
+    pub rows: Vec<StoredRow>,
+    /// Clocks that date them.
+    pub clocks: StoredClocks,
+    /// Entries that are damaged in the unit.
+    pub damaged: u64,
+    /// What a reader should know: times that contradict each other, a power-up count that falls, a memory that
+    /// failed.
+    pub notes: Vec<String>,
 }
 
 /// A log as read.
@@ -38,26 +72,35 @@ pub struct LogRead {
     pub status: StatusBits,
     /// Why reading ended before the log did.
     pub broken_off: Option<String>,
+    /// What it has stored over power-ups; none of an older unit, whose log is of the present one.
+    pub stored: Option<StoredRead>,
 }
 
-/// Reads the log of the unit on `link`; times of the link begin after `from`, and `clock` gives our
-/// own, µs UTC.
+/// Reads the log of the unit on `link`, over all power-ups if it stores it; with `rows`, its stored run record,
+/// too. Times of the link begin after `from`, and `clock` gives our own, µs UTC, which the unit is told.
 ///
 /// # Errors
 /// The unit did not say who it is: why.
 pub fn read_log<L: UnitLink>(
     link: &mut L,
     from: Instant,
+    rows: bool,
     pace: &mut Pace,
     stop: &Stop,
     clock: &dyn Fn() -> i64,
 ) -> Result<LogRead, String> {
-    let mut session = LogSession::default();
+    let mut session = LogSession::new(rows);
+    session.tell_time(TimeOfDay {
+        at: from,
+        utc_us: clock(),
+        uncertainty_ms: UNCERTAINTY_MS,
+    });
     let mut entries = Vec::new();
     let mut since_power_up: Vec<UnitEvent> = Vec::new();
     let mut pair: Option<ClockPair> = None;
     let (mut to_unit, mut from_unit) = (Vec::new(), Vec::new());
     let mut restarts = 0;
+    let mut within = READ_WITHIN;
     let mut now = from;
     let broken_off = loop {
         pace.wait();
@@ -91,23 +134,32 @@ pub fn read_log<L: UnitLink>(
         if stop.presses() > 0 {
             break Some("stopped by the operator".to_owned());
         }
+        let longer = Duration::from_us(u64::from(session.left()) * PER_STORED_US);
+        within = within.max(now.since(from) + longer);
         // By the clock: a unit that sends more than can be read in a scan holds the scans up.
-        if now.since(from) + pace.behind() > READ_WITHIN {
-            break Some(format!("the log does not end within {READ_WITHIN}"));
+        if now.since(from) + pace.behind() > within {
+            break Some(format!("the log does not end within {within}"));
         }
     };
     entries.extend(dated(&mut since_power_up, pair));
     let Some(identity) = session.identity().copied() else {
         return Err(broken_off.unwrap_or_default());
     };
+    let stored = session.stored().map(|(events, rows)| {
+        let (dated, read) = from_store(events, rows, pair);
+        entries = dated;
+        read
+    });
     Ok(LogRead {
         identity,
         entries,
-        overwritten: session.overwritten(),
+        overwritten: session.overwritten()
+            + session.stored().map_or(0, |(events, _)| events.overwritten),
         not_kept: session.not_kept(),
         restarts,
         status: session.status().unwrap_or(StatusBits::empty()),
         broken_off,
+        stored,
     })
 }
 
@@ -115,8 +167,93 @@ fn dated(events: &mut Vec<UnitEvent>, clock: Option<ClockPair>) -> Vec<Entry> {
     let dates = dates(events, clock);
     let events = events.drain(..).zip(dates);
     events
-        .map(|(event, at_us)| Entry { event, at_us })
+        .map(|(event, at_us)| Entry {
+            event,
+            at_us,
+            stored: None,
+        })
         .collect()
+}
+
+/// Entries of the store with their dates; `pair` is the unit's clock beside ours, now.
+fn from_store(
+    events: &StoredData,
+    rows: Option<&StoredData>,
+    pair: Option<ClockPair>,
+) -> (Vec<Entry>, StoredRead) {
+    let ours = pair.map(|pair| StoredClock {
+        sequence: u32::MAX,
+        power_up: events.power_up,
+        at_ms: pair.uptime_ms,
+        utc_ms: u64::try_from(pair.at_us / 1000).unwrap_or(0),
+        uncertainty_ms: UNCERTAINTY_MS,
+    });
+    let clocks = StoredClocks::new(&events.clocks, ours);
+    let mut not_after_us = None;
+    let backwards = events.entries.iter().rev().map(|entry| {
+        let date = clocks.date(entry.power_up, entry.at_ms);
+        let at_us = date.map(|date| date.at_us);
+        let place = StoredPlace {
+            power_up: entry.power_up,
+            sequence: entry.sequence,
+            not_after_us,
+            uncertainty_us: date.map_or(0, |date| date.uncertainty_us),
+        };
+        not_after_us = at_us.or(not_after_us);
+        Entry {
+            event: unit_event(entry),
+            at_us,
+            stored: Some(place),
+        }
+    });
+    let mut entries: Vec<_> = backwards.collect();
+    entries.reverse();
+    let mut notes = clocks.contradictions();
+    let falls = events
+        .entries
+        .windows(2)
+        .find(|pair| pair[1].power_up < pair[0].power_up);
+    notes.extend(falls.map(|pair| {
+        format!(
+            "the count of power-ups falls from {} to {}: the unit's memory was exchanged or erased",
+            pair[0].power_up, pair[1].power_up
+        )
+    }));
+    let damaged = events.damaged + rows.map_or(0, |rows| rows.damaged);
+    if damaged > 0 {
+        notes.push(format!(
+            "{damaged} stored entries are damaged in the unit and could not be read; all others were"
+        ));
+    }
+    if events.failed {
+        notes.push(
+            "the unit's stored memory failed: what it held is lost, and it stores nothing"
+                .to_owned(),
+        );
+    }
+    let read = StoredRead {
+        power_up: events.power_up,
+        rows: rows.map(|rows| rows.rows.clone()).unwrap_or_default(),
+        clocks,
+        damaged,
+        notes,
+    };
+    (entries, read)
+}
+
+fn unit_event(entry: &StoredEntry) -> UnitEvent {
+    UnitEvent {
+        source: EventSource::Unit,
+        index: entry.index,
+        code: entry.code,
+        at_ms: entry.at_ms,
+        parameter: entry.parameter,
+        speed: Speed::from_cms(entry.speed_cms),
+        limit: Speed::from_cms(entry.limit_cms),
+        position_m: f64::from(entry.position_cm) / 100.0,
+        mode: entry.mode,
+        eb_cause: entry.eb_cause,
+    }
 }
 
 #[cfg(test)]

@@ -10,9 +10,12 @@ use fault_db::{
 use protocol::Instant;
 use protocol::signal::{Sample, Signal};
 
-use super::read::Entry;
+use super::read::{Entry, StoredPlace, StoredRead};
 use crate::run::of_event;
 use crate::stored::fault_record;
+
+/// Sample of a freeze frame that says the power-up of an entry.
+const POWER_UP: &str = "power_up";
 
 /// What is stored of a reading beside its entries.
 #[derive(Clone, Debug)]
@@ -56,21 +59,35 @@ pub struct Imported {
 /// The database fails; what was stored stays, and the next import adds the rest.
 pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Imported, StoreError> {
     let mut imported = Imported::default();
+    let mut ids = Vec::new();
     for entry in faults {
         let record = record(entry, source.until_us);
         let what = (record.code, record.message.as_str());
-        if store.knows_occurrence(&source.serial, what, entry.at_us)? {
+        let id = entry
+            .stored
+            .map(|place| entry_id(&source.serial, entry, place));
+        let is_known = match id {
+            Some(id) if store.has_occurrence(id)? => true,
+            // Imported by an earlier version, or seen in a run. Without a date only the id can tell.
+            Some(_) if entry.at_us.is_none() => false,
+            _ => store.knows_occurrence(&source.serial, what, entry.at_us)?,
+        };
+        if is_known {
             imported.known += 1;
         } else {
             imported.new.push(record);
+            ids.push(id);
         }
     }
     if imported.new.is_empty() {
         return Ok(imported);
     }
     let mut writer = RunWriter::begin(store, &run_record(source))?;
-    for record in &imported.new {
-        writer.fault(record)?;
+    for (record, id) in imported.new.iter().zip(ids) {
+        match id {
+            Some(id) => writer.logged_fault(id, record)?,
+            None => writer.fault(record)?,
+        };
     }
     let verdict = if source.broken_off {
         Verdict::Error
@@ -85,6 +102,44 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
     })?;
     imported.run = Some(writer.id());
     Ok(imported)
+}
+
+/// The same on every laptop: from the unit, its power-up and the entry's number, and from the entry itself, because
+/// a unit whose flash was exchanged counts anew.
+fn entry_id(serial: &str, entry: &Entry, place: StoredPlace) -> Id {
+    let event = &entry.event;
+    let parts = [
+        serial.as_bytes(),
+        &place.power_up.to_be_bytes(),
+        &place.sequence.to_be_bytes(),
+        &event.at_ms.to_be_bytes(),
+        &event.code.to_be_bytes(),
+        &event.parameter.to_be_bytes(),
+    ];
+    Id::of_content("unit log entry", &parts)
+}
+
+/// What stands out when this unit's stored memory is held against what was imported of it before.
+///
+/// # Errors
+/// The database fails.
+pub fn against_history(
+    store: &Store,
+    serial: &str,
+    read: &StoredRead,
+) -> Result<Option<String>, StoreError> {
+    let frozen = store.last_logged(serial)?;
+    let frozen = frozen.and_then(|json| serde_json::from_str::<Vec<FreezeSample>>(&json).ok());
+    let samples = frozen.unwrap_or_default();
+    let before = samples.iter().find(|sample| sample.name == POWER_UP);
+    let before = before.and_then(|sample| sample.value).unwrap_or(0.0);
+    Ok((f64::from(read.power_up) < before).then(|| {
+        format!(
+            "the unit counts {} power-ups and had counted {before} before: its memory was exchanged or erased; \
+             what was imported before is kept",
+            read.power_up
+        )
+    }))
 }
 
 fn run_record(source: &Source) -> RunRecord {
@@ -123,10 +178,26 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
         unit: unit.into(),
         label: None,
     };
-    let dated_by = match entry.at_us {
-        Some(_) => "the unit's clock",
-        None => "the time of reading",
+    let dated_by = match (entry.at_us, entry.stored) {
+        (Some(_), None) => "the unit's clock".to_owned(),
+        (Some(_), Some(place)) => format!(
+            "the unit's clock, as it was told in power-up {}, within {:.1} s",
+            place.power_up,
+            place.uncertainty_us as f64 / 1e6
+        ),
+        (None, None) => "the time of reading".to_owned(),
+        (None, Some(place)) => format!(
+            "power-up {} and {:.3} s after it, when nobody had told the unit the time: not later than this date",
+            place.power_up,
+            f64::from(event.at_ms) / 1000.0
+        ),
     };
+    if let Some(place) = entry.stored {
+        freeze.extend([
+            number(POWER_UP, f64::from(place.power_up), ""),
+            number("log_sequence", f64::from(place.sequence), ""),
+        ]);
+    }
     freeze.extend([
         number("parameter", f64::from(event.parameter), ""),
         number("log_index", f64::from(event.index), ""),
@@ -135,10 +206,11 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
             name: "dated_by".into(),
             value: None,
             unit: String::new(),
-            label: Some(dated_by.into()),
+            label: Some(dated_by),
         },
     ]);
-    let at_us = entry.at_us.unwrap_or(read_at_us);
+    let not_after_us = entry.stored.and_then(|place| place.not_after_us);
+    let at_us = entry.at_us.or(not_after_us).unwrap_or(read_at_us);
     let bench_us = fault.at.as_us() as i64;
     fault_record(fault, at_us, bench_us, None)
 }
@@ -153,3 +225,6 @@ fn frozen(event: &UnitEvent) -> Sample {
     sample.set(Signal::EbCause, f64::from(event.eb_cause.code()));
     sample
 }
+
+#[cfg(test)]
+mod tests;

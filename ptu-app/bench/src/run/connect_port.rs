@@ -4,7 +4,7 @@
 use std::ops::RangeInclusive;
 
 use btu_rig::procedure::{EventSource, LogState, UnitEvent};
-use btu_rig::rig::Bench;
+use btu_rig::rig::{Bench, TimeOfDay};
 use btu_rig::stimulus::Stimulus;
 use protocol::event::Event;
 use protocol::message::Identity;
@@ -16,8 +16,9 @@ use super::fault_watch::{self, FaultSeen};
 use super::session::Session;
 use super::settle::{READY_WITHIN, started};
 use super::unit_text;
+use crate::clock::{UNCERTAINTY_MS, now_us};
 use crate::failure::{Exit, Failure};
-use crate::link::WireLink;
+use crate::link::{Endpoint, WireLink};
 use crate::stop::Stop;
 
 /// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
@@ -49,6 +50,14 @@ impl BenchSetup {
         let link = WireLink::open(&self.endpoint)?.slower(self.slower);
         let mut bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
         bench.rig_mut().leave_log_before_contact();
+        // In lock step the unit's clock stands between scans.
+        if !matches!(self.endpoint, Endpoint::LockStep(_)) {
+            bench.rig_mut().tell_time(TimeOfDay {
+                at: Instant::ZERO,
+                utc_us: now_us(),
+                uncertainty_ms: UNCERTAINTY_MS,
+            });
+        }
         let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
             .controlled_by(self.run_control.clone())
             .with_max_lag(self.max_lag());

@@ -9,7 +9,9 @@ use serde_json::{Value, json};
 use crate::cli::{ScriptsOption, print_json, print_out, since_argument};
 use ptu_bench::clock::{local, now_us, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::field::{Imported, JudgedLog, LogRead, Source, import, judge, read_log};
+use ptu_bench::field::{
+    Imported, JudgedLog, LogRead, Source, against_history, import, judge, read_log,
+};
 use ptu_bench::link::{Endpoint, WireLink};
 use ptu_bench::run::unit_text;
 use ptu_bench::stop::Stop;
@@ -17,10 +19,11 @@ use ptu_bench::table::Table;
 
 /// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
 ///
-/// The unit is asked for its log and nothing else: it is given no input and no stimulus, and nothing is
-/// armed. What it logged in runs of this history, armed for a tester, or because nothing is connected
-/// to it any more is no fault. Entries are dated by the unit's own clock; those of an earlier power-up
-/// by the time of reading.
+/// The unit is asked for its log, over all power-ups, and told the time: it is given no input and no
+/// stimulus, and nothing is armed. What it logged in runs of this history, armed for a tester, or because
+/// nothing is connected to it any more is no fault. Entries are dated by the times the unit was told; those
+/// of a power-up in which nobody told it have the power-up and the time since then, and a date that they are
+/// not later than. An older unit keeps the log of its present power-up alone.
 ///
 /// Examples:
 ///   ptu faults import --unit serial:/dev/ttyUSB0
@@ -110,6 +113,7 @@ impl ImportArguments {
         let read = read_log(
             &mut link,
             Instant::ZERO,
+            false,
             &mut self.unit.pace(1),
             &stop,
             &now_us,
@@ -156,8 +160,15 @@ impl ImportArguments {
         };
         let tested = store.tested_spans(&source.serial)?;
         let judged = judge(&read.entries, &tested, self.since);
+        let before = read.stored.as_ref();
+        let before = before.map(|stored| against_history(store, &source.serial, stored));
+        let before = before.transpose()?.flatten();
         let imported = import(store, &source, &judged.faults)?;
         warnings.extend(of_reading(&read));
+        if let Some(stored) = &read.stored {
+            warnings.extend(before);
+            warnings.extend(stored.notes.iter().cloned());
+        }
         Ok(Outcome {
             read,
             judged,
@@ -179,11 +190,22 @@ fn of_reading(read: &LogRead) -> Vec<String> {
     }
     let undated = read.entries.iter().filter(|entry| entry.at_us.is_none());
     let undated = undated.count();
-    if undated > 0 {
+    if undated > 0 && read.stored.is_some() {
+        warnings.push(format!(
+            "{undated} entries are of power-ups in which nobody told the unit the time: they have the power-up and \
+             the time since then, and stand under the date that they are not later than"
+        ));
+    } else if undated > 0 {
         warnings.push(format!(
             "{undated} entries are of an earlier power-up, which nothing dates: they stand under the \
              time of reading"
         ));
+    }
+    if read.stored.is_none() {
+        warnings.push(
+            "this unit has no stored log: it was read as far as it is kept since power-up"
+                .to_owned(),
+        );
     }
     if read.restarts > 0 {
         warnings.push("the unit was started again while its log was read".to_owned());
@@ -220,6 +242,8 @@ impl Outcome {
             "overwritten": self.read.overwritten,
             "not_stored": self.read.not_kept,
             "restarts": self.read.restarts,
+            "power_ups": self.read.stored.as_ref().map(|stored| stored.power_up),
+            "damaged": self.read.stored.as_ref().map(|stored| stored.damaged),
             "faults": faults.collect::<Vec<_>>(),
             "warnings": self.warnings,
         })

@@ -46,7 +46,7 @@ pub fn bench(faults: &[&str]) -> Session<Delayed<SimLink>> {
 
 fn read<L: UnitLink>(link: &mut L, from: Instant) -> Result<LogRead, String> {
     let mut pace = Pace::Virtual;
-    read_log(link, from, &mut pace, &Stop::default(), &|| NOW_US)
+    read_log(link, from, false, &mut pace, &Stop::default(), &|| NOW_US)
 }
 
 const NOW_US: i64 = 1_000_000_000_000;
@@ -105,7 +105,7 @@ enum ScriptedEvent {
 }
 
 impl ScriptedUnit {
-    /// A unit with these entries in its log.
+    /// An older unit, without stored memory, with these entries in its log.
     fn new(entries: impl IntoIterator<Item = (u32, u16, u32)>) -> Self {
         let entries = entries.into_iter().map(|(index, code, at_ms)| LogEntry {
             index,
@@ -225,7 +225,7 @@ fn lost_entries_are_counted_and_unknown_codes_are_kept() {
 #[test]
 fn entries_read_before_the_cable_was_unplugged_are_kept() {
     let mut unit = ScriptedUnit::new((0..90).map(|index| (index, 221, index * 1000)));
-    unit.happens = Some((2_000, ScriptedEvent::CableOff));
+    unit.happens = Some((3_300, ScriptedEvent::CableOff));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     let why = log.broken_off.expect("broken off");
     assert!(why.contains("closed at the other end"), "{why}");
@@ -238,7 +238,7 @@ fn entries_read_before_the_cable_was_unplugged_are_kept() {
 #[test]
 fn a_unit_that_starts_again_while_it_is_read_has_two_clocks() {
     let mut unit = ScriptedUnit::new((0..90).map(|index| (index, 221, 900_000 + index)));
-    unit.happens = Some((2_000, ScriptedEvent::Restart));
+    unit.happens = Some((3_300, ScriptedEvent::Restart));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     assert_eq!(log.restarts, 1);
     let last = log.entries.last().expect("entries");
@@ -269,7 +269,7 @@ fn an_endless_log_is_kept_up_to_the_capacity_of_a_unit() {
 #[test]
 fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
     let mut unit = ScriptedUnit::new((0..190).map(|index| (index, 221, 1)));
-    unit.happens = Some((2_000, ScriptedEvent::OtherUnit));
+    unit.happens = Some((3_300, ScriptedEvent::OtherUnit));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
     let why = log.broken_off.expect("broken off");
     assert!(why.contains("was \"U-1\" and is \"U-2\""), "{why}");
@@ -285,4 +285,43 @@ fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
     }
     let why = read(&mut SilentUnit, Instant::ZERO).expect_err("no log");
     assert!(why.contains("unit silent"), "{why}");
+}
+
+/// Goal: what the unit logged in every power-up is read, dated where somebody told the time. Method: a unit whose
+/// supply dips, and one that the time was told in between.
+#[test]
+fn the_log_of_all_power_ups_is_read() {
+    let mut bench = bench(&["power_supply.dips"]);
+    let mut now = bench.now();
+    let link = bench.bench().link_mut();
+    let log = (0..20).find_map(|_| {
+        for _ in 0..6_000 {
+            now += SCAN;
+            link.exchange(now, &[], &mut Vec::new())
+                .expect("the embedded unit");
+        }
+        let from = now;
+        now += Duration::from_ms(60_000);
+        read(link, from).ok().filter(|log| log.broken_off.is_none())
+    });
+    let log = log.expect("read between two dips");
+    let stored = log.stored.expect("stored memory");
+    assert!(stored.power_up > 2, "{}", stored.power_up);
+    let power_ups: Vec<_> = (log.entries.iter())
+        .filter(|entry| entry.event.code == Event::PowerUp.definition().code)
+        .map(|entry| entry.stored.expect("stored").power_up)
+        .collect();
+    assert_eq!(power_ups, (1..=stored.power_up).collect::<Vec<_>>());
+    let first = &log.entries[0];
+    assert_eq!(
+        (first.at_us, first.event.at_ms),
+        (None, 0),
+        "nobody told the time then"
+    );
+    assert!(first.stored.expect("stored").not_after_us.is_some());
+    assert!(
+        log.entries
+            .last()
+            .is_some_and(|entry| entry.at_us.is_some())
+    );
 }
