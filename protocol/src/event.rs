@@ -99,6 +99,7 @@ events! {
     LogCleared = 104 "log_cleared" Info "-" "Event log cleared" "이벤트 기록 삭제" "";
     InternalError = 105 "internal_error" Critical "atp_cpu" "Broken invariant on board" "내부 논리 오류" "number of the invariant";
     SupplyDip = 106 "supply_dip" Major "power_supply" "Restarted after a dip of the supply voltage" "전원 순간 저하로 재기동" "";
+    TestModeBroken = 107 "test_mode_broken" Minor "-" "Train moved or an input changed while armed: emergency brake" "정비 시험 중 차량 이동 또는 입력 변화: 비상제동" "refusal code";
     MemoryFailed = 109 "memory_failed" Minor "ato_cpu" "Stored memory failed: log and run record are lost at power off" "저장 메모리 고장" "";
     InputsLost = 110 "inputs_lost" Critical "io_board" "I/O inputs fell silent" "입력 신호 두절" "";
     InputsRestored = 111 "inputs_restored" Info "-" "I/O inputs are back" "입력 신호 복귀" "";

@@ -7,17 +7,19 @@ import argparse, collections, contextlib, os, random, re, select, struct, sys, t
 UNIT, PTU, IO, TCMS = 0x20, 1, 2, 3
 PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40}                             # channel: address
 DOORS_CLOSED, HCR, MAINTENANCE_KEY, ACKNOWLEDGE, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x08, 0x20, 0x40
-EB_LOOP_FED = 0x100
+EB_LOOP_FED, FULL_SERVICE_BRAKE = 0x100, 0x40
 EB_RELAY, FSB, ALARM, CODE_VALID, STANDSTILL = 0x001, 0x002, 0x008, 0x080, 0x100
-ARMED, UP, MANUAL, OVERSPEED = 0x001, 0x180, 2, 2                       # UP: STARTED and INPUTS_OK
+ARMED, UP, MANUAL = 0x001, 0x180, 2                                     # UP: STARTED and INPUTS_OK
+EB_OVERSPEED, FSB_OVERSPEED = 2, 1
 ANSWERS = dict(enumerate("accepted not_armed out_of_range board_failed".split()))
-REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up".split()))
+REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up brakes_released "
+                          "train_moved code_changed mode_changed".split()))
 FROM_UNIT = {                               # the fields that are used here; x = a byte passed over
     (PTU, 0x81): ("Identity", ">16s24x3s4xH", "serial software self_test"),
     (PTU, 0x82): ("ArmChallenge", ">II", "session challenge"),
     (PTU, 0x83): ("ArmState", ">IBB", "session armed refusal"),
     (PTU, 0x84): ("StimulusAnswer", ">HB", "request_seq answer"),
-    (PTU, 0x90): ("Status", ">H3xBB12xxI19x", "bits code_index eb_cause events"),
+    (PTU, 0x90): ("Status", ">H3xBBB11xxI19x", "bits code_index eb_cause fsb_cause events"),
     (PTU, 0xA0): ("LogEntry", ">IH4xi10x", "index code parameter"),
     (PTU, 0xA1): ("LogEnd", ">II", "next_index oldest_index"),
     (IO, 0x81): ("IoOutput", ">HH4x", "outputs limit_cms"),
@@ -28,7 +30,8 @@ class Client:
         self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         tty.setraw(self.fd)
         self.lines, self.session = lines, 0                             # session 0 only listens
-        self.next_seq, self.due = {PTU: 0, IO: 0}, {PTU: 0.0, IO: 0.0}
+        self.next_seq, self.due = {PTU: 0, IO: 0, TCMS: 0}, {PTU: 0.0, IO: 0.0, TCMS: 0.0}
+        self.alive = 0
         self.log = []                       # entries as they came
         self.last, self.heard = {}, {}      # channel: (sequence, time); name: its newest message
         self.bytes, self.refused = b"", 0   # bytes since the last flag; number of frames
@@ -50,6 +53,11 @@ class Client:
             released = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & EB_RELAY
             self.send(IO, "B7H3B2HBb", 0x01, 0, 0, 0, 0, 0xFFFF, 0, 0xFFFF, 0, 0, 0, 0xFFFF,
                       self.lines | (EB_LOOP if released else 0), MANUAL, 0)
+        if now >= self.due[TCMS]:           # orders the full service brake, as the unit asks
+            self.due[TCMS] = now + 0.050
+            self.alive = (self.alive + 1) & 0xFF
+            braking = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & FSB
+            self.send(TCMS, "BHHBh", 0x01, FULL_SERVICE_BRAKE if braking else 0, 0, self.alive, 0)
         if now >= self.due[PTU]:
             self.due[PTU] = now + 0.400
             self.send(PTU, "BI", 0x05, self.session)
@@ -120,10 +128,10 @@ def overspeed(client, session, speed):
     client.wait_for(EB_RELAY)
     print("emergency brake released: the unit stands")
     client.stimulate("TestSpeed", "BIBBHH", 0x11, session, 3, 0, speed, 0)
-    client.wait_for(ALARM | EB_RELAY)
-    client.wait_for(ALARM | FSB | EB_RELAY)
+    client.wait_for(ALARM | FSB | EB_RELAY)     # the service brake is held while armed
+    client.wait("cause of the service brake", "Status", lambda status: status.fsb_cause == FSB_OVERSPEED)
     client.wait_for(ALARM | FSB, off=EB_RELAY)
-    client.wait("cause of the emergency brake", "Status", lambda status: status.eb_cause == OVERSPEED)
+    client.wait("cause of the emergency brake", "Status", lambda status: status.eb_cause == EB_OVERSPEED)
     print(f"overspeed at {speed} cm/s: alarm, full service brake, emergency brake")
     client.lines |= ACKNOWLEDGE
     client.idle(0.5)
@@ -131,7 +139,7 @@ def overspeed(client, session, speed):
     client.idle(0.1)
     client.wait_for(0, off=EB_RELAY | STANDSTILL)
     client.stimulate("TestSpeed", "BIBBHH", 0x11, session, 3, 0, 0, 0)
-    client.wait_for(STANDSTILL, off=ALARM | FSB | EB_RELAY)
+    client.wait_for(STANDSTILL, off=ALARM | EB_RELAY)
     print("standing; acknowledged under way, the emergency brake stays")
     client.lines |= ACKNOWLEDGE
     client.wait_for(EB_RELAY)

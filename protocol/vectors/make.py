@@ -284,13 +284,15 @@ RACK = {
     "marker_edges": 0, "marker_edge_us": 65535,
     "lines": "DOORS_CLOSED|HCR|MAINTENANCE_KEY|FORWARD|EB_LOOP_FED", "mode_switch": "manual", "controller": 0,
 }
+# TCMS orders the full service brake as long as the unit asks for it.
+BRAKING = {"bits": "FULL_SERVICE_BRAKE", "load_100kg": 0, "alive": 1, "effort": 0}
 STANDING = {
-    "bits": "TRA_OK|ATO_READY|STARTED|INPUTS_OK", "mode": "manual", "ato_state": "stop",
+    "bits": "TCMS_OK|TRA_OK|ATO_READY|STARTED|INPUTS_OK", "mode": "manual", "ato_state": "stop",
     "refusals": "NO_TWC|STATION_INVALID|NO_CODE|MODE_SWITCH|TCMS_NOT_READY|NO_DEPARTURE",
     "code_index": 255, "eb_cause": "none", "fsb_cause": "no_code", "events": 3,
 }
 CODED = {
-    **STANDING, "bits": "ARMED|TRA_OK|ATO_READY|STARTED|INPUTS_OK",
+    **STANDING, "bits": "ARMED|TCMS_OK|TRA_OK|ATO_READY|STARTED|INPUTS_OK",
     "refusals": "NO_TWC|STATION_INVALID|MODE_SWITCH|TCMS_NOT_READY|NO_DEPARTURE", "code_index": 4,
     "fsb_cause": "none", "events": 4, "test_signals": "CODE", "test_carrier_hz": 3000,
     "test_code_rate_chz": 1500, "test_level_mv": 500,
@@ -311,10 +313,11 @@ def rack(*lines):
 
 def session(wire):
     """The worked session of WIRE.md."""
-    output = {"outputs": "EB_RELAY|CODE_VALID|STANDSTILL|HEALTHY", "limit_cms": 1528}
+    output = {"outputs": "EB_RELAY|FSB|POWER_CUT|CODE_VALID|STANDSTILL|HEALTHY", "limit_cms": 1528}
     return conversation(wire, [
         ("The I/O rack holds the maintenance key on; nothing in the antenna, no tachometer pulse.",
          0, ">", "IoInput", RACK),
+        ("TCMS orders the full service brake: without a code the unit asks for it.", 0, ">", "TcmsToAtc", BRAKING),
         ("Listen.", 0, ">", "KeepAlive", {"session": 0}),
         ("The cab is active and the train stands: the brake is released, and the line goes with it.",
          60, ">", "IoInput", rack("EB_LOOP")),
@@ -326,7 +329,7 @@ def session(wire):
          {"request_seq": 4, "answer": "accepted"}),
         ("Stay armed.", 500, ">", "KeepAlive", None),
         ("Code 4 of the table is received, the board reads back what it makes.", 850, "<", "Status", CODED),
-        ("Limit 1528 cm/s = 55 km/h; EB_RELAY is set: the emergency brake is released.",
+        ("Limit 1528 cm/s = 55 km/h. FSB is held while armed; TCMS says that it brakes, so EB_RELAY is on.",
          860, "<", "IoOutput", output),
         ("Take the test code away.", 900, ">", "TestRelease", {"session": SESSION, "signals": "CODE"}),
         ("Request 6 is accepted.", 950, "<", "StimulusAnswer", {"request_seq": 6, "answer": "accepted"}),
@@ -344,19 +347,22 @@ def overspeed(wire):
         "mode": "manual", "eb_cause": cause}
     return conversation(wire, [
         ("The I/O rack as in the first session.", 0, ">", "IoInput", RACK),
+        ("So does TCMS.", 0, ">", "TcmsToAtc", BRAKING),
         ("Listen.", 0, ">", "KeepAlive", {"session": 0}),
         ("The brake is released by itself: the unit stands, and nothing but start-up held it.",
          60, "<", "IoOutput", {"outputs": "EB_RELAY|FSB|POWER_CUT|STANDSTILL|HEALTHY"}),
         ("The brake line follows the relay.", 60, ">", "IoInput", rack("EB_LOOP")),
         *ARM,
         ("Stay armed: from here on every 500 ms.", 500, ">", "KeepAlive", None),
-        ("Limit 1528 cm/s.", 1000, "<", "IoOutput", output("EB_RELAY|CODE_VALID|STANDSTILL|HEALTHY", 0)),
+        ("Limit 1528 cm/s; the full service brake is held.", 1000, "<", "IoOutput", output("EB_RELAY|FSB|POWER_CUT|CODE_VALID|STANDSTILL|HEALTHY", 0)),
         ("1580 cm/s on both tachometers, at the board's own 3000 mm/s²: above the alarm margin.",
          1000, ">", "TestSpeed", speed(1580)),
-        ("The alarm sounds.", 7000, "<", "IoOutput", output("EB_RELAY|ALARM|CODE_VALID|HEALTHY", 1580)),
+        ("The alarm sounds.", 7000, "<", "IoOutput", output("EB_RELAY|FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1580)),
         ("1640 cm/s: above the margin of the full service brake.", 7000, ">", "TestSpeed", speed(1640)),
-        ("Full service brake requested, powering cut.", 8000, "<", "IoOutput",
-         output("EB_RELAY|FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1640)),
+        ("That the unit would ask for the full service brake now shows in its cause alone.", 8000, "<", "Status", {
+            **CODED, "refusals": "NOT_STANDSTILL|NO_TWC|STATION_INVALID|MODE_SWITCH|TCMS_NOT_READY|NO_DEPARTURE",
+            "fsb_cause": "overspeed", "speed1_cms": 1640, "speed2_cms": 1640,
+            "events": 6, "test_signals": "CODE|SPEED_1|SPEED_2", "test_speed_cms": 1640}),
         ("1750 cm/s: above the emergency margin.", 8000, ">", "TestSpeed", speed(1750)),
         ("EB_RELAY is off: the emergency brake.", 9000, "<", "IoOutput",
          output("FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1750)),
@@ -369,11 +375,11 @@ def overspeed(wire):
         ("Still braking.", 9600, "<", "IoOutput", output("FSB|POWER_CUT|ALARM|CODE_VALID|HEALTHY", 1750)),
         ("Let it go.", 9600, ">", "IoInput", rack()),
         ("Stop.", 9700, ">", "TestSpeed", speed(0)),
-        ("STANDSTILL is set, alarm and service brake are released, the emergency brake stays.", 17000, "<", "IoOutput",
-         output("POWER_CUT|CODE_VALID|STANDSTILL|HEALTHY", 0)),
+        ("STANDSTILL is set, the alarm is silent, the emergency brake stays.", 17000, "<", "IoOutput",
+         output("FSB|POWER_CUT|CODE_VALID|STANDSTILL|HEALTHY", 0)),
         ("Acknowledge.", 17000, ">", "IoInput", rack("ACKNOWLEDGE")),
         ("EB_RELAY is on: the emergency brake is released.", 17050, "<", "IoOutput",
-         output("EB_RELAY|CODE_VALID|STANDSTILL|HEALTHY", 0)),
+         output("EB_RELAY|FSB|POWER_CUT|CODE_VALID|STANDSTILL|HEALTHY", 0)),
         ("The brake line follows, the button is let go.", 17060, ">", "IoInput", rack("EB_LOOP")),
         ("No cause.", 17200, "<", "Status", {
             **CODED, "events": 8, "test_signals": "CODE|SPEED_1|SPEED_2"}),

@@ -122,7 +122,8 @@ fn in_level(signal: AntennaSignal, receiver: &ReceiverConfig) -> bool {
     signal.level_mv >= receiver.level_min_mv && signal.level_mv <= receiver.level_max_mv
 }
 
-fn lookup(signal: AntennaSignal, config: &UnitConfig) -> Code {
+/// The code that a signal stands for.
+pub fn lookup(signal: AntennaSignal, config: &UnitConfig) -> Code {
     let receiver = &config.receiver;
     if !in_level(signal, receiver) {
         return Code::None;

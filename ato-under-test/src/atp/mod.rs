@@ -13,14 +13,14 @@ mod tachometers;
 use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
-use protocol::{Duration, Instant, Speed};
+use protocol::{Instant, Speed};
 
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::timer::Edge;
 use direction::Rollback;
 
-pub use code::{Code, CodeDecoder};
+pub use code::{Code, CodeDecoder, lookup};
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
@@ -66,14 +66,13 @@ pub struct Atp {
 impl Atp {
     /// Braking, since power-up.
     pub fn new(config: &UnitConfig) -> Self {
-        let feedback = Duration::from_ms(u64::from(config.overspeed.eb_feedback_ms));
         Self {
             decoder: CodeDecoder::new(),
             tachometers: Tachometers::new(config),
             supervision: OverspeedSupervision::new(),
             doors: Doors::default(),
             rollback: Rollback::default(),
-            brake: EmergencyBrake::new(feedback),
+            brake: EmergencyBrake::new(),
             sequence: ModeSequence::default(),
             limit: Speed::ZERO,
             overspeed: Overspeed::default(),
@@ -119,7 +118,6 @@ impl Atp {
             may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
             standstill,
             lines: inputs.lines,
-            alive: inputs.alive,
         };
         self.brake.step(now, brake_inputs, log);
         self.fsb_cause = self.service_cause(context);
@@ -209,9 +207,14 @@ impl Atp {
             .map_or(FsbCause::None, |(_, cause)| *cause)
     }
 
-    /// Start-up is over: the code it fed into the test coil counts no more.
-    pub fn forget_test_code(&mut self) {
+    /// The receiver was used for a test: what it decoded counts no more.
+    pub fn forget_code(&mut self) {
         self.decoder = CodeDecoder::new();
+    }
+
+    /// Applies the emergency brake until it is acknowledged at standstill.
+    pub fn latch_brake(&mut self, cause: EbCause) {
+        self.brake.latch(cause);
     }
 
     /// One cycle of the mode sequence.
@@ -229,7 +232,7 @@ impl Atp {
         outputs.set(Outputs::ALARM, self.overspeed.alarm);
         outputs.set(Outputs::CODE_VALID, code_valid);
         outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
-        outputs.set(Outputs::HEALTHY, healthy && self.brake.relay_sound());
+        outputs.set(Outputs::HEALTHY, healthy);
         outputs
     }
 

@@ -137,11 +137,6 @@ impl Tachometers {
         self.standstill
     }
 
-    /// Standing still by the train's own sensors, not by the TEST board.
-    pub fn train_stands(&self) -> bool {
-        self.standstill || self.from_board != [false; 2]
-    }
-
     /// The channel that counts the distance, 0 or 1.
     pub fn distance_channel(&self) -> usize {
         self.distance_channel

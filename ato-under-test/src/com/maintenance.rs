@@ -1,7 +1,7 @@
 //! The tester's session: identity, arm exchange, stimuli, event log, run record, stored memory.
 //!
-//! Stimuli act only while armed. Arming needs the maintenance key and standstill, and lapses when
-//! the key goes off or the tester falls silent; the TEST board then removes every test signal.
+//! Stimuli act only while armed. Arming needs the maintenance key, standstill and applied brakes, and ends when
+//! the tester falls silent or when test mode must end; the TEST board then removes every test signal.
 
 use alloc::vec::Vec;
 
@@ -21,6 +21,9 @@ use crate::test_board::TestBoard;
 const CHALLENGE_TIME: Duration = Duration::from_ms(1000);
 /// Time for which a subscription holds.
 const SUBSCRIPTION: Duration = Duration::from_ms(1000);
+/// Time the train has to prove that its brakes are applied, once the challenge was answered: less than a tester waits
+/// for an answer [default].
+const BRAKE_TIME: Duration = Duration::from_ms(250);
 /// Log entries sent in one cycle, so that the cycle's byte budget holds.
 const ENTRIES_PER_CYCLE: usize = 2;
 /// Rows of the run record sent in a cycle without log entries, for the same reason.
@@ -34,12 +37,16 @@ pub struct ArmConditions {
     pub key_on: bool,
     /// Standing still by the train's own tachometers.
     pub standing: bool,
+    /// The train proves that its brakes are applied.
+    pub brakes_applied: bool,
 }
 
 #[derive(Debug)]
 pub struct Maintenance {
     armed: Option<u32>,
     challenge: Option<(u32, u32, Instant)>,
+    /// Session whose challenge was answered, and when; it waits for the brakes.
+    answered: Option<(u32, Instant)>,
     heard: Option<Instant>,
     /// When `Subscribe` was heard, and whether it asked for changes at once.
     subscribed: Option<(Instant, bool)>,
@@ -60,6 +67,7 @@ impl Maintenance {
         Self {
             armed: None,
             challenge: None,
+            answered: None,
             heard: None,
             subscribed: None,
             session_heard: Instant::ZERO,
@@ -75,6 +83,14 @@ impl Maintenance {
         self.armed.is_some()
     }
 
+    /// The train's brake is held: armed, or arming is under way.
+    pub fn holds_brake(&self, now: Instant) -> bool {
+        let asked = self
+            .challenge
+            .is_some_and(|(_, _, at)| now.since(at) < CHALLENGE_TIME);
+        asked || self.answered.is_some() || self.armed()
+    }
+
     /// A tester has been heard lately.
     pub fn listened_to(&self, now: Instant) -> bool {
         self.heard
@@ -87,7 +103,7 @@ impl Maintenance {
         (now.since(at) < SUBSCRIPTION).then_some(changes)
     }
 
-    /// Moves on to the present; returns the notice to send when arming lapses.
+    /// Moves on to the present; returns the notice to send when arming succeeds, fails or lapses.
     pub fn step(
         &mut self,
         now: Instant,
@@ -95,15 +111,53 @@ impl Maintenance {
         board: &mut TestBoard,
         log: &mut EventLog,
     ) -> Option<Message> {
+        if let Some(outcome) = self.finish_arming(now, conditions, log) {
+            return Some(outcome);
+        }
+        let silent = self.armed.is_some() && now.since(self.session_heard) >= self.timeout;
+        silent
+            .then(|| self.end(now, ArmRefusal::TesterSilent, board, log))
+            .flatten()
+    }
+
+    /// Ends arming, if there is any; returns the notice to send.
+    pub fn end(
+        &mut self,
+        now: Instant,
+        refusal: ArmRefusal,
+        board: &mut TestBoard,
+        log: &mut EventLog,
+    ) -> Option<Message> {
         let session = self.armed?;
-        let refusal = if now.since(self.session_heard) >= self.timeout {
-            ArmRefusal::TesterSilent
-        } else if !conditions.key_on {
+        Some(self.disarm(now, session, refusal, board, log))
+    }
+
+    /// Arms the session whose challenge was answered, as soon as the brakes are applied.
+    fn finish_arming(
+        &mut self,
+        now: Instant,
+        conditions: ArmConditions,
+        log: &mut EventLog,
+    ) -> Option<Message> {
+        let (session, at) = self.answered?;
+        let refusal = if !conditions.key_on {
             ArmRefusal::KeyOff
+        } else if !conditions.standing {
+            ArmRefusal::Moving
+        } else if conditions.brakes_applied {
+            if self.armed.is_none() {
+                log.push(now, Event::Armed, 0);
+            }
+            self.armed = Some(session);
+            self.session_heard = now;
+            ArmRefusal::None
+        } else if now.since(at) >= BRAKE_TIME {
+            ArmRefusal::BrakesReleased
         } else {
             return None;
         };
-        Some(self.disarm(now, session, refusal, board, log))
+        self.answered = None;
+        Some(arm_state(session, refusal))
     }
 
     fn disarm(
@@ -117,12 +171,7 @@ impl Maintenance {
         self.armed = None;
         board.release_all();
         log.push(now, Event::ArmingLapsed, i32::from(refusal.code()));
-        ArmState {
-            session,
-            armed: 0,
-            refusal,
-        }
-        .into()
+        arm_state(session, refusal)
     }
 
     /// Handles one request; answers go to `replies`.
@@ -138,7 +187,7 @@ impl Maintenance {
         match message {
             Message::ArmRequest(request) => replies.push(self.request(now, request, conditions)),
             Message::ArmConfirm(confirm) => {
-                replies.push(self.confirm(now, confirm, conditions, log));
+                replies.extend(self.confirm(now, confirm, conditions));
             }
             Message::Disarm(request) if self.armed == Some(request.session) => {
                 let refusal = ArmRefusal::Disarmed;
@@ -203,21 +252,16 @@ impl Maintenance {
             self.challenge = Some((session, challenge, now));
             return ArmChallenge { session, challenge }.into();
         };
-        ArmState {
-            session,
-            armed: 0,
-            refusal,
-        }
-        .into()
+        arm_state(session, refusal)
     }
 
+    /// A wrong or late answer is refused at once, a right one waits for the brakes.
     fn confirm(
         &mut self,
         now: Instant,
         confirm: ArmConfirm,
         conditions: ArmConditions,
-        log: &mut EventLog,
-    ) -> Message {
+    ) -> Option<Message> {
         let session = confirm.session;
         let right = self.challenge.take().is_some_and(|(asked, challenge, at)| {
             asked == session
@@ -225,24 +269,10 @@ impl Maintenance {
                 && now.since(at) < CHALLENGE_TIME
         });
         if !right || !conditions.key_on {
-            return ArmState {
-                session,
-                armed: 0,
-                refusal: ArmRefusal::BadAnswer,
-            }
-            .into();
+            return Some(arm_state(session, ArmRefusal::BadAnswer));
         }
-        if self.armed.is_none() {
-            log.push(now, Event::Armed, 0);
-        }
-        self.armed = Some(session);
-        self.session_heard = now;
-        ArmState {
-            session,
-            armed: 1,
-            refusal: ArmRefusal::None,
-        }
-        .into()
+        self.answered = Some((session, now));
+        None
     }
 
     /// Carries out a stimulus; `None` for a message that is not one.
@@ -329,6 +359,16 @@ impl Maintenance {
             self.stored_reader = None;
         }
     }
+}
+
+/// Outcome of arming; `None` = armed.
+fn arm_state(session: u32, refusal: ArmRefusal) -> Message {
+    ArmState {
+        session,
+        armed: u8::from(refusal == ArmRefusal::None),
+        refusal,
+    }
+    .into()
 }
 
 /// Sends what a reader has not had yet, at most `per_cycle` of it; true when that was the last.

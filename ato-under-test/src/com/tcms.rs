@@ -94,6 +94,11 @@ impl TcmsLink {
         self.says(TcmsToAtcBits::ATO_ENABLE) && !self.says(TcmsToAtcBits::BRAKE_NOT_RELEASED)
     }
 
+    /// TCMS orders the full service brake on the train.
+    pub fn orders_full_service_brake(&self) -> bool {
+        self.says(TcmsToAtcBits::FULL_SERVICE_BRAKE)
+    }
+
     /// TCMS cuts powering. What it cuts while its holding brake is on is left out: ATO asks for that
     /// brake itself, and the train leaves it by motor current.
     pub fn cuts_power(&self) -> bool {

@@ -6,6 +6,7 @@ mod delay_queue;
 mod effort;
 mod faults;
 mod outputs;
+mod relay_watch;
 mod sensors;
 mod stored_data;
 mod supply;
@@ -18,6 +19,7 @@ pub use delay_queue::DelayQueue;
 pub use effort::EffortOutput;
 pub use faults::Faults;
 pub use outputs::OutputStage;
+pub use relay_watch::RelayWatch;
 pub use sensors::PulseSensor;
 pub use stored_data::apply_stored_data_faults;
 pub use supply::{PowerAndClock, Supply, at_rate};
@@ -25,6 +27,26 @@ pub use supply::{PowerAndClock, Supply, at_rate};
 use crate::com::IoImage;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
+
+/// The inputs of one scan, with the test signals and without.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ScannedInputs {
+    /// As the receiver and the pulse inputs have them: where the TEST board makes a signal, that.
+    pub tested: Inputs,
+    /// What comes from the train and the track alone. A receiver that hears a test signal hears no track.
+    pub train: Inputs,
+    /// The track's signal behind the antenna, also while the receiver hears another.
+    pub track: AntennaSignal,
+    /// The receiver hears a test signal.
+    pub receiver_taken: bool,
+}
+
+/// What the receiver hands on, and what is in the rail.
+struct Received {
+    signal: AntennaSignal,
+    track: AntennaSignal,
+    from_track: bool,
+}
 
 #[derive(Debug)]
 pub struct FrontEnd {
@@ -45,9 +67,9 @@ impl FrontEnd {
         }
     }
 
-    /// Reads all inputs once.
+    /// Reads all inputs once: with the test signals, as the receiver and the pulse inputs have them.
     ///
-    /// `built_in` is what the start-up self-test feeds into the ATP receiver in the antenna's place.
+    /// `built_in` is what the self-test feeds into the ATP receiver in the antenna's place.
     pub fn scan(
         &mut self,
         now: Instant,
@@ -55,11 +77,12 @@ impl FrontEnd {
         board: &mut TestBoard,
         built_in: Option<AntennaSignal>,
         faults: &mut Faults,
-    ) -> Inputs {
+    ) -> ScannedInputs {
         let input = image.input();
         board.suffer(faults);
         let test_pulses = board.step_speed(now);
         let mut pulses = [Pulses::default(); 2];
+        let mut train_pulses = pulses;
         for (i, sensor) in self.sensors.iter_mut().enumerate() {
             let place = [Place::SpeedSensor1, Place::SpeedSensor2][i];
             let sensed = sensor.read(
@@ -67,10 +90,11 @@ impl FrontEnd {
                 place,
                 faults,
             );
-            pulses[i] = test_pulses[i].unwrap_or(sensed);
-            if !image.alive() && test_pulses[i].is_none() {
-                pulses[i].sampled_at = now;
+            train_pulses[i] = sensed;
+            if !image.alive() {
+                train_pulses[i].sampled_at = now;
             }
+            pulses[i] = test_pulses[i].unwrap_or(train_pulses[i]);
         }
         let turned = self.sensors.iter().map(PulseSensor::turned).max();
         faults.roll(f64::from(turned.unwrap_or(0)) * self.metres_per_pulse);
@@ -78,12 +102,14 @@ impl FrontEnd {
             .filter(|_| image.alive())
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
-        Inputs {
+        let received = self.receive(&frame, board.code(), built_in, faults);
+        let (marker, from_board) = self.marker(input.map(|(frame, _)| frame), board, faults);
+        let tested = Inputs {
             alive: image.alive(),
-            signal: self.receive(&frame, board.code(), built_in, faults),
+            signal: received.signal,
             pulses,
             test_speed: test_pulses.map(|pulses| pulses.is_some()),
-            marker: self.marker(input.map(|(frame, _)| frame), board, faults),
+            marker,
             tra_answers: !faults.loses(Place::Tra),
             lines: lines(frame.lines, faults),
             mode_switch: match faults.at(Place::ModeInput) {
@@ -94,6 +120,22 @@ impl FrontEnd {
                 Some(_) => 0,
                 None => frame.controller,
             },
+        };
+        let train = Inputs {
+            signal: match received.from_track {
+                true => received.signal,
+                false => AntennaSignal::default(),
+            },
+            pulses: train_pulses,
+            test_speed: [false; 2],
+            marker: marker.filter(|_| !from_board),
+            ..tested
+        };
+        ScannedInputs {
+            tested,
+            train,
+            track: received.track,
+            receiver_taken: !received.from_track,
         }
     }
 
@@ -105,22 +147,25 @@ impl FrontEnd {
         coil: Option<AntennaSignal>,
         built_in: Option<AntennaSignal>,
         faults: &mut Faults,
-    ) -> AntennaSignal {
-        let track = AntennaSignal {
+    ) -> Received {
+        let mut track = AntennaSignal {
             carrier_hz: f64::from(frame.carrier_hz),
             rate_hz: f64::from(frame.code_rate_chz) / 100.0,
             level_mv: f64::from(frame.level_mv),
         };
-        let mut signal = match coil {
-            Some(coil) if coil.level_mv >= track.level_mv => coil,
-            _ => track,
+        let coil = coil.filter(|coil| coil.level_mv >= track.level_mv);
+        let through_antenna = match faults.at(Place::AtpAntenna) {
+            Some(Effect::Dead) => 0.0,
+            Some(Effect::Gain { factor }) => factor,
+            _ => 1.0,
         };
-        match faults.at(Place::AtpAntenna) {
-            Some(Effect::Dead) => signal.level_mv = 0.0,
-            Some(Effect::Gain { factor }) => signal.level_mv *= factor,
-            _ => {}
-        }
-        signal = built_in.unwrap_or(signal);
+        track.level_mv *= through_antenna;
+        let coil = coil.map(|coil| AntennaSignal {
+            level_mv: coil.level_mv * through_antenna,
+            ..coil
+        });
+        let from_track = coil.is_none() && built_in.is_none();
+        let mut signal = built_in.or(coil).unwrap_or(track);
         match faults.at(Place::AtpReceiver) {
             Some(Effect::Dead) => signal = AntennaSignal::default(),
             Some(Effect::Gain { factor }) => signal.level_mv *= factor,
@@ -130,16 +175,20 @@ impl FrontEnd {
             _ => {}
         }
         self.held_signal = signal;
-        signal
+        Received {
+            signal,
+            track,
+            from_track,
+        }
     }
 
-    /// Marker antenna and TRA.
+    /// Marker antenna and TRA: the pulse, and whether it is of the test marker.
     fn marker(
         &mut self,
         frame: Option<&IoInput>,
         board: &mut TestBoard,
         faults: &mut Faults,
-    ) -> Option<MarkerPulse> {
+    ) -> (Option<MarkerPulse>, bool) {
         let before = self.marker_edges;
         self.marker_edges = frame.map(|frame| frame.marker_edges);
         let passed = match (before, frame) {
@@ -149,17 +198,22 @@ impl FrontEnd {
             }),
             _ => None,
         };
-        let pulse = board
+        let made = board
             .take_marker(faults)
-            .map(|marker| MarkerPulse { marker, age_us: 0 })
+            .map(|marker| MarkerPulse { marker, age_us: 0 });
+        let pulse = made
             .or(passed)
             // TRA has four inputs; anything else on the wire is no marker.
-            .filter(|pulse| matches!(pulse.marker, 1..=4))?;
+            .filter(|pulse| matches!(pulse.marker, 1..=4));
+        let Some(pulse) = pulse else {
+            return (None, false);
+        };
         let deaf = match faults.at(Place::MarkerAntenna) {
             Some(Effect::Deaf { to_marker }) => pulse.marker == to_marker,
             _ => faults.loses(Place::MarkerAntenna),
         };
-        (!deaf && !faults.loses(Place::Tra)).then_some(pulse)
+        let heard = !deaf && !faults.loses(Place::Tra);
+        (heard.then_some(pulse), made.is_some())
     }
 }
 

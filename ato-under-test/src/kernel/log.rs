@@ -26,6 +26,8 @@ pub struct FreezeFrame {
 pub struct EventLog {
     entries: Ring<LogEntry, LOG_CAPACITY>,
     frame: FreezeFrame,
+    /// Events that were logged from this index on are not logged again.
+    once_since: Option<u32>,
 }
 
 impl EventLog {
@@ -34,7 +36,16 @@ impl EventLog {
         self.frame = frame;
     }
 
+    /// From here on leaves out what was logged since index `since` with the same parameter; `None` = nothing is left
+    /// out. Two instances of a function that see the same are one event.
+    pub fn leave_out_repeats(&mut self, since: Option<u32>) {
+        self.once_since = since;
+    }
+
     pub fn push(&mut self, now: Instant, event: Event, parameter: i32) {
+        if self.was_logged(event, parameter) {
+            return;
+        }
         self.entries.push(LogEntry {
             index: self.entries.next_index(),
             code: event.definition().code,
@@ -46,6 +57,16 @@ impl EventLog {
             mode: self.frame.mode,
             eb_cause: self.frame.eb_cause,
         });
+    }
+
+    fn was_logged(&self, event: Event, parameter: i32) -> bool {
+        let Some(since) = self.once_since else {
+            return false;
+        };
+        let code = event.definition().code;
+        (since..self.next_index())
+            .filter_map(|index| self.entries.at_or_after(index))
+            .any(|entry| entry.code == code && entry.parameter == parameter)
     }
 
     pub fn entries(&self) -> &Ring<LogEntry, LOG_CAPACITY> {

@@ -301,6 +301,11 @@ impl Locator {
         self.last_marker
     }
 
+    /// Goes on with the count of another instance.
+    pub fn count_on_from(&mut self, other: &Self) {
+        self.count = other.count;
+    }
+
     /// Markers detected, wrapping.
     pub fn count(&self) -> u8 {
         self.count

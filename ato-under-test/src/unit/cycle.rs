@@ -42,7 +42,7 @@ impl Unit {
     }
 
     fn send_cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
-        let to_tcms = report::to_tcms(self);
+        let to_tcms = report::to_tcms(self, now);
         self.send_through(Place::TcmsTransmitter, now, &to_tcms, out);
         if self.maintenance.listened_to(now) {
             self.ports.send(now, &report::status(self), out);

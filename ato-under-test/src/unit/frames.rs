@@ -11,7 +11,8 @@ use protocol::{Duration, Instant};
 
 use super::{Unit, report};
 use crate::com::ArmConditions;
-use crate::twc::{StationSender, TrainState};
+use crate::setup::Setup;
+use crate::twc::StationSender;
 
 /// Bits that a damaged frame has wrong, in one byte.
 const DAMAGE: u8 = 0x12;
@@ -53,6 +54,7 @@ impl Unit {
             .maintenance
             .step(now, conditions, &mut self.board, &mut self.log);
         self.replies.extend(notice);
+        self.follow_arming();
         self.send_replies(now, out);
     }
 
@@ -105,11 +107,23 @@ impl Unit {
         if sender.is_test() != self.board.modem().sends() {
             return;
         }
-        self.functions
-            .twc
-            .take(now, data, &self.setup.line, &mut self.log);
-        let train = self.train_state();
-        let answer = self.functions.twc.answer(sender, &data, train);
+        let Setup { line, config, .. } = &self.setup;
+        let before = self.log.next_index();
+        if let Some(mode) = &mut self.test_mode {
+            mode.functions.twc.take(now, data, line, &mut self.log);
+        }
+        let functions = match (sender, &mut self.test_mode) {
+            (StationSender::TestModem(_), Some(mode)) => &mut mode.functions,
+            (StationSender::TestModem(_), None) => return,
+            (StationSender::Loop(_), _) => {
+                self.log.leave_out_repeats(Some(before));
+                self.functions.twc.take(now, data, line, &mut self.log);
+                self.log.leave_out_repeats(None);
+                &mut self.functions
+            }
+        };
+        let train = functions.train_state(config);
+        let answer = functions.twc.answer(sender, &data, train);
         if self.loses(Place::TwcAntenna) {
             return;
         }
@@ -159,29 +173,19 @@ impl Unit {
         }
     }
 
-    fn train_state(&self) -> TrainState {
-        TrainState {
-            mode: self.functions.atp.sequence().mode(),
-            doors_closed: self
-                .functions
-                .inputs
-                .lines
-                .contains(TrainLines::DOORS_CLOSED),
-            aligned: self.functions.aligned(&self.setup.config),
-            standstill: self.functions.atp.tachometers().standstill(),
-            speed: self.functions.atp.tachometers().speed(),
-        }
-    }
-
     fn arm_conditions(&self) -> ArmConditions {
+        let passed_over = |place| matches!(self.faults.at(place), Some(Effect::Dead));
+        let tachometers = self.functions.atp.tachometers();
+        let lines = self.functions.inputs.lines;
+        let line_dead = self.functions.inputs.alive && !lines.contains(TrainLines::EB_LOOP);
         ArmConditions {
             started: self.self_tester.finished(),
-            key_on: self
-                .functions
-                .inputs
-                .lines
-                .contains(TrainLines::MAINTENANCE_KEY),
-            standing: self.functions.atp.tachometers().train_stands(),
+            key_on: lines.contains(TrainLines::MAINTENANCE_KEY),
+            standing: passed_over(Place::ArmStandstill)
+                || tachometers.standstill() && !tachometers.faulty(),
+            brakes_applied: passed_over(Place::ArmBrakes)
+                || line_dead
+                || self.tcms.orders_full_service_brake(),
         }
     }
 }

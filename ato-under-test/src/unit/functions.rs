@@ -17,7 +17,7 @@ use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
 use crate::psm::{Locator, Movement, Tra};
 use crate::setup::Setup;
 use crate::signals::Inputs;
-use crate::twc::Twc;
+use crate::twc::{TrainState, Twc};
 
 /// What the functions look at beside their inputs.
 pub struct Surroundings<'a> {
@@ -28,6 +28,8 @@ pub struct Surroundings<'a> {
     pub faults: &'a Faults,
     /// The harness has been alive at least once.
     pub ever_heard: bool,
+    /// No run may begin: a tester is armed.
+    pub barred: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -129,6 +131,18 @@ impl Functions {
         self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
     }
 
+    /// What the train says of itself to the wayside.
+    pub fn train_state(&self, config: &UnitConfig) -> TrainState {
+        let tachometers = self.atp.tachometers();
+        TrainState {
+            mode: self.atp.sequence().mode(),
+            doors_closed: self.inputs.lines.contains(TrainLines::DOORS_CLOSED),
+            aligned: self.aligned(config),
+            standstill: tachometers.standstill(),
+            speed: tachometers.speed(),
+        }
+    }
+
     /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
@@ -173,8 +187,8 @@ impl Functions {
                 ModeSwitch::Off
             },
             lacking,
-            departure: self.twc.data().is_some_and(|data| data.departure == 1),
-            start: lines.contains(TrainLines::START),
+            departure: !around.barred && self.twc.data().is_some_and(|data| data.departure == 1),
+            start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
         }

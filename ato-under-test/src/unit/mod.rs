@@ -5,8 +5,10 @@
 mod cycle;
 mod frames;
 mod functions;
+mod outputs;
 mod report;
 mod self_test;
+mod test_mode;
 mod train_state;
 
 use alloc::boxed::Box;
@@ -14,13 +16,14 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::injection::Place;
-use protocol::message::{IoOutput, Message, Outputs, TwcWayside};
+use protocol::message::{EbCause, IoOutput, Message, Outputs, TwcWayside};
 use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
 use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
-    DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, Supply, apply_stored_data_faults,
+    DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
+    apply_stored_data_faults,
 };
 use crate::kernel::{EventLog, RunRecord, SelfTester};
 use crate::psm::Tra;
@@ -28,6 +31,7 @@ use crate::setup::Setup;
 use crate::test_board::TestBoard;
 use crate::twc::StationSender;
 use functions::{Functions, Surroundings};
+use test_mode::TestMode;
 use train_state::StateReport;
 
 /// Scans in a control cycle.
@@ -42,7 +46,10 @@ pub struct Unit {
     maintenance: Maintenance,
     board: TestBoard,
     self_tester: SelfTester,
+    /// Those of the train; nothing of test signals gets into them.
     functions: Functions,
+    test_mode: Option<TestMode>,
+    scanned: ScannedInputs,
     tra: Tra,
     tcms: TcmsLink,
     image: IoImage,
@@ -55,8 +62,9 @@ pub struct Unit {
     late_stations: DelayQueue<(StationSender, TwcWayside)>,
     front_end: FrontEnd,
     output_stage: OutputStage,
-    /// Contacts that ATP and ATO ask for; relays follow.
-    asked: Outputs,
+    relay_watch: RelayWatch,
+    /// What the contacts were told in this scan, and what they do.
+    commanded: Outputs,
     contacts: Outputs,
     /// Count of markers, and when it last changed, ms since power-up.
     marker_at: (u8, u32),
@@ -101,6 +109,8 @@ impl Unit {
                 &setup.line,
             ),
             functions: Functions::new(config),
+            test_mode: None,
+            scanned: ScannedInputs::default(),
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms), config.ato.train.empty_kg),
             run_record: RunRecord::default(),
@@ -111,7 +121,8 @@ impl Unit {
             late_stations: DelayQueue::default(),
             front_end: FrontEnd::new(config.metres_per_pulse()),
             output_stage: OutputStage::default(),
-            asked: Outputs::empty(),
+            relay_watch: RelayWatch::new(ms(config.overspeed.eb_feedback_ms)),
+            commanded: Outputs::empty(),
             contacts: Outputs::empty(),
             marker_at: (0, 0),
             state_report: StateReport::default(),
@@ -165,7 +176,7 @@ impl Unit {
         self.receive_frames(now, out);
         self.read_inputs(now);
         self.test_self(now);
-        self.with_functions(|functions, around, log| functions.scan(now, around, log));
+        self.protect(now, out);
         let cycle = self.scan == 0;
         if cycle {
             self.cycle(now, out);
@@ -200,37 +211,108 @@ impl Unit {
             .then(|| self.self_test_code())
             .flatten();
         let (image, board) = (&self.image, &mut self.board);
-        self.functions.inputs = self
+        self.scanned = self
             .front_end
             .scan(now, image, board, built_in, &mut self.faults);
+        let Some(mode) = &mut self.test_mode else {
+            // Only start-up feeds a code into the receiver then.
+            self.functions.inputs = self.scanned.tested;
+            return;
+        };
+        mode.functions.inputs = self.scanned.tested;
+        self.functions.inputs = self.scanned.train;
+        if self.scanned.receiver_taken {
+            self.functions.atp.forget_code();
+        }
+        if self.board.modem().sends() {
+            self.functions.twc.forget();
+        }
+    }
+
+    fn protect(&mut self, now: Instant, out: &mut Vec<u8>) {
+        self.with_functions(|functions, around, log| functions.scan(now, around, log));
+        self.supervise_test_mode(now, out);
+        self.commanded = self.wanted(now);
+        let energised = self.commanded.contains(Outputs::EB_RELAY);
+        let inputs = &self.functions.inputs;
+        let lines = inputs.alive.then_some(inputs.lines);
+        self.relay_watch.step(now, energised, lines, &mut self.log);
+    }
+
+    /// Ends test mode where it must end, with the emergency brake.
+    fn supervise_test_mode(&mut self, now: Instant, out: &mut Vec<u8>) {
+        let Some(mode) = &mut self.test_mode else {
+            return;
+        };
+        let config = &self.setup.config;
+        let Some(refusal) = mode.ends(now, &self.scanned, &self.functions, config, &self.faults)
+        else {
+            return;
+        };
+        let parameter = i32::from(refusal.code());
+        self.log.push(now, Event::TestModeBroken, parameter);
+        let notice = self
+            .maintenance
+            .end(now, refusal, &mut self.board, &mut self.log);
+        self.replies.extend(notice);
+        self.send_replies(now, out);
+        self.functions.atp.latch_brake(EbCause::TestMode);
+        self.leave_test_mode();
+    }
+
+    /// Enters test mode when a tester is armed, leaves it when none is any more.
+    fn follow_arming(&mut self) {
+        match (self.maintenance.armed(), &self.test_mode) {
+            (true, None) => {
+                let config = &self.setup.config;
+                self.test_mode = Some(TestMode::begin(&self.functions, &self.scanned, config));
+            }
+            (false, Some(_)) => self.leave_test_mode(),
+            _ => {}
+        }
+    }
+
+    /// The count of markers goes on: a tester sees it fall as so many markers more.
+    fn leave_test_mode(&mut self) {
+        if let Some(mode) = self.test_mode.take() {
+            self.functions
+                .locator
+                .count_on_from(&mode.functions.locator);
+        }
     }
 
     /// Lets every instance of the functions do a part of its work.
     fn with_functions(&mut self, work: impl Fn(&mut Functions, &Surroundings<'_>, &mut EventLog)) {
-        let around = Surroundings {
+        let mut around = Surroundings {
             setup: &self.setup,
             self_tester: &self.self_tester,
             tcms: &self.tcms,
             tra: &self.tra,
             faults: &self.faults,
             ever_heard: self.image.ever_heard(),
+            barred: false,
         };
+        let before = self.log.next_index();
+        if let Some(mode) = &mut self.test_mode {
+            work(&mut mode.functions, &around, &mut self.log);
+            around.barred = true;
+            self.log.leave_out_repeats(Some(before));
+        }
         work(&mut self.functions, &around, &mut self.log);
+        self.log.leave_out_repeats(None);
     }
 
     /// Drives the contacts and tells the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
-        let healthy = self.self_tester.vital_passed() && self.functions.inputs.alive;
-        self.asked = self.functions.atp.outputs(healthy);
-        self.asked
-            .set(Outputs::HOLDING_BRAKE, self.functions.holds());
-        self.contacts = self.output_stage.drive(now, self.asked, &self.faults);
+        self.commanded = self.wanted(now);
+        self.contacts = self.output_stage.drive(now, self.commanded, &self.faults);
+        let tested = self.tested();
         let output = IoOutput {
             outputs: self.contacts,
-            limit_cms: self.functions.atp.limit().to_cms(),
-            speed_cms: self.functions.atp.tachometers().speed().to_cms(),
-            marker: self.functions.locator.last_marker(),
-            marker_count: self.functions.locator.count(),
+            limit_cms: tested.atp.limit().to_cms(),
+            speed_cms: tested.atp.tachometers().speed().to_cms(),
+            marker: tested.locator.last_marker(),
+            marker_count: tested.locator.count(),
         };
         self.ports.send(now, &output.into(), out);
     }

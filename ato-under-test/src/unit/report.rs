@@ -2,7 +2,7 @@
 
 use protocol::Instant;
 use protocol::message::{
-    AtcToTcms, AtcToTcmsBits, Identity, Message, Status, StatusBits, TrainState,
+    AtcToTcms, AtcToTcmsBits, EbCause, Identity, Message, Outputs, Status, StatusBits, TrainState,
 };
 
 use super::Unit;
@@ -28,74 +28,73 @@ pub fn identity(unit: &Unit, now: Instant) -> Message {
 
 /// The unit's state.
 pub fn status(unit: &Unit) -> Message {
-    let brake = unit.functions.atp.brake();
-    let tachometers = unit.functions.atp.tachometers();
-    let sequence = unit.functions.atp.sequence();
+    let tested = unit.tested();
+    let tachometers = tested.atp.tachometers();
+    let sequence = tested.atp.sequence();
     let board_code = unit.board.code().unwrap_or_default();
     Status {
         bits: status_bits(unit),
         mode: sequence.mode(),
         refusals: sequence.refusals(),
         code_index: code_index(unit),
-        eb_cause: brake.cause(),
-        fsb_cause: unit.functions.atp.fsb_cause(),
+        eb_cause: eb_cause(unit),
+        fsb_cause: tested.atp.fsb_cause(),
         speed1_cms: tachometers.channel(0).to_cms(),
         speed2_cms: tachometers.channel(1).to_cms(),
-        target_cms: unit.functions.ato_outputs.target.to_cms(),
-        effort: unit.functions.ato_outputs.effort,
-        position_cm: libm::round(unit.functions.locator.position_m() * 100.0) as i32,
+        target_cms: tested.ato_outputs.target.to_cms(),
+        effort: tested.ato_outputs.effort,
+        position_cm: libm::round(tested.locator.position_m() * 100.0) as i32,
         events: unit.log.next_index(),
         rejected_frames: unit.ports.rejected_total() as u16,
-        twc_received: unit.functions.twc.received(),
+        twc_received: tested.twc.received(),
         self_test: unit.self_tester.failed(),
         test_signals: unit.board.signals(),
         test_carrier_hz: libm::round(board_code.carrier_hz) as u16,
         test_code_rate_chz: libm::round(board_code.rate_hz * 100.0) as u16,
         test_level_mv: libm::round(board_code.level_mv) as u16,
         test_speed_cms: unit.board.speed().unwrap_or_default().to_cms(),
-        ato_state: unit.functions.ato.state(),
-        wheel_correction_10ppm: libm::round(unit.functions.locator.wheel_correction() * 1e5) as i16,
+        ato_state: tested.ato.state(),
+        wheel_correction_10ppm: libm::round(tested.locator.wheel_correction() * 1e5) as i16,
     }
     .into()
 }
 
 fn code_index(unit: &Unit) -> u8 {
-    match unit.functions.atp.decoder().code() {
+    match unit.tested().atp.decoder().code() {
         Code::Known(index) => index,
         Code::None | Code::AbsoluteStop => NO_CODE,
     }
 }
 
 /// What the unit does to the train and has from it, at the end of a scan.
-pub fn train_state(unit: &Unit) -> TrainState {
-    let tachometers = unit.functions.atp.tachometers();
-    let speeds = [0, 1].map(|channel| tachometers.channel(channel).to_cms());
+pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
+    let (train, tested) = (&unit.functions, unit.tested());
+    let speeds = [0, 1].map(|channel| train.atp.tachometers().channel(channel).to_cms());
     let tcms = unit.tcms.last();
-    let station = unit.functions.twc.data().copied().unwrap_or_default();
-    let mode = unit.functions.atp.sequence().mode();
-    let effort = unit.functions.ato_outputs.effort;
+    let station = tested.twc.data().copied().unwrap_or_default();
+    let (effort, mode) = unit.commands(now);
     let modem = unit.board.modem();
     let test_answer = modem.last_answer();
     TrainState {
         held: 0,
         outputs: unit.contacts,
-        asked: unit.asked,
+        asked: unit.asked(),
         mode,
-        asked_mode: mode,
+        asked_mode: tested.atp.sequence().mode(),
         effort,
-        asked_effort: effort,
+        asked_effort: tested.ato_outputs.effort,
         code_index: code_index(unit),
-        eb_cause: unit.functions.atp.brake().cause(),
-        fsb_cause: unit.functions.atp.fsb_cause(),
-        limit_cms: unit.functions.atp.limit().to_cms(),
-        speed_cms: tachometers.speed().to_cms(),
+        eb_cause: eb_cause(unit),
+        fsb_cause: tested.atp.fsb_cause(),
+        limit_cms: tested.atp.limit().to_cms(),
+        speed_cms: tested.atp.tachometers().speed().to_cms(),
         train_speed1_cms: speeds[0],
         train_speed2_cms: speeds[1],
-        lines: unit.functions.inputs.lines,
-        mode_switch: unit.functions.inputs.mode_switch,
-        controller: unit.functions.inputs.controller,
-        marker: unit.functions.locator.last_marker(),
-        marker_count: unit.functions.locator.count(),
+        lines: train.inputs.lines,
+        mode_switch: train.inputs.mode_switch,
+        controller: train.inputs.controller,
+        marker: tested.locator.last_marker(),
+        marker_count: tested.locator.count(),
         marker_at_ms: unit.marker_at.1,
         tcms_bits: tcms.bits,
         tcms_effort: tcms.effort,
@@ -104,7 +103,7 @@ pub fn train_state(unit: &Unit) -> TrainState {
         twc_section: station.section,
         twc_loop: station.loop_id,
         twc_train_number: station.train_number,
-        twc_answers: unit.functions.twc.answers(),
+        twc_answers: train.twc.answers(),
         test_answers: modem.answers(),
         test_answer_station: test_answer.station,
         test_answer_train: test_answer.train_number,
@@ -113,28 +112,40 @@ pub fn train_state(unit: &Unit) -> TrainState {
     }
 }
 
+/// Why the relay is open: as the functions under test see it, else because of the train's own or of test mode.
+fn eb_cause(unit: &Unit) -> EbCause {
+    let causes = [unit.tested(), &unit.functions].map(|functions| functions.atp.brake().cause());
+    let own = causes.into_iter().find(|cause| *cause != EbCause::None);
+    let held = unit.test_mode.is_some() && !unit.commanded.contains(Outputs::EB_RELAY);
+    match own {
+        Some(cause) => cause,
+        None if held => EbCause::TestMode,
+        None => EbCause::None,
+    }
+}
+
 fn status_bits(unit: &Unit) -> StatusBits {
+    let tested = unit.tested();
     let mut bits = StatusBits::empty();
     bits.set(StatusBits::ARMED, unit.maintenance.armed());
-    bits.set(StatusBits::TWC_OK, unit.functions.twc.up());
+    bits.set(StatusBits::TWC_OK, tested.twc.up());
     bits.set(StatusBits::TCMS_OK, unit.tcms.alive());
-    bits.set(StatusBits::STATION_VALID, unit.functions.twc.valid());
-    bits.set(
-        StatusBits::ALIGNED,
-        unit.functions.aligned(&unit.setup.config),
-    );
+    bits.set(StatusBits::STATION_VALID, tested.twc.valid());
+    bits.set(StatusBits::ALIGNED, tested.aligned(&unit.setup.config));
     bits.set(StatusBits::TRA_OK, unit.tra.ok());
-    bits.set(StatusBits::ATO_READY, unit.functions.ato_outputs.ready);
+    bits.set(StatusBits::ATO_READY, tested.ato_outputs.ready);
     bits.set(StatusBits::STARTED, unit.self_tester.finished());
     bits.set(StatusBits::INPUTS_OK, unit.image.alive());
     bits
 }
 
-pub fn to_tcms(unit: &Unit) -> Message {
-    let ato = unit.functions.ato_outputs;
+pub fn to_tcms(unit: &Unit, now: Instant) -> Message {
+    let train = &unit.functions;
+    let ato = train.ato_outputs;
+    let (effort, mode) = unit.commands(now);
     let mut bits = AtcToTcmsBits::empty();
-    bits.set(AtcToTcmsBits::POWER, ato.effort > 0);
-    bits.set(AtcToTcmsBits::BRAKE, ato.effort < 0);
+    bits.set(AtcToTcmsBits::POWER, effort > 0);
+    bits.set(AtcToTcmsBits::BRAKE, effort < 0);
     bits.set(AtcToTcmsBits::HOLDING_BRAKE, ato.holding_brake);
     bits.set(AtcToTcmsBits::ATO_READY, ato.ready);
     bits.set(
@@ -143,10 +154,10 @@ pub fn to_tcms(unit: &Unit) -> Message {
     );
     AtcToTcms {
         bits,
-        mode: unit.functions.atp.sequence().mode(),
-        effort: ato.effort,
+        mode,
+        effort,
         target_cms: ato.target.to_cms(),
-        speed_cms: unit.functions.atp.tachometers().speed().to_cms(),
+        speed_cms: train.atp.tachometers().speed().to_cms(),
     }
     .into()
 }

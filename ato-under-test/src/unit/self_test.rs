@@ -26,7 +26,7 @@ impl Unit {
             brake_line_energised: self.functions.inputs.lines.contains(TrainLines::EB_LOOP),
         };
         if self.self_tester.step(now, seen) {
-            self.functions.atp.forget_test_code();
+            self.functions.atp.forget_code();
             let failed = self.self_tester.failed();
             if !failed.is_empty() {
                 self.log

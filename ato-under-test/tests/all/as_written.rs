@@ -10,9 +10,9 @@ use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
     IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status,
-    StimulusAnswer, Subscribe, TrainLines,
+    StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines,
 };
-use protocol::{Duration, Instant, SCAN};
+use protocol::{CYCLE, Duration, Instant, SCAN};
 
 const SESSION: u32 = 0xCAFE;
 /// A row of the table begins like this one's head.
@@ -412,6 +412,7 @@ struct Player {
     link: Link,
     now: Instant,
     input: Option<IoInput>,
+    tcms: Option<TcmsToAtc>,
     session: u32,
     challenge: u32,
     heard: Vec<(Instant, Message)>,
@@ -432,6 +433,7 @@ impl Player {
             link: Link::new(End::Bench),
             now: Instant::ZERO,
             input: None,
+            tcms: None,
             session: 0,
             challenge: 0,
             heard: Vec::new(),
@@ -450,6 +452,7 @@ impl Player {
     fn request(&mut self, message: Message) {
         match message {
             Message::IoInput(input) => self.input = Some(input),
+            Message::TcmsToAtc(frame) => self.tcms = Some(frame),
             Message::KeepAlive(alive) => {
                 self.session = alive.session;
                 self.send(message);
@@ -483,10 +486,22 @@ impl Player {
                     self.send(KeepAlive { session }.into());
                 }
             }
+            if let Some(frame) = &mut self.tcms
+                && self.now.as_us().is_multiple_of(CYCLE.as_us())
+            {
+                frame.alive = frame.alive.wrapping_add(1);
+                let frame = *frame;
+                self.send(frame.into());
+            }
             let mut out = Vec::new();
             self.unit.step(self.now, &mut out);
             self.link.push(&out);
             while let Some(received) = self.link.poll(self.now) {
+                if let (Message::IoOutput(output), Some(frame)) = (received.message, &mut self.tcms)
+                {
+                    let asked = output.outputs.contains(Outputs::FSB);
+                    frame.bits.set(TcmsToAtcBits::FULL_SERVICE_BRAKE, asked);
+                }
                 if let Message::ArmChallenge(asked) = received.message {
                     self.challenge = asked.challenge;
                 }

@@ -13,4 +13,5 @@ mod robustness;
 mod speed_control;
 mod stored_memory;
 mod tcms;
+mod test_mode;
 mod test_signals;

@@ -3,8 +3,8 @@
 use crate::common::Bench;
 use protocol::injection::FaultMode;
 use protocol::message::{
-    Answer, ArmConfirm, ArmRefusal, ArmRequest, CATALOGUE, Channel, ClearLog, Message, Outputs,
-    ReadLog, Subscribe, TestCode, TestSpeed, TrainLines,
+    Answer, ArmConfirm, ArmRefusal, ArmRequest, CATALOGUE, Channel, ClearLog, Disarm, Message,
+    Outputs, ReadLog, Subscribe, TestCode, TestSpeed, TrainLines,
 };
 
 pub const SESSION: u32 = 0xBEEF;
@@ -115,7 +115,8 @@ fn test_speed_replaces_the_tachometers_and_goes_without_a_fault() {
         "{}",
         bench.output.speed_cms
     );
-    bench.input.lines.remove(TrainLines::MAINTENANCE_KEY);
+    let session = SESSION;
+    bench.send(Disarm { session });
     bench.run(1.0);
     assert_eq!(bench.output.speed_cms, 0);
     assert!(

@@ -58,6 +58,16 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::ModeInput | Place::ControllerInput => &[DEAD, STUCK_OFF],
         Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
         Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
+        Place::ArmStandstill
+        | Place::ArmBrakes
+        | Place::MotionGuard
+        | Place::CodeGuard
+        | Place::ModeGuard
+        | Place::KeyGuard
+        | Place::BrakeHold
+        | Place::TractionBar
+        | Place::StartBar
+        | Place::DoorBar => &[DEAD],
         Place::TestCode => &[("gain", 0.0, 10.0)],
         // Hz.
         Place::TestCarrier => &[("offset", -1000.0, 1000.0)],

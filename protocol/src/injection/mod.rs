@@ -76,6 +76,26 @@ pub enum Place {
     TestSpeed,
     /// Pulses of the TEST board's marker generator.
     TestMarker,
+    /// Standstill as a condition of arming.
+    ArmStandstill,
+    /// Applied brakes as a condition of arming.
+    ArmBrakes,
+    /// Supervision of the train's own motion while armed.
+    MotionGuard,
+    /// Supervision of the code in the rail while armed.
+    CodeGuard,
+    /// Supervision of the mode switch while armed.
+    ModeGuard,
+    /// Supervision of the maintenance key while armed.
+    KeyGuard,
+    /// Full service brake that is held while armed.
+    BrakeHold,
+    /// Bar on powering while armed.
+    TractionBar,
+    /// Bar on Automatic Run while armed.
+    StartBar,
+    /// Bar on door enables while armed.
+    DoorBar,
     /// The unit's power supply.
     PowerSupply,
     /// The unit's clock, which also times its pulse inputs.

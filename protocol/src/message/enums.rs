@@ -143,6 +143,8 @@ wire_enum! {
         SelfTest = 8 "self_test",
         /// A broken invariant on board.
         Internal = 9 "internal",
+        /// While armed for maintenance: real motion, a changed input, or no proof that the train brakes.
+        TestMode = 10 "test_mode",
     }
 }
 
@@ -163,6 +165,8 @@ wire_enum! {
         AtoFailed = 5 "ato_failed",
         /// In automatic run TCMS took its permission back, or said that the train cannot run.
         NotPermitted = 6 "not_permitted",
+        /// Armed for maintenance.
+        TestMode = 7 "test_mode",
     }
 }
 
@@ -209,6 +213,14 @@ wire_enum! {
         Disarmed = 6 "disarmed",
         /// Start-up self-test is still running.
         StartingUp = 7 "starting_up",
+        /// The train does not prove that its brakes are applied.
+        BrakesReleased = 8 "brakes_released",
+        /// The train moved while armed.
+        TrainMoved = 9 "train_moved",
+        /// The speed code in the rail changed while armed.
+        CodeChanged = 10 "code_changed",
+        /// The mode switch was turned while armed.
+        ModeChanged = 11 "mode_changed",
     }
 }
 

@@ -11,8 +11,8 @@ use protocol::injection::{Effect, FaultMode, Occurrence, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{
-    Channel, IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs, ReadLog, Status,
-    TcmsToAtc, TcmsToAtcBits, TrainLines, TwcWayside,
+    AtcToTcms, Channel, IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs,
+    ReadLog, Status, TcmsToAtc, TcmsToAtcBits, TrainLines, TrainState, TwcWayside,
 };
 use protocol::{Instant, SCAN};
 
@@ -49,6 +49,14 @@ pub struct Bench {
     pub status: Status,
     /// What TCMS says each cycle, its alive counter left out; `None` = nothing.
     pub tcms: Option<TcmsToAtc>,
+    /// The unit says that it is armed.
+    pub armed: bool,
+    /// What the unit told TCMS last.
+    pub to_tcms: AtcToTcms,
+    /// TCMS orders the full service brake when the unit asks for it.
+    pub tcms_obeys: bool,
+    /// The brake line stays energised, whatever the relay does.
+    pub welded: bool,
     /// Its alive counter stands still.
     pub alive_stands: bool,
     /// Something besides the unit's relay opens the emergency brake line.
@@ -127,6 +135,10 @@ impl Bench {
                 bits: TcmsToAtcBits::ATO_ENABLE,
                 ..TcmsToAtc::default()
             }),
+            armed: false,
+            to_tcms: AtcToTcms::default(),
+            tcms_obeys: false,
+            welded: false,
             alive_stands: false,
             opens_line,
             backward_bits: 0,
@@ -189,7 +201,8 @@ impl Bench {
         self.now += SCAN;
         self.scans += 1;
         let fed = !self.opens_line;
-        let eb_loop = fed && self.output.outputs.contains(Outputs::EB_RELAY);
+        let released = self.output.outputs.contains(Outputs::EB_RELAY);
+        let eb_loop = fed && (released || self.welded);
         self.input.lines.set(TrainLines::EB_LOOP_FED, fed);
         self.input.lines.set(TrainLines::EB_LOOP, eb_loop);
         self.turn_wheels();
@@ -200,8 +213,13 @@ impl Bench {
             if !self.alive_stands {
                 self.alive = self.alive.wrapping_add(1);
             }
+            let mut bits = frame.bits;
+            if self.tcms_obeys && self.has(Outputs::FSB) {
+                bits.insert(TcmsToAtcBits::FULL_SERVICE_BRAKE);
+            }
             self.send(TcmsToAtc {
                 alive: self.alive,
+                bits,
                 ..frame
             });
         }
@@ -221,8 +239,14 @@ impl Bench {
                 Message::IoOutput(output) => self.output = output,
                 Message::Status(status) => self.status = status,
                 Message::LogEntry(entry) => self.log.push(entry),
-                Message::AtcToTcms(_) | Message::TwcTrain(_) | Message::LogEnd(_) => {}
-                other => self.answers.push(other),
+                Message::AtcToTcms(orders) => self.to_tcms = orders,
+                Message::TwcTrain(_) | Message::LogEnd(_) => {}
+                other => {
+                    if let Message::ArmState(state) = other {
+                        self.armed = state.armed == 1;
+                    }
+                    self.answers.push(other);
+                }
             }
         }
     }
@@ -232,6 +256,14 @@ impl Bench {
         let frames = self.sent.split(|&byte| byte == 0x7E);
         let own = frames.filter(|frame| frame.get(1) == Some(&Channel::Ptu.code()));
         own.map(|frame| frame.len() + 2).sum()
+    }
+
+    /// The last `TrainState`.
+    pub fn train_state(&self) -> Option<TrainState> {
+        self.answers.iter().rev().find_map(|answer| match answer {
+            Message::TrainState(state) => Some(*state),
+            _ => None,
+        })
     }
 
     fn turn_wheels(&mut self) {
@@ -259,6 +291,24 @@ impl Bench {
     /// The counters jump, as when a rack is restarted.
     pub fn jump_counts(&mut self, one: u16, two: u16) {
         self.turned = [f64::from(one), f64::from(two)];
+    }
+
+    /// Back to rest: standing, key on, nothing in the rail, every brake acknowledged.
+    pub fn rest(&mut self) {
+        self.speeds = [0.0; 2];
+        self.input.level_mv = 0;
+        self.input.controller = 0;
+        self.keep_alive = true;
+        self.tcms_obeys = true;
+        self.input.lines = TrainLines::DOORS_CLOSED
+            | TrainLines::HCR
+            | TrainLines::FORWARD
+            | TrainLines::MAINTENANCE_KEY;
+        if !matches!(self.input.mode_switch, ModeSwitch::Automatic) {
+            self.input.mode_switch = ModeSwitch::Manual;
+        }
+        self.run(0.7);
+        self.acknowledge();
     }
 
     pub fn marker(&mut self, marker: u8) {

@@ -1,0 +1,60 @@
+//! Watches the EB relay through the brake line of the train that it opens.
+
+use protocol::event::Event;
+use protocol::message::TrainLines;
+use protocol::{Duration, Instant};
+
+use crate::kernel::EventLog;
+use crate::timer::OnDelay;
+
+/// The line must die with the relay, and live with it as long as it is fed: a button, the master controller,
+/// low air or a cab nobody is in opens it before the relay.
+#[derive(Debug)]
+pub struct RelayWatch {
+    welded: OnDelay,
+    open: OnDelay,
+    sound: bool,
+    feedback: Duration,
+}
+
+impl RelayWatch {
+    /// The brake line must follow the relay within `feedback`.
+    pub fn new(feedback: Duration) -> Self {
+        Self {
+            welded: OnDelay::default(),
+            open: OnDelay::default(),
+            sound: true,
+            feedback,
+        }
+    }
+
+    /// One scan: what the relay is told, and the lines, if they are read.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        energised: bool,
+        lines: Option<TrainLines>,
+        log: &mut EventLog,
+    ) {
+        let line = |line| lines.is_some_and(|lines| lines.contains(line));
+        let alive = line(TrainLines::EB_LOOP);
+        let welded = !energised && alive;
+        let open = energised && line(TrainLines::EB_LOOP_FED) && !alive;
+        let welded = self.welded.update(now, welded, self.feedback);
+        let open = self.open.update(now, open, self.feedback);
+        if (welded || open) && self.sound {
+            self.sound = false;
+            let event = if welded {
+                Event::EbRelayWelded
+            } else {
+                Event::EbRelayOpen
+            };
+            log.push(now, event, 0);
+        }
+    }
+
+    /// The relay has followed ever since power-up; one failure is not forgotten before the next.
+    pub fn sound(&self) -> bool {
+        self.sound
+    }
+}

@@ -1,0 +1,90 @@
+//! What the contacts do, and what TCMS is told: what the functions ask for, and while a tester is armed never more
+//! than lets a train stand.
+
+use protocol::Instant;
+use protocol::injection::{Effect, Place};
+use protocol::message::{Mode, Outputs};
+
+use super::Unit;
+use super::functions::Functions;
+
+const DOORS: Outputs = Outputs::DOOR_ENABLE_LEFT.union(Outputs::DOOR_ENABLE_RIGHT);
+/// Any of two instances that asks for one of these gets it.
+const EITHER: Outputs = Outputs::FSB
+    .union(Outputs::POWER_CUT)
+    .union(Outputs::ALARM)
+    .union(Outputs::HOLDING_BRAKE);
+/// Both must ask for these: what releases the train, or says that it is well.
+const BOTH: Outputs = Outputs::EB_RELAY
+    .union(Outputs::STANDSTILL)
+    .union(Outputs::HEALTHY);
+
+impl Unit {
+    /// The instance of the functions that a tester sees: under test while armed.
+    pub(super) fn tested(&self) -> &Functions {
+        self.test_mode
+            .as_ref()
+            .map_or(&self.functions, |mode| &mode.functions)
+    }
+
+    /// What the functions that a tester sees ask for.
+    pub(super) fn asked(&self) -> Outputs {
+        self.outputs_of(self.tested())
+    }
+
+    /// What the contacts should do.
+    pub(super) fn wanted(&self, now: Instant) -> Outputs {
+        let train = self.outputs_of(&self.functions);
+        if !self.maintenance.holds_brake(now) {
+            return train;
+        }
+        let tested = self.asked();
+        let mut wanted = (train | tested) & EITHER | train & tested & BOTH;
+        wanted |= tested & Outputs::CODE_VALID;
+        if self.bar_is_broken(Place::DoorBar) {
+            wanted |= tested & DOORS;
+        }
+        if !self.bar_is_broken(Place::BrakeHold) {
+            wanted |= Outputs::FSB | Outputs::POWER_CUT;
+            wanted.set(
+                Outputs::EB_RELAY,
+                wanted.contains(Outputs::EB_RELAY) && self.tcms.orders_full_service_brake(),
+            );
+        }
+        wanted
+    }
+
+    /// Effort for TCMS, −1024..1023, and the mode it is told.
+    pub(super) fn commands(&self, now: Instant) -> (i16, Mode) {
+        let of = |functions: &Functions| {
+            let mode = functions.atp.sequence().mode();
+            (functions.ato_outputs.effort, mode)
+        };
+        let (effort, mode) = of(&self.functions);
+        if !self.maintenance.holds_brake(now) {
+            return (effort, mode);
+        }
+        let (tested_effort, tested_mode) = of(self.tested());
+        let effort = match self.bar_is_broken(Place::TractionBar) {
+            true => tested_effort,
+            false => effort.min(0),
+        };
+        let mode = match self.bar_is_broken(Place::StartBar) {
+            true => tested_mode,
+            false => mode,
+        };
+        (effort, mode)
+    }
+
+    fn outputs_of(&self, functions: &Functions) -> Outputs {
+        let healthy =
+            self.self_tester.vital_passed() && functions.inputs.alive && self.relay_watch.sound();
+        let mut outputs = functions.atp.outputs(healthy);
+        outputs.set(Outputs::HOLDING_BRAKE, functions.holds());
+        outputs
+    }
+
+    fn bar_is_broken(&self, place: Place) -> bool {
+        matches!(self.faults.at(place), Some(Effect::Dead))
+    }
+}

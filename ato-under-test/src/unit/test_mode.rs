@@ -1,0 +1,99 @@
+//! Test mode: what the unit does while a tester is armed.
+//!
+//! The functions have a second instance then, a copy made at arming, which has the test signals as its inputs
+//! and is what the tester sees. The first instance goes on with the inputs of train and track alone. It knows
+//! nothing of test signals, so that nothing of them is left when the copy is thrown away. At the outputs the more
+//! restrictive of both counts, and the full service brake is held (`outputs`).
+//!
+//! Test mode is for a train that stands. It ends, and the emergency brake is applied, when the train moves, when the
+//! speed code in the rail or the mode switch changes, and when the maintenance key is taken.
+
+use protocol::config::UnitConfig;
+use protocol::injection::{Effect, Place};
+use protocol::message::{ArmRefusal, ModeSwitch, TrainLines};
+use protocol::{Duration, Instant, Speed};
+
+use super::functions::Functions;
+use crate::atp::{Code, lookup};
+use crate::front_end::{Faults, ScannedInputs};
+use crate::signals::Pulses;
+use crate::timer::OnDelay;
+
+/// Way that a standing train may be moved, m: couplers and suspension give, a wheel that turns gives more.
+const MOST_MOVED_M: f64 = 0.3;
+/// Speed above which a train moves.
+const MOVES: Speed = Speed::from_kmh(0.5);
+/// Time for which another code must be in the rail: a scan in which the signal is disturbed is no change.
+const CODE_STEADY: Duration = Duration::from_ms(50);
+
+#[derive(Debug)]
+pub struct TestMode {
+    /// Fed with the test signals.
+    pub functions: Functions,
+    /// Way since arming by each tachometer, m, backward negative.
+    moved_m: [f64; 2],
+    mode_switch: ModeSwitch,
+    code: Code,
+    other_code: OnDelay,
+}
+
+impl TestMode {
+    /// Begins with what the unit knows, and with the inputs as they are.
+    pub fn begin(functions: &Functions, inputs: &ScannedInputs, config: &UnitConfig) -> Self {
+        Self {
+            functions: functions.clone(),
+            moved_m: [0.0; 2],
+            mode_switch: inputs.train.mode_switch,
+            code: lookup(inputs.track, config),
+            other_code: OnDelay::default(),
+        }
+    }
+
+    /// One scan: why test mode must end, if it must. `train` is the instance that sees the train alone.
+    pub fn ends(
+        &mut self,
+        now: Instant,
+        inputs: &ScannedInputs,
+        train: &Functions,
+        config: &UnitConfig,
+        faults: &Faults,
+    ) -> Option<ArmRefusal> {
+        let works = |guard| !matches!(faults.at(guard), Some(Effect::Dead));
+        let code = lookup(inputs.track, config);
+        let other_code = self.other_code.update(now, code != self.code, CODE_STEADY);
+        let causes = [
+            (
+                Place::KeyGuard,
+                !inputs.train.lines.contains(TrainLines::MAINTENANCE_KEY),
+                ArmRefusal::KeyOff,
+            ),
+            (
+                Place::MotionGuard,
+                self.moves(&inputs.train.pulses, train, config),
+                ArmRefusal::TrainMoved,
+            ),
+            (
+                Place::ModeGuard,
+                inputs.train.mode_switch != self.mode_switch,
+                ArmRefusal::ModeChanged,
+            ),
+            (Place::CodeGuard, other_code, ArmRefusal::CodeChanged),
+        ];
+        let broken = causes
+            .iter()
+            .find(|(guard, holds, _)| *holds && works(*guard));
+        broken.map(|(_, _, refusal)| *refusal)
+    }
+
+    fn moves(&mut self, pulses: &[Pulses; 2], train: &Functions, config: &UnitConfig) -> bool {
+        for (moved_m, pulses) in self.moved_m.iter_mut().zip(pulses) {
+            let way_m = f64::from(pulses.count) * config.metres_per_pulse();
+            *moved_m += if pulses.backward { -way_m } else { way_m };
+        }
+        let far = self
+            .moved_m
+            .iter()
+            .any(|way_m| libm::fabs(*way_m) > MOST_MOVED_M);
+        far || train.atp.tachometers().speed() > MOVES
+    }
+}
