@@ -338,6 +338,8 @@ pub enum Stimulus {
     },
     /// Arm the unit (whole exchange).
     PtuArm,
+    /// Ask the unit to arm: a refusal is no error, the signal `arm_refusal` says why.
+    PtuAskToArm,
     /// Disarm it.
     PtuDisarm,
     /// The tester falls silent, or speaks again.

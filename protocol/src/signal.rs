@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::message::{AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode};
+use crate::message::{
+    ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode,
+};
 
 /// What a signal's number means.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -197,6 +199,7 @@ signals! {
     TestCodeRate "test_code_rate" "Hz" CENTI, 0 ..= 655, Unit, "Code rate measured where it leaves the TEST board";
     TestLevel "test_level" "mV" UNITY, 0 ..= 65535, Unit, "Code level measured where it leaves the TEST board";
     TestSpeed "test_speed" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed of the pulses that leave the TEST board";
+    ArmRefusal "arm_refusal" "" Kind::Enum(ArmRefusal::LABELS), 0 ..= 11, Rig, "Why the unit refused or ended arming, as it said last";
 }
 
 impl Signal {

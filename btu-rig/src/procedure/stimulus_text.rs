@@ -92,6 +92,7 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::AtoEnable { on } => format!("TCMS permits ATO: {}", on_off(on)),
         Stimulus::Load { passengers_kg } => format!("load {passengers_kg} kg"),
         Stimulus::PtuArm => "arm the unit".into(),
+        Stimulus::PtuAskToArm => "ask the unit to arm".into(),
         Stimulus::PtuDisarm => "disarm the unit".into(),
         Stimulus::PtuSilent { on } => format!("tester silent: {}", on_off(on)),
         Stimulus::PtuCode {

@@ -149,7 +149,12 @@ impl Rig {
     fn apply_ptu(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
         let session = self.tester.session();
         let request = match *stimulus {
-            Stimulus::PtuArm => Request::Arm,
+            Stimulus::PtuArm => Request::Arm {
+                refusal_fails: true,
+            },
+            Stimulus::PtuAskToArm => Request::Arm {
+                refusal_fails: false,
+            },
             Stimulus::PtuDisarm => Request::Disarm,
             Stimulus::PtuSilent { on } => {
                 self.tester.set_silent(now, on);
@@ -205,9 +210,10 @@ impl Rig {
         !self.making_safe && !self.train_driven && self.wheel.standing() && self.tester.safe()
     }
 
-    /// Once the wheels stand, the rest of the bench rests, too.
+    /// Once the wheels stand and the unit is disarmed, the rest of the bench rests, too: an armed unit takes a key, a
+    /// mode switch or a code that changes for a train that is no longer tested, and brakes.
     pub(super) fn finish_making_safe(&mut self) {
-        if self.making_safe && self.wheel.standing() {
+        if self.making_safe && self.wheel.standing() && self.tester.safe() {
             self.rest_quiescent();
         }
     }

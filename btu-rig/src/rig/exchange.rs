@@ -30,7 +30,10 @@ const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 #[derive(Clone, Copy, Debug)]
 pub enum Request {
     /// The whole arm exchange.
-    Arm,
+    Arm {
+        /// A refusal is a failure, and else an outcome.
+        refusal_fails: bool,
+    },
     /// The end of the session.
     Disarm,
     /// A message that is answered by `StimulusAnswer`.
@@ -65,6 +68,8 @@ pub struct Exchange {
     /// Earliest time of the next request.
     may_send: Instant,
     armed_at: Option<Instant>,
+    /// Why the unit refused or ended arming, as it said last.
+    refusal: ArmRefusal,
     failure: Option<Refusal>,
     /// The outcome is not awaited: the bench is being made safe.
     quiet: bool,
@@ -79,6 +84,7 @@ impl Exchange {
             current: None,
             may_send: Instant::ZERO,
             armed_at: None,
+            refusal: ArmRefusal::None,
             failure: None,
             quiet: false,
         }
@@ -128,7 +134,7 @@ impl Exchange {
             || self
                 .current
                 .as_ref()
-                .is_some_and(|c| matches!(c.request, Request::Arm))
+                .is_some_and(|c| matches!(c.request, Request::Arm { .. }))
     }
 
     /// The end of the session is asked for.
@@ -138,6 +144,11 @@ impl Exchange {
             .into_iter()
             .chain(&self.queue)
             .any(|r| matches!(r, Request::Disarm))
+    }
+
+    /// Why the unit refused or ended arming, as it said last; none once it is armed.
+    pub fn refusal(&self) -> ArmRefusal {
+        self.refusal
     }
 
     /// What failed and is not forgotten yet.
@@ -181,7 +192,7 @@ impl Exchange {
             return;
         }
         let message = match current.request {
-            Request::Arm => ArmRequest { session }.into(),
+            Request::Arm { .. } => ArmRequest { session }.into(),
             Request::Disarm => Disarm { session }.into(),
             Request::Stimulus { message, .. } => message,
         };
@@ -194,7 +205,7 @@ impl Exchange {
     /// Takes the unit's challenge; the next step answers it.
     pub fn on_challenge(&mut self, heard: &ArmChallenge) {
         if let Some(current) = &mut self.current
-            && matches!(current.request, Request::Arm)
+            && matches!(current.request, Request::Arm { .. })
             && heard.session == self.session
         {
             current.challenge = Some(heard.challenge);
@@ -208,20 +219,24 @@ impl Exchange {
         }
         let armed = state.armed == 1;
         self.armed_at = armed.then_some(now);
+        self.refusal = state.refusal;
         let Some(current) = &mut self.current else {
             return;
         };
         let patient = now.since(current.begun) < ARM_PATIENCE;
         match (current.request, armed) {
-            (Request::Arm, true) | (Request::Disarm, false) => self.current = None,
-            (Request::Arm, false) => match state.refusal {
+            (Request::Arm { .. }, true) | (Request::Disarm, false) => self.current = None,
+            (Request::Arm { refusal_fails }, false) => match state.refusal {
                 // Not about this exchange but the end of the last one.
                 ArmRefusal::TesterSilent | ArmRefusal::Disarmed => {}
                 ArmRefusal::StartingUp | ArmRefusal::Busy if patient => {
                     current.attempts = 0;
                     current.due = now + ARM_PAUSE;
                 }
-                refusal => self.fail(format!("the unit refused to arm: {}", refusal.label())),
+                refusal if refusal_fails => {
+                    self.fail(format!("the unit refused to arm: {}", refusal.label()));
+                }
+                _ => self.current = None,
             },
             _ => {}
         }
@@ -295,7 +310,7 @@ impl Current {
 
     fn what(&self) -> &'static str {
         match self.request {
-            Request::Arm => "the arm request",
+            Request::Arm { .. } => "the arm request",
             Request::Disarm => "the disarm request",
             Request::Stimulus { what, .. } => what,
         }

@@ -34,6 +34,10 @@ impl Rig {
             (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
             (Signal::Controller, f64::from(self.desk.lever.wire())),
             (Signal::TwcAnswers, f64::from(self.wayside.answers())),
+            (
+                Signal::ArmRefusal,
+                f64::from(self.tester.arm_refusal().code()),
+            ),
         ] {
             sample.set(signal, value);
         }

@@ -2,7 +2,7 @@
 
 use protocol::link::Link;
 use protocol::message::{
-    Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, Status, StatusBits,
+    ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, Status, StatusBits,
 };
 use protocol::{Duration, Instant};
 
@@ -214,6 +214,11 @@ impl Tester {
             let release = test_signals::release(self.session);
             self.exchange.replace([release, Request::Disarm]);
         }
+    }
+
+    /// Why the unit refused or ended arming, as it said last.
+    pub fn arm_refusal(&self) -> ArmRefusal {
+        self.exchange.refusal()
     }
 
     /// Every request has its outcome.

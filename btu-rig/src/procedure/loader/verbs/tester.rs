@@ -20,6 +20,7 @@ macro_rules! request {
 
 pub(super) static VERBS: &[Verb] = &[
     request!("ptu.arm", &[], |_| Stimulus::PtuArm),
+    request!("ptu.ask_to_arm", &[], |_| Stimulus::PtuAskToArm),
     request!("ptu.disarm", &[], |_| Stimulus::PtuDisarm),
     request!("ptu.release", &[], |_| Stimulus::PtuRelease),
     request!("ptu.clear_log", &[], |_| Stimulus::PtuClearLog),
