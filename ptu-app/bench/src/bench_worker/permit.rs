@@ -40,7 +40,7 @@ pub fn permit(stimulus: &Stimulus, connection: Connection, live: &LiveData) -> R
         Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => Ok(()),
         Stimulus::PtuArm if !on(Signal::MaintenanceKey) => Err(Refused::KeyOff),
         // The key is no test signal: on a train a person turns it, and the bench is told.
-        Stimulus::PtuArm | Stimulus::MaintenanceKey { .. } => Ok(()),
+        Stimulus::PtuArm | Stimulus::PtuAskToArm | Stimulus::MaintenanceKey { .. } => Ok(()),
         _ if stimulus.on_test_board() && !on(Signal::Armed) => Err(Refused::NotArmed),
         _ if stimulus.on_test_board() => Ok(()),
         _ if connection == Connection::Ptu => Err(Refused::NeedsBtu),
@@ -141,6 +141,7 @@ mod tests {
             Stimulus::AtoEnable { on: false },
             Stimulus::Load { passengers_kg: 0.0 },
             Stimulus::PtuArm,
+            Stimulus::PtuAskToArm,
             Stimulus::PtuDisarm,
             Stimulus::PtuSilent { on: true },
             Stimulus::PtuCode {
@@ -200,9 +201,10 @@ mod tests {
             | Stimulus::PtuRelease
             | Stimulus::PtuClearLog => Needs::Armed,
             Stimulus::PtuArm => Needs::Key,
-            Stimulus::MaintenanceKey { .. } | Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => {
-                Needs::Unit
-            }
+            Stimulus::MaintenanceKey { .. }
+            | Stimulus::PtuAskToArm
+            | Stimulus::PtuDisarm
+            | Stimulus::PtuSilent { .. } => Needs::Unit,
         }
     }
 
@@ -232,7 +234,7 @@ mod tests {
     fn a_stimulus_is_permitted_when_its_requirements_are_met() {
         let all = one_of_every_kind();
         let kinds: std::collections::HashSet<_> = all.iter().map(std::mem::discriminant).collect();
-        assert_eq!(kinds.len(), 40);
+        assert_eq!(kinds.len(), 41);
         let phases = [
             Phase::Offline,
             Phase::Connecting,
