@@ -3,7 +3,7 @@
 //! time, if it is told.
 
 use protocol::link::{End, Link};
-use protocol::message::{Identity, Message, StatusBits, StoreKind};
+use protocol::message::{Identity, Message, Mode, StatusBits, StoreKind};
 use protocol::{Duration, Instant};
 
 use super::link_watch::LinkWatch;
@@ -29,6 +29,7 @@ pub struct LogSession {
     tester: Tester,
     watch: LinkWatch,
     status: Option<StatusBits>,
+    mode: Option<Mode>,
     begun: Option<Instant>,
     events: StoreReader,
     rows: Option<StoreReader>,
@@ -46,6 +47,7 @@ impl LogSession {
             tester,
             watch: LinkWatch::default(),
             status: None,
+            mode: None,
             begun: None,
             events: StoreReader::new(StoreKind::Events, PER_CYCLE),
             rows: rows.then(|| StoreReader::new(StoreKind::Runs, PER_CYCLE)),
@@ -97,7 +99,10 @@ impl LogSession {
                 Message::Identity(identity) => {
                     self.identified_at = Some((now, identity.uptime_ms));
                 }
-                Message::Status(status) => self.status = Some(status.bits),
+                Message::Status(status) => {
+                    self.status = Some(status.bits);
+                    self.mode = Some(status.mode);
+                }
                 Message::Taken(taken) => self.watch.note_taken(*taken),
                 _ => {}
             }
@@ -117,6 +122,11 @@ impl LogSession {
     /// When the unit last told its uptime, and what it was, ms.
     pub fn uptime_ms(&self) -> Option<(Instant, u32)> {
         self.identified_at
+    }
+
+    /// Its operating mode as it last told it.
+    pub fn mode(&self) -> Option<Mode> {
+        self.mode
     }
 
     /// The unit's states as it last told them.

@@ -7,6 +7,7 @@
 //! * [`drive`]: automatic runs from station to station, and manual runs;
 //! * [`replay`]: repeats recorded stimuli and compares traces;
 //! * [`field`]: imports a unit's own event log into the fault history;
+//! * [`record`]: pulls a unit's own run record as traces, and compares them with a sound unit's run;
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
 //! * [`stored`]: the columns of the database for verdicts and faults;
@@ -27,6 +28,7 @@ pub mod owner_only;
 pub mod pool;
 pub mod process_id;
 pub mod progress;
+pub mod record;
 pub mod replay;
 pub mod run;
 pub mod run_diagnosis;

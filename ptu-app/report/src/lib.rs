@@ -16,6 +16,7 @@ mod json;
 mod junit;
 pub mod limits;
 pub mod plot;
+pub mod record;
 pub mod run;
 mod target;
 pub mod ticks;

@@ -12,11 +12,13 @@ mod gui;
 mod help;
 mod output;
 mod ports;
+mod record;
 mod reports;
 mod run;
 mod runs;
 mod saved;
 mod trace;
+mod unit_option;
 
 use std::path::PathBuf;
 
@@ -63,6 +65,7 @@ enum Verb {
     Runs(runs::RunsArguments),
     /// Query and keep the fault history
     Faults(faults::FaultsArguments),
+    Record(record::RecordArguments),
     Saved(saved::SavedArguments),
     /// Show and export recorded traces
     Trace(trace::TraceArguments),
@@ -123,6 +126,7 @@ impl Cli {
             Verb::Diagnose(arguments) => arguments.run(),
             Verb::Runs(arguments) => arguments.run(),
             Verb::Faults(arguments) => arguments.run(),
+            Verb::Record(arguments) => arguments.run(),
             Verb::Saved(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),

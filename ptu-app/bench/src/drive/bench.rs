@@ -24,7 +24,7 @@ pub struct DriveBench {
 
 impl DriveBench {
     /// A fresh embedded unit on a rig, at the beginning of time.
-    pub(super) fn fresh(&self, seed: u64) -> Bench<SimLink> {
+    pub(crate) fn fresh(&self, seed: u64) -> Bench<SimLink> {
         let setup = Setup {
             serial: SIM_SERIAL.into(),
             config: self.config.content.clone(),

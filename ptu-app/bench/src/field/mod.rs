@@ -9,9 +9,12 @@
 mod date;
 mod judge;
 mod read;
+mod reading;
 mod store;
 
 pub use date::{StoredClocks, StoredDate};
 pub use judge::{ExcludedEntries, JudgedLog, judge};
 pub use read::{Entry, LogRead, StoredPlace, StoredRead, read_log};
+pub use reading::{AskedUnit, ImportedLog, UnitReading};
+pub(crate) use store::run_record;
 pub use store::{Imported, Source, against_history, import};

@@ -2,7 +2,7 @@
 
 use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::rig::{LogSession, StoredData, TimeOfDay, UnitLink};
-use protocol::message::{Identity, StatusBits, StoredClock, StoredEntry, StoredRow};
+use protocol::message::{Identity, Mode, StatusBits, StoredClock, StoredEntry, StoredRow};
 use protocol::{Duration, Instant, SCAN, Speed};
 
 use super::date::{ClockPair, StoredClocks, dates};
@@ -70,6 +70,8 @@ pub struct LogRead {
     pub restarts: u32,
     /// Its states at the end.
     pub status: StatusBits,
+    /// Its operating mode at the end.
+    pub mode: Option<Mode>,
     /// Why reading ended before the log did.
     pub broken_off: Option<String>,
     /// What it has stored over power-ups; none of an older unit, whose log is of the present one.
@@ -158,6 +160,7 @@ pub fn read_log<L: UnitLink>(
         not_kept: session.not_kept(),
         restarts,
         status: session.status().unwrap_or(StatusBits::empty()),
+        mode: session.mode(),
         broken_off,
         stored,
     })

@@ -142,7 +142,8 @@ pub fn against_history(
     }))
 }
 
-fn run_record(source: &Source) -> RunRecord {
+/// The run that a reading is stored as.
+pub(crate) fn run_record(source: &Source) -> RunRecord {
     RunRecord {
         unit: UnitRecord {
             serial: source.serial.clone(),

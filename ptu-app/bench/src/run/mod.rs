@@ -51,6 +51,7 @@ pub(crate) use fault_watch::{is_fault, of_event};
 pub use observe::{ObservationBuilder, of_run};
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};
+pub(crate) use trace_data::channel;
 
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;

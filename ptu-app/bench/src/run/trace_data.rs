@@ -37,7 +37,8 @@ fn in_steps(signal: Signal, value: f64) -> f64 {
     }
 }
 
-fn channel(signal: Signal) -> Channel {
+/// The channel of a signal.
+pub fn channel(signal: Signal) -> Channel {
     let definition = signal.definition();
     let kind = match definition.kind {
         Kind::Number { lsb } => ChannelKind::Number { lsb },

@@ -9,6 +9,7 @@ mod diagnosis;
 mod faults;
 mod fill;
 mod frame;
+mod memory;
 mod procedures;
 mod report;
 mod traces;
@@ -19,6 +20,7 @@ pub use diagnosis::Diagnosis;
 pub use faults::Faults;
 pub use fill::fill;
 pub use frame::Frame;
+pub use memory::Memory;
 pub use procedures::Procedures;
 pub use report::Report;
 pub use traces::Traces;
@@ -114,6 +116,8 @@ pub struct Words {
     pub traces: Traces,
     /// Fault history.
     pub faults: Faults,
+    /// What a unit has stored.
+    pub memory: Memory,
     /// Parts to replace.
     pub diagnosis: Diagnosis,
     /// Test sheet.
@@ -128,6 +132,7 @@ static ENGLISH: Words = Words {
     procedures: Procedures::ENGLISH,
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
+    memory: Memory::ENGLISH,
     diagnosis: Diagnosis::ENGLISH,
     report: Report::ENGLISH,
 };
@@ -140,6 +145,7 @@ static KOREAN: Words = Words {
     procedures: Procedures::KOREAN,
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
+    memory: Memory::KOREAN,
     diagnosis: Diagnosis::KOREAN,
     report: Report::KOREAN,
 };
@@ -156,6 +162,7 @@ mod tests {
             Procedures::all(),
             Traces::all(),
             Faults::all(),
+            Memory::all(),
             Diagnosis::all(),
             Report::all(),
         ]

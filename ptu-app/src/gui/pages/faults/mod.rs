@@ -10,6 +10,7 @@ mod list;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
+use crate::gui::parts::MemoryReader;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
@@ -36,6 +37,8 @@ pub struct FaultsPage {
     chosen: Option<Id>,
     detail: CachedResponse<FaultDetail>,
     change: Change,
+    /// The log of the chosen unit.
+    unit_log: MemoryReader,
 }
 
 impl FaultsPage {
@@ -99,8 +102,11 @@ impl FaultsPage {
         }
     }
 
-    fn list(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
+    fn list(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> Option<Id> {
         let words = context.words;
+        if self.unit_log.show(ui, context) {
+            self.asked = None;
+        }
         match self.history.get() {
             Request::Ready(history) => {
                 list::filters(ui, words, &mut self.filter, &history.faults);

@@ -3,6 +3,7 @@
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::Id;
 
+use crate::gui::parts::{MemoryReader, Stored};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
@@ -17,6 +18,17 @@ pub struct TraceList {
     shown: Vec<(usize, Option<usize>)>,
     /// Runs that had ended when it was asked for.
     ended: usize,
+    /// The run record of the chosen unit.
+    unit_record: UnitRecord,
+}
+
+/// The button that pulls it.
+struct UnitRecord(MemoryReader);
+
+impl Default for UnitRecord {
+    fn default() -> Self {
+        Self(MemoryReader::of(Stored::Runs))
+    }
 }
 
 impl TraceList {
@@ -35,6 +47,9 @@ impl TraceList {
                 self.runs = Request::Idle;
             }
         });
+        if self.unit_record.0.show(ui, context) {
+            self.runs = Request::Idle;
+        }
         let edit = TextEdit::singleline(&mut self.filter)
             .hint_text(words.traces.filter)
             .desired_width(f32::INFINITY);

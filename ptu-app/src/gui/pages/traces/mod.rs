@@ -7,6 +7,7 @@ mod export;
 mod input;
 mod lanes;
 mod list;
+mod record_comparison;
 mod row;
 mod signals;
 mod table;
@@ -25,6 +26,7 @@ use list::TraceList;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::fill;
+use record_comparison::RecordComparison;
 
 /// Height of a row of controls.
 const ROW: f32 = 24.0;
@@ -37,6 +39,7 @@ pub struct TracesPage {
     trouble: Option<String>,
     behind: OverlayRequest,
     export: Export,
+    record: RecordComparison,
     painted: LaneCache,
     find_signal: String,
     choosing: bool,
@@ -121,6 +124,7 @@ impl TracesPage {
         bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
+            self.record.bar(ui, scene, context);
             self.behind.bar(ui, scene, &self.list, context);
             // What the comparison says needs the row for itself.
             if !self.behind.is_asked() {

@@ -1,0 +1,201 @@
+//! One reading of a unit on a port, for command line and window: opened, read, held against what was expected.
+
+use fault_db::{Store, limits};
+use protocol::Instant;
+
+use super::{
+    Entry, Imported, JudgedLog, LogRead, Source, against_history, import, judge, read_log,
+};
+use crate::clock::now_us;
+use crate::data::ScriptsDirectory;
+use crate::failure::Failure;
+use crate::link::{Endpoint, WireLink};
+use crate::run::unit_text;
+use crate::stop::Stop;
+
+/// The unit that is asked for, and what it should be.
+#[derive(Clone, Debug)]
+pub struct AskedUnit {
+    /// Where it is.
+    pub endpoint: Endpoint,
+    /// Serial number expected of it.
+    pub serial: Option<String>,
+    /// Unit configuration it has, `units/NAME.toml`.
+    pub unit_config: String,
+    /// Line it has, `lines/NAME.toml`.
+    pub line: String,
+    /// Train it is in, as the depot names it.
+    pub train: String,
+    /// Who reads.
+    pub operator: String,
+}
+
+/// A reading.
+#[derive(Clone, Debug)]
+pub struct UnitReading {
+    /// What was read.
+    pub read: LogRead,
+    /// Where it came from.
+    pub source: Source,
+    /// What a reader should know.
+    pub warnings: Vec<String>,
+}
+
+/// A log and what became of it.
+#[derive(Clone, Debug)]
+pub struct ImportedLog {
+    /// Faults, and why other entries are none.
+    pub judged: JudgedLog,
+    /// What was new.
+    pub imported: Imported,
+}
+
+impl AskedUnit {
+    /// Reads the unit's log; with `rows`, its stored run record, too.
+    ///
+    /// # Errors
+    /// A name is wrong, the unit is not reached, or it is another one.
+    pub fn read(
+        &self,
+        directory: &ScriptsDirectory,
+        rows: bool,
+        stop: &Stop,
+    ) -> Result<UnitReading, Failure> {
+        self.check()?;
+        let config = directory.unit_config(&self.unit_config)?;
+        let line = directory.line(&self.line)?;
+        let from_us = now_us();
+        let mut link = WireLink::open(&self.endpoint)?;
+        let mut pace = self.endpoint.pace(1);
+        let read = read_log(&mut link, Instant::ZERO, rows, &mut pace, stop, &now_us);
+        let read = read.map_err(|why| Failure::bench(format!("{}: {why}", self.endpoint)))?;
+        let identity = &read.identity;
+        let serial = unit_text::serial(identity);
+        if let Some(expected) = self.serial.as_ref().filter(|e| **e != serial) {
+            return Err(Failure::bench(format!(
+                "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
+                self.endpoint
+            )));
+        }
+        let mut warnings = Vec::new();
+        if identity.tdb_crc != line.crc {
+            warnings.push(format!(
+                "the unit's track database is not that of {}; name its line with --line",
+                line.name
+            ));
+        }
+        let same_config = identity.config_crc == config.crc;
+        if !same_config {
+            warnings.push(format!(
+                "the unit's configuration, {}, is not {} as it is here; name its own with --unit-config",
+                unit_text::config_name(identity),
+                config.name
+            ));
+        }
+        warnings.extend(of_reading(&read));
+        let source = Source {
+            endpoint: self.endpoint.to_string(),
+            config_name: unit_text::config_name(identity),
+            unit_config_sha256: if same_config {
+                config.sha256
+            } else {
+                String::new()
+            },
+            line: line.content.name.clone(),
+            train: self.train.clone(),
+            operator: self.operator.clone(),
+            from_us,
+            until_us: now_us(),
+            broken_off: read.broken_off.is_some(),
+            serial,
+        };
+        Ok(UnitReading {
+            read,
+            source,
+            warnings,
+        })
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        let undatable = match &self.endpoint {
+            Endpoint::Sim => Some("the embedded unit keeps no log from run to run"),
+            Endpoint::LockStep(_) => {
+                Some("the clock of a unit in lock step stands between scans, which dates no entry")
+            }
+            Endpoint::Serial { .. } | Endpoint::Tcp(_) => None,
+        };
+        if let Some(why) = undatable {
+            return Err(Failure::usage(format!(
+                "{why}; name a unit on a port with --unit serial:PATH or tcp:HOST:PORT"
+            )));
+        }
+        limits::name("the operator's name", &self.operator)?;
+        limits::name("the train's name", &self.train)?;
+        Ok(())
+    }
+}
+
+impl UnitReading {
+    /// Stores the faults of the log that are new; entries dated before `since_us` are left out.
+    ///
+    /// # Errors
+    /// The database fails.
+    pub fn import(&mut self, store: &Store, since_us: Option<i64>) -> Result<ImportedLog, Failure> {
+        if let Some(stored) = &self.read.stored {
+            self.warnings
+                .extend(against_history(store, &self.source.serial, stored)?);
+        }
+        let tested = store.tested_spans(&self.source.serial)?;
+        let judged = judge(&self.read.entries, &tested, since_us);
+        let imported = import(store, &self.source, &judged.faults)?;
+        Ok(ImportedLog { judged, imported })
+    }
+
+    /// Why it ended before all was read, if it did.
+    ///
+    /// # Errors
+    /// That, for a person.
+    pub fn complete(&self) -> Result<(), Failure> {
+        match &self.read.broken_off {
+            None => Ok(()),
+            Some(why) => Err(Failure::bench(format!(
+                "{why}; the log was not read to its end, what was read is kept; read it again"
+            ))),
+        }
+    }
+}
+
+/// What a reader of the log should know of it.
+fn of_reading(read: &LogRead) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if read.overwritten > 0 {
+        warnings.push(format!(
+            "{} entries were overwritten or cleared in the unit before they could be read",
+            read.overwritten
+        ));
+    }
+    let is_undated = |entry: &&Entry| entry.at_us.is_none();
+    let undated = read.entries.iter().filter(is_undated).count();
+    if undated > 0 && read.stored.is_some() {
+        warnings.push(format!(
+            "{undated} entries are of power-ups in which nobody told the unit the time: they have the power-up and \
+             the time since then, and stand under the date that they are not later than"
+        ));
+    } else if undated > 0 {
+        warnings.push(format!(
+            "{undated} entries are of an earlier power-up, which nothing dates: they stand under the \
+             time of reading"
+        ));
+    }
+    if read.restarts > 0 {
+        warnings.push("the unit was started again while its log was read".to_owned());
+    }
+    match &read.stored {
+        Some(stored) => warnings.extend(stored.notes.iter().cloned()),
+        None => warnings.push(
+            "this unit has no stored log: it was read as far as it is kept since power-up"
+                .to_owned(),
+        ),
+    }
+    warnings
+}

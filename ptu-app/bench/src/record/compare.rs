@@ -1,0 +1,348 @@
+//! Holds a recorded service run against its own target and against the run of a sound unit through the same section:
+//! same line, same unit configuration, an empty train on a dry day unless something else is asked for.
+//!
+//! Both are laid side by side by place, because a late departure is no fault. The record says what the unit believed:
+//! its position is corrected at markers, its speed is ATO's.
+
+use std::fmt;
+
+use fault_db::TraceData;
+use protocol::CYCLE;
+use protocol::line::Section;
+use protocol::signal::Signal;
+
+use crate::drive::{Case, drive};
+use crate::failure::Failure;
+
+/// A speed may be beside the one expected by so much, km/h, for so many rows [default: 1 s].
+const SPEED_KMH: f64 = 3.0;
+const FOR_ROWS: usize = 20;
+/// A brake is late that begins so much later than the sound unit's, m [default].
+const LATE_M: f64 = 10.0;
+/// Efforts below this are braking.
+const BRAKES: f64 = -20.0;
+/// Below this speed nothing is compared, km/h: the last metre is the stop's.
+const SLOW_KMH: f64 = 3.0;
+/// Up to this speed a record that ends counts as one that ends at rest, km/h: the train goes 8 cm more at most. ATP
+/// takes the train out of Automatic Run, and the record ends, when ATO has arrived.
+const RESTS_KMH: f64 = 1.0;
+
+/// Where two curves part for the first time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parting {
+    /// What parts: `speed` from the run's own `target`, or a signal from the sound unit's.
+    pub signal: &'static str,
+    /// What it was held against: `target` or `twin`.
+    pub against: &'static str,
+    /// Seconds since departure.
+    pub at_s: f64,
+    /// Place in the section, m.
+    pub at_m: f64,
+    /// What came and what was expected, km/h.
+    pub came_kmh: f64,
+    /// What was expected, km/h.
+    pub expected_kmh: f64,
+    /// Greatest difference anywhere, km/h.
+    pub most_kmh: f64,
+}
+
+/// The stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StopComparison {
+    /// Place at rest less stop point, m, as the unit believed; above 0 = past it. None if the record does not end at
+    /// rest.
+    pub error_m: Option<f64>,
+    /// The sound unit's, as it believed.
+    pub twin_error_m: Option<f64>,
+    /// Stops within this count as aligned, m.
+    pub aligned_m: f64,
+}
+
+/// A recorded run beside what it should have been.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordComparison {
+    /// Section.
+    pub section: u16,
+    /// Where curves part, the first one first.
+    pub partings: Vec<Parting>,
+    /// The stop.
+    pub stop: StopComparison,
+    /// Place where the brake for the stop begins, m: the run's and the sound unit's.
+    pub brake_m: Option<f64>,
+    /// The sound unit's.
+    pub twin_brake_m: Option<f64>,
+    /// Time from departure to rest, s: the run's and the sound unit's.
+    pub run_time_s: Option<f64>,
+    /// The sound unit's.
+    pub twin_run_time_s: Option<f64>,
+    /// Markers that the sound unit passed and the run did not.
+    pub markers_missed: Vec<u8>,
+    /// What limits the comparison.
+    pub notes: Vec<String>,
+}
+
+/// A run by place.
+struct Curve {
+    /// Seconds since departure, place, speed and target, effort, marker count; rows that are known.
+    rows: Vec<Point>,
+    markers: Vec<u8>,
+}
+
+#[derive(Clone, Copy)]
+struct Point {
+    t_s: f64,
+    x_m: f64,
+    speed_kmh: f64,
+    target_kmh: f64,
+    effort: f64,
+}
+
+/// Holds a recorded run against its target and a sound unit's run, which is driven for it.
+///
+/// # Errors
+/// The trace is no run record, or the train never moves in it.
+pub fn compare(
+    trace: &TraceData,
+    section: &Section,
+    case: &Case,
+) -> Result<RecordComparison, Failure> {
+    let came = Curve::of_trace(trace)?;
+    let mut plan = case.plan.clone();
+    plan.tester = true;
+    let outcome = drive(&case.bench, plan, case.seed);
+    let twin = Curve::of_rows(&outcome.rows);
+    // No controller is at its target at once: as far behind it as the sound unit is, it follows.
+    let follows = |row: &Point| {
+        let behind = twin
+            .at(row.x_m)
+            .map_or(0.0, |twin| twin.speed_kmh - twin.target_kmh);
+        Some(row.target_kmh + behind)
+    };
+    let mut partings: Vec<_> = [
+        parting(&came, ("speed", "target"), &follows, &|row| row.speed_kmh),
+        parting(
+            &came,
+            ("target", "twin"),
+            &|row| twin.at(row.x_m).map(|twin| twin.target_kmh),
+            &|row| row.target_kmh,
+        ),
+        parting(
+            &came,
+            ("speed", "twin"),
+            &|row| twin.at(row.x_m).map(|twin| twin.speed_kmh),
+            &|row| row.speed_kmh,
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    partings.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    let missed = twin
+        .markers
+        .iter()
+        .filter(|marker| !came.markers.contains(marker));
+    let mut notes = vec![
+        "the sound unit drove an empty train on a dry, level-wheeled day unless asked otherwise; a loaded train and a \
+         slippery rail part from it, too"
+            .to_owned(),
+    ];
+    if trace.gaps {
+        notes.push("rows of the record are missing: nothing is said of them".to_owned());
+    }
+    if !outcome.ending.to_string().starts_with("stopped") {
+        notes.push(format!(
+            "the sound unit's own run ended otherwise: {}",
+            outcome.ending
+        ));
+    }
+    Ok(RecordComparison {
+        section: section.section,
+        stop: StopComparison {
+            error_m: came.rest_m().map(|x_m| x_m - section.stop_m),
+            twin_error_m: twin.rest_m().map(|x_m| x_m - section.stop_m),
+            aligned_m: case.bench.config.content.doors.aligned_m,
+        },
+        brake_m: came.brake_m(),
+        twin_brake_m: twin.brake_m(),
+        run_time_s: came.run_time_s(),
+        twin_run_time_s: twin.run_time_s(),
+        markers_missed: missed.copied().collect(),
+        partings,
+        notes,
+    })
+}
+
+impl RecordComparison {
+    /// How much later the brake began than the sound unit's, m, if that is late.
+    pub fn late_m(&self) -> Option<f64> {
+        let later_m = self.brake_m? - self.twin_brake_m?;
+        (later_m > LATE_M).then_some(later_m)
+    }
+
+    /// The train stopped outside of where doors may be opened.
+    pub fn is_misaligned(&self) -> bool {
+        self.stop
+            .error_m
+            .is_some_and(|error_m| error_m.abs() > self.stop.aligned_m)
+    }
+
+    /// Nothing parts, the stop is right and no brake is late.
+    pub fn is_as_expected(&self) -> bool {
+        self.partings.is_empty()
+            && !self.is_misaligned()
+            && self.late_m().is_none()
+            && self.markers_missed.is_empty()
+    }
+}
+
+impl Curve {
+    fn of_trace(trace: &TraceData) -> Result<Self, Failure> {
+        let column = |signal: Signal| {
+            let name = signal.definition().name;
+            trace.column(name).ok_or_else(|| {
+                Failure::usage(format!(
+                    "the trace has no signal {name}: it is no run record of a unit"
+                ))
+            })
+        };
+        let (speed, target) = (column(Signal::Speed)?, column(Signal::Target)?);
+        let (position, effort) = (column(Signal::Position)?, column(Signal::Effort)?);
+        let (marker, count) = (column(Signal::Marker)?, column(Signal::MarkerCount)?);
+        let departs = speed.iter().position(|kmh| *kmh > 0.0);
+        let departs =
+            departs.ok_or_else(|| Failure::usage("the train never moves in this trace"))?;
+        let period_s = trace.period_us as f64 / 1e6;
+        let point = |row: usize| Point {
+            t_s: (row as f64 - departs as f64) * period_s,
+            x_m: position[row],
+            speed_kmh: speed[row],
+            target_kmh: target[row],
+            effort: effort[row],
+        };
+        let known = |row: &usize| !speed[*row].is_nan() && !position[*row].is_nan();
+        let passed = (1..trace.rows()).filter(|row| count[*row] != count[*row - 1]);
+        Ok(Self {
+            markers: passed
+                .map(|row| marker[row] as u8)
+                .filter(|m| *m != 0)
+                .collect(),
+            rows: (departs..trace.rows()).filter(known).map(point).collect(),
+        })
+    }
+
+    fn of_rows(rows: &[btu_rig::drive::Row]) -> Self {
+        let value = |row: &btu_rig::drive::Row, signal| row.value(signal);
+        let departs = rows.iter().position(|row| value(row, Signal::Speed) > 0.0);
+        let rows = &rows[departs.unwrap_or(rows.len())..];
+        let point = |(place, row): (usize, &btu_rig::drive::Row)| Point {
+            t_s: place as f64 * CYCLE.as_secs(),
+            x_m: value(row, Signal::Position),
+            speed_kmh: value(row, Signal::Speed),
+            target_kmh: value(row, Signal::Target),
+            effort: value(row, Signal::Effort),
+        };
+        let passed = rows.windows(2).filter(|pair| {
+            value(&pair[0], Signal::MarkerCount) != value(&pair[1], Signal::MarkerCount)
+        });
+        Self {
+            markers: passed
+                .map(|pair| value(&pair[1], Signal::Marker) as u8)
+                .collect(),
+            rows: rows
+                .iter()
+                .enumerate()
+                .map(point)
+                .filter(|p| !p.x_m.is_nan())
+                .collect(),
+        }
+    }
+
+    /// The row nearest to a place; none beyond the ends.
+    fn at(&self, x_m: f64) -> Option<&Point> {
+        let after = self.rows.partition_point(|row| row.x_m < x_m);
+        self.rows.get(after).filter(|_| after > 0)
+    }
+
+    /// Where it rests in the end.
+    fn rest_m(&self) -> Option<f64> {
+        let last = self.rows.last()?;
+        (last.speed_kmh <= RESTS_KMH).then_some(last.x_m)
+    }
+
+    fn run_time_s(&self) -> Option<f64> {
+        self.rest_m()?;
+        let last = self
+            .rows
+            .iter()
+            .rposition(|row| row.speed_kmh > RESTS_KMH)?;
+        Some(self.rows[last].t_s)
+    }
+
+    /// Where the brake for the stop begins: the last time that effort is not braking while the train still goes
+    /// faster than half its greatest speed.
+    fn brake_m(&self) -> Option<f64> {
+        self.rest_m()?;
+        let most = self
+            .rows
+            .iter()
+            .map(|row| row.speed_kmh)
+            .fold(0.0, f64::max);
+        let last = self
+            .rows
+            .iter()
+            .rposition(|row| row.effort > BRAKES && row.speed_kmh > most / 2.0)?;
+        self.rows.get(last + 1).map(|row| row.x_m)
+    }
+}
+
+/// Where a value is beside the one expected for longer than it may be.
+fn parting(
+    came: &Curve,
+    (signal, against): (&'static str, &'static str),
+    expected: &dyn Fn(&Point) -> Option<f64>,
+    value: &dyn Fn(&Point) -> f64,
+) -> Option<Parting> {
+    let (mut first, mut rows, mut most_kmh) = (None, 0, 0.0_f64);
+    let mut found: Option<(&Point, f64)> = None;
+    for row in came.rows.iter().filter(|row| row.speed_kmh > SLOW_KMH) {
+        let Some(expected) = expected(row) else {
+            continue;
+        };
+        let apart = value(row) - expected;
+        if apart.abs() <= SPEED_KMH {
+            (first, rows) = (None, 0);
+            continue;
+        }
+        rows += 1;
+        let begin = *first.get_or_insert((row, expected));
+        if rows >= FOR_ROWS {
+            found.get_or_insert(begin);
+            most_kmh = most_kmh.max(apart.abs());
+        }
+    }
+    let (row, expected_kmh) = found?;
+    Some(Parting {
+        signal,
+        against,
+        at_s: row.t_s,
+        at_m: row.x_m,
+        came_kmh: value(row),
+        expected_kmh,
+        most_kmh,
+    })
+}
+
+impl fmt::Display for Parting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let against = match self.against {
+            "target" => "what its own target asks for",
+            _ => "the sound unit's",
+        };
+        write!(
+            f,
+            "{} parts from {against} at {:.1} m, {:.1} s after departure: {:.1} km/h for {:.1} km/h, at most {:.1} km/h \
+             apart",
+            self.signal, self.at_m, self.at_s, self.came_kmh, self.expected_kmh, self.most_kmh
+        )
+    }
+}

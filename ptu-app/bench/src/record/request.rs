@@ -1,0 +1,90 @@
+//! What a recorded run is compared with, as commands name it.
+
+use btu_rig::drive::Load;
+use fault_db::{Id, Store};
+
+use super::{RecordComparison, compare, find_section};
+use crate::data::ScriptsDirectory;
+use crate::drive::{Fixed, Request, SectionChoice};
+use crate::failure::Failure;
+use crate::process_id;
+
+/// The train of the sound unit.
+const TRAIN: &str = "line6";
+
+/// What is asked for; what is not is found out from the trace and its run.
+#[derive(Clone, Debug, Default)]
+pub struct CompareRequest {
+    /// Section.
+    pub section: Option<u16>,
+    /// Line, `lines/NAME.toml`.
+    pub line: Option<String>,
+    /// Unit configuration, `units/NAME.toml`.
+    pub unit_config: Option<String>,
+    /// Passengers of the sound unit's train.
+    pub load: Option<Load>,
+}
+
+/// A comparison, and of what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// The trace.
+    pub trace: Id,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// Line.
+    pub line: String,
+    /// Unit configuration.
+    pub unit_config: String,
+    /// The comparison.
+    pub comparison: RecordComparison,
+}
+
+impl CompareRequest {
+    /// Compares a stored trace of a unit's run record.
+    ///
+    /// # Errors
+    /// It is none, its section is not known, or a file is not there.
+    pub fn compare(
+        &self,
+        store: &Store,
+        directory: &ScriptsDirectory,
+        trace: Id,
+    ) -> Result<Compared, Failure> {
+        let head = store.trace_head(trace)?;
+        let run = store.run(head.run_id, &process_id::is_alive)?.run;
+        let line_name = self.line.clone().unwrap_or(run.line);
+        let unit_config = self.unit_config.clone().unwrap_or(run.unit_config_name);
+        let line = directory.line(&line_name)?;
+        let data = store.trace(trace)?;
+        let number = match self.section {
+            Some(number) => number,
+            None => find_section(&line.content, &data)?.section,
+        };
+        let request = Request {
+            line: Some(line_name.clone()),
+            sections: Some(SectionChoice::One(number)),
+            controllers: Vec::new(),
+            train: TRAIN.into(),
+            mass_kg: None,
+            load: self.load,
+            fixed: Fixed::default(),
+            code: None,
+            unit_config: unit_config.clone(),
+            settings: Vec::new(),
+            seed: 1,
+        };
+        let cases = request.cases(directory)?;
+        let case = cases
+            .first()
+            .ok_or_else(|| Failure::usage(format!("line {line_name} has no section {number}")))?;
+        let comparison = compare(&data, &case.plan.section, case)?;
+        Ok(Compared {
+            trace,
+            unit_serial: head.unit_serial,
+            line: line_name,
+            unit_config,
+            comparison,
+        })
+    }
+}

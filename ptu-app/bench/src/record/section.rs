@@ -1,0 +1,96 @@
+//! The section that a recorded run went through: the record has places from the section's start, and no number.
+
+use fault_db::TraceData;
+use protocol::line::{Line, Section};
+use protocol::signal::Signal;
+
+use crate::failure::Failure;
+
+/// Greatest difference of a marker's place, or of the stop, that is still of this section, m.
+const NEAR_M: f64 = 30.0;
+
+/// A section, and how well it fits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionMatch {
+    /// Its number.
+    pub section: u16,
+    /// Root mean square of the differences of markers and stop, m.
+    pub off_m: f64,
+}
+
+/// The section of `line` whose markers and stop are where the run found them.
+///
+/// # Errors
+/// None fits, or several do as well: which.
+pub fn find_section(line: &Line, trace: &TraceData) -> Result<SectionMatch, Failure> {
+    let seen = places(trace);
+    if seen.is_empty() {
+        return Err(Failure::usage(
+            "the trace passes no marker and does not stop: name its section with --section",
+        ));
+    }
+    let mut matches: Vec<_> = line
+        .sections
+        .iter()
+        .filter_map(|section| fit(section, &seen))
+        .collect();
+    matches.sort_by(|a, b| a.off_m.total_cmp(&b.off_m));
+    match &matches[..] {
+        [] => Err(Failure::usage(format!(
+            "no section of line {} has its markers and its stop where this run found them: name the line with --line, \
+             or the section with --section",
+            line.name
+        ))),
+        [best, other, ..] if other.off_m < 2.0 * best.off_m + 1.0 => {
+            let near = matches.iter().filter(|m| m.off_m < 2.0 * best.off_m + 1.0);
+            let near: Vec<_> = near.map(|m| m.section.to_string()).collect();
+            Err(Failure::usage(format!(
+                "sections {} fit this run alike: name one with --section",
+                near.join(", ")
+            )))
+        }
+        [best, ..] => Ok(best.clone()),
+    }
+}
+
+/// Places of markers by number, and with number 0 where the train stopped.
+fn places(trace: &TraceData) -> Vec<(usize, f64)> {
+    let column = |signal: Signal| trace.column(signal.definition().name).unwrap_or_default();
+    let (position, count) = (column(Signal::Position), column(Signal::MarkerCount));
+    let (marker, speed) = (column(Signal::Marker), column(Signal::Speed));
+    let mut seen = Vec::new();
+    for row in 1..trace.rows() {
+        if count[row] > count[row - 1] && position[row].is_finite() {
+            seen.push((marker[row] as usize, position[row]));
+        }
+    }
+    let moved = speed.iter().any(|kmh| *kmh > 0.0);
+    // The record ends when ATO has arrived.
+    let stands = |row: &usize| speed[*row] < 1.0;
+    let last = (0..trace.rows()).rev().find(|row| !speed[*row].is_nan());
+    seen.extend(
+        last.filter(|row| moved && stands(row))
+            .map(|row| (0, position[row])),
+    );
+    seen
+}
+
+fn fit(section: &Section, seen: &[(usize, f64)]) -> Option<SectionMatch> {
+    let mut sum = 0.0;
+    for (marker, at_m) in seen {
+        let place_m = match marker {
+            0 => section.stop_m,
+            1..=4 => section.markers_m[marker - 1],
+            _ => continue,
+        };
+        let off_m = at_m - place_m;
+        if off_m.abs() > NEAR_M {
+            return None;
+        }
+        sum += off_m * off_m;
+    }
+    Some(SectionMatch {
+        section: section.section,
+        off_m: (sum / seen.len() as f64).sqrt(),
+    })
+}

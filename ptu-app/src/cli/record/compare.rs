@@ -1,0 +1,93 @@
+//! `ptu record compare`: a recorded run beside what it should have been.
+
+use std::path::PathBuf;
+
+use btu_rig::drive::Load;
+use clap::Args;
+use fault_db::Store;
+
+use crate::cli::{ScriptsOption, print_json, print_out};
+use ptu_bench::data::{check_writable, write};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::record::CompareRequest;
+use ptu_report::{json_text, record};
+
+/// Hold a run of a unit's own record against its target and against a sound unit's run through the same section
+///
+/// Tells where the speed parts from the run's own target, where target and speed part from those of a sound
+/// unit that is driven for it (same line, section and unit configuration), the stop error, a late brake, and
+/// markers that were missed. Section, line and unit configuration are found out from the trace and its run.
+///
+/// Examples:
+///   ptu record compare latest
+///   ptu record compare 59c2ce97 --load full --report compare.json
+///
+/// Exit codes: 0 as expected; 1 something parts; 2 wrong command, or no run record.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct CompareArguments {
+    /// The trace: an id, its beginning or end (at least 4 digits), or `latest`
+    trace: String,
+    /// Section [default: the one whose markers and stop are where the run found them]
+    #[arg(long, value_name = "N")]
+    section: Option<u16>,
+    /// Line, lines/NAME.toml [default: that of the trace's run]
+    #[arg(long, value_name = "NAME")]
+    line: Option<String>,
+    /// Unit configuration, units/NAME.toml [default: that of the trace's run]
+    #[arg(long, value_name = "NAME")]
+    unit_config: Option<String>,
+    /// Passengers of the sound unit's train: a mass, empty or full
+    #[arg(long, value_name = "KG|empty|full")]
+    load: Option<Load>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Write the comparison to a file, .json or .txt; repeatable
+    #[arg(long, value_name = "FILE")]
+    report: Vec<PathBuf>,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl CompareArguments {
+    /// Compares, tells, and writes reports.
+    pub fn run(self, store: &Store) -> Result<Exit, Failure> {
+        for file in &self.report {
+            let ending = file.extension().and_then(|ending| ending.to_str());
+            if !matches!(ending, Some("json" | "txt")) {
+                return Err(Failure::usage(format!(
+                    "--report {}: the file must end in .json or .txt",
+                    file.display()
+                )));
+            }
+            check_writable(file)?;
+        }
+        let trace = store.resolve_trace(&self.trace)?;
+        let request = CompareRequest {
+            section: self.section,
+            line: self.line,
+            unit_config: self.unit_config,
+            load: self.load,
+        };
+        let compared = request.compare(store, &self.scripts.find()?, trace)?;
+        let (text, document) = (record::text(&compared), record::json(&compared));
+        for file in &self.report {
+            let is_json = file.extension().is_some_and(|ending| ending == "json");
+            let content = if is_json {
+                json_text(&document)?
+            } else {
+                text.clone()
+            };
+            write(file, format!("{}\n", content.trim_end()))?;
+        }
+        match self.json {
+            true => print_json(&document)?,
+            false => print_out(&text)?,
+        };
+        Ok(match compared.comparison.is_as_expected() {
+            true => Exit::Passed,
+            false => Exit::Failed,
+        })
+    }
+}

@@ -1,0 +1,113 @@
+//! `ptu record pull`: a unit's stored run record as traces.
+
+use clap::Args;
+use fault_db::Store;
+use serde_json::{Value, json};
+
+use crate::cli::unit_option::UnitOption;
+use crate::cli::{ScriptsOption, print_json, print_out};
+use ptu_bench::clock::rfc3339;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::field::UnitReading;
+use ptu_bench::record::{Pulled, RecordedRun, pull_reading};
+use ptu_bench::stop::Stop;
+
+/// Read a unit's stored record of automatic runs: each run that is new becomes a trace
+///
+/// The unit is asked for its record and its log, and told the time: it is given no input and no stimulus, and
+/// nothing is armed. A run that is under way is left for the next time. `ptu trace show ID` shows a trace,
+/// `ptu record compare ID` holds it against what it should have been.
+///
+/// Examples:
+///   ptu record pull --unit serial:/dev/ttyUSB0
+///   ptu record pull --unit tcp:127.0.0.1:7000 && ptu record compare latest
+///
+/// Exit codes: 0 read, whether or not there is anything new; 2 wrong command; 3 no unit, another unit, a unit
+/// without stored memory, or the link was lost, what was read is kept.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct PullArguments {
+    #[command(flatten)]
+    unit: UnitOption,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl PullArguments {
+    /// Reads, stores and tells.
+    pub fn run(self, store: Store) -> Result<Exit, Failure> {
+        let stop = Stop::default();
+        stop.listen();
+        let reading = self.unit.asked().read(&self.scripts.find()?, true, &stop)?;
+        let pulled = pull_reading(&store, &reading)?;
+        store.close()?;
+        let told = match self.json {
+            true => print_json(&document(&reading, &pulled)),
+            false => print_out(&text(&reading, &pulled)),
+        };
+        reading.complete()?;
+        told
+    }
+}
+
+fn document(reading: &UnitReading, pulled: &Pulled) -> Value {
+    let trace = |run: &RecordedRun| {
+        json!({
+            "trace_id": run.id.to_string(), "power_up": run.power_up, "run": run.run,
+            "at": run.date.map(|(at_us, _)| rfc3339(at_us)),
+            "uncertainty_s": run.date.map(|(_, uncertainty_us)| uncertainty_us as f64 / 1e6),
+            "unit_time_s": f64::from(run.at_ms) / 1e3, "rows": run.trace.rows(),
+            "begins_late": run.is_cut, "gaps": run.trace.gaps,
+        })
+    };
+    json!({
+        "unit_serial": reading.source.serial,
+        "source": reading.source.endpoint,
+        "run_id": pulled.run.map(|id| id.to_string()),
+        "complete": reading.read.broken_off.is_none(),
+        "rows": reading.read.stored.as_ref().map_or(0, |stored| stored.rows.len()),
+        "pulled": pulled.new.len(),
+        "known": pulled.known,
+        "traces": pulled.new.iter().map(trace).collect::<Vec<_>>(),
+        "warnings": reading.warnings,
+    })
+}
+
+fn text(reading: &UnitReading, pulled: &Pulled) -> String {
+    let rows = reading
+        .read
+        .stored
+        .as_ref()
+        .map_or(0, |stored| stored.rows.len());
+    let mut lines = vec![format!(
+        "unit {} on {}, {rows} rows of its run record read",
+        reading.source.serial, reading.source.endpoint
+    )];
+    match pulled.run {
+        Some(run) => lines.push(format!(
+            "{} runs pulled as traces of run {}",
+            pulled.new.len(),
+            run.short()
+        )),
+        None => lines.push("nothing new".to_owned()),
+    }
+    lines.extend(
+        pulled
+            .new
+            .iter()
+            .map(|run| format!("  {}  {}: {}", run.id.short(), run.name(), run.summary())),
+    );
+    if pulled.known > 0 {
+        lines.push(format!("left out: {} known already", pulled.known));
+    }
+    lines.extend(
+        reading
+            .warnings
+            .iter()
+            .map(|warning| format!("note: {warning}")),
+    );
+    lines.join("\n")
+}
