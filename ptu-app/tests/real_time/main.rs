@@ -10,4 +10,5 @@ mod manual;
 mod pty;
 mod real_window;
 mod train_faults;
+mod unit_memory;
 mod window;

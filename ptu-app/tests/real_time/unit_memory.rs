@@ -1,0 +1,94 @@
+//! What a unit remembers over power-ups, read over its port: by commands, and by the buttons of the window.
+
+use crate::common::served::{Running, Unit};
+use crate::common::window::Window;
+use crate::common::{Place, list, number, text};
+use ptu_app::gui::{Page, Settings};
+use serde_json::Value;
+
+fn import(place: &Place, unit: &Unit) -> Value {
+    place.json(&["faults", "import", "--unit", &unit.address, "--json"])
+}
+
+/// Goal: a log survives power off, and its faults are stored once. Method: a unit with a fault is driven by one
+/// tester, switched off and on again without the fault, and read by another, twice.
+#[test]
+fn faults_of_an_earlier_power_up_are_imported_once() {
+    let (workshop, depot) = (Place::new(), Place::new());
+    let flash = depot.path("unit.flash");
+    let flash = flash.to_str().expect("text");
+    let faulty = [
+        "--inject",
+        "speed_sensor_1.dead",
+        "--serial-no",
+        "MEM-1",
+        "--flash",
+        flash,
+    ];
+    {
+        let unit = Unit::on_tcp(&faulty);
+        let arguments = ["atp/overspeed", "--step", "code 25: at the limit*"];
+        Running::start(&workshop, &unit, &arguments)
+            .finish()
+            .exits(1);
+    }
+    let unit = Unit::on_tcp(&["--serial-no", "MEM-1", "--flash", flash]);
+    let first = import(&depot, &unit);
+    assert_eq!(
+        (&first["power_ups"], &first["damaged"]),
+        (&2.into(), &0.into())
+    );
+    let dead = list(&first["faults"])
+        .iter()
+        .find(|fault| fault["name"] == "tacho1_dead");
+    let dead = dead.unwrap_or_else(|| panic!("{first}"));
+    let sample = |name: &str| {
+        let samples = list(&dead["freeze_frame"]);
+        samples
+            .iter()
+            .find(|sample| sample["name"] == name)
+            .cloned()
+            .expect(name)
+    };
+    assert_eq!(number(&sample("power_up")["value"]), 1.0);
+    let dated_by = sample("dated_by");
+    assert!(
+        text(&dated_by["label"]).contains("told in power-up 1"),
+        "{dated_by}"
+    );
+    let second = import(&depot, &unit);
+    assert_eq!(number(&second["imported"]), 0.0, "{second}");
+    assert_eq!(second["known"], first["imported"]);
+}
+
+#[test]
+fn a_unit_that_never_drove_has_no_run_to_pull() {
+    let unit = Unit::on_tcp(&["--serial-no", "MEM-2"]);
+    let place = Place::new();
+    let pulled = place.json(&["record", "pull", "--unit", &unit.address, "--json"]);
+    assert_eq!(
+        (number(&pulled["rows"]), number(&pulled["pulled"])),
+        (0.0, 0.0)
+    );
+    assert_eq!(place.run_ids().len(), 0);
+    place
+        .ptu(&["record", "pull", "--unit", "sim"])
+        .exits(2)
+        .explains(&["embedded unit"]);
+}
+
+#[test]
+fn the_windows_buttons_read_the_unit_that_is_not_connected() {
+    let unit = Unit::on_tcp(&["--serial-no", "MEM-3"]);
+    let mut settings = Settings {
+        page: Page::Faults,
+        ..Settings::default()
+    };
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), &crate::common::scripts(), settings);
+    window.click("Import the unit's log");
+    window.wait_for_part("MEM-3:");
+    window.click("Traces");
+    window.click("Pull the run record");
+    window.wait_for_part("MEM-3: 0 rows read, 0 new runs");
+}
