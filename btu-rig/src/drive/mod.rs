@@ -36,7 +36,7 @@ use crate::stimulus::Stimulus;
 pub use figure::Figure;
 pub use landmarks::Landmark;
 pub use metrics::Metrics;
-pub use plan::{Codes, DrivePlan, Load, PlanError};
+pub use plan::{Codes, DrivePlan, Load, PlanError, code_in_antenna};
 pub use row::{PAIRS, Row};
 pub use scatter::{Scatter, ScatterDraw};
 

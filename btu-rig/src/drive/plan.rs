@@ -159,13 +159,17 @@ pub(super) fn fixed_code(
     section: u16,
     name: &str,
 ) -> Result<Stimulus, PlanError> {
-    let found = config.codes.iter().find(|code| code.name == name);
-    let code = found.ok_or_else(|| PlanError::NoCode {
+    code_in_antenna(config, name).ok_or_else(|| PlanError::NoCode {
         section,
         code: name.to_owned(),
         known: list(config.codes.iter().map(|code| code.name.clone())),
-    })?;
-    Ok(Stimulus::Code {
+    })
+}
+
+/// The same; `None` = the table has no such code.
+pub fn code_in_antenna(config: &UnitConfig, name: &str) -> Option<Stimulus> {
+    let code = config.codes.iter().find(|code| code.name == name)?;
+    Some(Stimulus::Code {
         carrier_hz: code.carrier_hz,
         rate_hz: code.rate_hz,
         level_mv: config.receiver.level_nominal_mv,

@@ -5,6 +5,7 @@
 //! * [`run`]: runs procedures on benches, and stores and forwards their events;
 //! * [`bench_worker`]: one unit under test and its bench thread, for the window;
 //! * [`drive`]: automatic runs from station to station, and manual runs;
+//! * [`train_server`]: serves the unit aboard a train on a port;
 //! * [`replay`]: repeats recorded stimuli and compares traces;
 //! * [`field`]: imports a unit's own event log into the fault history;
 //! * [`record`]: pulls a unit's own run record as traces, and compares them with a sound unit's run;
@@ -36,3 +37,4 @@ pub mod stdio;
 pub mod stop;
 pub mod stored;
 pub mod table;
+pub mod train_server;

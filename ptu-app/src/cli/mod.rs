@@ -18,6 +18,7 @@ mod run;
 mod runs;
 mod saved;
 mod trace;
+mod train;
 mod unit_option;
 
 use std::path::PathBuf;
@@ -71,6 +72,7 @@ enum Verb {
     Trace(trace::TraceArguments),
     /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
+    Train(Box<train::TrainArguments>),
     /// List serial ports
     Ports(ports::PortsArguments),
     /// Load scripts for another process of this program
@@ -130,6 +132,7 @@ impl Cli {
             Verb::Saved(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
+            Verb::Train(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
             Verb::LoadScripts => loading::serve().map(|()| Exit::Passed),
         }

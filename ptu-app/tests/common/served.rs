@@ -5,7 +5,7 @@
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use protocol::link::{End, Link};
@@ -24,6 +24,8 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// A served unit; ends with the value.
 pub struct Unit {
     child: Child,
+    /// Where a train's cab is spoken to.
+    cab: Option<ChildStdin>,
     /// What `--unit` takes.
     pub address: String,
     /// Port or socket address alone.
@@ -49,6 +51,12 @@ impl Unit {
         Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")
     }
 
+    /// Aboard a train, its maintenance port on a new pseudo-terminal.
+    pub fn aboard(arguments: &[&str]) -> Self {
+        let train = [&["train", "--pty"], arguments].concat();
+        Self::start(Path::new(env!("CARGO_BIN_EXE_ptu")), &train, "serial:")
+    }
+
     fn serve(arguments: &[&str], scheme: &str) -> Self {
         // Another package's program stands beside ours, if it was built.
         let program = Path::new(env!("CARGO_BIN_EXE_ptu")).with_file_name("ato-under-test");
@@ -57,11 +65,16 @@ impl Unit {
             "{} is not built; run `cargo test --workspace`",
             program.display()
         );
+        Self::start(&program, arguments, scheme)
+    }
+
+    fn start(program: &Path, arguments: &[&str], scheme: &str) -> Self {
         let mut child = Command::new("nice")
             .args(URGENT)
             .arg(program)
             .args(arguments)
             .env("PTU_SCRIPTS", scripts())
+            .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -74,10 +87,32 @@ impl Unit {
         assert!(!port.is_empty(), "the unit ended without a port");
         let address = format!("{scheme}{port}");
         Self {
+            cab: child.stdin.take(),
             child,
             address,
             port,
         }
+    }
+
+    /// Says something in the cab of its train.
+    pub fn say(&mut self, order: &str) {
+        let cab = self.cab.as_mut().expect("a cab");
+        writeln!(cab, "{order}").expect("the cab hears");
+    }
+
+    /// Nobody is in the cab any more.
+    pub fn leave_cab(&mut self) {
+        self.cab = None;
+    }
+
+    /// Ends it by a signal, as a supervisor does.
+    pub fn signal(&self, signal: Signal) {
+        kill_process(Pid::from_child(&self.child), signal).expect("a signal");
+    }
+
+    /// Waits for its end.
+    pub fn exit_code(&mut self) -> Option<i32> {
+        self.child.wait().expect("its end").code()
     }
 
     /// As if its computer did something else for so long.
@@ -191,6 +226,14 @@ impl Observer {
             began: now,
             keep_alive_due: now,
         }
+    }
+
+    /// Sends something else than a keep-alive.
+    pub fn send(&mut self, message: impl Into<Message>) {
+        let now = protocol::Instant::from_ms(self.began.elapsed().as_millis() as u64);
+        let mut frame = Vec::new();
+        self.link.send(now, &message.into(), &mut frame);
+        self.port.write_all(&frame).expect("the port takes a frame");
     }
 
     /// What arrives within the next few milliseconds.

@@ -9,6 +9,7 @@ mod field;
 mod manual;
 mod pty;
 mod real_window;
+mod train;
 mod train_faults;
 mod unit_memory;
 mod window;

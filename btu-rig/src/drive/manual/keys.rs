@@ -51,12 +51,15 @@ fn reverser(position: i8) -> &'static str {
 }
 
 /// Names of all keys, in the order in which they are done.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
+pub fn names() -> impl Iterator<Item = &'static str> {
     KEYS.iter().map(|(name, _)| *name)
 }
 
-/// What the key of this name does with a value, or what is wrong with it.
-pub(super) fn stimulus(name: &str, value: &Value) -> Result<Stimulus, String> {
+/// What the key of this name does with a value.
+///
+/// # Errors
+/// What is wrong with it, in words.
+pub fn stimulus(name: &str, value: &Value) -> Result<Stimulus, String> {
     let key = KEYS.iter().find(|(known, _)| *known == name);
     let (_, key) = key.ok_or_else(|| format!("unknown field `{name}`"))?;
     Ok(match *key {

@@ -19,7 +19,7 @@ mod settle;
 
 pub use figures::Figures;
 pub use file::{MAX_AFTER_S, MAX_STEPS};
-pub use keys::words;
+pub use keys::{names as key_names, stimulus, words};
 pub use outcome::{AtpBrake, Ending, Outcome, StepDone};
 pub use plan::{ManualError, Plan};
 pub use player::Player;

@@ -10,16 +10,18 @@
 //! * [`UnitAboard::exchange`](UnitLink::exchange) is one scan of unit and train, so it is called once a scan;
 //! * [`UnitAboard::apply`] does what a driver or the track does to the train: any [`Stimulus`] but those of a tester;
 //! * [`UnitAboard::push`] moves the train whatever its brakes do, [`UnitAboard::set_power`] switches the unit's
-//!   supply;
+//!   supply, whose flash outlives it;
 //! * [`UnitAboard::drive`] is a run from station to station by the unit's ATO, in virtual time and without a tester;
 //!   [`UnitAboard::return_to_depot`] ends a service.
 
 mod service;
 
+use ato_under_test::flash::BlockDevice;
 use btu_rig::lever::Lever;
 use btu_rig::procedure::Refusal;
 use btu_rig::rig::{Bench, LinkFailure, Rig, UnitLink};
-use btu_rig::stimulus::{Stimulus, WaysideCondition};
+use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
+use protocol::line::Section;
 use protocol::message::ModeSwitch;
 use protocol::{Instant, Speed};
 
@@ -69,6 +71,27 @@ impl UnitAboard {
             .iter()
             .for_each(|stimulus| must(aboard.apply(stimulus)));
         aboard
+    }
+
+    /// Gives the unit the flash that it had before; no scan may have been made yet.
+    pub fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
+        self.train.link_mut().set_flash(flash);
+    }
+
+    /// Puts the standing train at the departure station of a section, over its loop and under the section's codes;
+    /// no departure is given.
+    ///
+    /// # Errors
+    /// The section has a code that the unit does not know.
+    pub fn stand_at(&mut self, section: &Section) -> Result<(), Refusal> {
+        let number = section.section;
+        let station = StationData::at_departure(section);
+        self.apply(&Stimulus::MarkersAlong {
+            section: Some(number),
+        })?;
+        self.apply(&Stimulus::CodesAlong { on: true })?;
+        self.apply(&Stimulus::Station(station))?;
+        self.apply(&Stimulus::Wayside(WaysideCondition::Good))
     }
 
     /// Does something to train or track, from the next scan on.

@@ -176,7 +176,8 @@ fn a_pushed_train_moves_whatever_its_brakes_do() {
     assert!((truth.speed_mps + 3.0 / 3.6).abs() < 0.01, "{truth:?}");
 }
 
-/// A unit without supply says nothing and lets the brake line open; it starts anew when it gets it back.
+/// Goal: a unit without supply says nothing and lets the brake line open; it starts anew when it gets it back. Method:
+/// for 3 s, then for as short a time as it can be.
 #[test]
 fn a_unit_that_loses_its_supply_starts_anew() {
     let mut laptop = Laptop::in_depot(&[]);
@@ -198,6 +199,13 @@ fn a_unit_that_loses_its_supply_starts_anew() {
         "{uptime:?}"
     );
     assert!(laptop.has(StatusBits::STARTED));
+    assert_eq!(laptop.status().eb_cause, EbCause::None);
+    laptop.aboard.set_power(false);
+    laptop.aboard.set_power(true);
+    laptop.run(150);
+    assert!(laptop.messages.is_empty());
+    laptop.run(300);
+    assert_eq!(laptop.status().self_test, SelfTest::empty());
     assert_eq!(laptop.status().eb_cause, EbCause::None);
 }
 

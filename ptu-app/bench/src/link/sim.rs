@@ -1,18 +1,27 @@
 //! Links to the embedded unit through the same frames as on a cable.
 
+use ato_under_test::flash::BlockDevice;
 use ato_under_test::{Port, Setup, Unit};
 use btu_rig::rig::{LinkFailure, UnitLink};
-use protocol::Instant;
+use protocol::{Duration, Instant};
 
 /// Serial number of the embedded unit when none is asked for.
 pub const SIM_SERIAL: &str = "SIM-0001";
+
+/// Shortest time without supply: its capacitors empty, relays fall, and the train notices that the unit is silent
+/// and hears it anew afterwards [default].
+const LEAST_OFF: Duration = Duration::from_ms(1_500);
 
 /// A unit that is powered up at a chosen time, reached at its harness.
 pub struct SimLink {
     setup: Setup,
     /// When the supply is switched on; `None` = it stays off.
     power_at: Option<Instant>,
+    /// Earliest time at which it comes back.
+    may_power_at: Instant,
     unit: Option<Unit>,
+    /// Its flash while it is without supply; `None` = a new one.
+    flash: Option<Box<dyn BlockDevice>>,
 }
 
 impl SimLink {
@@ -21,17 +30,28 @@ impl SimLink {
         Self {
             setup,
             power_at: Some(power_at),
+            may_power_at: Instant::ZERO,
             unit: None,
+            flash: None,
         }
     }
 
-    /// Switches the supply off, or on at `now` if it was off: the unit is powered up anew then.
+    /// The flash that the unit had before; it must not be powered up yet.
+    pub(crate) fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
+        debug_assert!(self.unit.is_none(), "powered up");
+        self.flash = Some(flash);
+    }
+
+    /// Switches the supply off, or on if it was off: the unit is powered up anew then.
     pub(crate) fn set_power(&mut self, now: Instant, on: bool) {
-        if !on {
-            self.power_at = None;
-            self.unit = None;
-        } else if self.power_at.is_none() {
-            self.power_at = Some(now);
+        match (on, self.power_at) {
+            (false, Some(_)) => {
+                self.power_at = None;
+                self.may_power_at = now + LEAST_OFF;
+                self.flash = self.unit.take().map(Unit::power_off).or(self.flash.take());
+            }
+            (true, None) => self.power_at = Some(now.max(self.may_power_at)),
+            _ => {}
         }
     }
 
@@ -78,8 +98,13 @@ impl UnitLink for SimLink {
         let Some(power_at) = self.power_at.filter(|at| now >= *at) else {
             return Ok(());
         };
-        let setup = &self.setup;
-        let unit = self.unit.get_or_insert_with(|| Unit::new(setup.clone()));
+        let unit = self.unit.get_or_insert_with(|| {
+            let setup = self.setup.clone();
+            match self.flash.take() {
+                Some(flash) => Unit::with_flash(setup, flash),
+                None => Unit::new(setup),
+            }
+        });
         unit.receive(to_unit);
         unit.step(Instant::ZERO + now.since(power_at), from_unit);
         Ok(())

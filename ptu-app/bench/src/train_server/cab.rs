@@ -1,0 +1,140 @@
+//! What a person in the cab says: one order a line. Beside the orders of its own a line takes each key of a sequence
+//! file for `ptu drive --manual`, with its value behind it.
+
+use std::fmt;
+
+use btu_rig::drive::code_in_antenna;
+use btu_rig::drive::manual::{key_names, stimulus, words};
+use btu_rig::stimulus::Stimulus;
+use protocol::Speed;
+use protocol::config::UnitConfig;
+use protocol::message::ModeSwitch;
+use toml::Value;
+
+/// Fastest that a train is pushed, km/h.
+const MAX_PUSH_KMH: f64 = 100.0;
+
+/// Something done in the cab, on the track, or to the unit's supply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Order {
+    /// What a procedure could do, too.
+    Do(Stimulus),
+    /// The train is pushed up to a speed, backward below 0, and to rest at 0.
+    Push(Speed),
+    /// The unit's supply.
+    Power(bool),
+    /// The end.
+    Quit,
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Do(stimulus) => f.write_str(&words(stimulus)),
+            Self::Push(Speed::ZERO) => f.write_str("the train is brought to rest"),
+            Self::Push(speed) => write!(f, "the train is pushed up to {speed}"),
+            Self::Power(true) => f.write_str("the unit's supply is on"),
+            Self::Power(false) => f.write_str("the unit's supply is off"),
+            Self::Quit => f.write_str("quit"),
+        }
+    }
+}
+
+/// Reads orders.
+pub struct Cab {
+    config: UnitConfig,
+}
+
+impl Cab {
+    /// For a unit with this code table.
+    pub fn new(config: &UnitConfig) -> Self {
+        Self {
+            config: config.clone(),
+        }
+    }
+
+    /// What a line says.
+    ///
+    /// # Errors
+    /// What is wrong with it, and what can be said.
+    pub fn order(&self, line: &str) -> Result<Order, String> {
+        let mut parts = line.split_whitespace();
+        let word = parts.next().unwrap_or_default();
+        let value = parts.next();
+        let wrong = |takes: &str| format!("\"{line}\": {word} takes {takes}");
+        if parts.next().is_some() {
+            return Err(format!("\"{line}\" is more than a word and a value"));
+        }
+        let on_off = || on_or_off(value).ok_or_else(|| wrong("on or off"));
+        let alone = |order| value.is_none().then_some(order).ok_or(wrong("no value"));
+        Ok(match word {
+            "key" => Order::Do(Stimulus::MaintenanceKey { on: on_off()? }),
+            "cab" => Order::Do(Stimulus::Hcr { on: on_off()? }),
+            "power" => Order::Power(on_off()?),
+            "mode" => {
+                let mode = value.and_then(ModeSwitch::from_label);
+                let modes = || wrong(&ModeSwitch::LABELS.join(", "));
+                Order::Do(Stimulus::ModeSwitch(mode.ok_or_else(modes)?))
+            }
+            "doors" => match value {
+                Some("open") => Order::Do(Stimulus::Doors { closed: false }),
+                Some("closed") => Order::Do(Stimulus::Doors { closed: true }),
+                _ => return Err(wrong("open or closed")),
+            },
+            "ack" => alone(Order::Do(Stimulus::Acknowledge))?,
+            "start" => alone(Order::Do(Stimulus::Start))?,
+            "stop" => alone(Order::Push(Speed::ZERO))?,
+            "quit" => alone(Order::Quit)?,
+            "move" => {
+                let kmh = value.and_then(|value| value.parse().ok());
+                let kmh = kmh.filter(|kmh: &f64| kmh.abs() <= MAX_PUSH_KMH);
+                let kmh = kmh.ok_or_else(|| wrong(&format!("km/h up to {MAX_PUSH_KMH}")))?;
+                Order::Push(Speed::from_kmh(kmh))
+            }
+            "code" => Order::Do(match value {
+                Some("off") => Stimulus::CodeOff,
+                name => name
+                    .and_then(|name| code_in_antenna(&self.config, name))
+                    .ok_or_else(|| wrong(&format!("{} or off", self.codes())))?,
+            }),
+            key if key_names().any(|known| known == key) => {
+                let value = value.ok_or_else(|| wrong("a value"))?;
+                Order::Do(stimulus(key, &toml_value(value))?)
+            }
+            _ => return Err(format!("\"{line}\" is no order; {}", help())),
+        })
+    }
+
+    fn codes(&self) -> String {
+        let names = self.config.codes.iter().map(|code| code.name.as_str());
+        names.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// What can be said.
+pub fn help() -> String {
+    format!(
+        "orders, a line each: key on|off, mode {}, cab on|off, doors open|closed, ack, start, move KMH, stop, \
+         code NAME|off, power on|off, quit; and keys of a sequence file, as lever B7: {}",
+        ModeSwitch::LABELS.join("|"),
+        key_names().collect::<Vec<_>>().join(", ")
+    )
+}
+
+fn on_or_off(value: Option<&str>) -> Option<bool> {
+    match value {
+        Some("on") => Some(true),
+        Some("off") => Some(false),
+        _ => None,
+    }
+}
+
+/// A value as a sequence file has it, without its quotes.
+fn toml_value(text: &str) -> Value {
+    match (text, text.parse()) {
+        ("on" | "true", _) => Value::Boolean(true),
+        ("off" | "false", _) => Value::Boolean(false),
+        (_, Ok(number)) => Value::Integer(number),
+        _ => Value::String(text.to_owned()),
+    }
+}

@@ -1,0 +1,55 @@
+//! Lines of standard input, read on a thread of their own, so that the train keeps its time. Their end ends nothing: a
+//! train may run under a supervisor.
+
+use std::io::{BufRead, IsTerminal, Read, stdin};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+/// Lines that wait for the next scan; whoever writes more waits.
+const WAITING: usize = 16;
+/// Longest line, bytes; what is longer is no order.
+const LONGEST: u64 = 200;
+
+/// Lines as they come.
+pub struct Typed {
+    lines: Receiver<String>,
+}
+
+impl Typed {
+    /// Listens, unless this process is in the background of its terminal, where reading would stop it.
+    pub fn listen() -> Self {
+        let (send, lines) = sync_channel(WAITING);
+        if in_foreground() {
+            // Without a thread nothing is heard, and the train runs all the same.
+            let _ = std::thread::Builder::new()
+                .name("cab".into())
+                .spawn(move || read(stdin().lock(), &send));
+        }
+        Self { lines }
+    }
+
+    /// Those that have come since.
+    pub fn lines(&self) -> Vec<String> {
+        self.lines.try_iter().take(WAITING).collect()
+    }
+}
+
+fn in_foreground() -> bool {
+    let of_terminal = || rustix::termios::tcgetpgrp(stdin());
+    !stdin().is_terminal() || of_terminal().is_ok_and(|group| group == rustix::process::getpgrp())
+}
+
+pub(super) fn read(mut input: impl BufRead, send: &SyncSender<String>) {
+    let mut bytes = Vec::new();
+    loop {
+        bytes.clear();
+        match (&mut input).take(LONGEST).read_until(b'\n', &mut bytes) {
+            Ok(0) | Err(_) => return,
+            Ok(_) => {}
+        }
+        let line = String::from_utf8_lossy(&bytes);
+        let line = line.trim();
+        if !line.is_empty() && send.send(line.to_owned()).is_err() {
+            return;
+        }
+    }
+}

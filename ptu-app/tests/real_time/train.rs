@@ -1,0 +1,115 @@
+//! A train to plug a laptop into: only the maintenance channel comes out, and none but it goes in.
+
+use std::time::{Duration, Instant};
+
+use protocol::message::{
+    Channel, EbCause, Identify, IoInput, Message, Mode, ModeSwitch, Status, StatusBits, TrainLines,
+};
+use rustix::process::Signal;
+
+use crate::common::Place;
+use crate::common::served::{Observer, Unit};
+
+/// Longest time anything takes here, on a busy machine.
+const SOON: Duration = Duration::from_secs(20);
+
+/// Waits for a status of this kind.
+fn status(laptop: &mut Observer, what: &str, wanted: impl Fn(&Status) -> bool) -> Status {
+    let mut found = None;
+    laptop.wait(SOON, what, |message| {
+        assert_eq!(message.channel(), Channel::Ptu, "{message:?}");
+        if let Message::Status(status) = message {
+            found = Some(*status).filter(|status| wanted(status));
+        }
+        found.is_some()
+    });
+    found.expect("just found")
+}
+
+fn ready(laptop: &mut Observer) -> Status {
+    let ready = StatusBits::STARTED | StatusBits::INPUTS_OK | StatusBits::TCMS_OK;
+    status(laptop, "a unit that is ready", |status| {
+        status.bits.contains(ready) && status.eb_cause == EbCause::None
+    })
+}
+
+/// Goal: a laptop is answered and plays no train. Method: identity and status; inputs on the port that would change
+/// the mode; then the cab quits.
+#[test]
+fn a_laptop_is_answered_on_the_maintenance_channel_and_plays_no_train() {
+    let mut train = Unit::aboard(&["--serial-no", "SG-0142"]);
+    let mut laptop = Observer::on(&train);
+    let before = ready(&mut laptop);
+    assert_eq!(before.mode, Mode::Manual);
+    laptop.send(Identify {});
+    laptop.wait(
+        SOON,
+        "the identity",
+        |message| matches!(message, Message::Identity(who) if who.serial.starts_with(b"SG-0142")),
+    );
+    let yard = IoInput {
+        lines: TrainLines::all(),
+        mode_switch: ModeSwitch::Yard,
+        ..IoInput::default()
+    };
+    (0..10).for_each(|_| laptop.send(yard));
+    let refused = before.rejected_frames + 10;
+    let after = status(&mut laptop, "ten refused frames", |status| {
+        status.rejected_frames == refused
+    });
+    assert_eq!((after.mode, after.eb_cause), (Mode::Manual, EbCause::None));
+    train.say("quit");
+    assert_eq!(train.exit_code(), Some(0));
+}
+
+/// Goal: what happens to a train reaches the unit and is survived. Method: pushed and stopped, acknowledged, keyed,
+/// without supply and with it again; nobody in the cab; SIGTERM.
+#[test]
+fn a_train_obeys_its_cab_and_ends_by_a_signal() {
+    let mut train = Unit::aboard(&["--service", "61"]);
+    let mut laptop = Observer::on(&train);
+    let served = ready(&mut laptop);
+    assert!(served.events > 6, "the service is in the log: {served:?}");
+    train.say("move 15");
+    status(&mut laptop, "a train that moves and brakes", |s| s.eb_cause == EbCause::Overspeed);
+    train.say("stop");
+    status(&mut laptop, "a standing train", |s| s.speed1_cms == 0);
+    // The button counts once the unit has proved the standstill, for half a second.
+    laptop.wait(SOON, "a second", {
+        let began = Instant::now();
+        move |_| began.elapsed() >= Duration::from_secs(1)
+    });
+    train.say("ack");
+    ready(&mut laptop);
+    train.say("power off");
+    train.say("power on");
+    let anew = status(&mut laptop, "a unit that starts", |s| {
+        s.events < served.events
+    });
+    assert!(anew.events < 6, "{anew:?}");
+    ready(&mut laptop);
+    train.leave_cab();
+    ready(&mut laptop);
+    train.signal(Signal::TERM);
+    assert_eq!(train.exit_code(), Some(0));
+}
+
+#[test]
+fn a_train_that_cannot_be_served_says_why() {
+    let place = Place::new();
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = taken.local_addr().expect("its address").to_string();
+    place
+        .ptu(&["train", "--tcp", &address])
+        .exits(3)
+        .explains(&["listening on", &address]);
+    for (arguments, words) in [
+        (&["train"][..], "--pty"),
+        (&["train", "--pty", "--service", "99"], "no section 99"),
+        (&["train", "--pty", "--section", "99"], "no section 99"),
+        (&["train", "--pty", "--inject", "tra.daed"], "tra.dead"),
+        (&["train", "--serial", "/dev/null@fast"], "not a baud rate"),
+    ] {
+        place.ptu(arguments).exits(2).explains(&[words]);
+    }
+}
