@@ -71,7 +71,9 @@ fn a_train_obeys_its_cab_and_ends_by_a_signal() {
     let served = ready(&mut laptop);
     assert!(served.events > 6, "the service is in the log: {served:?}");
     train.say("move 15");
-    status(&mut laptop, "a train that moves and brakes", |s| s.eb_cause == EbCause::Overspeed);
+    status(&mut laptop, "a train that moves and brakes", |s| {
+        s.eb_cause == EbCause::Overspeed
+    });
     train.say("stop");
     status(&mut laptop, "a standing train", |s| s.speed1_cms == 0);
     // The button counts once the unit has proved the standstill, for half a second.

@@ -29,6 +29,8 @@ use crate::link::SimLink;
 
 pub use service::{Arrival, Doors};
 
+/// Fastest that a train is pushed, km/h [default].
+pub const MAX_PUSH_KMH: f64 = 100.0;
 /// How fast a pushed train gains and loses speed, m/s² [default].
 const PUSH_MPS2: f64 = 0.5;
 
@@ -106,12 +108,20 @@ impl UnitAboard {
     /// Pushes the train up to a speed, backward below 0; 0 brings it to rest, and there it is left to itself.
     ///
     /// # Errors
-    /// A speed out of range, or another direction while it moves.
+    /// A speed above [`MAX_PUSH_KMH`], or another direction while it moves; nothing is done then.
     pub fn push(&mut self, to: Speed) -> Result<(), Refusal> {
-        let stands = self.train.rig().truth().speed_mps == 0.0;
+        if !(to.kmh().abs() <= MAX_PUSH_KMH) {
+            let text = format!("a train is pushed at {MAX_PUSH_KMH} km/h at most");
+            return Err(Refusal(text));
+        }
+        let now_mps = self.train.rig().truth().speed_mps;
+        if now_mps * to.mps() < 0.0 {
+            let text = "the train moves the other way: bring it to rest first";
+            return Err(Refusal(text.to_owned()));
+        }
         self.apply(&Stimulus::TrainDriven { on: false })?;
         self.comes_to_rest = to == Speed::ZERO;
-        if !self.comes_to_rest || stands {
+        if now_mps == 0.0 {
             let backward = to < Speed::ZERO;
             self.apply(&Stimulus::Direction { backward })?;
         }
@@ -157,6 +167,7 @@ impl UnitAboard {
         self.train.tick()?;
         if self.comes_to_rest && self.train.rig().motion_settled() {
             self.comes_to_rest = false;
+            must(self.apply(&Stimulus::Direction { backward: false }));
             must(self.apply(&Stimulus::TrainDriven { on: true }));
         }
         Ok(())

@@ -2,7 +2,7 @@ use btu_rig::drive::DrivePlan;
 use protocol::link::{End, Link};
 use protocol::message::{
     ArmRefusal, ArmRequest, Channel, EbCause, FsbCause, Identify, KeepAlive, Message, Mode,
-    ReadLog, ReadRun, SelfTest, Status, StatusBits,
+    ReadLog, ReadRun, ReadStored, SelfTest, Status, StatusBits, StoreKind,
 };
 use protocol::signal::Signal;
 use protocol::{CYCLE, SCAN};
@@ -174,6 +174,20 @@ fn a_pushed_train_moves_whatever_its_brakes_do() {
     laptop.run(600);
     let truth = laptop.aboard.rig().truth();
     assert!((truth.speed_mps + 3.0 / 3.6).abs() < 0.01, "{truth:?}");
+    for (kmh, words) in [
+        (3.0, "the other way"),
+        (101.0, "at most"),
+        (f64::NAN, "at most"),
+    ] {
+        let refused = laptop.aboard.push(Speed::from_kmh(kmh)).expect_err(words);
+        assert!(refused.0.contains(words), "{refused:?}");
+    }
+    laptop.run(100);
+    let goes_on = laptop.aboard.rig().truth().speed_mps;
+    assert!((goes_on + 3.0 / 3.6).abs() < 0.01, "{goes_on} m/s");
+    laptop.aboard.push(Speed::ZERO).expect("let stand");
+    laptop.run(300);
+    assert_eq!(laptop.aboard.rig().truth().speed_mps, 0.0);
 }
 
 /// Goal: a unit without supply says nothing and lets the brake line open; it starts anew when it gets it back. Method:
@@ -207,6 +221,19 @@ fn a_unit_that_loses_its_supply_starts_anew() {
     laptop.run(300);
     assert_eq!(laptop.status().self_test, SelfTest::empty());
     assert_eq!(laptop.status().eb_cause, EbCause::None);
+    laptop.send(ReadStored {
+        store: StoreKind::Events,
+        from_sequence: 0,
+        per_cycle: 2,
+    });
+    laptop.run(100);
+    let stored = laptop.messages.iter().filter_map(|message| match message {
+        Message::StoredEntry(entry) => Some(entry.power_up),
+        _ => None,
+    });
+    let mut power_ups: Vec<_> = stored.collect();
+    power_ups.dedup();
+    assert_eq!(power_ups, [1, 2, 3], "its flash outlives its supply");
 }
 
 /// Faults of the unit and of the train around it.

@@ -11,8 +11,7 @@ use protocol::config::UnitConfig;
 use protocol::message::ModeSwitch;
 use toml::Value;
 
-/// Fastest that a train is pushed, km/h.
-const MAX_PUSH_KMH: f64 = 100.0;
+use crate::aboard::MAX_PUSH_KMH;
 
 /// Something done in the cab, on the track, or to the unit's supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
