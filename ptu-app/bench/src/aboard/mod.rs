@@ -110,7 +110,7 @@ impl UnitAboard {
     /// # Errors
     /// A speed above [`MAX_PUSH_KMH`], or another direction while it moves; nothing is done then.
     pub fn push(&mut self, to: Speed) -> Result<(), Refusal> {
-        if !(to.kmh().abs() <= MAX_PUSH_KMH) {
+        if !(-MAX_PUSH_KMH..=MAX_PUSH_KMH).contains(&to.kmh()) {
             let text = format!("a train is pushed at {MAX_PUSH_KMH} km/h at most");
             return Err(Refusal(text));
         }
