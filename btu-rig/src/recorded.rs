@@ -109,6 +109,10 @@ impl Driver for RecordingDriver<'_> {
         self.rig.safe()
     }
 
+    fn has_harness(&self) -> bool {
+        Driver::has_harness(self.rig)
+    }
+
     fn evidence(&self) -> Evidence {
         self.rig.evidence()
     }

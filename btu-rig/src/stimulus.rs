@@ -382,6 +382,14 @@ pub enum Stimulus {
 }
 
 impl Stimulus {
+    /// Something the tester asks of the unit on the maintenance channel; all else goes through the harness.
+    pub fn by_tester(&self) -> bool {
+        matches!(
+            self,
+            Self::PtuArm | Self::PtuAskToArm | Self::PtuDisarm | Self::PtuSilent { .. }
+        ) || self.on_test_board()
+    }
+
     /// A test signal or request of the TEST board, which an armed unit only takes.
     pub fn on_test_board(&self) -> bool {
         matches!(

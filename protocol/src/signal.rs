@@ -94,6 +94,7 @@ const TCMS_MODES: Kind = Kind::Enum(&[
     "automatic",
     "driverless",
 ]);
+const COMPARED: Kind = Kind::Enum(&["differs", "same", "not_stated"]);
 const TACHO: Kind = Kind::Enum(&["good", "dead", "noisy", "scaled"]);
 
 signals! {
@@ -199,7 +200,38 @@ signals! {
     TestCodeRate "test_code_rate" "Hz" CENTI, 0 ..= 655, Unit, "Code rate measured where it leaves the TEST board";
     TestLevel "test_level" "mV" UNITY, 0 ..= 65535, Unit, "Code level measured where it leaves the TEST board";
     TestSpeed "test_speed" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed of the pulses that leave the TEST board";
+    IdentitySerial "identity_serial" "" COMPARED, 0 ..= 2, Rig, "The unit's serial number against the one expected";
+    IdentitySoftware "identity_software" "" COMPARED, 0 ..= 2, Rig, "The unit's software version against the one expected";
+    IdentityConfig "identity_config" "" COMPARED, 0 ..= 2, Rig, "Name and checksum of the unit configuration against those of the tests";
+    IdentityLine "identity_line" "" COMPARED, 0 ..= 2, Rig, "Checksum of the track database against that of the tests";
     ArmRefusal "arm_refusal" "" Kind::Enum(ArmRefusal::LABELS), 0 ..= 11, Rig, "Why the unit refused or ended arming, as it said last";
+    TestPulses "test_pulses" "" UNITY, 0 ..= 65535, Unit, "Speed pulses that left the TEST board";
+    TestMarkers "test_markers" "" UNITY, 0 ..= 255, Unit, "Marker pulses that left the TEST board";
+    TestAnswers "test_answers" "" UNITY, 0 ..= 65535, Unit, "TWC answers the TEST modem heard";
+    TestAnswerStation "test_answer_station" "" UNITY, 0 ..= 65535, Unit, "Station number in the last TWC answer the TEST modem heard";
+    TestAnswerTrain "test_answer_train" "" UNITY, 0 ..= 65535, Unit, "Train number in the last TWC answer the TEST modem heard";
+    AskedEb "asked_eb" "" SWITCHED, 0 ..= 1, Unit, "Emergency brake as the functions under test ask for it";
+    AskedFsb "asked_fsb" "" SWITCHED, 0 ..= 1, Unit, "Full service brake as the functions under test ask for it";
+    AskedPowerCut "asked_power_cut" "" Kind::Bit, 0 ..= 1, Unit, "Powering cut as the functions under test ask for it";
+    AskedAlarm "asked_alarm" "" Kind::Bit, 0 ..= 1, Unit, "Overspeed alarm as the functions under test ask for it";
+    AskedDoorLeft "asked_door_left" "" Kind::Bit, 0 ..= 1, Unit, "Doors on the left enabled as the functions under test ask for it";
+    AskedDoorRight "asked_door_right" "" Kind::Bit, 0 ..= 1, Unit, "Doors on the right enabled as the functions under test ask for it";
+    AskedPower "asked_power" "" Kind::Bit, 0 ..= 1, Unit, "Powering as the functions under test ask for it";
+    AskedEffort "asked_effort" "" UNITY, -1024 ..= 1023, Unit, "Effort that the functions under test ask for";
+    AskedMode "asked_mode" "" Kind::Enum(Mode::LABELS), 0 ..= 5, Unit, "Operating mode of the functions under test";
+    TrainMode "train_mode" "" Kind::Enum(Mode::LABELS), 0 ..= 5, Unit, "Operating mode told to TCMS";
+    TrainSpeed1 "train_speed1" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed by the train's own tachometer 1, whatever test speed there is";
+    TrainSpeed2 "train_speed2" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed by the train's own tachometer 2, whatever test speed there is";
+    MarkerAt "marker_at" "s" MILLI, 0 ..= 4294968, Unit, "When the unit detected the last marker, by its own clock";
+    TcmsBraking "tcms_braking" "" SWITCHED, 0 ..= 1, Unit, "Service brake of the train as TCMS tells the unit";
+    TcmsLineOpen "tcms_eb" "" SWITCHED, 0 ..= 1, Unit, "Emergency brake of the train as TCMS tells the unit";
+    TcmsGiven "tcms_given" "" UNITY, -1024 ..= 1023, Unit, "Effort the train gives as TCMS tells the unit";
+    TcmsLoad "tcms_load" "t" CENTI, 0 ..= 6554, Unit, "Passenger load as TCMS tells the unit";
+    TwcStation "twc_station" "" UNITY, 0 ..= 65535, Unit, "Station number in the station data in force; 0 = none";
+    TwcSection "twc_section" "" UNITY, 0 ..= 65535, Unit, "Section number in the station data in force; 0 = none";
+    TwcLoop "twc_loop" "" UNITY, 0 ..= 65535, Unit, "Loop number in the station data in force; 0 = none";
+    TwcTrain "twc_train" "" UNITY, 0 ..= 65535, Unit, "Train number in the station data in force; 0 = none";
+    TwcSent "twc_sent" "" UNITY, 0 ..= 65535, Unit, "TWC answers the unit sent into the loop";
 }
 
 impl Signal {
@@ -216,8 +248,13 @@ impl Signal {
     /// Number of values of a counter that wraps to 0; `None` for signals that do not wrap.
     pub const fn wraps_at(self) -> Option<f64> {
         match self {
-            Self::MarkerCount => Some(256.0),
-            Self::RejectedFrames | Self::TwcReceived | Self::TwcAnswers => Some(65_536.0),
+            Self::MarkerCount | Self::TestMarkers => Some(256.0),
+            Self::RejectedFrames
+            | Self::TwcReceived
+            | Self::TwcAnswers
+            | Self::TwcSent
+            | Self::TestPulses
+            | Self::TestAnswers => Some(65_536.0),
             _ => None,
         }
     }

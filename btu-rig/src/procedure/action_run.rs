@@ -3,12 +3,12 @@
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
-use super::Driver;
 use super::condition::{Answer, Captured};
 use super::describe::bits_seen;
 use super::plan::Action;
 use super::report::RunEvent;
 use super::runner::PromptPolicy;
+use super::{Driver, UnitTime};
 
 /// How often a wait is reported.
 const WAITING_EVERY: Duration = Duration::from_ms(500);
@@ -19,6 +19,8 @@ pub(super) struct Scan<'a> {
     pub now: Instant,
     pub sample: &'a Sample,
     pub captured: &'a Captured,
+    /// By which reactions of the unit are timed; `None` = by `now`.
+    pub unit_time: Option<UnitTime>,
 }
 
 /// Operator's side of a prompt.
@@ -96,6 +98,11 @@ impl ActionRun {
         out: &mut Vec<RunEvent>,
     ) -> Progress {
         while let Some(action) = actions.get(self.at) {
+            let (action, here) = action.where_done(driver.has_harness());
+            if !here {
+                self.skip();
+                continue;
+            }
             let since = *self.since.get_or_insert(scan.now);
             let waited = scan.now.since(since);
             let done = match action {
@@ -136,6 +143,8 @@ impl ActionRun {
                         Err(problem) => return Progress::Stuck(problem),
                     }
                 }
+                // Where it is done was looked at, and scripts do not nest it.
+                Action::OnBench(_) | Action::OnTrain(_) => true,
             };
             if !done {
                 self.report(action, scan.now, waited, out);
@@ -148,7 +157,13 @@ impl ActionRun {
 
     /// An answer of the operator is waited for.
     pub(super) fn asks(&self, actions: &[Action]) -> bool {
-        self.since.is_some() && matches!(actions.get(self.at), Some(Action::Prompt { .. }))
+        let asks = |action: &Action| match action {
+            Action::OnBench(action) | Action::OnTrain(action) => {
+                matches!(**action, Action::Prompt { .. })
+            }
+            action => matches!(action, Action::Prompt { .. }),
+        };
+        self.since.is_some() && actions.get(self.at).is_some_and(asks)
     }
 
     /// Says what is waited for: prompts at once, the rest if it takes longer than a moment.

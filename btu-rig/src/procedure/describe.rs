@@ -202,6 +202,8 @@ impl Display for Action {
             Self::Prompt { text, within } => {
                 write!(f, "ask the operator \"{text}\" within {within}")
             }
+            Self::OnBench(action) => write!(f, "on a bench: {action}"),
+            Self::OnTrain(action) => write!(f, "on a train: {action}"),
         }
     }
 }

@@ -31,6 +31,29 @@ pub struct LineState {
     pub lost_or_damaged_lately: u64,
 }
 
+/// After which stamps of the unit that which is new in a scan happened, ms of its clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnitTimeBounds {
+    /// A change that the unit tells in its scan.
+    pub scan_ms: u32,
+    /// Another value of a state frame.
+    pub frame_ms: u32,
+    /// A value of `Status`.
+    pub cycle_ms: u32,
+}
+
+/// When the unit was as the sample of this scan shows it, by its own clock: without a harness frames come when
+/// they come, and only their stamps date what they show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnitTime {
+    /// Stamp of the latest state: what is new in it happened by then, ms.
+    pub stamp_ms: u32,
+    /// And after these.
+    pub after: UnitTimeBounds,
+    /// Stamp of the latest answer to a request, which acts from that scan on, ms.
+    pub answered_ms: Option<u32>,
+}
+
 /// How far a driver can trust what it receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Evidence {
@@ -42,6 +65,8 @@ pub struct Evidence {
     pub line: LineState,
     /// Self-test items that failed, as the unit says.
     pub self_test: SelfTest,
+    /// By which the unit's reactions are timed; `None` = by the bench's clock.
+    pub unit_time: Option<UnitTime>,
 }
 
 impl Default for Evidence {
@@ -52,6 +77,7 @@ impl Default for Evidence {
             not_kept: 0,
             line: LineState::default(),
             self_test: SelfTest::empty(),
+            unit_time: None,
         }
     }
 }

@@ -33,9 +33,15 @@ impl Bound {
     }
 }
 
-/// Passed if `low <= value <= high`. A value or limit that is missing or not a finite number is an
-/// error: nothing but a comparison that came out right may pass.
-pub(super) fn judge(value: Option<f64>, low: Bound, high: Bound) -> Verdict {
+/// Passed if `low <= value <= high`, and while the value is outside by no more than its uncertainty: only what is
+/// proved fails. A value or limit that is missing or not a finite number is an error: nothing but a comparison that
+/// came out right may pass.
+pub(super) fn judge(
+    value: Option<f64>,
+    uncertainty: Option<f64>,
+    low: Bound,
+    high: Bound,
+) -> Verdict {
     let Some(value) = value.filter(|v| v.is_finite()) else {
         return Verdict::Error;
     };
@@ -47,8 +53,9 @@ pub(super) fn judge(value: Option<f64>, low: Bound, high: Bound) -> Verdict {
     if unusable(low) || unusable(high) {
         return Verdict::Error;
     }
-    let low_holds = low.number().is_none_or(|low| value >= low);
-    let high_holds = high.number().is_none_or(|high| value <= high);
+    let off = uncertainty.unwrap_or(0.0);
+    let low_holds = low.number().is_none_or(|low| value + off >= low);
+    let high_holds = high.number().is_none_or(|high| value - off <= high);
     if low_holds && high_holds {
         Verdict::Passed
     } else {
@@ -88,9 +95,28 @@ mod tests {
         ];
         for (name, low, high, expected) in table {
             for (value, expected) in values.into_iter().zip(expected) {
-                assert_eq!(judge(value, low, high), expected, "{name} {value:?}");
+                assert_eq!(judge(value, None, low, high), expected, "{name} {value:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_value_fails_only_outside_its_uncertainty() {
+        let (low, high) = (Bound::At(10.0), Bound::At(20.0));
+        for (value, expected) in [
+            (7.9, Failed),
+            (8.0, Passed),
+            (15.0, Passed),
+            (22.0, Passed),
+            (22.1, Failed),
+        ] {
+            assert_eq!(
+                judge(Some(value), Some(2.0), low, high),
+                expected,
+                "{value}"
+            );
+        }
+        assert_eq!(judge(None, Some(2.0), low, high), Error);
     }
 
     #[test]

@@ -1,14 +1,19 @@
 //! One measurement while its step runs: watches each scan and yields the value when the step ends.
+//!
+//! Without a bench harness a time is measured by the unit's own stamps, as the time between two moments of which each
+//! is known within bounds: the value is the middle of what it may be, its uncertainty half of that span.
 
 use protocol::Instant;
 use protocol::signal::Signal;
 
+use super::UnitTime;
 use super::Verdict;
 use super::action_run::Scan;
 use super::condition::{Answer, Captured, MissingData};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::Measurement;
+use super::unit_clock::Moment;
 
 /// Watches for a condition to *become* true: it must have been seen false first. A brake that is
 /// applied already when its time is taken has no reaction time, it must not get one of 0 ms.
@@ -38,17 +43,25 @@ impl Edge {
     }
 }
 
+/// When a measured time began, by the bench and by the unit.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    at: Instant,
+    by_unit: Option<Moment>,
+}
+
 #[derive(Clone, Debug, Default)]
 pub(super) struct MeasurementRun {
     from: Edge,
     to: Edge,
     /// When the time measured began.
-    start: Option<Instant>,
+    start: Option<Start>,
     /// First and latest value of a change, and what its counter has lost by beginning anew at 0.
     first: Option<f64>,
     latest: Option<f64>,
     wrapped: f64,
     value: Option<f64>,
+    uncertainty: Option<f64>,
     missing_data: Option<MissingData>,
     done: bool,
     /// The step need not wait for it any longer.
@@ -56,19 +69,22 @@ pub(super) struct MeasurementRun {
 }
 
 impl MeasurementRun {
-    /// Looks at one scan; `actions_end` as in [`super::expectation_run::ExpectationRun::look`].
+    /// Looks at one scan; `actions_end` as in [`super::expectation_run::ExpectationRun::look`], `request_last`: what
+    /// ended them was the unit's answer to a request.
     pub(super) fn look(
         &mut self,
         measure: &Measure,
         scan: Scan<'_>,
         step_start: Instant,
-        actions_end: Option<Instant>,
+        (actions_end, request_last): (Option<Instant>, bool),
     ) {
         if self.done {
             return;
         }
         match &measure.what {
-            What::Time { from, to } => self.time(from, to, scan, step_start, actions_end),
+            What::Time { from, to } => {
+                self.time((from, to), scan, step_start, (actions_end, request_last));
+            }
             What::At { signal, when } => {
                 if self.to.look(when, scan, &mut self.missing_data) {
                     self.done = true;
@@ -80,7 +96,11 @@ impl MeasurementRun {
             What::Minimum(signal) => self.extreme(*signal, scan, f64::min),
             What::Change(signal) => {
                 let value = self.follow(*signal, scan);
-                if self.start.replace(step_start).is_none() {
+                let start = Start {
+                    at: step_start,
+                    by_unit: None,
+                };
+                if self.start.replace(start).is_none() {
                     self.first = value;
                 }
             }
@@ -107,45 +127,71 @@ impl MeasurementRun {
             What::Maximum(_) | What::Minimum(_) if self.missing_data.is_some() => self.value = None,
             _ => {}
         }
-        let measurement = measured(measure, self.value, scan.captured);
+        let measurement = measured(measure, self.value, self.uncertainty, scan.captured);
         let message = self.message(measure, &measurement);
         (measurement, message)
     }
 
     /// Ends the measurement without a value.
     pub(super) fn without_value(self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
-        let measurement = measured(measure, None, scan.captured);
+        let measurement = measured(measure, None, None, scan.captured);
         let message = self.message(measure, &measurement);
         (measurement, message)
     }
 
     fn time(
         &mut self,
-        from: &TimeFrom,
-        to: &Condition,
+        (from, to): (&TimeFrom, &Condition),
         scan: Scan<'_>,
         step_start: Instant,
-        actions_end: Option<Instant>,
+        (actions_end, request_last): (Option<Instant>, bool),
     ) {
         if self.start.is_none() {
+            let by_unit = |moment: fn(&UnitTime) -> Moment| scan.unit_time.as_ref().map(moment);
+            let start = |at| Start {
+                at,
+                by_unit: by_unit(Moment::before_the_next),
+            };
             self.start = match from {
-                TimeFrom::StepStart => Some(step_start),
-                TimeFrom::ActionsEnd => actions_end,
+                TimeFrom::StepStart => Some(start(step_start)),
+                TimeFrom::ActionsEnd if request_last => actions_end.map(|at| Start {
+                    at,
+                    by_unit: by_unit(Moment::of_answer),
+                }),
+                TimeFrom::ActionsEnd => actions_end.map(start),
                 TimeFrom::Condition(condition) => {
                     let begins = self.from.look(condition, scan, &mut self.missing_data);
-                    begins.then_some(scan.now)
+                    begins.then(|| Start {
+                        at: scan.now,
+                        by_unit: scan.unit_time.map(|time| Moment::of_edge(&time, condition)),
+                    })
                 }
             };
+        } else if let (Some(start), Some(time)) = (&mut self.start, &scan.unit_time) {
+            start.by_unit = start.by_unit.map(|moment| moment.ended_by(time));
         }
         let reached = self.to.look(to, scan, &mut self.missing_data);
         // An end before the beginning is passed over; the next one counts.
         match self.start {
             Some(start) if reached => {
                 self.done = true;
-                self.value = Some(scan.now.since(start).as_us() as f64 / 1000.0);
+                self.take_time(start, to, scan);
             }
             None if reached => self.to = Edge::default(),
             _ => {}
+        }
+    }
+
+    fn take_time(&mut self, start: Start, to: &Condition, scan: Scan<'_>) {
+        match (start.by_unit, scan.unit_time) {
+            (Some(start), Some(time)) => {
+                let between = Moment::of_edge(&time, to).since(start);
+                self.value = between.map(|(value_ms, _)| value_ms);
+                self.uncertainty = between.map(|(_, uncertainty_ms)| uncertainty_ms);
+            }
+            // Without a state frame at the beginning nothing dates it by the unit's clock.
+            (None, Some(_)) => {}
+            (_, None) => self.value = Some(scan.now.since(start.at).as_us() as f64 / 1000.0),
         }
     }
 
@@ -181,8 +227,11 @@ impl MeasurementRun {
             (Verdict::Passed, ..) => String::new(),
             (Verdict::Failed, Some(value), _) => {
                 let limits = super::describe::limits(measurement.low, measurement.high);
+                let uncertainty = measurement.uncertainty.map_or(String::new(), |off| {
+                    format!(" ± {}", super::describe::number(off))
+                });
                 format!(
-                    "{name} = {}, allowed {limits} {}",
+                    "{name} = {}{uncertainty}, allowed {limits} {}",
                     super::describe::number(value),
                     measurement.unit
                 )
@@ -202,7 +251,12 @@ impl MeasurementRun {
 }
 
 /// A measurement with its limits as they stand now.
-fn measured(measure: &Measure, value: Option<f64>, captured: &Captured) -> Measurement {
+fn measured(
+    measure: &Measure,
+    value: Option<f64>,
+    uncertainty: Option<f64>,
+    captured: &Captured,
+) -> Measurement {
     let low = Bound::resolve(measure.low.as_ref(), captured);
     let high = Bound::resolve(measure.high.as_ref(), captured);
     Measurement {
@@ -211,6 +265,7 @@ fn measured(measure: &Measure, value: Option<f64>, captured: &Captured) -> Measu
         unit: measure.unit(),
         low: low.number(),
         high: high.number(),
-        verdict: judge(value, low, high),
+        uncertainty: uncertainty.filter(|_| value.is_some()),
+        verdict: judge(value, uncertainty, low, high),
     }
 }

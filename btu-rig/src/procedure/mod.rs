@@ -22,13 +22,14 @@ pub mod report;
 pub mod runner;
 mod step_run;
 mod stimulus_text;
+mod unit_clock;
 
 use protocol::event::{ALL_CARS, Event};
 use protocol::message::{EbCause, Mode};
 use protocol::{Instant, Speed};
 use thiserror::Error;
 
-pub use evidence::{Evidence, LineState, LogState};
+pub use evidence::{Evidence, LineState, LogState, UnitTime, UnitTimeBounds};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;
@@ -56,6 +57,11 @@ pub trait Driver {
 
     /// Whether [`Driver::make_safe`] has taken effect.
     fn safe(&self) -> bool;
+
+    /// Whether the bench harness is there, so that more than test signals can be given.
+    fn has_harness(&self) -> bool {
+        true
+    }
 
     /// How far what it hears of the unit can be trusted.
     fn evidence(&self) -> Evidence {

@@ -26,6 +26,25 @@ pub enum Connection {
     Ptu,
 }
 
+impl Connection {
+    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
+    /// maintenance port can.
+    pub fn lacks(self, on: Self) -> Option<&'static str> {
+        (self == Self::Btu && on == Self::Ptu).then_some(NEEDS_HARNESS)
+    }
+
+    /// What scripts call it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Btu => "harness",
+            Self::Ptu => "ptu",
+        }
+    }
+}
+
+/// Why a procedure of a bench is not run on a train.
+const NEEDS_HARNESS: &str = "needs the bench harness, and only the maintenance port is connected";
+
 /// One check procedure: one script file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Procedure {
@@ -121,6 +140,10 @@ pub enum Action {
         /// Time allowed.
         within: Duration,
     },
+    /// Done only where the bench harness is there: on a train the cab is as its people left it.
+    OnBench(Box<Action>),
+    /// Done only without the bench harness: what people do there.
+    OnTrain(Box<Action>),
 }
 
 /// What must be seen for a step to pass.
@@ -245,6 +268,24 @@ impl Expectation {
 }
 
 impl Action {
+    /// The action itself, and whether it is done `with_harness` or without.
+    pub fn where_done(&self, with_harness: bool) -> (&Self, bool) {
+        match self {
+            Self::OnBench(action) => (action, with_harness),
+            Self::OnTrain(action) => (action, !with_harness),
+            action => (action, true),
+        }
+    }
+
+    /// Calls `f` with each signal it looks at.
+    fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
+        match self {
+            Self::Until { condition, .. } => condition.for_each_signal(f),
+            Self::OnTrain(action) => action.for_each_signal(f),
+            _ => {}
+        }
+    }
+
     /// Longest time it takes.
     pub fn worst_case(&self) -> Duration {
         match self {
@@ -253,6 +294,7 @@ impl Action {
             Self::Until { within, .. } | Self::Settle { within } | Self::Prompt { within, .. } => {
                 *within
             }
+            Self::OnBench(action) | Self::OnTrain(action) => action.worst_case(),
         }
     }
 
@@ -299,11 +341,9 @@ impl Step {
 
     /// Calls `f` with each signal the step looks at, apart from `when`.
     pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
-        for action in &self.actions {
-            if let Action::Until { condition, .. } = action {
-                condition.for_each_signal(f);
-            }
-        }
+        self.actions
+            .iter()
+            .for_each(|action| action.for_each_signal(f));
         for expectation in &self.expectations {
             match expectation {
                 Expectation::Becomes { condition, .. }
@@ -343,6 +383,14 @@ impl Step {
 }
 
 impl Procedure {
+    /// Calls `f` with each signal that set-up or a step looks at.
+    pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
+        self.setup
+            .iter()
+            .for_each(|action| action.for_each_signal(f));
+        self.steps.iter().for_each(|step| step.for_each_signal(f));
+    }
+
     /// Longest time it can take: setup, all steps with repetitions, clean-up.
     pub fn worst_case(&self) -> Duration {
         let mut total = total_worst_case(&self.setup) + total_worst_case(&self.cleanup);

@@ -17,6 +17,8 @@ pub struct Measurement {
     pub low: Option<f64>,
     /// Greatest value allowed, in `unit`.
     pub high: Option<f64>,
+    /// How far the true value may be off, in `unit`; `None` = less than the steps in which it is given.
+    pub uncertainty: Option<f64>,
     /// Passed, failed or error.
     pub verdict: Verdict,
 }

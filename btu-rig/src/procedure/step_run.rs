@@ -8,7 +8,7 @@ use super::event_set::EventSet;
 use super::evidence::{Evidence, LogState, counted};
 use super::expectation_run::ExpectationRun;
 use super::measure_run::MeasurementRun;
-use super::plan::Step;
+use super::plan::{Action, Step};
 use super::report::{Measurement, RunEvent};
 use super::{Driver, UnitEvent, Verdict};
 
@@ -285,8 +285,9 @@ impl StepRun {
         for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
             run.look(expectation, scan, actions_end, (self.logged, self.log));
         }
+        let request_last = matches!(step.actions.last(), Some(Action::Settle { .. }));
         for (run, measure) in self.measurements.iter_mut().zip(&step.measures) {
-            run.look(measure, scan, self.started, actions_end);
+            run.look(measure, scan, self.started, (actions_end, request_last));
         }
     }
 

@@ -33,6 +33,11 @@ impl Rig {
     /// # Errors
     /// What the bench cannot do, in words for the technician.
     pub fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
+        if !self.harness.is_there() && !stimulus.by_tester() {
+            return Err(Refusal(format!(
+                "only the maintenance port is connected: the bench harness gives this ({stimulus})"
+            )));
+        }
         if self.making_safe {
             self.rest_quiescent();
         }
@@ -364,6 +369,9 @@ impl crate::procedure::Driver for Rig {
     }
     fn safe(&self) -> bool {
         Self::safe(self)
+    }
+    fn has_harness(&self) -> bool {
+        self.harness.is_there()
     }
     fn evidence(&self) -> Evidence {
         Self::evidence(self)

@@ -71,6 +71,8 @@ pub struct Exchange {
     /// Why the unit refused or ended arming, as it said last.
     refusal: ArmRefusal,
     failure: Option<Refusal>,
+    /// Why the unit ended the session though nobody asked it to.
+    ended: Option<ArmRefusal>,
     /// The outcome is not awaited: the bench is being made safe.
     quiet: bool,
 }
@@ -86,6 +88,7 @@ impl Exchange {
             armed_at: None,
             refusal: ArmRefusal::None,
             failure: None,
+            ended: None,
             quiet: false,
         }
     }
@@ -116,6 +119,11 @@ impl Exchange {
         self.failure = None;
         self.queue.extend(requests);
         self.quiet = true;
+    }
+
+    /// Why the unit ended the session by itself, once.
+    pub fn take_ended(&mut self) -> Option<ArmRefusal> {
+        self.ended.take()
     }
 
     /// Nothing is under way.
@@ -218,6 +226,10 @@ impl Exchange {
             return;
         }
         let armed = state.armed == 1;
+        let asked = self.current.is_some() || self.quiet;
+        if !armed && self.armed() && !asked {
+            self.ended = Some(state.refusal);
+        }
         self.armed_at = armed.then_some(now);
         self.refusal = state.refusal;
         let Some(current) = &mut self.current else {

@@ -98,8 +98,15 @@ impl LinkWatch {
         }
     }
 
-    /// What is wrong, if anything; `asks_since` = since when the tester speaks.
-    pub fn error(&self, now: Instant, link: &Link, asks_since: Option<Instant>) -> Option<String> {
+    /// What is wrong, if anything; `asks_since` = since when the tester speaks. The I/O channel is watched only with
+    /// a `harness`.
+    pub fn error(
+        &self,
+        now: Instant,
+        link: &Link,
+        asks_since: Option<Instant>,
+        harness: bool,
+    ) -> Option<String> {
         if let Some(why) = self.turned_away() {
             return Some(why);
         }
@@ -111,7 +118,7 @@ impl LinkWatch {
         if !heard_any {
             return Some(self.no_contact(now.since(begun), link.counters()));
         }
-        let since = [Some(begun), asks_since];
+        let since = [harness.then_some(begun), asks_since];
         let mut watched = WATCHED.iter().zip(since).zip(self.refused);
         watched.find_map(|((&(channel, name), since), refused_before)| {
             let heard = link.last_heard(channel).unwrap_or(begun).max(since?);

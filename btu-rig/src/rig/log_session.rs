@@ -192,7 +192,7 @@ impl LogSession {
     /// contact.
     pub fn link_error(&self, now: Instant) -> Option<String> {
         let speaks_since = self.begun.map(|begun| begun + HOLD_BACK);
-        let link = self.watch.error(now, &self.link, speaks_since);
+        let link = self.watch.error(now, &self.link, speaks_since, false);
         let stores = [Some(&self.events), self.rows.as_ref()];
         let failed = stores
             .into_iter()

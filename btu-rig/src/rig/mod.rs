@@ -13,6 +13,8 @@ mod apply;
 mod bench;
 mod cab_desk;
 mod exchange;
+mod harness;
+mod identity;
 mod line_watch;
 mod link_watch;
 mod log_reader;
@@ -27,6 +29,7 @@ mod sample;
 mod section_codes;
 mod step_profile;
 mod store_reader;
+mod subscription;
 mod tacho;
 mod tcms;
 mod tcms_port;
@@ -46,16 +49,19 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
-use protocol::message::{Identity, IoInput, Message};
+use protocol::message::{ArmRefusal, Identity, IoInput, Message};
 use protocol::signal::Sample;
 
 use crate::conditions::Conditions;
-use crate::procedure::{Evidence, UnitEvent};
+use crate::procedure::plan::Connection;
+use crate::procedure::{Evidence, Procedure, UnitEvent};
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
+pub use harness::Harness;
+pub use identity::ExpectedIdentity;
 pub use log_session::LogSession;
 pub use random::Random;
 pub use store_reader::StoredData;
@@ -66,11 +72,13 @@ pub use unit_clock::TimeOfDay;
 
 use antenna::Antenna;
 use cab_desk::CabDesk;
+use harness::HarnessWatch;
 use line_watch::LineWatch;
 use link_watch::LinkWatch;
 use markers::Markers;
 use rolling::weight_shares;
 use sample::LatestSample;
+use subscription::Subscription;
 use tacho::Tacho;
 use tcms::{PairCars, pair_cars};
 use tcms_port::TcmsPort;
@@ -136,6 +144,11 @@ pub struct Rig {
     watch: LinkWatch,
     line_watch: LineWatch,
     latest: LatestSample,
+    harness: HarnessWatch,
+    subscription: Subscription,
+    expected: ExpectedIdentity,
+    /// Restarts of the unit that were told as interventions.
+    restarts_told: u32,
     now: Instant,
     /// When a frame of the unit came last, and its stamp.
     unit_stamp: Option<(Instant, u32)>,
@@ -195,11 +208,40 @@ impl Rig {
             watch: LinkWatch::default(),
             line_watch: LineWatch::new(config.link.rejected_per_10s),
             latest: LatestSample::default(),
+            harness: HarnessWatch::new(Harness::Bench),
+            subscription: Subscription::default(),
+            expected: ExpectedIdentity::default(),
+            restarts_told: 0,
             now: Instant::ZERO,
             unit_stamp: None,
         };
         rig.record();
         rig
+    }
+
+    /// Says whether the harness is connected; without this it is. To be said before the first scan.
+    pub fn set_harness(&mut self, asked: Harness) {
+        self.harness = HarnessWatch::new(asked);
+        self.latest = LatestSample::default();
+        self.record();
+    }
+
+    /// Says which unit should be there.
+    pub fn expect_unit(&mut self, expected: ExpectedIdentity) {
+        self.expected = expected;
+    }
+
+    /// How the unit is reached, once that is known.
+    pub fn connection(&self) -> Option<Connection> {
+        self.harness.found().map(|harness| match harness {
+            true => Connection::Btu,
+            false => Connection::Ptu,
+        })
+    }
+
+    /// It is known what the unit tells of itself.
+    pub fn knows_what_is_told(&self) -> bool {
+        self.harness.found().is_some() && self.subscription.settled()
     }
 
     /// Faults of the train and its wiring, each from its time after `power_at`; faults of
@@ -216,7 +258,7 @@ impl Rig {
             self.line_watch.note_on_purpose(now);
         }
         self.line_watch.step(now, self.link.counters());
-        self.latest.step(now);
+        self.latest.step(now, self.harness.is_there());
         if self.quiescent {
             // The unit may ask for the holding brake a little longer: the next procedure knows nothing
             // of it.
@@ -232,13 +274,24 @@ impl Rig {
         self.markers.step(self.wheel.motion());
         self.finish_making_safe();
 
+        if self.harness.is_there() {
+            self.play_train(now, out);
+        }
+        self.tester.step(now, &mut self.link, out);
+        if self.harness.found().is_some() && self.tester.speaks_since().is_some() {
+            let changes = !self.harness.is_there();
+            self.subscription.step(now, changes, &mut self.link, out);
+        }
+        self.record();
+    }
+
+    /// Frames of I/O rack, TCMS and wayside that are due.
+    fn play_train(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.link.send(now, &self.io_input(now).into(), out);
         if let Some(message) = self.tcms_port.step(now, self.tcms.view(), self.braking) {
             self.link.send(now, &message.into(), out);
         }
         self.wayside.step(now, &mut self.link, out);
-        self.tester.step(now, &mut self.link, out);
-        self.record();
     }
 
     /// Takes bytes from the unit.
@@ -247,10 +300,15 @@ impl Rig {
         self.watch.note(bytes.len());
         self.link.push(bytes);
         while let Some(received) = self.link.poll(now) {
-            self.unit_stamp = Some((now, received.header.stamp_ms));
+            let stamp_ms = received.header.stamp_ms;
+            self.unit_stamp = Some((now, stamp_ms));
+            self.harness.note_frame(now, received.header.channel);
             self.watch
                 .note_frame(received.header.channel, self.link.counters());
+            let harness = self.harness.is_there();
             match &received.message {
+                Message::IoOutput(_) | Message::AtcToTcms(_) | Message::TwcTrain(_) if !harness => {
+                }
                 Message::IoOutput(io) => self.latest.on_io(now, io),
                 Message::AtcToTcms(command) => {
                     if !self.tcms_port.silent() {
@@ -263,18 +321,32 @@ impl Rig {
                     self.latest.on_twc(now, answer, self.wayside.answers());
                 }
                 Message::Taken(taken) => self.watch.note_taken(*taken),
-                message => self.on_tester(now, message),
+                Message::TrainState(state) => {
+                    self.latest.on_train_state(now, state, harness);
+                    let counters = self.link.counters();
+                    self.subscription.on_state(stamp_ms, state, counters);
+                    if !harness {
+                        // The next one is for the next scan, so that each scan's sample has one stamp.
+                        break;
+                    }
+                }
+                message => self.on_tester(now, stamp_ms, message),
             }
         }
     }
 
-    fn on_tester(&mut self, now: Instant, message: &Message) {
+    fn on_tester(&mut self, now: Instant, stamp_ms: u32, message: &Message) {
         let restarts = self.tester.restarts();
         self.tester.receive(now, message);
         if self.tester.restarts() != restarts {
             self.line_watch.note_restart(now);
+            self.subscription.restart();
+        }
+        if let Message::StimulusAnswer(_) | Message::ArmState(_) = message {
+            self.subscription.on_answer(stamp_ms);
         }
         if let Message::Status(status) = message {
+            self.subscription.on_status(stamp_ms);
             self.latest.on_status(now, status);
             if let Some((at, stamp_ms)) = self.unit_stamp {
                 self.line_watch.on_clock(at, stamp_ms);
@@ -349,8 +421,9 @@ impl Rig {
     pub fn link_error(&self) -> Option<String> {
         let line = self.line_watch.error(self.now);
         let silence = || {
-            self.watch
-                .error(self.now, &self.link, self.tester.speaks_since())
+            let asks_since = self.tester.speaks_since();
+            let harness = self.harness.is_there();
+            self.watch.error(self.now, &self.link, asks_since, harness)
         };
         line.or_else(silence)
             .or_else(|| self.tester.error(self.now))
@@ -364,7 +437,53 @@ impl Rig {
             not_kept: self.tester.log().not_kept(),
             line: self.line_watch.state(),
             self_test: self.tester.self_test(),
+            unit_time: self.subscription.unit_time(),
         }
+    }
+
+    /// What was done to the unit on a train since this was last asked, by others than this tester, after which nothing
+    /// can be judged: it was started again, or ended the session by itself. On a bench nobody else is there.
+    pub fn take_intervention(&mut self) -> Option<String> {
+        let restarts = self.tester.restarts();
+        let restarted = std::mem::replace(&mut self.restarts_told, restarts) != restarts;
+        let ended = self.tester.take_session_ended();
+        if self.connection() != Some(Connection::Ptu) {
+            return None;
+        }
+        if restarted {
+            return Some("the unit was started again: its supply was interrupted".to_owned());
+        }
+        ended.map(|refusal| {
+            format!(
+                "the unit ended test mode by itself: {}",
+                session_end(refusal)
+            )
+        })
+    }
+
+    /// Why a procedure cannot be run on this connection, if so: it needs the harness, or what this unit does not
+    /// tell.
+    pub fn cannot_run(&self, procedure: &Procedure) -> Option<String> {
+        let connection = self.connection()?;
+        if let Some(why) = procedure.needs.lacks(connection) {
+            return Some(why.to_owned());
+        }
+        if !self.subscription.refused() {
+            return None;
+        }
+        let untold = sample::told_by_train_state(connection);
+        let mut names = Vec::new();
+        procedure.for_each_signal(&mut |signal| {
+            if untold.contains(&signal) && !names.contains(&signal.name()) {
+                names.push(signal.name());
+            }
+        });
+        let software = self.identity().map_or(String::new(), |identity| {
+            let [major, minor, patch] = identity.software;
+            format!(", software {major}.{minor}.{patch},")
+        });
+        (!names.is_empty())
+            .then(|| format!("this unit{software} does not tell {}", names.join(", ")))
     }
 
     /// Why the unit turned this bench away, if it did: another has it.
@@ -401,5 +520,18 @@ impl Rig {
             mode_switch: self.desk.mode_switch,
             controller: self.desk.lever.wire(),
         }
+    }
+}
+
+/// Why a unit ends a session, in words a technician can act on.
+fn session_end(refusal: ArmRefusal) -> &'static str {
+    match refusal {
+        ArmRefusal::KeyOff => "the maintenance key was turned off",
+        ArmRefusal::Moving | ArmRefusal::TrainMoved => "the train moved",
+        ArmRefusal::CodeChanged => "the speed code in the rail changed",
+        ArmRefusal::ModeChanged => "the mode switch was turned",
+        ArmRefusal::BrakesReleased => "the train does not prove that its brakes are applied",
+        ArmRefusal::TesterSilent => "it did not hear the tester for a second",
+        other => other.label(),
     }
 }

@@ -6,8 +6,15 @@ use super::Rig;
 use crate::stimulus::{TachoCondition, WaysideCondition};
 
 impl Rig {
-    /// Sets them in the latest sample, as they are sent in this scan.
+    /// Sets them in the latest sample, as they are sent in this scan. Without a harness nothing is.
     pub(super) fn record(&mut self) {
+        let refusal = f64::from(self.tester.arm_refusal().code());
+        self.latest.sample.set(Signal::ArmRefusal, refusal);
+        let identity = self.tester.identity();
+        self.expected.compare(identity, &mut self.latest.sample);
+        if !self.harness.is_there() {
+            return;
+        }
         self.latest.note_lines(self.desk.lines(self.now));
         let data = self.wayside.data();
         let sample = &mut self.latest.sample;
@@ -34,10 +41,6 @@ impl Rig {
             (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
             (Signal::Controller, f64::from(self.desk.lever.wire())),
             (Signal::TwcAnswers, f64::from(self.wayside.answers())),
-            (
-                Signal::ArmRefusal,
-                f64::from(self.tester.arm_refusal().code()),
-            ),
         ] {
             sample.set(signal, value);
         }

@@ -1,10 +1,13 @@
 //! The latest value of every signal: what the rig makes, and what the unit last sent.
 
 use protocol::message::{
-    AtcToTcms, AtcToTcmsBits, IoOutput, Outputs, Status, StatusBits, TrainLines, TwcTrain,
+    AtcToTcms, AtcToTcmsBits, IoOutput, Outputs, Status, StatusBits, TcmsToAtcBits, TrainLines,
+    TrainState, TwcTrain,
 };
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant, Speed};
+
+use crate::procedure::plan::Connection;
 
 /// Age at which what the unit said is forgotten.
 const FORGOTTEN: Duration = Duration::from_ms(500);
@@ -16,11 +19,12 @@ enum Source {
     Tcms,
     Status,
     Twc,
+    TrainState,
 }
 
 /// Signals each kind of frame carries, forgotten with it. Mode and target come by two ways, so
 /// that they stay known when one of them fails.
-const CARRIED: [(Source, &[Signal]); 4] = [
+const CARRIED: [(Source, &[Signal]); 5] = [
     (Source::Io, &IO_SIGNALS),
     (
         Source::Tcms,
@@ -31,6 +35,7 @@ const CARRIED: [(Source, &[Signal]); 4] = [
         Source::Twc,
         &[Signal::TwcAnswerStation, Signal::TwcAnswerTrain],
     ),
+    (Source::TrainState, &TRAIN_STATE_SIGNALS),
 ];
 
 const IO_SIGNALS: [Signal; 14] = [
@@ -48,6 +53,48 @@ const IO_SIGNALS: [Signal; 14] = [
     Signal::Speed,
     Signal::Marker,
     Signal::MarkerCount,
+];
+
+/// What only the unit itself can tell. Without a harness it tells [`IO_SIGNALS`], what it sends to TCMS and
+/// [`LINE_SIGNALS`] with them.
+const TRAIN_STATE_SIGNALS: [Signal; 27] = [
+    Signal::TestPulses,
+    Signal::TestMarkers,
+    Signal::TestAnswers,
+    Signal::TestAnswerStation,
+    Signal::TestAnswerTrain,
+    Signal::AskedEb,
+    Signal::AskedFsb,
+    Signal::AskedPowerCut,
+    Signal::AskedAlarm,
+    Signal::AskedDoorLeft,
+    Signal::AskedDoorRight,
+    Signal::AskedPower,
+    Signal::AskedEffort,
+    Signal::AskedMode,
+    Signal::TrainMode,
+    Signal::TrainSpeed1,
+    Signal::TrainSpeed2,
+    Signal::MarkerAt,
+    Signal::TcmsBraking,
+    Signal::TcmsLineOpen,
+    Signal::TcmsGiven,
+    Signal::TcmsLoad,
+    Signal::TwcStation,
+    Signal::TwcSection,
+    Signal::TwcLoop,
+    Signal::TwcTrain,
+    Signal::TwcSent,
+];
+
+/// What a harness sets and a unit on a train reads.
+const LINE_SIGNALS: [Signal; 6] = [
+    Signal::Doors,
+    Signal::Hcr,
+    Signal::MaintenanceKey,
+    Signal::EbLoop,
+    Signal::ModeSwitch,
+    Signal::Controller,
 ];
 
 const STATUS_SIGNALS: [Signal; 25] = [
@@ -78,6 +125,17 @@ const STATUS_SIGNALS: [Signal; 25] = [
     Signal::TestSpeed,
 ];
 
+/// Signals that nothing but `TrainState` tells on a connection.
+pub fn told_by_train_state(connection: Connection) -> Vec<Signal> {
+    let mut told = TRAIN_STATE_SIGNALS.to_vec();
+    if connection == Connection::Ptu {
+        told.extend(IO_SIGNALS);
+        told.extend(LINE_SIGNALS);
+        told.extend([Signal::Effort, Signal::Power, Signal::Brake]);
+    }
+    told
+}
+
 /// The latest value of every signal, and when each source of the unit was last heard.
 #[derive(Debug, Default)]
 pub struct LatestSample {
@@ -92,8 +150,8 @@ impl LatestSample {
         self.heard[Source::Io as usize].map(|_| self.outputs)
     }
 
-    /// Forgets what the unit has not said again for too long.
-    pub fn step(&mut self, now: Instant) {
+    /// Forgets what the unit has not said again for too long; `harness`: the rig sets the train lines and plays TCMS.
+    pub fn step(&mut self, now: Instant, harness: bool) {
         let both_ways = [Source::Tcms as usize, Source::Status as usize];
         for (source, signals) in CARRIED {
             let heard = &mut self.heard[source as usize];
@@ -108,8 +166,13 @@ impl LatestSample {
                 }
             }
         }
-        let tcms_hears = self.heard[Source::Tcms as usize].is_some();
-        self.sample.set_bit(Signal::TcmsHears, tcms_hears);
+        if harness {
+            let tcms_hears = self.heard[Source::Tcms as usize].is_some();
+            self.sample.set_bit(Signal::TcmsHears, tcms_hears);
+        } else if self.heard[Source::TrainState as usize].is_none() {
+            let told = LINE_SIGNALS.iter();
+            told.for_each(|&signal| self.sample.forget(signal));
+        }
     }
 
     /// Takes the unit's contacts and cab display.
@@ -140,9 +203,13 @@ impl LatestSample {
     /// Takes the unit's commands to TCMS.
     pub fn on_tcms(&mut self, now: Instant, tcms: &AtcToTcms) {
         self.heard[Source::Tcms as usize] = Some(now);
+        let by_status = self.heard[Source::Status as usize].is_some();
         let sample = &mut self.sample;
-        sample.set(Signal::Mode, f64::from(tcms.mode.code()));
-        sample.set(Signal::Target, kmh(tcms.target_cms));
+        if !by_status {
+            // While test signals act, `Status` is about the functions under test.
+            sample.set(Signal::Mode, f64::from(tcms.mode.code()));
+            sample.set(Signal::Target, kmh(tcms.target_cms));
+        }
         sample.set(Signal::Effort, f64::from(tcms.effort));
         sample.set_bit(Signal::Power, tcms.bits.contains(AtcToTcmsBits::POWER));
         sample.set_bit(Signal::Brake, tcms.bits.contains(AtcToTcmsBits::BRAKE));
@@ -195,6 +262,89 @@ impl LatestSample {
         }
     }
 
+    /// Takes what the unit does to the train and has from it; `harness`: its contacts, its frames to TCMS and the train
+    /// lines are known at first hand.
+    pub fn on_train_state(&mut self, now: Instant, state: &TrainState, harness: bool) {
+        self.heard[Source::TrainState as usize] = Some(now);
+        let asked = |output| state.asked.contains(output);
+        let tcms = |bit| state.tcms_bits.contains(bit);
+        for (signal, on) in [
+            (Signal::AskedEb, !asked(Outputs::EB_RELAY)),
+            (Signal::AskedFsb, asked(Outputs::FSB)),
+            (Signal::AskedPowerCut, asked(Outputs::POWER_CUT)),
+            (Signal::AskedAlarm, asked(Outputs::ALARM)),
+            (Signal::AskedDoorLeft, asked(Outputs::DOOR_ENABLE_LEFT)),
+            (Signal::AskedDoorRight, asked(Outputs::DOOR_ENABLE_RIGHT)),
+            (Signal::AskedPower, state.asked_effort > 0),
+            (
+                Signal::TcmsBraking,
+                tcms(TcmsToAtcBits::SERVICE_BRAKE_APPLIED),
+            ),
+            (
+                Signal::TcmsLineOpen,
+                tcms(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED),
+            ),
+        ] {
+            self.sample.set_bit(signal, on);
+        }
+        for (signal, value) in [
+            (Signal::AskedEffort, f64::from(state.asked_effort)),
+            (Signal::AskedMode, f64::from(state.asked_mode.code())),
+            (Signal::TrainMode, f64::from(state.mode.code())),
+            (Signal::TrainSpeed1, kmh(state.train_speed1_cms)),
+            (Signal::TrainSpeed2, kmh(state.train_speed2_cms)),
+            (Signal::MarkerAt, f64::from(state.marker_at_ms) / 1000.0),
+            (Signal::TcmsGiven, f64::from(state.tcms_effort)),
+            (Signal::TcmsLoad, f64::from(state.load_100kg) / 10.0),
+            (Signal::TwcStation, f64::from(state.twc_station)),
+            (Signal::TwcSection, f64::from(state.twc_section)),
+            (Signal::TwcLoop, f64::from(state.twc_loop)),
+            (Signal::TwcTrain, f64::from(state.twc_train_number)),
+            (Signal::TwcSent, f64::from(state.twc_answers)),
+            (Signal::TestAnswers, f64::from(state.test_answers)),
+            (
+                Signal::TestAnswerStation,
+                f64::from(state.test_answer_station),
+            ),
+            (Signal::TestAnswerTrain, f64::from(state.test_answer_train)),
+            (Signal::TestPulses, f64::from(state.test_pulses)),
+            (Signal::TestMarkers, f64::from(state.test_markers)),
+        ] {
+            self.sample.set(signal, value);
+        }
+        if !harness {
+            self.on_train_alone(now, state);
+        }
+    }
+
+    /// What a harness shows otherwise.
+    fn on_train_alone(&mut self, now: Instant, state: &TrainState) {
+        let io = IoOutput {
+            outputs: state.outputs,
+            limit_cms: state.limit_cms,
+            speed_cms: state.speed_cms,
+            marker: state.marker,
+            marker_count: state.marker_count,
+        };
+        self.on_io(now, &io);
+        self.heard[Source::Tcms as usize] = Some(now);
+        self.note_lines(state.lines);
+        for (signal, value) in [
+            (Signal::Effort, f64::from(state.effort)),
+            (Signal::Power, f64::from(u8::from(state.effort > 0))),
+            (Signal::Brake, f64::from(u8::from(state.effort < 0))),
+            (Signal::ModeSwitch, f64::from(state.mode_switch.code())),
+            (Signal::Controller, f64::from(state.controller)),
+            // Dated to the scan, `Status` is not.
+            (Signal::CodeIndex, f64::from(state.code_index)),
+            (Signal::EbCause, f64::from(state.eb_cause.code())),
+            (Signal::FsbCause, f64::from(state.fsb_cause.code())),
+            (Signal::Mode, f64::from(state.asked_mode.code())),
+        ] {
+            self.sample.set(signal, value);
+        }
+    }
+
     /// Takes the train's answer to the wayside, one of `answers` so far.
     pub fn on_twc(&mut self, now: Instant, answer: &TwcTrain, answers: u16) {
         self.heard[Source::Twc as usize] = Some(now);
@@ -238,6 +388,7 @@ mod tests {
         latest.on_tcms(Instant::ZERO, &AtcToTcms::default());
         latest.on_status(Instant::ZERO, &Status::default());
         latest.on_twc(Instant::ZERO, &TwcTrain::default(), 1);
+        latest.on_train_state(Instant::ZERO, &TrainState::default(), true);
         let known = |latest: &LatestSample| {
             let all = Signal::ALL.iter().copied();
             all.filter(|&s| s.definition().origin == Origin::Unit && s != Signal::TwcAnswers)
@@ -248,16 +399,16 @@ mod tests {
             .iter()
             .filter(|s| s.definition().origin == Origin::Unit);
         let expected = unit_signals.count() - 1;
-        latest.step(Instant::from_ms(490));
+        latest.step(Instant::from_ms(490), true);
         assert_eq!(known(&latest), expected);
         latest.on_tcms(Instant::from_ms(490), &AtcToTcms::default());
-        latest.step(Instant::from_ms(500));
+        latest.step(Instant::from_ms(500), true);
         assert_eq!(
             known(&latest),
             5,
             "effort, power, brake, and mode and target with them"
         );
-        latest.step(Instant::from_ms(990));
+        latest.step(Instant::from_ms(990), true);
         assert_eq!(known(&latest), 0);
     }
 }

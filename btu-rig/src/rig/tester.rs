@@ -281,6 +281,11 @@ impl Tester {
         self.leaves_old = true;
     }
 
+    /// Why the unit ended the session by itself, once; not while this tester is silent on purpose.
+    pub fn take_session_ended(&mut self) -> Option<ArmRefusal> {
+        self.exchange.take_ended().filter(|_| !self.silent)
+    }
+
     /// Times the unit was started again.
     pub fn restarts(&self) -> u32 {
         self.restarts

@@ -120,7 +120,7 @@ kinds! {
     9000 "check_failed" "io_board" "major" "atp/power_up, mode switch not seen" 0.5 Any 0.0 0.4;
     9000 "check_failed" "marker_antenna" "major" "ato/markers, not detected" 1.0 Winter 400.0 0.2;
     9000 "check_failed" "rs485_link" "major" "tcms/link, recovery too late" 0.7 Any 400.0 0.3;
-    9000 "check_failed" "test_board" "minor" "atp/ptu_limit_speed, test code not measured" 0.4 Any 0.0 0.4;
+    9000 "check_failed" "test_board" "minor" "ptu/limit_speed, test code not measured" 0.4 Any 0.0 0.4;
     9000 "check_failed" "twc_antenna" "major" "twc/exchange, loop not heard" 1.2 Winter 400.0 0.2;
     9001 "eb_unrequested" "unknown" "critical" "emergency brake applied in a step that did not ask for it" 0.8 Any 0.0 0.5;
 }

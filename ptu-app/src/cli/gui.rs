@@ -1,5 +1,6 @@
 //! `ptu gui`: the technician's window.
 
+use btu_rig::rig::Harness;
 use clap::{Args, Parser};
 
 use super::{Database, ScriptsOption};
@@ -29,6 +30,9 @@ pub struct GuiArguments {
     /// Connect at once: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT")]
     unit: Option<Endpoint>,
+    /// Whether the bench harness is connected: auto, none or bench [default: as it was left]
+    #[arg(long, value_name = "WHICH")]
+    harness: Option<Harness>,
     /// Faults to inject into the embedded unit, see `ptu catalog faults`
     #[arg(
         long,
@@ -70,6 +74,7 @@ impl GuiArguments {
             database: self.database.file()?,
             scripts: self.scripts.find()?,
         };
+        settings.unit.harness = self.harness.unwrap_or(settings.unit.harness);
         if let Some(unit) = &self.unit {
             settings.unit.endpoint = unit.to_string();
             settings.unit.faults = self.inject;

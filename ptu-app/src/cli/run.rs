@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
+use btu_rig::rig::Harness;
 use clap::Args;
 use fault_db::Store;
 use serde_json::json;
@@ -18,6 +19,7 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{
     self, BenchChoice, BenchSetup, Outcome, RunPlan, Suite, Task, check_serial, select,
+    software_version,
 };
 use ptu_bench::run_diagnosis::{Bench, adaptive, diagnose_run};
 use ptu_bench::stdio;
@@ -30,6 +32,7 @@ use ptu_report::diagnosis::diagnosis_text;
 ///   ptu run                                     everything, on the embedded unit
 ///   ptu run door 'atp/over*'                    by folder or glob
 ///   ptu run --unit serial:/dev/ttyUSB0@115200   on a unit on a port
+///   ptu run ptu --unit serial:/dev/ttyUSB0      with a laptop alone, on a train
 ///   ptu run --check                             all script errors, nothing driven
 ///   ptu run --list atp/overspeed                what would be done
 ///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
@@ -46,6 +49,10 @@ pub struct RunArguments {
     /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT", default_value = "sim")]
     unit: Endpoint,
+    /// Whether the bench harness is connected: auto (found out), none (a laptop on a train) or bench; with `sim`,
+    /// none is the embedded unit aboard a simulated train
+    #[arg(long, value_name = "WHICH", default_value = "auto")]
+    harness: Harness,
     /// Line, lines/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "line8")]
     line: String,
@@ -61,6 +68,9 @@ pub struct RunArguments {
     /// Serial number: of the embedded unit, or expected of a real one
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
+    /// Software version the unit should have, compared by `ptu/identity`
+    #[arg(long, value_name = "VERSION", value_parser = software_version)]
+    software: Option<[u8; 3]>,
     /// Train the unit is in, as the depot names it
     #[arg(long, value_name = "TEXT", default_value = "")]
     train_no: String,
@@ -196,11 +206,13 @@ impl RunArguments {
         }
         BenchChoice {
             endpoint: self.unit.to_string(),
+            harness: self.harness,
             line: self.line.clone(),
             unit_config: self.unit_config.clone(),
             train: self.train.clone(),
             settings: self.set.clone(),
             serial: self.serial_no.clone().unwrap_or_default(),
+            software: self.software,
             faults: self.inject.clone(),
             seed: self.seed,
             scatter: self.scatter.is_some(),
@@ -262,8 +274,10 @@ impl RunArguments {
 
     fn show(&self, tasks: &[Task]) -> Result<Exit, Failure> {
         if self.json {
+            let listed = |task| listed(task, self.harness);
             return print_json(&tasks.iter().map(listed).collect::<Vec<_>>());
         }
+        let described = |task| described(task, self.harness);
         let lines: Vec<String> = tasks.iter().flat_map(described).collect();
         print_out(&lines.join("\n"))
     }
@@ -335,8 +349,19 @@ impl RunArguments {
     }
 }
 
+/// Why a procedure will be skipped, as far as is known before the unit is reached.
+fn skipped(procedure: &Procedure, harness: Harness) -> Option<&'static str> {
+    match harness {
+        Harness::None => procedure.needs.lacks(Connection::Ptu),
+        Harness::Auto | Harness::Bench => None,
+    }
+}
+
 /// The plan in words, with the chosen steps only.
-fn described(task: &Task) -> Vec<String> {
+fn described(task: &Task, harness: Harness) -> Vec<String> {
+    if let Some(why) = skipped(&task.procedure, harness) {
+        return vec![format!("{}: skipped, {why}", task.procedure.id)];
+    }
     let mut procedure = (*task.procedure).clone();
     if let Some(chosen) = &task.options.chosen {
         let steps = std::mem::take(&mut procedure.steps).into_iter().enumerate();
@@ -348,7 +373,7 @@ fn described(task: &Task) -> Vec<String> {
     procedure.describe()
 }
 
-fn listed(task: &Task) -> serde_json::Value {
+fn listed(task: &Task, harness: Harness) -> serde_json::Value {
     let procedure = &task.procedure;
     let chosen = |index: &usize| {
         task.options
@@ -370,7 +395,7 @@ fn listed(task: &Task) -> serde_json::Value {
         .collect();
     json!({
         "procedure": procedure.id, "title": procedure.title, "title_ko": procedure.title_ko,
-        "needs": match procedure.needs { Connection::Btu => "btu", Connection::Ptu => "ptu" },
+        "needs": procedure.needs.word(), "skipped": skipped(procedure, harness),
         "on_request": procedure.on_request, "sha256": procedure.sha256, "worst_case_s": procedure.worst_case().as_secs(),
         "steps": steps,
     })

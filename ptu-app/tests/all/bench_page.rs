@@ -1,5 +1,6 @@
 //! The bench page, driven by the names of what it shows: the unit live, stimuli by hand.
 
+use btu_rig::rig::Harness;
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
@@ -102,7 +103,7 @@ fn a_section_laid_by_hand_is_forgotten_with_stop_all_on_another_page() {
 #[test]
 fn a_laptop_has_no_harness() {
     let unit = BenchChoice {
-        as_ptu: true,
+        harness: Harness::None,
         ..BenchChoice::default()
     };
     let mut window = connected(Settings { unit, ..on_bench() });
@@ -111,7 +112,7 @@ fn a_laptop_has_no_harness() {
     window.wait_for("Speed code: 55");
     assert!(!window.enabled("Speed code: 55"));
     window.harness().get_by_label("Speed code: 55").hover();
-    window.wait_for("Goes through the bench harness: connect as BTU");
+    window.wait_for("Goes through the bench harness: only the maintenance port is connected");
     window.click("Arm");
     window.click("Test code: 45");
     window.wait_for("limit: 45.0 km/h");

@@ -226,7 +226,7 @@ fn killed_in_an_overspeed_step_the_unit_brakes_within_a_second() {
 fn killed_in_an_overspeed_step_of_the_test_board_the_test_signals_go_within_a_second() {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
-    let mut run = Running::start(&place, &unit, &["atp/ptu_overspeed", "--step", "code ?5*"]);
+    let mut run = Running::start(&place, &unit, &["ptu/overspeed", "--step", "code ?5*"]);
     let steps = run.recorded_steps(2);
     assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
     std::thread::sleep(Duration::from_secs_f64(
@@ -259,7 +259,7 @@ fn killed_in_an_overspeed_step_of_the_test_board_the_test_signals_go_within_a_se
         place.json(&["runs", "list", "--json"])[0]["state"],
         "interrupted"
     );
-    passes(&place, &unit, "twc/ptu_exchange");
+    passes(&place, &unit, "ptu/twc");
 }
 
 /// Method: a clean-up that cannot succeed is reported when it ran.
@@ -269,8 +269,8 @@ fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
     let place = Place::new();
     let script = place.write(
         "long.star",
-        "load(\"//_ptu.star\", \"train_as_found\", \"train_in_depot\")\n\
-     procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_in_depot(),\n\
+        "load(\"//_ptu.star\", \"train_as_found\", \"train_at_rest\")\n\
+     procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_at_rest(),\n\
      \x20   cleanup = [until(mode, \"yard\", within = s(1)), train_as_found()])\n\
      step(\"first\", do = [ptu.code(\"25\"), wait(s(1))], expect = becomes(armed, True))\n\
      step(\"long\", do = wait(s(60)))\n\
@@ -310,7 +310,7 @@ fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
     let terminal = Terminal::open();
-    let arguments = ["run", "--unit", &unit.address, "atp/ptu_overspeed"];
+    let arguments = ["run", "--unit", &unit.address, "ptu/overspeed"];
     let mut run = terminal.start(&place.command(&arguments));
     let begun = Instant::now();
     let armed = |place: &Place| {

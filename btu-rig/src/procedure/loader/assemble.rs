@@ -210,8 +210,12 @@ fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<
 
 fn resolve_actions(actions: &mut [Action], known: &[NamedMeasurement]) -> Result<(), String> {
     for action in actions {
-        if let Action::Until { condition, .. } = action {
-            resolve_condition(condition, known)?;
+        match action {
+            Action::Until { condition, .. } => resolve_condition(condition, known)?,
+            Action::OnBench(action) | Action::OnTrain(action) => {
+                resolve_actions(std::slice::from_mut(action), known)?;
+            }
+            _ => {}
         }
     }
     Ok(())

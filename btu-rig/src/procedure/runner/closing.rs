@@ -36,6 +36,7 @@ impl Runner {
             now,
             sample,
             captured: &self.captured,
+            unit_time: self.evidence.unit_time,
         };
         let mut problems = Vec::new();
         let mut over = loop {

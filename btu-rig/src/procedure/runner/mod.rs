@@ -76,7 +76,9 @@ pub struct Runner {
     answer: Option<bool>,
     link_lost: bool,
     /// Why nothing since the last scan can be judged.
-    stalled: Option<String>,
+    interrupted: Option<String>,
+    /// Why the procedure is not run at all.
+    passed_over: Option<String>,
     /// How far what is heard can be trusted, as of the present scan.
     evidence: Evidence,
     /// Entries of the unit's log not kept before this procedure.
@@ -109,7 +111,8 @@ impl Runner {
             stop: Stop::No,
             answer: None,
             link_lost: false,
-            stalled: None,
+            interrupted: None,
+            passed_over: None,
             evidence: Evidence::default(),
             not_kept_before: None,
             self_test: SelfTest::empty(),
@@ -137,10 +140,17 @@ impl Runner {
         };
     }
 
-    /// The tester's computer did not keep up since the last scan, so nothing the unit did meanwhile can be
-    /// judged. The present step becomes an error with this reason; the remaining steps are not run.
-    pub fn bench_stalled(&mut self, reason: String) {
-        self.stalled = Some(reason);
+    /// The tester's computer did not keep up since the last scan, or somebody else acted on the unit, so nothing the
+    /// unit did meanwhile can be judged. The present step becomes an error with this reason; the remaining steps are
+    /// not run.
+    pub fn interrupted(&mut self, reason: String) {
+        self.interrupted = Some(reason);
+    }
+
+    /// The procedure cannot be run on this connection: all its steps are skipped with this reason. To be said before
+    /// the first scan.
+    pub fn pass_over_all(&mut self, reason: String) {
+        self.passed_over = Some(reason);
     }
 
     /// A fault was found while the unit was brought up, before any step.
@@ -200,7 +210,7 @@ impl Runner {
         self.begin(now);
         self.take_evidence(driver.evidence());
         // First, because what this scan brings results from the stall.
-        if let Some(reason) = self.stalled.take() {
+        if let Some(reason) = self.interrupted.take() {
             self.break_off(now, sample, reason);
         }
         self.take_unit_events(events);
@@ -242,6 +252,15 @@ impl Runner {
         if self.schedule.is_empty() {
             self.fault("no step to run".into());
             self.phase = Phase::MakeSafe { since: now };
+        } else if let Some(reason) = self.passed_over.take() {
+            self.phase = Phase::Steps {
+                next: 0,
+                live: None,
+            };
+            self.skip_rest(now, &format!("not run, {reason}"));
+            self.messages.push(reason);
+            // Nothing was done, so there is nothing to clean up.
+            self.phase = Phase::MakeSafe { since: now };
         } else {
             self.phase = Phase::Setup(ActionRun::default());
         }
@@ -257,6 +276,7 @@ impl Runner {
             now,
             sample,
             captured: &self.captured,
+            unit_time: self.evidence.unit_time,
         };
         let progress = actions.advance(&procedure.setup, scan, operator, driver, &mut self.out);
         if progress == Progress::Waiting {

@@ -49,6 +49,7 @@ impl Runner {
                     now,
                     sample,
                     captured: &self.captured,
+                    unit_time: self.evidence.unit_time,
                 };
                 if !live.advance(step, scan, operator, driver, &mut self.out) {
                     return;
@@ -116,6 +117,7 @@ impl Runner {
             now,
             sample,
             captured: &self.captured,
+            unit_time: self.evidence.unit_time,
         };
         let started = run.started();
         let end = run.finish(step, scan, aborted);

@@ -3,7 +3,7 @@
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmChallenge, ArmRefusal, ArmState, AtcToTcms, Channel, Identity, IoOutput, LogEnd,
-    LogEntry, Message, Outputs, SelfTest, Status, StatusBits, StimulusAnswer, TwcTrain,
+    LogEntry, Message, Outputs, SelfTest, Status, StatusBits, StimulusAnswer, TrainState, TwcTrain,
 };
 use protocol::{Duration, Instant};
 
@@ -40,6 +40,12 @@ pub struct FakeUnit {
     pub noise: &'static [u8],
     pub to_tcms: AtcToTcms,
     pub outputs: Outputs,
+    /// It is reached at its harness, and not at its maintenance port alone.
+    pub harness: bool,
+    /// It knows `Subscribe`.
+    pub tells_train_state: bool,
+    pub subscribed: bool,
+    pub train_state: TrainState,
     /// Every accepted message but the cyclic ones.
     pub heard: Vec<Message>,
     pub bytes_per_scan: Vec<usize>,
@@ -68,6 +74,10 @@ impl Default for FakeUnit {
             noise: b"",
             to_tcms: AtcToTcms::default(),
             outputs: Outputs::EB_RELAY,
+            harness: true,
+            tells_train_state: true,
+            subscribed: false,
+            train_state: TrainState::default(),
             heard: Vec::new(),
             bytes_per_scan: Vec::new(),
             all_bytes: Vec::new(),
@@ -165,6 +175,10 @@ impl FakeUnit {
                 )
             }
             Message::KeepAlive(_) | Message::IoInput(_) | Message::TcmsToAtc(_) => None,
+            Message::Subscribe(_) => {
+                self.subscribed = self.tells_train_state;
+                None
+            }
             _ => {
                 let answer = if self.armed() {
                     self.answer
@@ -203,15 +217,19 @@ impl FakeUnit {
     }
 
     fn cyclic(&self, replies: &mut Vec<Message>) {
-        replies.push(
-            IoOutput {
-                outputs: self.outputs,
-                ..IoOutput::default()
-            }
-            .into(),
-        );
+        if self.harness {
+            replies.push(
+                IoOutput {
+                    outputs: self.outputs,
+                    ..IoOutput::default()
+                }
+                .into(),
+            );
+        }
         if self.scan.is_multiple_of(5) {
-            replies.push(self.to_tcms.into());
+            if self.harness {
+                replies.push(self.to_tcms.into());
+            }
             let bits = if self.armed() {
                 StatusBits::ARMED
             } else {
@@ -227,6 +245,9 @@ impl FakeUnit {
                 }
                 .into(),
             );
+            if self.subscribed {
+                replies.push(self.train_state.into());
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod driving;
 mod fake_unit;
+mod on_train;
 mod properties;
 mod session;
 mod tcms_events;

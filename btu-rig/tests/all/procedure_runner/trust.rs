@@ -37,7 +37,7 @@ fn a_stalled_tester_reports_an_error_and_no_fault() {
     );
     let outcome = run(&script, |world| {
         if world.ms() == 1000 {
-            world.runner.bench_stalled("held up for 0.50 s".into());
+            world.runner.interrupted("held up for 0.50 s".into());
             world.sample.set(Signal::Eb, 1.0);
             world.log(Event::InputsLost);
         }
@@ -92,7 +92,7 @@ fn a_procedure_stalled_in_its_setup_runs_no_step_and_cleans_up() {
         "procedure(title = 'x', setup = [wait(s(5))], cleanup = [cab.key(False)])\nstep('a')";
     let outcome = run(script, |world| {
         if world.ms() == 1000 {
-            world.runner.bench_stalled("held up".into());
+            world.runner.interrupted("held up".into());
         }
     });
     assert_eq!(

@@ -63,8 +63,8 @@ impl BenchThread {
     fn execute_orders(&self, orders: &Receiver<Order>) {
         while let Ok(order) = orders.recv() {
             match order {
-                Order::Connect(setup, connection, stop) => {
-                    let flow = self.hold_unit(*setup, connection, &stop, orders);
+                Order::Connect(setup, stop) => {
+                    let flow = self.hold_unit(*setup, &stop, orders);
                     self.live_state.enter(Phase::Offline);
                     if flow.is_break() {
                         return;
@@ -81,7 +81,6 @@ impl BenchThread {
     fn hold_unit(
         &self,
         mut setup: BenchSetup,
-        connection: Connection,
         stop: &Stop,
         orders: &Receiver<Order>,
     ) -> ControlFlow<()> {
@@ -98,7 +97,7 @@ impl BenchThread {
         });
         loop {
             self.live_state.invalidate_orders();
-            let (end, safe) = self.watch(&mut connected, connection, orders);
+            let (end, safe) = self.watch(&mut connected, orders);
             match end {
                 WatchEnd::Run(order, stop) => {
                     if !safe {
@@ -124,12 +123,7 @@ impl BenchThread {
 
     /// Monitors the unit until an order ends that; then makes outputs safe and disarms. The flag says whether
     /// safe outputs were confirmed.
-    fn watch(
-        &self,
-        connected: &mut Connected,
-        connection: Connection,
-        orders: &Receiver<Order>,
-    ) -> (WatchEnd, bool) {
+    fn watch(&self, connected: &mut Connected, orders: &Receiver<Order>) -> (WatchEnd, bool) {
         match connected {
             Connected::Sim(setup) => {
                 let mut session = setup.sim_session(LIVE, &Stop::default());
@@ -139,13 +133,13 @@ impl BenchThread {
                     |entry: &UnitEvent, _, _: &Sample| self.tell(BenchEvent::Logged(*entry));
                 session.idle(READY_WITHIN + READY_WITHIN, &mut logged, settled());
                 session.set_pace(Pace::real());
-                let end = self.watch_session(&mut session, connection, orders);
+                let end = self.watch_session(&mut session, orders);
                 session.set_pace(Pace::Virtual);
                 (end, self.release(&mut session))
             }
             Connected::Port(session, ..) => {
                 session.set_stop(&Stop::default());
-                let end = self.watch_session(session, connection, orders);
+                let end = self.watch_session(session, orders);
                 (end, self.release(session))
             }
         }
@@ -159,18 +153,16 @@ impl BenchThread {
     fn watch_session<L: UnitLink>(
         &self,
         session: &mut Session<L>,
-        connection: Connection,
         orders: &Receiver<Order>,
     ) -> WatchEnd {
-        self.live_state
-            .enter_idle(session.bench().rig().identity().copied());
+        self.live_state.enter_idle(session.bench().rig());
         let mut restarts = session.bench().rig().unit_restarts();
         let mut asked = None;
         let mut arm_at = None;
         loop {
             match orders.try_recv() {
                 Ok(Order::Apply(stimulus, bench_epoch)) => {
-                    if self.is_permitted(&stimulus, connection, bench_epoch) {
+                    if self.is_permitted(&stimulus, bench_epoch) {
                         asked = self.apply(session, &stimulus);
                     }
                 }
@@ -179,7 +171,8 @@ impl BenchThread {
                 {
                     let mut wait = Duration::ZERO;
                     let rig = session.bench().rig();
-                    if rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
+                    let bench = rig.connection() == Some(Connection::Btu);
+                    if bench && rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
                         self.apply(session, &Stimulus::MaintenanceKey { on: true });
                         wait = KEY_SEEN;
                     }
@@ -226,9 +219,9 @@ impl BenchThread {
 
     /// An order given before the bench was last made safe is not executed, nor is one that is no longer
     /// permitted.
-    fn is_permitted(&self, stimulus: &Stimulus, connection: Connection, bench_epoch: u64) -> bool {
+    fn is_permitted(&self, stimulus: &Stimulus, bench_epoch: u64) -> bool {
         let live = self.live_state.read();
-        live.bench_epoch == bench_epoch && permit(stimulus, connection, &live).is_ok()
+        live.bench_epoch == bench_epoch && permit(stimulus, &live).is_ok()
     }
 
     /// Applies a stimulus; its text if the bench accepted it.
@@ -292,8 +285,6 @@ mod tests {
     use std::sync::{Arc, OnceLock};
     use std::time::{Duration, Instant};
 
-    use btu_rig::procedure::plan::Connection;
-
     use crate::bench_worker::{BenchWorker, LiveState, Phase};
     use crate::data::ScriptsDirectory;
     use crate::run::BenchChoice;
@@ -321,7 +312,7 @@ mod tests {
         let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
         let choice = BenchChoice::default();
         let setup = choice.setup(&scripts).expect("its configuration");
-        worker.connect(setup, Connection::Btu);
+        worker.connect(setup);
         let began = Instant::now();
         while known.load(Ordering::Relaxed) == 0 {
             assert!(began.elapsed() < Duration::from_secs(60), "no unit");

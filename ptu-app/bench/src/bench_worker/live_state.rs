@@ -6,6 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time;
 
 use btu_rig::procedure::Runner;
+use btu_rig::procedure::plan::Connection;
 use btu_rig::recorder::{Ring, Row, rows_of};
 use btu_rig::rig::Rig;
 use protocol::message::Identity;
@@ -55,6 +56,8 @@ pub struct LiveData {
     pub sample: Sample,
     /// The unit's answer to the identity request.
     pub identity: Option<Identity>,
+    /// How the unit is reached, once that is known.
+    pub connection: Option<Connection>,
     /// Share of frames received over the last seconds.
     pub link: LinkQuality,
     /// Restarts of the unit since it was connected.
@@ -159,11 +162,12 @@ impl LiveState {
     }
 
     /// Enters [`Phase::Idle`] together with the identity, so that an idle unit is never shown without it.
-    pub(super) fn enter_idle(&self, identity: Option<Identity>) {
+    pub(super) fn enter_idle(&self, rig: &Rig) {
         {
             let mut live = held(&self.live);
             live.phase = Phase::Idle;
-            live.identity = identity;
+            live.identity = rig.identity().copied();
+            live.connection = rig.connection();
         }
         (self.wake)();
     }
@@ -207,6 +211,7 @@ impl RunControl for LiveState {
         live.now = now;
         live.sample.clone_from(rig.sample());
         live.identity = rig.identity().copied();
+        live.connection = rig.connection();
         live.link.note(now, rig.counters());
         live.restarts = rig.unit_restarts();
         drop(live);

@@ -19,7 +19,6 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
 
-use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::Stimulus;
 
 pub use event::BenchEvent;
@@ -47,7 +46,7 @@ pub struct RunOrder {
 }
 
 enum Order {
-    Connect(Box<BenchSetup>, Connection, Stop),
+    Connect(Box<BenchSetup>, Stop),
     Disconnect,
     /// A manual stimulus, and the bench epoch in which it was given.
     Apply(Stimulus, u64),
@@ -64,7 +63,6 @@ pub struct BenchWorker {
     /// Of what was ordered last.
     stop: Stop,
     thread: Option<JoinHandle<()>>,
-    connection: Connection,
 }
 
 impl BenchWorker {
@@ -87,17 +85,16 @@ impl BenchWorker {
             events,
             stop: Stop::default(),
             thread: Some(thread),
-            connection: Connection::Btu,
         })
     }
 
-    /// Reaches a unit, as a bench that drives all its inputs or as a laptop on its maintenance port.
-    pub fn connect(&mut self, setup: BenchSetup, connection: Connection) {
-        self.connection = connection;
+    /// Reaches a unit, as a bench that drives all its inputs or as a laptop on its maintenance port: which of the
+    /// two is found out or said in `setup`.
+    pub fn connect(&mut self, setup: BenchSetup) {
         self.live_state.enter(Phase::Connecting);
         self.stop = Stop::default();
         let setup = Box::new(setup);
-        self.send(Order::Connect(setup, connection, self.stop.clone()));
+        self.send(Order::Connect(setup, self.stop.clone()));
     }
 
     /// Makes outputs safe, disarms and lets the unit go.
@@ -128,7 +125,7 @@ impl BenchWorker {
     /// # Errors
     /// Why not.
     pub fn permits(&self, stimulus: &Stimulus) -> Result<(), Refused> {
-        permit(stimulus, self.connection, &self.live_state.read())
+        permit(stimulus, &self.live_state.read())
     }
 
     /// Stops a run and takes every stimulus away; the unit stays connected, disarmed.
@@ -164,11 +161,6 @@ impl BenchWorker {
     /// The latest cycle and the rows before it; held for as short a time as possible.
     pub fn live(&self) -> std::sync::MutexGuard<'_, LiveData> {
         self.live_state.read()
-    }
-
-    /// As what it is connected.
-    pub fn connection(&self) -> Connection {
-        self.connection
     }
 
     /// What happened since the last call.

@@ -14,7 +14,9 @@ pub enum Refused {
     /// A run has the bench.
     Running,
     /// It needs the bench harness, and only the maintenance port is connected.
-    NeedsBtu,
+    NeedsHarness,
+    /// A person in the cab does it: only the maintenance port is connected.
+    InCab,
     /// The unit is not armed.
     NotArmed,
     /// The maintenance key is off.
@@ -27,7 +29,7 @@ pub enum Refused {
 ///
 /// # Errors
 /// Why not.
-pub fn permit(stimulus: &Stimulus, connection: Connection, live: &LiveData) -> Result<(), Refused> {
+pub fn permit(stimulus: &Stimulus, live: &LiveData) -> Result<(), Refused> {
     match live.phase {
         Phase::Idle => {}
         Phase::Running => return Err(Refused::Running),
@@ -36,16 +38,34 @@ pub fn permit(stimulus: &Stimulus, connection: Connection, live: &LiveData) -> R
         }
     }
     let on = |signal| live.sample.get(signal) == Some(1.0);
+    let alone = live.connection == Some(Connection::Ptu);
     match stimulus {
         Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => Ok(()),
         Stimulus::PtuArm if !on(Signal::MaintenanceKey) => Err(Refused::KeyOff),
-        // The key is no test signal: on a train a person turns it, and the bench is told.
-        Stimulus::PtuArm | Stimulus::PtuAskToArm | Stimulus::MaintenanceKey { .. } => Ok(()),
+        Stimulus::PtuArm | Stimulus::PtuAskToArm => Ok(()),
         _ if stimulus.on_test_board() && !on(Signal::Armed) => Err(Refused::NotArmed),
         _ if stimulus.on_test_board() => Ok(()),
-        _ if connection == Connection::Ptu => Err(Refused::NeedsBtu),
+        _ if alone && in_cab(stimulus) => Err(Refused::InCab),
+        _ if alone => Err(Refused::NeedsHarness),
         _ => Ok(()),
     }
+}
+
+/// What people do in the cab of a train.
+fn in_cab(stimulus: &Stimulus) -> bool {
+    matches!(
+        stimulus,
+        Stimulus::MaintenanceKey { .. }
+            | Stimulus::ModeSwitch(_)
+            | Stimulus::Hcr { .. }
+            | Stimulus::Controller { .. }
+            | Stimulus::Reverser { .. }
+            | Stimulus::Doors { .. }
+            | Stimulus::Switch { .. }
+            | Stimulus::CutOut { .. }
+            | Stimulus::Acknowledge
+            | Stimulus::Start
+    )
 }
 
 #[cfg(test)]
@@ -63,6 +83,7 @@ mod tests {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Needs {
         Harness,
+        Cab,
         Armed,
         Key,
         Unit,
@@ -179,21 +200,22 @@ mod tests {
             | Stimulus::MarkersAlong { .. }
             | Stimulus::Station(_)
             | Stimulus::Wayside(_)
-            | Stimulus::Doors { .. }
-            | Stimulus::Hcr { .. }
-            | Stimulus::ModeSwitch(_)
-            | Stimulus::Controller { .. }
             | Stimulus::ControllerVolts { .. }
             | Stimulus::ControllerContacts { .. }
-            | Stimulus::Switch { .. }
-            | Stimulus::CutOut { .. }
             | Stimulus::Gradient { .. }
-            | Stimulus::Reverser { .. }
-            | Stimulus::Acknowledge
-            | Stimulus::Start
             | Stimulus::Tcms(_)
             | Stimulus::AtoEnable { .. }
             | Stimulus::Load { .. } => Needs::Harness,
+            Stimulus::Doors { .. }
+            | Stimulus::Hcr { .. }
+            | Stimulus::MaintenanceKey { .. }
+            | Stimulus::ModeSwitch(_)
+            | Stimulus::Controller { .. }
+            | Stimulus::Switch { .. }
+            | Stimulus::CutOut { .. }
+            | Stimulus::Reverser { .. }
+            | Stimulus::Acknowledge
+            | Stimulus::Start => Needs::Cab,
             Stimulus::PtuCode { .. }
             | Stimulus::PtuSpeed { .. }
             | Stimulus::PtuMarker { .. }
@@ -201,10 +223,7 @@ mod tests {
             | Stimulus::PtuRelease
             | Stimulus::PtuClearLog => Needs::Armed,
             Stimulus::PtuArm => Needs::Key,
-            Stimulus::MaintenanceKey { .. }
-            | Stimulus::PtuAskToArm
-            | Stimulus::PtuDisarm
-            | Stimulus::PtuSilent { .. } => Needs::Unit,
+            Stimulus::PtuAskToArm | Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => Needs::Unit,
         }
     }
 
@@ -221,8 +240,9 @@ mod tests {
                 Err(Refused::NotConnected)
             }
             (Phase::Idle, Needs::Harness) if connection == Connection::Ptu => {
-                Err(Refused::NeedsBtu)
+                Err(Refused::NeedsHarness)
             }
+            (Phase::Idle, Needs::Cab) if connection == Connection::Ptu => Err(Refused::InCab),
             (Phase::Idle, Needs::Armed) if !armed => Err(Refused::NotArmed),
             (Phase::Idle, Needs::Key) if !key => Err(Refused::KeyOff),
             (Phase::Idle, _) => Ok(()),
@@ -250,12 +270,13 @@ mod tests {
                     for (armed, key) in bools.iter().flat_map(|a| bools.map(|k| (*a, k))) {
                         let mut live = LiveData {
                             phase,
+                            connection: Some(connection),
                             ..LiveData::default()
                         };
                         live.sample.set_bit(Signal::Armed, armed);
                         live.sample.set_bit(Signal::MaintenanceKey, key);
                         assert_eq!(
-                            permit(stimulus, connection, &live),
+                            permit(stimulus, &live),
                             expected(needs, connection, phase, armed, key),
                             "{stimulus:?}, {connection:?}, {phase:?}, armed {armed}, key {key}"
                         );
@@ -272,7 +293,7 @@ mod tests {
             phase: Phase::Idle,
             ..LiveData::default()
         };
-        let refused = |stimulus| permit(&stimulus, Connection::Btu, &live);
+        let refused = |stimulus| permit(&stimulus, &live);
         assert_eq!(refused(Stimulus::PtuRelease), Err(Refused::NotArmed));
         assert_eq!(refused(Stimulus::PtuArm), Err(Refused::KeyOff));
     }

@@ -131,7 +131,8 @@ pub fn rerun(
         Some(_) => Verdict::Error,
         None => likeness.verdict(),
     };
-    let again_made = BenchContents::of(&setup, serial.clone());
+    let connection = original.made.connection();
+    let again_made = BenchContents::of(&setup, serial.clone(), connection);
     let trace_id = write(
         &mut writer,
         original,

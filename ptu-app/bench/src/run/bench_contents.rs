@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use btu_rig::bench_scatter::BenchScatter;
+use btu_rig::procedure::plan::Connection;
 use btu_rig::recorded::StimulusRecord;
+use btu_rig::rig::Harness;
 use btu_rig::train::TrainData;
 use fault_db::{Recording, RecordingRecord};
 use protocol::Instant;
@@ -48,6 +50,9 @@ pub struct BenchContents {
     pub scatter: Option<BenchScatter>,
     /// At the wall clock's pace.
     pub realtime: bool,
+    /// Only the maintenance port was connected: the train did all else by itself.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub on_train: bool,
 }
 
 /// What was done to a bench, as it is kept.
@@ -61,8 +66,8 @@ pub struct Stimuli {
 }
 
 impl BenchContents {
-    /// What `setup` makes benches of, for a unit of this serial number.
-    pub fn of(setup: &BenchSetup, serial: String) -> Self {
+    /// What `setup` makes benches of, for a unit of this serial number, reached so.
+    pub fn of(setup: &BenchSetup, serial: String, connection: Connection) -> Self {
         let (config, line) = (&setup.config, &setup.line);
         Self {
             source: setup.endpoint.to_string(),
@@ -85,6 +90,7 @@ impl BenchContents {
             seed: setup.seed,
             scatter: setup.scatter.as_deref().copied(),
             realtime: setup.realtime,
+            on_train: connection == Connection::Ptu,
         }
     }
 
@@ -154,6 +160,10 @@ impl BenchContents {
         }
         Ok(BenchSetup {
             endpoint: Endpoint::Sim,
+            harness: match self.connection() {
+                Connection::Ptu => Harness::None,
+                Connection::Btu => Harness::Bench,
+            },
             config,
             line,
             train,
@@ -161,10 +171,19 @@ impl BenchContents {
             seed: self.seed,
             scatter: self.scatter.map(Arc::new),
             serial: Some(self.serial.clone()),
+            software: None,
             realtime: false,
             slower: 1,
             run_control: None,
         })
+    }
+
+    /// How the unit was reached.
+    pub fn connection(&self) -> Connection {
+        match self.on_train {
+            true => Connection::Ptu,
+            false => Connection::Btu,
+        }
     }
 
     /// The unit was on a port: its clock is not the bench's, and what it had been through before is not

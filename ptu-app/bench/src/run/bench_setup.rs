@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use ato_under_test::Setup;
 use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
+use btu_rig::procedure::plan::Connection;
 use btu_rig::recorder::BEFORE;
-use btu_rig::rig::{Bench, Rig, UnitLink};
+use btu_rig::rig::{Bench, ExpectedIdentity, Harness, LinkFailure, Rig, UnitLink};
 use btu_rig::train::TrainData;
 use protocol::Instant;
 use protocol::config::UnitConfig;
@@ -32,6 +33,9 @@ const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 pub struct BenchSetup {
     /// Where the unit is.
     pub endpoint: Endpoint,
+    /// Whether the bench harness is connected. The embedded unit is on a bench unless this says that there is none:
+    /// then it is aboard a train.
+    pub harness: Harness,
     /// Unit configuration.
     pub config: DataFile<UnitConfig>,
     /// Track database.
@@ -46,12 +50,36 @@ pub struct BenchSetup {
     pub scatter: Option<Arc<BenchScatter>>,
     /// Serial number asked for.
     pub serial: Option<String>,
+    /// Software version that the unit should have.
+    pub software: Option<[u8; 3]>,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,
     /// Times the bench is slower than the clock, where it goes by the clock.
     pub slower: u32,
     /// Watches and controls the runs, if set.
     pub run_control: Option<Arc<dyn RunControl>>,
+}
+
+/// The embedded unit where it is built in.
+pub enum SimUnit {
+    /// On a bench, all of whose channels reach it.
+    OnBench(SimLink),
+    /// Aboard a train, reached at its maintenance port alone.
+    Aboard(Box<UnitAboard>),
+}
+
+impl UnitLink for SimUnit {
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkFailure> {
+        match self {
+            Self::OnBench(unit) => unit.exchange(now, to_unit, from_unit),
+            Self::Aboard(train) => train.exchange(now, to_unit, from_unit),
+        }
+    }
 }
 
 /// A unit that has been reached.
@@ -98,6 +126,12 @@ impl BenchSetup {
     pub(super) fn rig(&self, seed: u64, power_at: Instant) -> Rig {
         let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
         rig.set_train(self.train.clone());
+        rig.expect_unit(ExpectedIdentity {
+            serial: self.serial.clone(),
+            software: self.software,
+            config: Some((self.config.content.name.clone(), self.config.crc)),
+            tdb_crc: Some(self.line.crc),
+        });
         if let Some(drawn) = self.drawn() {
             rig.set_conditions(drawn.conditions);
             rig.set_sensors(&drawn.sensors);
@@ -134,7 +168,7 @@ impl BenchSetup {
     }
 
     /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
-    pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimLink>> {
+    pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimUnit>> {
         self.sim_session_by(procedure, stop, |link| link)
     }
 
@@ -143,14 +177,21 @@ impl BenchSetup {
         &self,
         procedure: &str,
         stop: &Stop,
-        wired: impl FnOnce(Delayed<SimLink>) -> L,
+        wired: impl FnOnce(Delayed<SimUnit>) -> L,
     ) -> Session<L> {
         let seed = seed_for(self.seed, procedure);
         let timing = self.drawn().map(|drawn| drawn.timing).unwrap_or_default();
         let power_at = Instant::ZERO + BEFORE + timing.power_up;
-        let unit = self.unit(seed, power_at);
+        let alone = self.harness == Harness::None;
+        let unit = match alone {
+            false => SimUnit::OnBench(self.unit(seed, power_at)),
+            true => SimUnit::Aboard(Box::new(self.aboard(seed, power_at))),
+        };
         let link = Delayed::new(unit, &timing, seed ^ WIRE_SEQUENCE);
-        let rig = self.rig(seed, power_at);
+        let mut rig = self.rig(seed, power_at);
+        if alone {
+            rig.set_harness(Harness::None);
+        }
         let pace = if self.realtime {
             Pace::slower(self.slower)
         } else {
@@ -174,6 +215,16 @@ impl Connected {
             Self::Sim(setup) => setup.expected_serial(),
             Self::Port(_, identity, _) => unit_text::serial(identity),
         }
+    }
+
+    /// How it is reached.
+    pub fn connection(&mut self) -> Connection {
+        let found = match self {
+            Self::Sim(setup) if setup.harness == Harness::None => Some(Connection::Ptu),
+            Self::Sim(_) => Some(Connection::Btu),
+            Self::Port(session, ..) => session.bench().rig().connection(),
+        };
+        found.unwrap_or(Connection::Btu)
     }
 
     /// Replaces the stop that ends runs on this unit.

@@ -8,9 +8,9 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::rig::check_places;
+use btu_rig::rig::{Harness, check_places};
 use protocol::message::Identity;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::BenchSetup;
 use crate::data::ScriptsDirectory;
@@ -25,8 +25,9 @@ use crate::link::Endpoint;
 pub struct BenchChoice {
     /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
     pub endpoint: String,
-    /// Only the maintenance port is connected, without the bench harness.
-    pub as_ptu: bool,
+    /// Whether the bench harness is connected. Settings of before said `as_ptu`.
+    #[serde(alias = "as_ptu", deserialize_with = "harness_or_as_ptu")]
+    pub harness: Harness,
     /// Line, `lines/NAME.toml`.
     pub line: String,
     /// Unit configuration, `units/NAME.toml`.
@@ -35,6 +36,9 @@ pub struct BenchChoice {
     pub train: String,
     /// Serial number given to the embedded unit or expected of a real one; empty = any.
     pub serial: String,
+    /// Software version that the unit should have; none = any.
+    #[serde(skip)]
+    pub software: Option<[u8; 3]>,
     /// The train that the unit belongs to, as the depot names it; empty = not stated.
     pub train_no: String,
     /// Injected faults, by id; not saved, so that no later test starts with a forgotten one.
@@ -61,11 +65,12 @@ impl Default for BenchChoice {
     fn default() -> Self {
         Self {
             endpoint: "sim".into(),
-            as_ptu: false,
+            harness: Harness::Auto,
             line: "line8".into(),
             unit_config: "sg100".into(),
             train: "line6".into(),
             serial: String::new(),
+            software: None,
             train_no: String::new(),
             faults: Vec::new(),
             seed: 1,
@@ -84,12 +89,11 @@ impl BenchChoice {
         self.endpoint == "sim"
     }
 
-    /// Whether the bench harness is connected.
+    /// How the unit is reached, as far as is known before it is.
     pub fn connection(&self) -> Connection {
-        if self.as_ptu {
-            Connection::Ptu
-        } else {
-            Connection::Btu
+        match self.harness {
+            Harness::None => Connection::Ptu,
+            Harness::Auto | Harness::Bench => Connection::Btu,
         }
     }
 
@@ -137,6 +141,7 @@ impl BenchChoice {
         };
         Ok(BenchSetup {
             endpoint,
+            harness: self.harness,
             config,
             line,
             train,
@@ -144,11 +149,43 @@ impl BenchChoice {
             seed: self.seed,
             scatter,
             serial,
+            software: self.software,
             realtime: self.realtime,
             slower: self.slower,
             run_control: None,
         })
     }
+}
+
+/// A harness by its word, or whether only the maintenance port is connected, as settings of before have it.
+fn harness_or_as_ptu<'de, D: Deserializer<'de>>(saved: D) -> Result<Harness, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Saved {
+        Harness(Harness),
+        AsPtu(bool),
+    }
+    Ok(match Saved::deserialize(saved)? {
+        Saved::Harness(harness) => harness,
+        Saved::AsPtu(true) => Harness::None,
+        Saved::AsPtu(false) => Harness::Auto,
+    })
+}
+
+/// Reads a software version, `MAJOR.MINOR.PATCH`.
+///
+/// # Errors
+/// It is not three numbers up to 255.
+pub fn software_version(text: &str) -> Result<[u8; 3], String> {
+    let parts: Vec<u8> = text
+        .split('.')
+        .map_while(|part| part.parse().ok())
+        .collect();
+    let version = parts
+        .try_into()
+        .ok()
+        .filter(|_| text.split('.').count() == 3);
+    version.ok_or_else(|| format!("\"{text}\" is not a version such as 0.1.0"))
 }
 
 /// Checks a serial number that was given.
@@ -170,6 +207,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn settings_of_before_say_whether_there_is_a_harness() {
+        for (saved, harness) in [
+            (r#"{"as_ptu": true}"#, Harness::None),
+            (r#"{"as_ptu": false}"#, Harness::Auto),
+            (r#"{"harness": "bench"}"#, Harness::Bench),
+            ("{}", Harness::Auto),
+        ] {
+            let read: BenchChoice = serde_json::from_str(saved).expect("a choice");
+            assert_eq!(read.harness, harness, "{saved}");
+        }
+    }
+
+    #[test]
     fn a_saved_choice_leaves_out_faults_and_what_only_the_command_line_sets() {
         let choice = BenchChoice {
             endpoint: "tcp:bench:4000".into(),
@@ -183,8 +233,8 @@ mod tests {
         assert_eq!(
             keys,
             [
-                "as_ptu",
                 "endpoint",
+                "harness",
                 "line",
                 "realtime",
                 "scatter",

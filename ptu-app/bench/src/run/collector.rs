@@ -140,14 +140,6 @@ impl<'a> Collector<'a> {
     fn step(&mut self, procedure: &Procedure, result: StepResult) {
         let index = self.steps;
         self.steps += 1;
-        let measurement = |m: btu_rig::procedure::Measurement| MeasurementRecord {
-            name: m.name,
-            value: m.value,
-            unit: m.unit.into(),
-            low: m.low,
-            high: m.high,
-            verdict: stored(m.verdict),
-        };
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
@@ -158,7 +150,7 @@ impl<'a> Collector<'a> {
             bench_time_us: result.bench_time.as_us() as i64,
             message: result.message,
             script_line: Some(result.line),
-            measurements: result.measurements.into_iter().map(measurement).collect(),
+            measurements: result.measurements.into_iter().flat_map(records).collect(),
         });
     }
 
@@ -240,4 +232,31 @@ pub fn steps_of(tasks: &[Task]) -> usize {
         turns as usize * task.options.repeat as usize
     };
     tasks.iter().map(steps).sum()
+}
+/// A measurement as it is stored: its uncertainty, if it has one, is a measurement of its own.
+fn records(measured: btu_rig::procedure::Measurement) -> impl Iterator<Item = MeasurementRecord> {
+    let verdict = stored(measured.verdict);
+    let unit = String::from(measured.unit);
+    let uncertainty = measured.uncertainty.map(|uncertainty| MeasurementRecord {
+        name: uncertainty_of(&measured.name),
+        value: Some(uncertainty),
+        unit: unit.clone(),
+        low: None,
+        high: None,
+        verdict: stored(Verdict::Passed),
+    });
+    let value = MeasurementRecord {
+        name: measured.name,
+        value: measured.value,
+        unit,
+        low: measured.low,
+        high: measured.high,
+        verdict,
+    };
+    std::iter::once(value).chain(uncertainty)
+}
+
+/// Name under which the uncertainty of a measurement is stored.
+pub fn uncertainty_of(name: &str) -> String {
+    format!("{name}, uncertainty")
 }

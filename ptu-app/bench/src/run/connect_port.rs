@@ -3,6 +3,7 @@
 
 use std::ops::RangeInclusive;
 
+use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{EventSource, LogState, UnitEvent};
 use btu_rig::rig::{Bench, TimeOfDay};
 use btu_rig::stimulus::Stimulus;
@@ -48,7 +49,9 @@ impl BenchSetup {
     /// It cannot be reached, is another one, or has another configuration.
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let link = WireLink::open(&self.endpoint)?.slower(self.slower);
-        let mut bench = Bench::new(self.rig(self.seed, Instant::ZERO), link);
+        let mut rig = self.rig(self.seed, Instant::ZERO);
+        rig.set_harness(self.harness);
+        let mut bench = Bench::new(rig, link);
         bench.rig_mut().leave_log_before_contact();
         // In lock step the unit's clock stands between scans.
         if !matches!(self.endpoint, Endpoint::LockStep(_)) {
@@ -134,8 +137,10 @@ impl BenchSetup {
         };
         self.check_identity(&identity)?;
         let now = session.now();
-        // A brake latched since the last tester left needs its acknowledgement.
-        let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
+        if session.bench().rig().connection() == Some(Connection::Btu) {
+            // A brake latched since the last tester left needs its acknowledgement.
+            let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
+        }
         self.check_clock(session, first, &mut seen)?;
         session.idle(LOG_WITHIN, &mut seen, |bench| {
             let rig = bench.rig();

@@ -20,6 +20,8 @@ mod fault_watch;
 mod first_failure;
 pub mod loading;
 mod observe;
+#[cfg(test)]
+mod on_train_tests;
 mod repetitions;
 mod run_control;
 pub mod select;
@@ -43,8 +45,8 @@ use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 pub use adaptive::Adaptive;
 pub use bench_contents::{BenchContents, BenchFile, Stimuli};
 pub use bench_setup::{BenchSetup, Connected};
-pub use choice::{BenchChoice, check_serial};
-pub use collector::{Listener, Outcome, steps_of};
+pub use choice::{BenchChoice, check_serial, software_version};
+pub use collector::{Listener, Outcome, steps_of, uncertainty_of};
 pub use event::{RecordedStimuli, SessionEvent};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
@@ -143,7 +145,8 @@ pub fn run_on(
     let record = run_record(plan, setup, connected.serial(), began.at_us);
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    let made = BenchContents::of(setup, connected.serial());
+    let connection = connected.connection();
+    let made = BenchContents::of(setup, connected.serial(), connection);
     let mut collector = Collector::new(run_store, listener, made);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {

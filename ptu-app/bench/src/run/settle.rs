@@ -51,6 +51,7 @@ pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
     }
 }
 
+/// The unit has started, and has said what can be known of it on this connection.
 pub(super) fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
-    bench.rig().sample().get(Signal::Started) == Some(1.0)
+    bench.rig().sample().get(Signal::Started) == Some(1.0) && bench.rig().knows_what_is_told()
 }

@@ -186,12 +186,7 @@ impl FaultyBench {
 }
 
 /// Procedures that judge what a bad line would blame: modem, link, inputs, and the tester's own session.
-const JUDGE: [&str; 4] = [
-    "twc/exchange",
-    "tcms/link",
-    "atp/limit_speed",
-    "twc/ptu_exchange",
-];
+const JUDGE: [&str; 4] = ["twc/exchange", "tcms/link", "atp/limit_speed", "ptu/twc"];
 
 #[test]
 fn on_a_good_line_a_good_unit_passes() {

@@ -2,6 +2,8 @@
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 
+use ptu_bench::run::uncertainty_of;
+
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use crate::limits::short;
 use crate::words::Words;
@@ -48,11 +50,15 @@ fn rows(step: &StepRecord, words: &Words) -> Vec<Row> {
             cells: vec![(Cell::Text(tone, step.message.clone()), 3 + MEASURED)],
         });
     }
-    rows.extend(step.measurements.iter().map(|m| measured(m, words)));
+    let all = &step.measurements;
+    let own = all
+        .iter()
+        .filter(|measurement| !is_uncertainty(measurement, all));
+    rows.extend(own.map(|measurement| measured(measurement, uncertainty(measurement, all), words)));
     rows
 }
 
-fn measured(measurement: &MeasurementRecord, words: &Words) -> Row {
+fn measured(measurement: &MeasurementRecord, uncertainty: Option<f64>, words: &Words) -> Row {
     let MeasurementRecord {
         name,
         value,
@@ -65,7 +71,11 @@ fn measured(measurement: &MeasurementRecord, words: &Words) -> Row {
     let limit = |limit: &Option<f64>| soft(limit.map_or_else(String::new, short));
     let good = passed(measurement.verdict);
     let tone = if good { Tone::Plain } else { Tone::Bad };
-    let value_text = value.map_or_else(|| words.report.no_value.to_owned(), short);
+    let value_text = match (value, uncertainty) {
+        (None, _) => words.report.no_value.to_owned(),
+        (Some(value), None) => short(*value),
+        (Some(value), Some(off)) => format!("{} ± {}", short(*value), short(off)),
+    };
     Row {
         kind: RowKind::Detail,
         cells: vec![
@@ -79,6 +89,18 @@ fn measured(measurement: &MeasurementRecord, words: &Words) -> Row {
             soft(String::new()),
         ],
     }
+}
+
+/// What is stored beside a measurement as its uncertainty.
+fn uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> Option<f64> {
+    let name = uncertainty_of(&measurement.name);
+    all.iter().find(|other| other.name == name)?.value
+}
+
+/// It is shown with the measurement it belongs to.
+fn is_uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> bool {
+    all.iter()
+        .any(|other| uncertainty_of(&other.name) == measurement.name)
 }
 
 pub fn verdict(verdict: Verdict, words: &Words) -> Cell {

@@ -14,7 +14,8 @@ wordings! {
         // Why a stimulus cannot be given.
         no_unit: "No unit is connected", "연결된 유닛이 없습니다";
         run_has_bench: "A run has the bench: stop it first", "시험이 벤치를 사용 중입니다. 먼저 시험을 멈추십시오";
-        needs_btu: "Goes through the bench harness: connect as BTU", "벤치 하네스로 주는 신호입니다. BTU로 연결하십시오";
+        needs_harness: "Goes through the bench harness; only the maintenance port is connected", "벤치 하네스로 주는 신호입니다. 정비 포트만 연결되어 있습니다";
+        in_cab: "A person in the cab does this; only the maintenance port is connected", "운전실에서 사람이 조작합니다. 정비 포트만 연결되어 있습니다";
         not_armed: "The unit is not armed: press Arm first", "시험 허가 상태가 아닙니다. 먼저 시험 허가를 누르십시오";
         key_off: "The maintenance key is off", "정비 키가 꺼져 있습니다";
 
@@ -285,7 +286,8 @@ impl Bench {
         match why {
             Refused::NotConnected => self.no_unit,
             Refused::Running => self.run_has_bench,
-            Refused::NeedsBtu => self.needs_btu,
+            Refused::NeedsHarness => self.needs_harness,
+            Refused::InCab => self.in_cab,
             Refused::NotArmed => self.not_armed,
             Refused::KeyOff => self.key_off,
         }

@@ -12,6 +12,8 @@ wordings! {
         none: "None", "해제";
         chosen: "{steps} steps chosen, at most {time}", "{steps}개 단계 선택, 최대 {time}";
         on_request: "on request", "요청 시만";
+        skipped: "skipped", "생략";
+        needs_harness: "Needs the bench harness; only the maintenance port is connected", "벤치 하네스가 필요합니다. 정비 포트만 연결되어 있습니다";
         run: "Run", "시험 시작";
         run_all: "Run on all units", "모든 유닛에서 시작";
         find_part: "Find the part", "고장 부품 찾기";

@@ -1,5 +1,6 @@
 //! The form of the bench choice: endpoint, line, unit configuration, train and injected faults.
 
+use btu_rig::rig::Harness;
 use eframe::egui::{
     ComboBox, DragValue, Grid, Id, Key, Label, PopupCloseBehavior, Pos2, RichText, ScrollArea,
     TextEdit, Ui, Window,
@@ -144,8 +145,13 @@ impl Setup {
         Grid::new("surroundings").num_columns(2).show(ui, |ui| {
             ui.label(frame.connection_kind);
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut choice.as_ptu, false, frame.as_btu);
-                ui.selectable_value(&mut choice.as_ptu, true, frame.as_ptu);
+                for (harness, text) in [
+                    (Harness::Auto, frame.harness_auto),
+                    (Harness::Bench, frame.as_btu),
+                    (Harness::None, frame.as_ptu),
+                ] {
+                    ui.selectable_value(&mut choice.harness, harness, text);
+                }
             });
             ui.end_row();
             pick(ui, frame.line, &mut choice.line, of(|names| &names.lines));

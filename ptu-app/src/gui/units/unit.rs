@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use btu_rig::procedure::UnitEvent;
+use btu_rig::procedure::plan::Connection;
 use protocol::message::Identity;
 use protocol::signal::Signal;
 
@@ -113,6 +114,12 @@ impl Unit {
         }
     }
 
+    /// How it is reached: as was found out, or as far as is known before.
+    pub fn connection(&self) -> Connection {
+        let found = self.bench.live().connection;
+        found.unwrap_or_else(|| self.choice.connection())
+    }
+
     pub fn is_armed(&self) -> bool {
         self.bench.live().sample.get(Signal::Armed) == Some(1.0)
     }
@@ -121,9 +128,7 @@ impl Unit {
     pub(super) fn poll(&mut self, words: &Words, said: &mut UnitMessages<'_>) {
         if self.setup.poll() {
             match &self.setup {
-                Request::Ready(setup) => {
-                    self.bench.connect(setup.clone(), self.choice.connection())
-                }
+                Request::Ready(setup) => self.bench.connect(setup.clone()),
                 Request::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
                 _ => {}
             }
@@ -309,8 +314,7 @@ mod tests {
         let let_go = ReleaseOnDrop(held_up.clone());
         assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
         let setup = unit.choice.setup(&scripts()).expect("its configuration");
-        let connection = unit.choice.connection();
-        unit.bench.connect(setup.clone(), connection);
+        unit.bench.connect(setup.clone());
         let began = Instant::now();
         let until = |unit: &mut Unit, holds: &dyn Fn(&Unit) -> bool| {
             let mut messages = Messages::default();

@@ -142,10 +142,31 @@ pub(super) static VERBS: &[Verb] = &[
             }]))
         }
     ),
+    verb!(
+        "on_bench",
+        &[needs("actions", ParamType::Actions)],
+        |args| only_where(args, Action::OnBench)
+    ),
+    verb!(
+        "on_train",
+        &[needs("actions", ParamType::Actions)],
+        |args| only_where(args, Action::OnTrain)
+    ),
     verb!("code", &[needs("name", ParamType::Name)], |args| args
         .context
         .code(args.text("name").unwrap_or_default())),
 ];
+
+/// Actions done only with or only without the bench harness.
+fn only_where(args: &Args<'_>, wrap: fn(Box<Action>) -> Action) -> Result<Item, String> {
+    let actions = args.actions("actions");
+    let nested = |action: &Action| matches!(action, Action::OnBench(_) | Action::OnTrain(_));
+    if actions.iter().any(nested) {
+        return Err("`on_bench` and `on_train` cannot stand in each other".into());
+    }
+    let wrapped = actions.into_iter().map(|action| wrap(Box::new(action)));
+    Ok(Item::Actions(wrapped.collect()))
+}
 
 fn antenna((carrier_hz, rate_hz, level_mv): (f64, f64, f64)) -> Stimulus {
     Stimulus::Code {

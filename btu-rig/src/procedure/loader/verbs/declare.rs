@@ -19,7 +19,7 @@ pub(super) static VERBS: &[Verb] = &[
         params: &[
             needs("title", ParamType::Name),
             takes("title_ko", ParamType::Name),
-            takes("needs", ParamType::Choice(&["btu", "ptu"])),
+            takes("needs", ParamType::Choice(&["harness", "ptu"])),
             takes("on_request", ParamType::Bool),
             takes("suspect", ParamType::Name),
             takes("setup", ParamType::Actions),

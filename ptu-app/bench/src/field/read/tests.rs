@@ -11,7 +11,7 @@ use protocol::message::{EbCause, IoOutput, LogEnd, LogEntry, Message, Mode, Stat
 
 use super::*;
 use crate::data::ScriptsDirectory;
-use crate::link::{Delayed, SimLink};
+use crate::link::Delayed;
 use crate::run::{BenchChoice, Session};
 
 /// An entry made standing.
@@ -31,7 +31,7 @@ pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
 }
 
 /// A bench with an embedded unit, these faults injected.
-pub fn bench(faults: &[&str]) -> Session<Delayed<SimLink>> {
+pub fn bench(faults: &[&str]) -> Session<Delayed<crate::run::bench_setup::SimUnit>> {
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
     let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
     let choice = BenchChoice {

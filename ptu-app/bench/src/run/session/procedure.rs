@@ -60,6 +60,9 @@ impl<L: UnitLink> Session<L> {
         };
         let mut rounds = RepetitionTally::new(options.repeat);
         let mut runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
+        if let Some(why) = self.bench.rig().cannot_run(procedure) {
+            runner.pass_over_all(why);
+        }
         let mut progress = Progress::new(procedure, self.bench.now());
         for fault in found {
             runner.found_before(&fault.name);
@@ -121,13 +124,16 @@ impl<L: UnitLink> Session<L> {
         let pressed = self.stop.presses();
         for press in *presses..pressed {
             match self.stop.reason().filter(|_| press == 0) {
-                Some(reason) => runner.bench_stalled(reason.to_owned()),
+                Some(reason) => runner.interrupted(reason.to_owned()),
                 None => runner.stop(),
             }
         }
         *presses = pressed;
         if let Some(behind) = self.stalled.take() {
-            runner.bench_stalled(stall_message(behind));
+            runner.interrupted(stall_message(behind));
+        }
+        if let Some(why) = self.bench.rig_mut().take_intervention() {
+            runner.interrupted(why);
         }
         runner.behind(self.behind());
     }

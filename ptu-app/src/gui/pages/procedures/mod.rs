@@ -198,10 +198,7 @@ impl ProceduresPage {
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
         };
-        let connection = context
-            .units
-            .of_id(unit)
-            .map(|unit| unit.choice.connection());
+        let connection = context.units.of_id(unit).map(|unit| unit.connection());
         if let Some(connection) = connection {
             let selection = self.chosen(connection);
             self.order_of(unit, selection, how, context);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::selection::{Selection, possible};
+use super::selection::Selection;
 use crate::gui::DataPaths;
 use ptu_bench::bench_worker::RunOrder;
 use ptu_bench::failure::Failure;
@@ -72,8 +72,7 @@ pub fn order(
     if let Some(error) = suite.errors.first() {
         return Err(Failure::usage(error.clone()));
     }
-    let mut tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
-    tasks.retain(|task| possible(&task.procedure, choice.connection()));
+    let tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
     if tasks.is_empty() {
         return Err(Failure::usage("no step is chosen"));
     }

@@ -19,7 +19,7 @@ pub enum Share {
 
 /// Whether a connection can do a procedure: one of a bench needs its harness.
 pub fn possible(procedure: &Procedure, connection: Connection) -> bool {
-    connection == Connection::Btu || procedure.needs == Connection::Ptu
+    procedure.needs.lacks(connection).is_none()
 }
 
 /// Chosen steps by name, by procedure, so that they stay chosen when scripts are loaded again.

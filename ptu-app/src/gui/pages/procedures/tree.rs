@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
-use eframe::egui::{Checkbox, Response, RichText, ScrollArea, TextEdit, Ui, collapsing_header};
+use btu_rig::procedure::plan::Connection;
+use eframe::egui::{
+    Checkbox, Label, Response, RichText, ScrollArea, TextEdit, Ui, collapsing_header,
+};
 
 use super::ProceduresPage;
 use super::selection::{Selection, Share, possible};
@@ -33,7 +36,7 @@ impl ProceduresPage {
                 return;
             }
         };
-        let connection = context.units.chosen().choice.connection();
+        let connection = context.units.chosen().connection();
         let before = self.chosen(connection);
         let mut chosen = before.clone();
         ui.horizontal(|ui| {
@@ -53,10 +56,9 @@ impl ProceduresPage {
         ui.label(RichText::new(said).color(Palette::of(ui).quiet));
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for (folder, procedures) in folders(&suite.procedures) {
-                let found = procedures
-                    .iter()
-                    .filter(|known| possible(known, connection) && matches(known, &self.find));
-                show_folder(ui, words, folder, &found.collect::<Vec<_>>(), &mut chosen);
+                let found = procedures.iter().filter(|known| matches(known, &self.find));
+                let found: Vec<_> = found.collect();
+                show_folder(ui, words, folder, &found, connection, &mut chosen);
             }
         });
         if chosen != before {
@@ -70,26 +72,47 @@ fn show_folder(
     words: &Words,
     folder: &str,
     found: &[&Arc<Procedure>],
+    connection: Connection,
     chosen: &mut Selection,
 ) {
     if found.is_empty() {
         return;
     }
-    let share = chosen.share_of(found.iter().copied());
+    let can = || {
+        found
+            .iter()
+            .copied()
+            .filter(|known| possible(known, connection))
+    };
+    let share = chosen.share_of(can());
     let id = ui.make_persistent_id(("folder", folder));
     collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true)
         .show_header(ui, |ui| {
             if tick(ui, share, RichText::new(folder).strong()).clicked() {
-                for procedure in found {
+                for procedure in can() {
                     chosen.set(procedure, share != Share::All && !procedure.on_request);
                 }
             }
         })
         .body(|ui| {
             for procedure in found {
-                show_procedure(ui, words, procedure, chosen);
+                match possible(procedure, connection) {
+                    true => show_procedure(ui, words, procedure, chosen),
+                    false => show_skipped(ui, words, procedure),
+                }
             }
         });
+}
+
+/// A procedure that this connection cannot do: why it would be skipped.
+fn show_skipped(ui: &mut Ui, words: &Words, procedure: &Procedure) {
+    let text = RichText::new(format!("{}: {}", procedure.id, words.procedures.skipped));
+    let label = ui.add_enabled(false, Label::new(text));
+    label.on_disabled_hover_text(format!(
+        "{}. {}",
+        title(procedure, words),
+        words.procedures.needs_harness
+    ));
 }
 
 fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mut Selection) {

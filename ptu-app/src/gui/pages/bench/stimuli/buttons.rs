@@ -36,9 +36,9 @@ pub struct StimulusPanel<'a> {
 }
 
 impl StimulusPanel<'_> {
-    /// As what the bench is connected.
+    /// How the unit is reached.
     pub fn connection(&self) -> Connection {
-        self.bench.connection()
+        self.bench.live().connection.unwrap_or(Connection::Btu)
     }
 
     pub fn words(&self) -> &'static Words {
