@@ -29,7 +29,7 @@ use crate::link::SimLink;
 
 pub use service::{Arrival, Doors};
 
-/// Fastest that a train is pushed, km/h [default].
+/// Fastest that a train is pushed, km/h; a value of this program.
 pub const MAX_PUSH_KMH: f64 = 100.0;
 /// How fast a pushed train gains and loses speed, m/s² [default].
 const PUSH_MPS2: f64 = 0.5;

@@ -9,7 +9,7 @@ use fault_db::{IdSource, OpenOptions};
 
 pub use span::{Span, months};
 
-/// A time that a unit is told may be wrong by so much, ms [default]: a laptop that is set by the network now and then,
+/// A time that a unit is told may be wrong by so much, ms, a value of this program: a laptop that is set by the network now and then,
 /// and the way to the unit.
 pub const UNCERTAINTY_MS: u16 = 500;
 
