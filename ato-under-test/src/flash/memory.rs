@@ -14,7 +14,7 @@ use protocol::message::{
 };
 
 use super::ring::{CONTENT_BYTES, Stored};
-use super::{BLOCKS, BlockDevice, DamagedOr, FlashError, LogRing, RamFlash};
+use super::{BLOCKS, BlockDevice, FlashError, LogRing, RamFlash, Slot};
 use crate::kernel::{EventLog, RunRecord};
 
 /// Blocks of the event log, 6 400 entries; the others are of the run record, 19 300 rows: 16 min of driving.
@@ -188,7 +188,7 @@ impl Memory {
             if replies.len() >= full {
                 break;
             }
-            if let Ok(DamagedOr::Entry(stored)) = ring.read(&*self.device, *next) {
+            if let Ok(Slot::Entry(stored)) = ring.read(&*self.device, *next) {
                 replies.extend(message(&stored));
             }
             *next += 1;

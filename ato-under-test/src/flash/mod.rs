@@ -17,7 +17,7 @@ use core::fmt;
 pub use file::FileFlash;
 pub(crate) use memory::{Memory, SetClockError};
 pub use ram::RamFlash;
-pub(crate) use ring::{DamagedOr, LogRing};
+pub(crate) use ring::{LogRing, Slot};
 
 /// Bytes of an erase block.
 pub const BLOCK_BYTES: usize = 4096;

@@ -42,13 +42,13 @@ pub struct Stored {
 
 /// What stands in a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DamagedOr<T> {
+pub enum Slot {
     /// Nothing yet.
     Empty,
     /// Something that does not check.
     Damaged,
     /// An entry.
-    Entry(T),
+    Entry(Stored),
 }
 
 /// The ring's place in its part of a device.
@@ -94,7 +94,7 @@ impl LogRing {
         // After the last slot that is not empty: an entry that was cut off has used its number.
         let mut used = 0;
         for slot in 0..SLOTS {
-            if ring.slot(device, newest * SLOTS + slot)? != DamagedOr::Empty {
+            if ring.slot(device, newest * SLOTS + slot)? != Slot::Empty {
                 used = slot + 1;
             }
         }
@@ -121,7 +121,7 @@ impl LogRing {
         let mut sequence = self.next;
         while sequence > oldest {
             sequence -= 1;
-            if let DamagedOr::Entry(stored) = self.read(device, sequence)? {
+            if let Slot::Entry(stored) = self.read(device, sequence)? {
                 return Ok(stored.power_up);
             }
         }
@@ -200,35 +200,27 @@ impl LogRing {
     ///
     /// # Errors
     /// The device cannot be read.
-    pub fn read(
-        &self,
-        device: &dyn BlockDevice,
-        sequence: u32,
-    ) -> Result<DamagedOr<Stored>, FlashError> {
+    pub fn read(&self, device: &dyn BlockDevice, sequence: u32) -> Result<Slot, FlashError> {
         let turn = sequence / SLOTS;
         if self.turns[self.block_of(turn)] != Some(turn) || sequence >= self.next {
-            return Ok(DamagedOr::Empty);
+            return Ok(Slot::Empty);
         }
         self.slot(device, sequence)
     }
 
-    fn slot(
-        &self,
-        device: &dyn BlockDevice,
-        sequence: u32,
-    ) -> Result<DamagedOr<Stored>, FlashError> {
+    fn slot(&self, device: &dyn BlockDevice, sequence: u32) -> Result<Slot, FlashError> {
         let mut bytes = [0; SLOT_BYTES];
         let block = self.first_block + self.block_of(sequence / SLOTS);
         device.read(block, offset_of(sequence % SLOTS), &mut bytes)?;
         if bytes.iter().all(|byte| *byte == ERASED) {
-            return Ok(DamagedOr::Empty);
+            return Ok(Slot::Empty);
         }
         if !checks(&bytes) || word(&bytes, 0) != sequence {
-            return Ok(DamagedOr::Damaged);
+            return Ok(Slot::Damaged);
         }
         let mut content = [0; CONTENT_BYTES];
         content.copy_from_slice(&bytes[8..8 + CONTENT_BYTES]);
-        Ok(DamagedOr::Entry(Stored {
+        Ok(Slot::Entry(Stored {
             sequence,
             power_up: word(&bytes, 4),
             content,

@@ -1,7 +1,7 @@
 //! What the unit promises of its stored memory: to a tester, over power-ups, and to one of version 1.
 
-use ato_under_test::Unit;
 use ato_under_test::flash::{BlockDevice, RamFlash};
+use ato_under_test::{Port, Unit};
 use protocol::injection::{Effect, Place};
 use protocol::link::{End, Link};
 use protocol::message::{
@@ -175,6 +175,51 @@ fn reading_at_the_greatest_pace_fits_on_the_line() {
     assert_eq!(entries.count(), 20, "four a cycle");
     let in_cycle = laptop.bytes / 5;
     assert!(in_cycle < 430, "{in_cycle} bytes in 50 ms");
+}
+
+/// Goal: a laptop alone leaves the line of its port room: at most 40 % of 115 200 baud. Method: bytes at the
+/// maintenance port while a log is read at the pace that it asks for there.
+#[test]
+fn reading_at_the_maintenance_port_takes_less_than_two_fifths_of_the_line() {
+    let mut laptop = Laptop::new(Box::new(RamFlash::default()));
+    for _ in 0..200 {
+        laptop.run(10, None);
+        laptop = laptop.power_cycle();
+    }
+    let mut link = Link::new(End::Bench);
+    let (mut sent, mut bytes, mut entries) = (0, 0, 0);
+    let scans = 300;
+    for scan in 0..scans {
+        let mut to_unit = Vec::new();
+        if scan % 20 == 0 {
+            link.send(laptop.now, &KeepAlive { session: 0 }.into(), &mut to_unit);
+        }
+        if scan == 0 {
+            let request = ReadStored {
+                store: StoreKind::Events,
+                from_sequence: 0,
+                per_cycle: 3,
+            };
+            link.send(laptop.now, &request.into(), &mut to_unit);
+        }
+        sent += to_unit.len();
+        laptop.unit.receive_at(Port::Maintenance, &to_unit);
+        laptop.unit.step(laptop.now, &mut Vec::new());
+        let mut from_unit = Vec::new();
+        laptop.unit.take_maintenance(&mut from_unit);
+        bytes += from_unit.len();
+        link.push(&from_unit);
+        while let Some(received) = link.poll(laptop.now) {
+            entries += usize::from(matches!(received.message, Message::StoredEntry(_)));
+        }
+        laptop.now += SCAN;
+    }
+    let (from_unit, to_unit) = (bytes * 100 / scans, sent * 100 / scans);
+    assert!(entries > 170, "{entries} entries in 3 s");
+    assert!(
+        from_unit < 4_608 && to_unit < 4_608,
+        "{from_unit} and {to_unit} bytes/s"
+    );
 }
 
 #[test]

@@ -85,10 +85,43 @@ fn the_windows_buttons_read_the_unit_that_is_not_connected() {
         ..Settings::default()
     };
     settings.unit.endpoint = unit.address.clone();
-    let mut window = Window::with(Place::new(), &crate::common::scripts(), settings);
+    let mut window = Window::with(Place::new(), crate::common::scripts(), settings);
     window.click("Import the unit's log");
     window.wait_for_part("MEM-3:");
     window.click("Traces");
     window.click("Pull the run record");
     window.wait_for_part("MEM-3: 0 rows read, 0 new runs");
+}
+
+/// Goal: damage in the memory is told, and costs the damaged entry alone; a file that is something else is refused.
+/// Method: bytes of the first entry are changed while the unit is off.
+#[test]
+fn a_damaged_entry_is_told_and_all_others_are_read() {
+    let place = Place::new();
+    let flash = place.path("unit.flash");
+    let arguments = [
+        "--serial-no",
+        "MEM-4",
+        "--flash",
+        flash.to_str().expect("text"),
+    ];
+    let before = {
+        let unit = Unit::on_tcp(&arguments);
+        import(&place, &unit)
+    };
+    assert_eq!(number(&before["damaged"]), 0.0);
+    let mut bytes = std::fs::read(&flash).expect("the unit's memory");
+    // After the block's header: sequence and power-up count of entry 0, then its content.
+    bytes[16 + 8 + 3] ^= 0x10;
+    std::fs::write(&flash, &bytes).expect("written");
+    let after = import(&place, &Unit::on_tcp(&arguments));
+    assert_eq!(number(&after["damaged"]), 1.0, "{after}");
+    assert!(
+        number(&after["entries"]) >= number(&before["entries"]),
+        "{after}"
+    );
+    let told = list(&after["warnings"])
+        .iter()
+        .any(|warning| text(warning).contains("damaged"));
+    assert!(told, "{after}");
 }

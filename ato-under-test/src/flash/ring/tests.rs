@@ -32,7 +32,7 @@ fn fill(flash: &mut RamFlash, ring: &mut LogRing, until: u32) {
 fn kept(flash: &RamFlash, ring: &LogRing) -> Vec<u32> {
     let found = (ring.oldest()..ring.next()).filter(|sequence| {
         match ring.read(flash, *sequence).expect("readable") {
-            DamagedOr::Entry(stored) => {
+            Slot::Entry(stored) => {
                 assert_eq!(stored.content[..8], content(*sequence));
                 assert_eq!((stored.sequence, stored.power_up), (*sequence, 7));
                 true

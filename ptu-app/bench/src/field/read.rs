@@ -148,7 +148,9 @@ pub fn read_log<L: UnitLink>(
         return Err(broken_off.unwrap_or_default());
     };
     let stored = session.stored().map(|(events, rows)| {
-        let (dated, read) = from_store(events, rows, pair);
+        // Of a unit that started again meanwhile it is not known which power-up our clock stands beside: the time
+        // that it was told, and stored, is.
+        let (dated, read) = from_store(events, rows, pair.filter(|_| restarts == 0));
         entries = dated;
         read
     });

@@ -142,8 +142,8 @@ pub fn compare(
         .iter()
         .filter(|marker| !came.markers.contains(marker));
     let mut notes = vec![
-        "the sound unit drove an empty train on a dry, level-wheeled day unless asked otherwise; a loaded train and a \
-         slippery rail part from it, too"
+        "the sound unit drove an empty train on a dry rail unless asked otherwise; a loaded train and a slippery rail \
+         part from it, too"
             .to_owned(),
     ];
     if trace.gaps {
