@@ -63,7 +63,7 @@ pub struct BenchSetup {
 /// The embedded unit where it is built in.
 pub enum SimUnit {
     /// On a bench, all of whose channels reach it.
-    OnBench(SimLink),
+    OnBench(Box<SimLink>),
     /// Aboard a train, reached at its maintenance port alone.
     Aboard(Box<UnitAboard>),
 }
@@ -184,7 +184,7 @@ impl BenchSetup {
         let power_at = Instant::ZERO + BEFORE + timing.power_up;
         let alone = self.harness == Harness::None;
         let unit = match alone {
-            false => SimUnit::OnBench(self.unit(seed, power_at)),
+            false => SimUnit::OnBench(Box::new(self.unit(seed, power_at))),
             true => SimUnit::Aboard(Box::new(self.aboard(seed, power_at))),
         };
         let link = Delayed::new(unit, &timing, seed ^ WIRE_SEQUENCE);
