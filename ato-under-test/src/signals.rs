@@ -38,8 +38,10 @@ pub struct MarkerPulse {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inputs {
     pub alive: bool,
-    /// Signal at the receiver's output filter.
+    /// Signal at the receiver's output filter; none while the self-test feeds the receiver.
     pub signal: AntennaSignal,
+    /// Signal there of the code that the self-test feeds in.
+    pub self_test_signal: Option<AntennaSignal>,
     pub pulses: [Pulses; 2],
     /// Tachometer inputs fed by the TEST board.
     pub test_speed: [bool; 2],

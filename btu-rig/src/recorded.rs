@@ -1,6 +1,7 @@
 //! Recorded stimuli: every stimulus a procedure gave the bench, with its time, so that a run can be repeated
 //! open loop, whatever the unit answers this time.
 
+use protocol::message::{SelfTest, SelfTestItem};
 use protocol::{Duration, Instant, SCAN};
 use serde::{Deserialize, Serialize};
 
@@ -115,6 +116,10 @@ impl Driver for RecordingDriver<'_> {
 
     fn evidence(&self) -> Evidence {
         self.rig.evidence()
+    }
+
+    fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
+        self.rig.self_test_item(item)
     }
 }
 

@@ -373,10 +373,12 @@ pub enum Stimulus {
         /// 1 to 4.
         psm: u8,
     },
-    /// Station data through the TWC TEST module.
+    /// Station data from the TEST modem into the TWC antenna.
     PtuTwc(StationData),
     /// Takes all test signals away.
     PtuRelease,
+    /// Lets the unit test itself.
+    PtuSelfTest,
     /// Clears the unit's event log.
     PtuClearLog,
 }
@@ -399,6 +401,7 @@ impl Stimulus {
                 | Self::PtuMarker { .. }
                 | Self::PtuTwc(_)
                 | Self::PtuRelease
+                | Self::PtuSelfTest
                 | Self::PtuClearLog
         )
     }

@@ -93,7 +93,7 @@ macro_rules! events {
 
 events! {
     PowerUp = 100 "power_up" Info "-" "Unit powered up" "장치 기동" "";
-    SelfTestFailed = 101 "self_test_failed" Critical "atp_cpu" "Start-up self-test failed" "기동 자체시험 실패" "failed items as bits";
+    SelfTestFailed = 101 "self_test_failed" Critical "atp_cpu" "Self-test failed" "자체시험 실패" "failed items as bits";
     Armed = 102 "armed" Info "-" "Armed for maintenance" "정비 시험 허가" "";
     ArmingLapsed = 103 "arming_lapsed" Info "-" "Arming lapsed, test signals taken away" "정비 시험 허가 해제" "refusal code";
     LogCleared = 104 "log_cleared" Info "-" "Event log cleared" "이벤트 기록 삭제" "";
@@ -176,8 +176,10 @@ impl Event {
                     (SelfTest::TWC_MODEM, "fsk_board"),
                     (SelfTest::TEST_BOARD, "test_board"),
                     (SelfTest::EB_RELAY, "eb_relay"),
+                    (SelfTest::MEMORY.union(SelfTest::CONFIGURATION), "atp_cpu"),
+                    (SelfTest::TRACK_DATABASE, "ato_cpu"),
                 ];
-                let part = parts.iter().find(|(item, _)| failed.contains(*item));
+                let part = parts.iter().find(|(items, _)| failed.intersects(*items));
                 part.map(|(_, part)| *part)
             }
             // The parameter is the channel that loses frames.

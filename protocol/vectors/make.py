@@ -30,6 +30,7 @@ VALUES = {
     "Subscribe": {"changes": 1},
     "TestCode": {"session": SESSION, "carrier_hz": 3000, "code_rate_chz": 1500, "level_mv": 500},
     "TestSpeed": {"session": SESSION, "channels": 3, "backward": 0, "speed_cms": 1944, "accel_mms2": 278},
+    "RunSelfTest": {"session": SESSION},
     "TestMarker": {"session": SESSION, "marker": 2},
     "TestTwc": {"session": SESSION, **STATION},
     "TestRelease": {"session": SESSION, "signals": "CODE|SPEED_1|SPEED_2"},
@@ -45,6 +46,11 @@ VALUES = {
     "ArmChallenge": {"session": SESSION, "challenge": CHALLENGE},
     "ArmState": {"session": SESSION, "armed": 0, "refusal": "key_off"},
     "StimulusAnswer": {"request_seq": 515, "answer": "out_of_range"},
+    "SelfTestItem": {
+        "request_seq": 516, "item": "EB_RELAY", "passed": 0, "value": 410, "low": 0, "high": 190,
+        "unit": "ms",
+    },
+    "SelfTestEnd": {"request_seq": 516, "failed": "EB_RELAY", "took_ms": 600},
     "Status": {
         "bits": "TWC_OK|TCMS_OK|TRA_OK|STARTED|INPUTS_OK", "mode": "manual",
         "refusals": "NOT_STANDSTILL|MODE_SWITCH", "code_index": 4, "eb_cause": "none",

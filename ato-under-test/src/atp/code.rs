@@ -96,11 +96,6 @@ impl CodeDecoder {
         self.code
     }
 
-    /// The code heard in this scan, in force or not.
-    pub fn candidate(&self) -> Code {
-        self.candidate
-    }
-
     /// The limit the code in force stands for; none means zero.
     pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
         match self.code {

@@ -59,6 +59,8 @@ pub struct Maintenance {
     run_reader: Option<u32>,
     /// What of the stored memory is to be sent, its next number and how much in a cycle.
     stored_reader: Option<(StoreKind, u32, usize)>,
+    /// Sequence number of a request for a self-test that has not begun.
+    self_test: Option<u16>,
 }
 
 impl Maintenance {
@@ -76,6 +78,7 @@ impl Maintenance {
             reader: None,
             run_reader: None,
             stored_reader: None,
+            self_test: None,
         }
     }
 
@@ -89,6 +92,11 @@ impl Maintenance {
             .challenge
             .is_some_and(|(_, _, at)| now.since(at) < CHALLENGE_TIME);
         asked || self.answered.is_some() || self.armed()
+    }
+
+    /// The request for a self-test, once.
+    pub fn take_self_test(&mut self) -> Option<u16> {
+        self.self_test.take()
     }
 
     /// A tester has been heard lately.
@@ -169,6 +177,7 @@ impl Maintenance {
         log: &mut EventLog,
     ) -> Message {
         self.armed = None;
+        self.self_test = None;
         board.release_all();
         log.push(now, Event::ArmingLapsed, i32::from(refusal.code()));
         arm_state(session, refusal)
@@ -216,7 +225,7 @@ impl Maintenance {
                 self.stored_reader = Some((request.store, request.from_sequence, per_cycle));
             }
             other => {
-                if let Some(answer) = self.stimulate(now, other, board, log) {
+                if let Some(answer) = self.stimulate(now, (seq, other), board, log) {
                     replies.push(
                         StimulusAnswer {
                             request_seq: seq,
@@ -279,7 +288,7 @@ impl Maintenance {
     fn stimulate(
         &mut self,
         now: Instant,
-        message: Message,
+        (seq, message): (u16, Message),
         board: &mut TestBoard,
         log: &mut EventLog,
     ) -> Option<Answer> {
@@ -289,6 +298,7 @@ impl Maintenance {
             Message::TestMarker(m) => m.session,
             Message::TestTwc(m) => m.session,
             Message::TestRelease(m) => m.session,
+            Message::RunSelfTest(m) => m.session,
             Message::ClearLog(m) => m.session,
             _ => return None,
         };
@@ -303,6 +313,10 @@ impl Maintenance {
             Message::TestTwc(request) => board.set_twc(now, request),
             Message::TestRelease(request) => {
                 board.release(request);
+                Answer::Accepted
+            }
+            Message::RunSelfTest(_) => {
+                self.self_test = Some(seq);
                 Answer::Accepted
             }
             _ => {

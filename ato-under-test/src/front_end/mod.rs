@@ -106,7 +106,11 @@ impl FrontEnd {
         let (marker, from_board) = self.marker(input.map(|(frame, _)| frame), board, faults);
         let tested = Inputs {
             alive: image.alive(),
-            signal: received.signal,
+            signal: match built_in {
+                Some(_) => AntennaSignal::default(),
+                None => received.signal,
+            },
+            self_test_signal: built_in.map(|_| received.signal),
             pulses,
             test_speed: test_pulses.map(|pulses| pulses.is_some()),
             marker,

@@ -1,5 +1,5 @@
-//! Faults of stored data (track database, wheel diameter). They are present from power-up and plausible in
-//! themselves, so that no check of the unit itself detects them.
+//! Faults of stored data (track database, wheel diameter), present from power-up. Numbers that are wrong are
+//! plausible in themselves, so that no check of the unit itself detects them.
 
 use protocol::injection::{Effect, Place};
 
@@ -15,6 +15,7 @@ pub fn apply_stored_data_faults(mut setup: Setup) -> Setup {
                     section.length_m += by;
                 }
             }
+            (Place::TrackDatabase, Effect::Dead) => setup.line.sections.clear(),
             (Place::WheelParameter, Effect::Gain { factor }) => {
                 setup.config.tacho.wheel_diameter_mm *= factor;
             }

@@ -46,7 +46,10 @@ impl Unit {
         self.send_through(Place::TcmsTransmitter, now, &to_tcms, out);
         if self.maintenance.listened_to(now) {
             self.ports.send(now, &report::status(self), out);
-            self.maintenance.read_log(&self.log, &mut self.replies);
+            self.self_tester.take_results(&mut self.replies);
+            if self.replies.is_empty() {
+                self.maintenance.read_log(&self.log, &mut self.replies);
+            }
             if self.replies.is_empty() {
                 self.maintenance
                     .read_run(&self.run_record, &mut self.replies);

@@ -102,12 +102,7 @@ impl Unit {
             log,
             maintenance: Maintenance::new(ms(link.tester_timeout_ms), setup.seed),
             board: TestBoard::new(config.metres_per_pulse()),
-            self_tester: SelfTester::new(
-                Instant::ZERO,
-                ms(config.start.self_test_ms),
-                config,
-                &setup.line,
-            ),
+            self_tester: SelfTester::new(Instant::ZERO, ms(config.start.self_test_ms)),
             functions: Functions::new(config),
             test_mode: None,
             scanned: ScannedInputs::default(),
@@ -207,9 +202,7 @@ impl Unit {
     fn read_inputs(&mut self, now: Instant) {
         self.image.step(now);
         self.tcms.step(now);
-        let built_in = (!self.self_tester.finished())
-            .then(|| self.self_test_code())
-            .flatten();
+        let built_in = self.self_test_code();
         let (image, board) = (&self.image, &mut self.board);
         self.scanned = self
             .front_end
@@ -305,7 +298,11 @@ impl Unit {
     /// Drives the contacts and tells the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.commanded = self.wanted(now);
-        self.contacts = self.output_stage.drive(now, self.commanded, &self.faults);
+        let mut wanted = self.commanded;
+        if self.self_tester.drops_relay() {
+            wanted.remove(Outputs::EB_RELAY);
+        }
+        self.contacts = self.output_stage.drive(now, wanted, &self.faults);
         let tested = self.tested();
         let output = IoOutput {
             outputs: self.contacts,

@@ -1,4 +1,4 @@
-//! Start-up self-test of the unit: what each part answers is put together and passed to KRN.
+//! The unit's side of the self-test: what each part answers is put together and passed to KRN.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -6,44 +6,56 @@ use protocol::injection::Place;
 use protocol::message::TrainLines;
 
 use super::Unit;
-use crate::atp::Code;
+use crate::atp::{Code, lookup};
 use crate::kernel::SelfTestInputs;
 use crate::signals::AntennaSignal;
 
 /// Level of the self-test's code over the least that the receiver must decode [default].
 const SELF_TEST_LEVEL: f64 = 1.2;
+/// Cells of the tested memory that fail with an injected fault.
+const BAD_CELLS: usize = 4;
 
 impl Unit {
     pub(super) fn test_self(&mut self, now: Instant) {
-        if self.self_tester.finished() {
+        if !self.maintenance.armed() {
+            self.self_tester.cancel();
+        } else if let Some(request) = self.maintenance.take_self_test() {
+            let config = &self.setup.config;
+            self.self_tester.begin(now, request, config);
+        }
+        if !self.self_tester.runs() {
             return;
         }
+        let inputs = &self.scanned.tested;
+        let config = &self.setup.config;
+        let heard = inputs.self_test_signal.map(|signal| lookup(signal, config));
         let seen = SelfTestInputs {
-            receiver_decoded: matches!(self.functions.atp.decoder().candidate(), Code::Known(_)),
-            tra_answered: self.functions.inputs.tra_answers,
-            modem_heard: self.loop_back(),
-            test_board_answers: self.board.answers(),
-            brake_line_energised: self.functions.inputs.lines.contains(TrainLines::EB_LOOP),
+            code_heard: heard == Some(Code::Known(0)),
+            tra_answers: inputs.tra_answers,
+            line_energised: inputs.lines.contains(TrainLines::EB_LOOP),
+            modem_hears: self.self_tester.tests() && self.loop_back(),
+            board_answers: self.board.answers(),
+            bad_cells: self.faults.at(Place::Memory).map_or(0, |_| BAD_CELLS),
         };
-        if self.self_tester.step(now, seen) {
-            self.functions.atp.forget_code();
-            let failed = self.self_tester.failed();
-            if !failed.is_empty() {
-                self.log
-                    .push(now, Event::SelfTestFailed, i32::from(failed.bits()));
-            }
+        let (config, line) = (&self.setup.config, &self.setup.line);
+        let failed = self.self_tester.step(now, seen, config, line);
+        if let Some(failed) = failed.filter(|failed| !failed.is_empty()) {
+            self.log
+                .push(now, Event::SelfTestFailed, i32::from(failed.bits()));
         }
     }
 
-    /// The code that start-up feeds into the receiver: the first of the table, little above the least
-    /// level it must decode.
+    /// The code that is fed into the receiver: the first of the table, little above the least level it must
+    /// decode.
     pub(super) fn self_test_code(&self) -> Option<AntennaSignal> {
         let config = &self.setup.config;
-        config.codes.first().map(|code| AntennaSignal {
-            carrier_hz: code.carrier_hz,
-            rate_hz: code.rate_hz,
-            level_mv: config.receiver.level_min_mv * SELF_TEST_LEVEL,
-        })
+        let code = config.codes.first();
+        code.filter(|_| self.self_tester.feeds_receiver())
+            .map(|code| AntennaSignal {
+                carrier_hz: code.carrier_hz,
+                rate_hz: code.rate_hz,
+                level_mv: config.receiver.level_min_mv * SELF_TEST_LEVEL,
+            })
     }
 
     /// The modem's test frame, through its transmitter back into its receiver. One that arrives

@@ -10,6 +10,7 @@ mod maintenance_port;
 mod plant;
 mod protection;
 mod robustness;
+mod self_test;
 mod speed_control;
 mod stored_memory;
 mod tcms;

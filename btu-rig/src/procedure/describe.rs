@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use protocol::message::WordSpec;
+use protocol::message::{SelfTest, WordSpec};
 use protocol::signal::{Kind, Sample, Signal};
 
 use super::plan::{
@@ -242,6 +242,10 @@ impl Display for Measure {
             What::Maximum(signal) => write!(f, "greatest {}", signal.name())?,
             What::Minimum(signal) => write!(f, "least {}", signal.name())?,
             What::Change(signal) => write!(f, "change of {}", signal.name())?,
+            What::SelfTest { bit } => {
+                let item = meanings(&SelfTest::SPEC, 1 << bit);
+                write!(f, "{item}, by the unit's own limits")?;
+            }
         }
         let unit = self.unit();
         let limit = |limit: &Operand| match limit {

@@ -4,6 +4,7 @@
 //! is known within bounds: the value is the middle of what it may be, its uncertainty half of that span.
 
 use protocol::Instant;
+use protocol::message::SelfTestItem;
 use protocol::signal::Signal;
 
 use super::UnitTime;
@@ -62,6 +63,7 @@ pub(super) struct MeasurementRun {
     wrapped: f64,
     value: Option<f64>,
     uncertainty: Option<f64>,
+    item: Option<SelfTestItem>,
     missing_data: Option<MissingData>,
     done: bool,
     /// The step need not wait for it any longer.
@@ -104,7 +106,7 @@ impl MeasurementRun {
                     self.first = value;
                 }
             }
-            What::Value(_) => {}
+            What::Value(_) | What::SelfTest { .. } => {}
         }
         self.late = actions_end.is_some_and(|end| scan.now.since(end) >= measure.within);
     }
@@ -114,8 +116,18 @@ impl MeasurementRun {
         measure.is_awaited() && !self.done && !self.late
     }
 
+    /// Takes what the self-test found of the item, with its limits and their unit.
+    pub(super) fn take_item(&mut self, item: Option<SelfTestItem>) {
+        self.item = item;
+    }
+
     /// Ends the measurement with the step's last scan and judges it.
     pub(super) fn finish(mut self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+        if let Some(item) = self.item {
+            let measurement = of_item(measure, &item);
+            let message = self.message(measure, &measurement);
+            return (measurement, message);
+        }
         match measure.what {
             What::Value(signal) => self.value = self.known(signal, scan),
             What::Change(signal) => {
@@ -247,6 +259,24 @@ impl MeasurementRun {
                 _ => format!("{name}: no value"),
             },
         }
+    }
+}
+
+/// An item of the self-test, judged by the unit and by its limits.
+fn of_item(measure: &Measure, item: &SelfTestItem) -> Measurement {
+    let [value, low, high] = [item.value, item.low, item.high].map(f64::from);
+    let verdict = match judge(Some(value), None, Bound::At(low), Bound::At(high)) {
+        Verdict::Passed if item.passed != 1 => Verdict::Failed,
+        verdict => verdict,
+    };
+    Measurement {
+        name: measure.name.clone(),
+        value: Some(value),
+        unit: item.unit.label(),
+        low: Some(low),
+        high: Some(high),
+        uncertainty: None,
+        verdict,
     }
 }
 

@@ -12,6 +12,7 @@ mod action_run;
 mod condition;
 pub mod describe;
 mod event_set;
+pub mod event_text;
 mod evidence;
 mod expectation_run;
 mod limit;
@@ -24,8 +25,8 @@ mod step_run;
 mod stimulus_text;
 mod unit_clock;
 
-use protocol::event::{ALL_CARS, Event};
-use protocol::message::{EbCause, Mode};
+use protocol::event::Event;
+use protocol::message::{EbCause, Mode, SelfTest, SelfTestItem};
 use protocol::{Instant, Speed};
 use thiserror::Error;
 
@@ -66,6 +67,11 @@ pub trait Driver {
     /// How far what it hears of the unit can be trusted.
     fn evidence(&self) -> Evidence {
         Evidence::default()
+    }
+
+    /// What the last self-test asked for found of an item; `None` before its result came.
+    fn self_test_item(&self, _item: SelfTest) -> Option<SelfTestItem> {
+        None
     }
 }
 
@@ -109,16 +115,17 @@ pub struct UnitEvent {
 }
 
 impl UnitEvent {
-    /// The car it is about, in words; `None` for an event that names no car.
-    pub fn car(&self) -> Option<String> {
-        let event = Event::from_code(self.code)?;
-        if !event.definition().parameter.starts_with("car") {
-            return None;
-        }
-        Some(match self.parameter {
-            ALL_CARS => "all cars".into(),
-            car => format!("car {car}"),
-        })
+    /// What its parameter says, in words; empty for an event without one.
+    pub fn said(&self) -> String {
+        Event::from_code(self.code).map_or_else(
+            || format!("parameter {}", self.parameter),
+            |event| event_text::parameter(event, self.parameter),
+        )
+    }
+
+    /// The car, items or reason that its parameter names; `None` for a measured one or none.
+    pub fn named(&self) -> Option<String> {
+        event_text::named(Event::from_code(self.code)?, self.parameter)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a check procedure is: plain data that can be shown, chosen from, stored and run.
 
 use protocol::event::Event;
+use protocol::message::SelfTest;
 use protocol::signal::Signal;
 use protocol::{Duration, LruId, Speed};
 use serde::{Deserialize, Serialize};
@@ -218,6 +219,11 @@ pub enum What {
     Minimum(Signal),
     /// Value at the end of the step less value at its beginning.
     Change(Signal),
+    /// What the unit's self-test found of an item, with the unit's own limits.
+    SelfTest {
+        /// Number of the item's bit.
+        bit: u8,
+    },
 }
 
 /// A named value with limits.
@@ -238,9 +244,10 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Unit of its value.
+    /// Unit of its value; that of a self-test's item comes with the result.
     pub fn unit(&self) -> &'static str {
         match &self.what {
+            What::SelfTest { .. } => "",
             What::Time { .. } => "ms",
             What::Value(signal)
             | What::At { signal, .. }
@@ -254,6 +261,18 @@ impl Measure {
     pub fn is_awaited(&self) -> bool {
         matches!(self.what, What::Time { .. } | What::At { .. })
     }
+}
+
+/// A measurement of each item of the self-test.
+pub(super) fn of_self_test() -> impl Iterator<Item = Measure> {
+    SelfTest::SPEC.entries.iter().map(|(bit, name, _)| Measure {
+        name: format!("self_test.{}", name.to_lowercase()),
+        slot: usize::MAX,
+        what: What::SelfTest { bit: *bit },
+        low: None,
+        high: None,
+        within: Duration::ZERO,
+    })
 }
 
 impl Expectation {
@@ -368,6 +387,7 @@ impl Step {
                 | What::Maximum(signal)
                 | What::Minimum(signal)
                 | What::Change(signal) => f(*signal),
+                What::SelfTest { .. } => {}
             }
         }
     }

@@ -1,6 +1,7 @@
 //! One repetition of one step, from its first scan to its verdict.
 
 use protocol::event::Event;
+use protocol::message::SelfTest;
 use protocol::{CYCLE, Duration, Instant, LruId};
 
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
@@ -8,7 +9,7 @@ use super::event_set::EventSet;
 use super::evidence::{Evidence, LogState, counted};
 use super::expectation_run::ExpectationRun;
 use super::measure_run::MeasurementRun;
-use super::plan::{Action, Step};
+use super::plan::{Action, Step, What};
 use super::report::{Measurement, RunEvent};
 use super::{Driver, UnitEvent, Verdict};
 
@@ -194,7 +195,10 @@ impl StepRun {
                 .advance(&step.actions, scan, operator, driver, out)
             {
                 Progress::Waiting => {}
-                Progress::Done => self.actions_done = Some(scan.now),
+                Progress::Done => {
+                    self.actions_done = Some(scan.now);
+                    self.take_self_test(step, driver);
+                }
                 Progress::Stuck(problem) => self.give_up(problem),
             }
             if self.actions_done.is_some() && !self.actions.sample_is_stale(scan.now) {
@@ -218,6 +222,15 @@ impl StepRun {
             self.give_up(Problem::Bench(text));
         }
         self.given_up
+    }
+
+    /// Takes the results of a self-test that the actions asked for.
+    fn take_self_test(&mut self, step: &Step, driver: &dyn Driver) {
+        for (run, measure) in self.measurements.iter_mut().zip(&step.measures) {
+            if let What::SelfTest { bit } = measure.what {
+                run.take_item(driver.self_test_item(SelfTest::from_bits_retain(1 << bit)));
+            }
+        }
     }
 
     /// Verdict, message and measurements. A bench problem outranks all: then the step says nothing
@@ -247,7 +260,13 @@ impl StepRun {
             };
             match measurement.verdict {
                 Verdict::Passed => {}
-                Verdict::Failed => self.hold(Problem::Failed(message)),
+                Verdict::Failed => {
+                    if let What::SelfTest { bit } = measure.what {
+                        let part = Event::SelfTestFailed.suspect(1 << bit);
+                        self.named_part = self.named_part.take().or(part);
+                    }
+                    self.hold(Problem::Failed(message));
+                }
                 _ if complete => self.hold(Problem::NoData(message)),
                 _ => {}
             }
@@ -313,8 +332,14 @@ impl StepRun {
 pub(super) fn logged(entry: &UnitEvent) -> String {
     let event = Event::from_code(entry.code);
     let name = event.map_or("unknown", |e| e.definition().name);
-    let car = entry.car().map_or(String::new(), |car| format!(", {car}"));
-    format!("{} logged {name} ({}{car})", entry.source.who(), entry.code)
+    let named = entry
+        .named()
+        .map_or(String::new(), |named| format!(", {named}"));
+    format!(
+        "{} logged {name} ({}{named})",
+        entry.source.who(),
+        entry.code
+    )
 }
 
 fn verdict(problems: &[(Problem, u32)], aborted: bool) -> Verdict {

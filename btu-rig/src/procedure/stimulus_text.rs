@@ -112,6 +112,7 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::PtuMarker { psm } => format!("pulse of test marker PSM{psm}"),
         Stimulus::PtuTwc(data) => format!("test TWC frame {}", station_text(&data)),
         Stimulus::PtuRelease => "take test signals away".into(),
+        Stimulus::PtuSelfTest => "let the unit test itself".into(),
         Stimulus::PtuClearLog => "clear the event log".into(),
     }
 }

@@ -179,6 +179,7 @@ impl Rig {
             Stimulus::PtuMarker { psm } => test_signals::marker(session, psm),
             Stimulus::PtuTwc(data) => test_signals::station(session, &data),
             Stimulus::PtuRelease => test_signals::release(session),
+            Stimulus::PtuSelfTest => test_signals::self_test(session),
             Stimulus::PtuClearLog => test_signals::clear_log(session),
             _ => return Err(Refusal(format!("this bench cannot do {stimulus:?}"))),
         };

@@ -8,8 +8,8 @@ use std::collections::VecDeque;
 
 use protocol::link::Link;
 use protocol::message::{
-    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, Message,
-    StimulusAnswer,
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, Message, SelfTest,
+    SelfTestEnd, SelfTestItem, StimulusAnswer,
 };
 use protocol::{CYCLE, Duration, Instant};
 
@@ -25,6 +25,9 @@ const ANSWER_TIME: Duration = Duration::from_ms(300);
 const ARM_PAUSE: Duration = Duration::from_ms(200);
 /// How long that is tried: shorter than a procedure waits, so that the unit's reason is reported.
 const ARM_PATIENCE: Duration = Duration::from_ms(4000);
+
+/// Time a self-test may take once it is accepted.
+const SELF_TEST_TIME: Duration = Duration::from_ms(3000);
 
 /// Something asked of the unit.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +60,8 @@ struct Current {
     seqs: [u16; MAX_ATTEMPTS],
     /// Challenge to be answered.
     challenge: Option<u32>,
+    /// A self-test that the unit accepted: its results are awaited.
+    tests_itself: bool,
 }
 
 /// Requests and their outcome.
@@ -73,6 +78,8 @@ pub struct Exchange {
     failure: Option<Refusal>,
     /// Why the unit ended the session though nobody asked it to.
     ended: Option<ArmRefusal>,
+    /// Results of the last self-test asked for, as far as they came.
+    self_test: Vec<SelfTestItem>,
     /// The outcome is not awaited: the bench is being made safe.
     quiet: bool,
 }
@@ -89,6 +96,7 @@ impl Exchange {
             refusal: ArmRefusal::None,
             failure: None,
             ended: None,
+            self_test: Vec::new(),
             quiet: false,
         }
     }
@@ -190,12 +198,8 @@ impl Exchange {
         if now < current.due {
             return;
         }
-        if current.attempts == current.most_attempts() {
-            let text = format!(
-                "the unit did not answer {} within {} ms",
-                current.what(),
-                now.since(current.begun).as_ms()
-            );
+        if current.tests_itself || current.attempts == current.most_attempts() {
+            let text = current.gives_up(now);
             self.fail(text);
             return;
         }
@@ -250,22 +254,61 @@ impl Exchange {
                 }
                 _ => self.current = None,
             },
+            (Request::Stimulus { .. }, false) if current.tests_itself => {
+                let reason = state.refusal.label();
+                self.fail(format!("the unit disarmed during its self-test: {reason}"));
+            }
             _ => {}
         }
     }
 
     /// Takes the answer to a stimulus.
-    pub fn on_answer(&mut self, heard: &StimulusAnswer) {
-        let Some(current) = &self.current else { return };
-        let asked = current.seqs[..current.attempts].contains(&heard.request_seq);
-        if !asked || !matches!(current.request, Request::Stimulus { .. }) {
+    pub fn on_answer(&mut self, now: Instant, heard: &StimulusAnswer) {
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        if !current.asked(heard.request_seq) {
             return;
         }
         let what = current.what();
         match heard.answer {
+            Answer::Accepted if current.is_self_test() => {
+                if !current.tests_itself {
+                    self.self_test.clear();
+                    current.tests_itself = true;
+                    current.due = now + SELF_TEST_TIME;
+                }
+            }
             Answer::Accepted => self.current = None,
             answer => self.fail(format!("unit refused {what}: {}", answer.label())),
         }
+    }
+
+    /// Takes the result of an item of the self-test asked for.
+    pub fn on_self_test_item(&mut self, heard: &SelfTestItem) {
+        if self
+            .current
+            .as_ref()
+            .is_some_and(|current| current.tests_itself && current.asked(heard.request_seq))
+        {
+            self.self_test.push(*heard);
+        }
+    }
+
+    /// Takes the end of the self-test asked for.
+    pub fn on_self_test_end(&mut self, heard: &SelfTestEnd) {
+        if self
+            .current
+            .as_ref()
+            .is_some_and(|current| current.tests_itself && current.asked(heard.request_seq))
+        {
+            self.current = None;
+        }
+    }
+
+    /// What the last self-test asked for found of an item.
+    pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
+        self.self_test.iter().copied().find(|one| one.item == item)
     }
 
     /// Takes the armed bit of the unit's status.
@@ -308,7 +351,38 @@ impl Current {
             attempts: 0,
             seqs: [0; MAX_ATTEMPTS],
             challenge: None,
+            tests_itself: false,
         }
+    }
+
+    /// A stimulus that was sent with this sequence number.
+    fn asked(&self, seq: u16) -> bool {
+        matches!(self.request, Request::Stimulus { .. })
+            && self.seqs[..self.attempts].contains(&seq)
+    }
+
+    fn is_self_test(&self) -> bool {
+        matches!(
+            self.request,
+            Request::Stimulus {
+                message: Message::RunSelfTest(_),
+                ..
+            }
+        )
+    }
+
+    /// Why it is given up.
+    fn gives_up(&self, now: Instant) -> String {
+        let (what, ms) = (self.what(), now.since(self.begun).as_ms());
+        if self.tests_itself {
+            return format!("the unit did not end its self-test within {ms} ms");
+        }
+        let older = if self.is_self_test() {
+            ": units of older versions do not know it"
+        } else {
+            ""
+        };
+        format!("the unit did not answer {what} within {ms} ms{older}")
     }
 
     fn most_attempts(&self) -> usize {

@@ -49,7 +49,7 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{Counters, End, Link};
-use protocol::message::{ArmRefusal, Identity, IoInput, Message};
+use protocol::message::{ArmRefusal, Identity, IoInput, Message, SelfTest, SelfTestItem};
 use protocol::signal::Sample;
 
 use crate::conditions::Conditions;
@@ -484,6 +484,11 @@ impl Rig {
         });
         (!names.is_empty())
             .then(|| format!("this unit{software} does not tell {}", names.join(", ")))
+    }
+
+    /// What the last self-test asked for found of an item.
+    pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
+        self.tester.self_test_item(item)
     }
 
     /// Why the unit turned this bench away, if it did: another has it.

@@ -2,7 +2,8 @@
 
 use protocol::Speed;
 use protocol::message::{
-    ClearLog, Message, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
+    ClearLog, Message, RunSelfTest, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed,
+    TestTwc,
 };
 
 use crate::procedure::Refusal;
@@ -77,7 +78,7 @@ pub fn marker(session: u32, psm: u8) -> Request {
     }
 }
 
-/// Station data through the TWC TEST module.
+/// Station data from the TEST modem into the TWC antenna.
 pub fn station(session: u32, data: &StationData) -> Request {
     let data = wire_data(data);
     let message = TestTwc {
@@ -104,6 +105,11 @@ pub fn release(session: u32) -> Request {
             signals: TestSignals::all(),
         },
     )
+}
+
+/// Lets the unit test itself; asked again while it does, it goes on.
+pub fn self_test(session: u32) -> Request {
+    repeatable("the request for a self-test", RunSelfTest { session })
 }
 
 /// Clears the unit's event log.

@@ -2,7 +2,8 @@
 
 use protocol::link::Link;
 use protocol::message::{
-    ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, Status, StatusBits,
+    ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, SelfTestItem, Status,
+    StatusBits,
 };
 use protocol::{Duration, Instant};
 
@@ -119,8 +120,10 @@ impl Tester {
             Message::ArmState(state) => self.exchange.on_arm_state(now, state),
             Message::StimulusAnswer(answer) => {
                 self.clock.on_answer(answer);
-                self.exchange.on_answer(answer);
+                self.exchange.on_answer(now, answer);
             }
+            Message::SelfTestItem(item) => self.exchange.on_self_test_item(item),
+            Message::SelfTestEnd(end) => self.exchange.on_self_test_end(end),
             Message::LogEntry(entry) => self.log.on_entry(now, entry),
             Message::LogEnd(end) => self.on_log_end(now, end),
             _ => {}
@@ -294,6 +297,11 @@ impl Tester {
     /// Log entries not yet taken.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
         self.log.take()
+    }
+
+    /// What the last self-test asked for found of an item.
+    pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
+        self.exchange.self_test_item(item)
     }
 
     /// The log as read so far.

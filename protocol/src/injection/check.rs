@@ -92,7 +92,8 @@ fn allowed(place: Place) -> &'static [Allowed] {
             ("limit", 0.0, 1024.0),
             DELAY,
         ],
-        Place::TrackDatabase => &[("offset", -1000.0, 1000.0)],
+        Place::Memory => &[STUCK_ON],
+        Place::TrackDatabase => &[DEAD, ("offset", -1000.0, 1000.0)],
         Place::WheelParameter => &[("gain", 0.5, 2.0)],
         Place::BrakeCylinder => &[STUCK_ON, ("gain", 0.0, 1.0)],
         // V.

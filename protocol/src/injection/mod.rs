@@ -102,7 +102,9 @@ pub enum Place {
     Clock,
     /// ATO processor's effort.
     AtoCpu,
-    /// Stop points in the stored track database.
+    /// Working memory of the ATP CPU.
+    Memory,
+    /// Stored track database: stop points moved, or nothing there.
     TrackDatabase,
     /// Wheel diameter the unit is set to.
     WheelParameter,

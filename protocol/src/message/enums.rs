@@ -224,6 +224,22 @@ wire_enum! {
     }
 }
 
+wire_enum! {
+    /// What a value of the self-test is measured in.
+    MeasureUnit {
+        /// Milliseconds.
+        Milliseconds = 0 "ms",
+        /// Bytes.
+        Bytes = 1 "bytes",
+        /// Errors found.
+        Errors = 2 "errors",
+        /// Answers to tests.
+        Answers = 3 "answers",
+        /// Frames heard.
+        Frames = 4 "frames",
+    }
+}
+
 wire_bits! {
     /// Preconditions of automatic mode and run that do not hold [S2 §3.1].
     Refusals {

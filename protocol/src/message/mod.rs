@@ -13,8 +13,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use enums::{
-    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause, Mode,
-    ModeSwitch, Refusals, RunningMode, StoreKind,
+    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause,
+    MeasureUnit, Mode, ModeSwitch, Refusals, RunningMode, StoreKind,
 };
 pub use io::{IoInput, IoOutput, Outputs, TrainLines};
 pub use layout::{
@@ -22,9 +22,10 @@ pub use layout::{
 };
 pub use ptu::{
     ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
-    KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, ReadStored, RunEnd, RunRow, SelfTest, SetClock,
-    Status, StatusBits, StimulusAnswer, StoredClock, StoredEnd, StoredEntry, StoredRow, Taken,
-    TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
+    KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, ReadStored, RunEnd, RunRow, RunSelfTest,
+    SelfTest, SelfTestEnd, SelfTestItem, SetClock, Status, StatusBits, StimulusAnswer, StoredClock,
+    StoredEnd, StoredEntry, StoredRow, Taken, TestCode, TestMarker, TestRelease, TestSignals,
+    TestSpeed, TestTwc,
 };
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use train_state::{Subscribe, TrainState};
@@ -195,6 +196,7 @@ messages!(
     TestMarker,
     TestTwc,
     TestRelease,
+    RunSelfTest,
     ReadLog,
     ReadRun,
     ReadStored,
@@ -204,6 +206,8 @@ messages!(
     ArmChallenge,
     ArmState,
     StimulusAnswer,
+    SelfTestItem,
+    SelfTestEnd,
     Status,
     TrainState,
     LogEntry,
@@ -236,6 +240,7 @@ pub const ENUMS: &[WordSpec] = &[
     StoreKind::SPEC,
     AtoState::SPEC,
     AtoFailure::SPEC,
+    MeasureUnit::SPEC,
 ];
 
 /// Every set of bits that is a field's type.

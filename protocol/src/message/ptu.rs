@@ -4,8 +4,8 @@
 //! board only while the unit is armed for that session.
 
 use super::enums::{
-    Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, Refusals, RunningMode,
-    StoreKind,
+    Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, MeasureUnit, Mode, Refusals,
+    RunningMode, StoreKind,
 };
 use super::layout::{layout, wire_bits};
 
@@ -34,7 +34,7 @@ wire_bits! {
 }
 
 wire_bits! {
-    /// Self-test items that failed.
+    /// Items of the self-test.
     SelfTest {
         /// Memory pattern test.
         MEMORY = 0,
@@ -177,6 +177,13 @@ layout! {
     }
 }
 layout! {
+    /// Asks for a self-test: answered, then by one result for each item and the end. Tester → unit.
+    RunSelfTest, Ptu, 0x15 {
+        /// Session number.
+        session: u32,
+    }
+}
+layout! {
     /// Asks for the event log from an index on; answered by entries, then `LogEnd`. Tester → unit.
     ReadLog, Ptu, 0x20 {
         /// First entry wanted.
@@ -233,7 +240,7 @@ layout! {
         software: [u8; 3],
         /// Time since power-up, ms.
         uptime_ms: u32,
-        /// Self-test items that failed.
+        /// Items of the start-up self-test that failed.
         self_test: SelfTest,
     }
 }
@@ -280,6 +287,36 @@ layout! {
     }
 }
 layout! {
+    /// Result of one item of a self-test that was asked for. Unit → tester.
+    SelfTestItem, Ptu, 0x86 {
+        /// Sequence number of the request.
+        request_seq: u16,
+        /// The item, one bit.
+        item: SelfTest,
+        /// 1 = passed.
+        passed: u8,
+        /// Measured value.
+        value: i32,
+        /// Least value allowed.
+        low: i32,
+        /// Greatest value allowed.
+        high: i32,
+        /// What the three are measured in.
+        unit: MeasureUnit,
+    }
+}
+layout! {
+    /// End of a self-test that was asked for. Unit → tester.
+    SelfTestEnd, Ptu, 0x87 {
+        /// Sequence number of the request.
+        request_seq: u16,
+        /// Items that failed.
+        failed: SelfTest,
+        /// Time it took, ms.
+        took_ms: u16,
+    }
+}
+layout! {
     /// State of the unit, every 50 ms while a tester is heard. Unit → tester.
     Status, Ptu, 0x90 {
         /// States.
@@ -310,7 +347,7 @@ layout! {
         rejected_frames: u16,
         /// TWC frames accepted since power-up, wrapping.
         twc_received: u16,
-        /// Self-test items that failed.
+        /// Items of the start-up self-test that failed.
         self_test: SelfTest,
         /// Signals the TEST board was asked for and has not been told to take away.
         test_signals: TestSignals,

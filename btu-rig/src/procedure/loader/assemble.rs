@@ -9,8 +9,9 @@ use super::suggest::hint;
 use super::{LoadError, error_at};
 use crate::procedure::plan::{
     Action, Condition, Expectation, Measure, Operand, Procedure, Step, TIME_LIMIT_MARGIN, TimeFrom,
-    What,
+    What, of_self_test,
 };
+use crate::stimulus::Stimulus;
 
 /// Longest time a whole procedure may take.
 const LONGEST: Duration = Duration::from_ms(24 * 3600 * 1000);
@@ -160,6 +161,9 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
     };
     step.worst_case = step.compute_worst_case(draft.limit);
     step.time_limit = draft.limit.unwrap_or(step.worst_case + TIME_LIMIT_MARGIN);
+    if tests_unit_itself(&step.actions) {
+        step.measures.extend(of_self_test());
+    }
     resolve_step(&mut step, known)?;
     for measure in &mut step.measures {
         measure.slot = known.len();
@@ -170,6 +174,12 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
         });
     }
     Ok(step)
+}
+
+/// Items of a self-test are measurements of the step that asks for it.
+fn tests_unit_itself(actions: &[Action]) -> bool {
+    let asks = |action: &Action| matches!(action, Action::Stimulus(Stimulus::PtuSelfTest));
+    actions.iter().any(asks)
 }
 
 fn resolve_step(step: &mut Step, known: &[NamedMeasurement]) -> Result<(), String> {
@@ -204,7 +214,11 @@ fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<
             resolve_condition(to, known)
         }
         What::At { when, .. } => resolve_condition(when, known),
-        What::Value(_) | What::Maximum(_) | What::Minimum(_) | What::Change(_) => Ok(()),
+        What::Value(_)
+        | What::Maximum(_)
+        | What::Minimum(_)
+        | What::Change(_)
+        | What::SelfTest { .. } => Ok(()),
     }
 }
 

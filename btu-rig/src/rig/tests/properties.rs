@@ -75,6 +75,7 @@ fn other() -> impl Strategy<Value = Stimulus> {
         Just(Stimulus::PtuDisarm),
         Just(Stimulus::PtuRelease),
         Just(Stimulus::PtuClearLog),
+        Just(Stimulus::PtuSelfTest),
         (any::<u8>(), number(), number()).prop_map(|(channels, v, accel_mps2)| {
             Stimulus::PtuSpeed {
                 channels,

@@ -179,6 +179,7 @@ mod tests {
             Stimulus::PtuMarker { psm: 1 },
             Stimulus::PtuTwc(station),
             Stimulus::PtuRelease,
+            Stimulus::PtuSelfTest,
             Stimulus::PtuClearLog,
         ]
     }
@@ -221,6 +222,7 @@ mod tests {
             | Stimulus::PtuMarker { .. }
             | Stimulus::PtuTwc(_)
             | Stimulus::PtuRelease
+            | Stimulus::PtuSelfTest
             | Stimulus::PtuClearLog => Needs::Armed,
             Stimulus::PtuArm => Needs::Key,
             Stimulus::PtuAskToArm | Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => Needs::Unit,

@@ -200,7 +200,10 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
         ]);
     }
     freeze.extend([
-        number("parameter", f64::from(event.parameter), ""),
+        FreezeSample {
+            label: Some(event.said()).filter(|said| !said.is_empty()),
+            ..number("parameter", f64::from(event.parameter), "")
+        },
         number("log_index", f64::from(event.index), ""),
         number("unit_time", f64::from(event.at_ms) / 1000.0, "s"),
         FreezeSample {

@@ -60,8 +60,8 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
         at,
         step: None,
         message: format!(
-            "{text} ({}) at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
-            parameter(entry),
+            "{text}{} at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
+            said(entry),
             entry.speed.kmh(),
             entry.limit.kmh(),
             entry.source.who().trim_start_matches("the "),
@@ -88,10 +88,12 @@ pub fn of_self_test(failed: SelfTest, at: Instant, sample: &Sample) -> FaultSeen
     }
 }
 
-/// What the parameter of an event says: the car by its word, others as they are.
-fn parameter(entry: &UnitEvent) -> String {
-    let car = entry.car();
-    car.unwrap_or_else(|| format!("parameter {}", entry.parameter))
+/// What the parameter of an event says, in brackets behind its text.
+fn said(entry: &UnitEvent) -> String {
+    match entry.said() {
+        said if said.is_empty() => said,
+        said => format!(" ({said})"),
+    }
 }
 
 /// An emergency brake that was not requested.

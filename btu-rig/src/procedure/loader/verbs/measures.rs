@@ -107,6 +107,7 @@ fn limit(args: &Args<'_>, name: &str, measure: &Measure) -> Result<Option<Operan
         return Ok(None);
     };
     let limit = match &measure.what {
+        What::SelfTest { .. } => return Ok(None),
         What::Time { .. } => amount("ms", item).map_err(|()| {
             let (wanted, found) = (Dimension::Time.wanted(), item.found());
             format!("`{name}` wants {wanted}, found {found}")

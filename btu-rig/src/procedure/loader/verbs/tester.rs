@@ -23,6 +23,7 @@ pub(super) static VERBS: &[Verb] = &[
     request!("ptu.ask_to_arm", &[], |_| Stimulus::PtuAskToArm),
     request!("ptu.disarm", &[], |_| Stimulus::PtuDisarm),
     request!("ptu.release", &[], |_| Stimulus::PtuRelease),
+    request!("ptu.self_test", &[], |_| Stimulus::PtuSelfTest),
     request!("ptu.clear_log", &[], |_| Stimulus::PtuClearLog),
     switch!("ptu.silent", |on| Stimulus::PtuSilent { on }),
     request!(

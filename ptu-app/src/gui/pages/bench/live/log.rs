@@ -85,10 +85,9 @@ fn told(entry: &UnitEvent, language: Language, palette: &Palette) -> (String, Op
         Severity::Minor => Some(palette.warn),
         Severity::Major | Severity::Critical => Some(palette.bad),
     };
-    let detail = if definition.parameter.is_empty() {
-        String::new()
-    } else {
-        format!(" ({})", entry.parameter)
+    let detail = match entry.said() {
+        said if said.is_empty() => said,
+        said => format!(" ({said})"),
     };
     (
         format!("{source}{}: {text}{detail}", definition.name),

@@ -1,0 +1,101 @@
+//! Parameters of events in words: everything that shows an entry of a log to a person uses this.
+
+use protocol::event::{ALL_CARS, Event};
+use protocol::message::{AbsurdInputs, ArmRefusal, AtoFailure, Channel, Mode, Refusals, SelfTest};
+
+use super::describe::meanings;
+
+/// What an event's parameter says, by name or with its unit; empty for an event that has none.
+pub fn parameter(event: Event, number: i32) -> String {
+    let what = event.definition().parameter;
+    if what.is_empty() {
+        return String::new();
+    }
+    named(event, number).unwrap_or_else(|| measured(what, number))
+}
+
+/// The same for an event whose parameter stands for a name; `None` for a measured one or none.
+pub fn named(event: Event, number: i32) -> Option<String> {
+    let (code, bits) = (number as u8, number as u16);
+    Some(match event {
+        Event::ModeChanged => Mode::from_code(code).label().to_owned(),
+        Event::AtoFailed => plain(AtoFailure::from_code(code).label()),
+        Event::ArmingLapsed | Event::TestModeBroken => plain(ArmRefusal::from_code(code).label()),
+        Event::AutomaticRefused => meanings(&Refusals::SPEC, bits),
+        Event::AtoInputAbsurd => meanings(&AbsurdInputs::SPEC, bits),
+        Event::SelfTestFailed => meanings(&SelfTest::SPEC, bits),
+        Event::FramesRejected => match Channel::from_code(code) {
+            Some(channel) => format!("channel {channel:?}"),
+            None => format!("channel {number}"),
+        },
+        _ if event.definition().parameter.starts_with("car") => match number {
+            ALL_CARS => "all cars".into(),
+            car => format!("car {car}"),
+        },
+        _ => return None,
+    })
+}
+
+/// A number under what it is, as `excess, cm/s` or `difference, 0.01 %`.
+fn measured(what: &str, number: i32) -> String {
+    let Some((what, unit)) = what.split_once(", ") else {
+        return format!("{what} {number}");
+    };
+    let scaled = unit.split_once(' ');
+    match scaled.and_then(|(scale, unit)| Some((scale.parse::<f64>().ok()?, unit))) {
+        Some((scale, unit)) => format!("{what} {:.2} {unit}", f64::from(number) * scale),
+        None => format!("{what} {number} {unit}"),
+    }
+}
+
+/// A label as people write it.
+fn plain(label: &str) -> String {
+    label.replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_told_in_words_and_units() {
+        for (event, number, words) in [
+            (Event::AtoFailed, 7, "not following"),
+            (
+                Event::SelfTestFailed,
+                0x48,
+                "Brake line energised although the EB relay is not; TWC modem loop-back",
+            ),
+            (
+                Event::AtoInputAbsurd,
+                4,
+                "Speed that stays exactly the same while effort is asked for",
+            ),
+            (
+                Event::AutomaticRefused,
+                0x0401,
+                "The train is not at standstill; ATO is not ready",
+            ),
+            (Event::OverspeedFsb, 139, "excess 139 cm/s"),
+            (Event::WheelDiameter, -150, "difference -1.50 %"),
+            (Event::BrakeUnitFailed, 4, "car 4"),
+            (Event::RegenerationCutOut, 0, "all cars"),
+            (Event::FramesRejected, 4, "channel Twc"),
+            (Event::PowerUp, 0, ""),
+            (Event::AutomaticRefused, 0x8000, "bit 15"),
+        ] {
+            assert_eq!(parameter(event, number), words);
+        }
+    }
+
+    /// A new event whose parameter is a code or a set of bits has to be told in words, too.
+    #[test]
+    fn no_parameter_is_a_number_that_stands_for_a_word() {
+        for &event in Event::ALL {
+            let what = event.definition().parameter;
+            let coded = what.contains('`') || what.contains("bits") || what.contains("refusal");
+            let told = parameter(event, 1);
+            assert!(!coded || !told.ends_with('1'), "{event:?}: {told}");
+        }
+    }
+}
