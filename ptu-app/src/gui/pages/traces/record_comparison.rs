@@ -51,7 +51,9 @@ impl RecordComparison {
         if let Some(text) = self.found.value() {
             let mut open = true;
             let window = Window::new(words.memory.compare).open(&mut open);
-            window.default_width(560.0).show(ui.ctx(), |ui| {
+            // Beside the connection bar, not over it.
+            let window = window.default_pos([320.0, 240.0]).default_width(560.0);
+            window.show(ui.ctx(), |ui| {
                 ScrollArea::vertical().show(ui, |ui| ui.label(text));
             });
             if !open {
