@@ -112,7 +112,7 @@ fn a_laptop_has_no_harness() {
     window.wait_for("Speed code: 55");
     assert!(!window.enabled("Speed code: 55"));
     window.harness().get_by_label("Speed code: 55").hover();
-    window.wait_for("Goes through the bench harness: only the maintenance port is connected");
+    window.wait_for("Goes through the bench harness; only the maintenance port is connected");
     window.click("Arm");
     window.click("Test code: 45");
     window.wait_for("limit: 45.0 km/h");

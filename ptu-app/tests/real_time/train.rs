@@ -7,8 +7,8 @@ use protocol::message::{
 };
 use rustix::process::Signal;
 
-use crate::common::Place;
-use crate::common::served::{Observer, Unit};
+use crate::common::served::{Observer, Running, Unit};
+use crate::common::{Place, list, text};
 
 /// Longest time anything takes here, on a busy machine.
 const SOON: Duration = Duration::from_secs(20);
@@ -94,6 +94,37 @@ fn a_train_obeys_its_cab_and_ends_by_a_signal() {
     ready(&mut laptop);
     train.signal(Signal::TERM);
     assert_eq!(train.exit_code(), Some(0));
+}
+
+/// Goal: a laptop alone tests the unit of a train, and finds out by itself that it has no harness; what somebody does to
+/// the train meanwhile is an error. Method: procedures of the PTU and one of the bench, then the key turned in a step.
+#[test]
+fn a_laptop_alone_tests_the_unit_of_a_train() {
+    let mut train = Unit::aboard(&["--serial-no", "SG-0142"]);
+    let place = Place::new();
+    let arguments = [
+        "ptu/identity",
+        "ptu/markers",
+        "atp/power_up",
+        "--serial-no",
+        "SG-0142",
+        "--report",
+        "report.json",
+    ];
+    let said = Running::start(&place, &train, &arguments).finish().exits(0);
+    let report = place.read_json("report.json");
+    for step in list(&report["steps"]) {
+        let bench = text(&step["procedure"]).starts_with("atp/");
+        let verdict = if bench { "skipped" } else { "passed" };
+        assert_eq!(step["verdict"], verdict, "{}", said.all());
+    }
+    let place = Place::new();
+    let mut run = Running::start(&place, &train, &["ptu/limit_speed"]);
+    run.recorded_steps(1);
+    train.say("key off");
+    run.finish()
+        .exits(3)
+        .explains(&["the maintenance key was turned off"]);
 }
 
 #[test]
