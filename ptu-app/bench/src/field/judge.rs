@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use btu_rig::procedure::UnitEvent;
 use protocol::event::Event;
-use protocol::message::Channel;
+use protocol::message::{Channel, Mode};
 
 use super::read::Entry;
 use crate::run::is_fault;
@@ -44,7 +44,7 @@ pub struct JudgedLog {
 /// Entries left out, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExcludedEntries {
-    /// Information only.
+    /// Information only; so is a station's loop that is left in a mode which needs none.
     pub information: u32,
     /// Of the time before the one asked for.
     pub too_old: u32,
@@ -70,7 +70,7 @@ pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) ->
         let silence = SILENCE.iter().any(|event| is(&entry.event, *event));
         let left_out = &mut judged.left_out;
         let dated = |holds: &dyn Fn(i64) -> bool| entry.at_us.is_some_and(holds);
-        let reason = if !is_fault(&entry.event) {
+        let reason = if !is_fault(&entry.event) || left_loop(&entry.event) {
             &mut left_out.information
         } else if dated(&|at| since_us.is_some_and(|since| at < since)) {
             &mut left_out.too_old
@@ -99,6 +99,12 @@ pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) ->
 
 fn is(entry: &UnitEvent, event: Event) -> bool {
     entry.code == event.definition().code
+}
+
+/// A train that is driven by hand, or shunted into a depot, leaves the loop of a station; only automatic modes need
+/// one.
+fn left_loop(entry: &UnitEvent) -> bool {
+    is(entry, Event::TwcLost) && matches!(entry.mode, Mode::Yard | Mode::Manual | Mode::Emergency)
 }
 
 /// Frames of a tester, refused: of its cable, or one that took over from another.
@@ -192,6 +198,22 @@ mod tests {
         let judged = judge(&entries, tested, None);
         let indices = judged.faults.iter().map(|entry| entry.event.index);
         (indices.collect(), judged.left_out)
+    }
+
+    #[test]
+    fn a_loop_left_by_a_train_that_is_driven_by_hand_is_no_fault() {
+        for (mode, faults) in [(Mode::Manual, 0), (Mode::Yard, 0), (Mode::Automatic, 1)] {
+            let event = UnitEvent {
+                mode,
+                ..event(0, Event::TwcLost, 5_000)
+            };
+            let entry = Entry {
+                event,
+                at_us: None,
+                stored: None,
+            };
+            assert_eq!(judge(&[entry], &[], None).faults.len(), faults, "{mode:?}");
+        }
     }
 
     #[test]
