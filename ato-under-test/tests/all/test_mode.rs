@@ -42,11 +42,11 @@ fn arm(bench: &mut Bench) -> ArmRefusal {
         });
         bench.run(0.4);
     }
-    let states = bench.answers.iter().filter_map(|answer| match answer {
+    let mut states = bench.answers.iter().filter_map(|answer| match answer {
         Message::ArmState(state) => Some(state.refusal),
         _ => None,
     });
-    states.last().expect("an outcome of arming")
+    states.next_back().expect("an outcome of arming")
 }
 
 fn armed(faults: &[protocol::injection::FaultMode]) -> Bench {

@@ -20,11 +20,11 @@ fn train_state(bench: &mut Bench) -> TrainState {
     bench.answers.clear();
     bench.send(Subscribe { changes: 0 });
     bench.run(0.1);
-    let states = bench.answers.iter().filter_map(|answer| match answer {
+    let mut states = bench.answers.iter().filter_map(|answer| match answer {
         Message::TrainState(state) => Some(*state),
         _ => None,
     });
-    states.last().expect("a state in 100 ms")
+    states.next_back().expect("a state in 100 ms")
 }
 
 fn station() -> TestTwc {
