@@ -30,8 +30,16 @@ pub struct Basis {
     pub line: String,
     /// Train.
     pub train: String,
+    /// How the units were reached: `harness`, or `ptu` for the maintenance port alone.
+    #[serde(default = "harness")]
+    pub connection: String,
     /// Version of the program.
     pub app_version: String,
+}
+
+/// Dictionaries of before were all made on benches.
+fn harness() -> String {
+    "harness".into()
 }
 
 /// A fault mode of the catalogue.

@@ -1,10 +1,14 @@
 //! The result of a campaign as text and as JSON.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
 use ptu_bench::campaign::{Figures, Outcome, Redundancy, Share, Shortfall};
+
+/// The connection of a laptop alone, as a dictionary names it.
+const ALONE: &str = "ptu";
 
 /// The contract's keys first; shares and names beside them.
 pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -> Value {
@@ -41,8 +45,23 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
             "redundant": texts(&steps.redundant),
             "never_failed": texts(&steps.never_failed),
         },
+        "connection": outcome.dictionary.basis.connection,
+        "need_bench": need_bench(outcome),
         "basis_sha256": outcome.dictionary.basis.sha256,
     })
+}
+
+/// Fault modes that no held-out run on the maintenance port alone detected: they need the bench.
+fn need_bench(outcome: &Outcome) -> Vec<&str> {
+    if outcome.dictionary.basis.connection != ALONE {
+        return Vec::new();
+    }
+    let mut found = BTreeMap::<&str, bool>::new();
+    for one in &outcome.assessments {
+        *found.entry(&one.fault).or_default() |= one.detected;
+    }
+    let missed = found.into_iter().filter(|(_, detected)| !detected);
+    missed.map(|(fault, _)| fault).collect()
 }
 
 fn texts(checks: &[diagnosis::CheckName]) -> Vec<String> {
@@ -113,6 +132,20 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         percent(figures.adaptive.0, figures.fixed.0),
         percent(figures.adaptive.1, figures.fixed.1),
     );
+    if dictionary.basis.connection == ALONE && figures.modes > 0 {
+        let bench = need_bench(outcome);
+        let _ = writeln!(
+            text,
+            "a laptop alone finds {} of {} fault modes; the bench is needed for: {}",
+            figures.modes - bench.len(),
+            figures.modes,
+            if bench.is_empty() {
+                "none".to_owned()
+            } else {
+                bench.join(", ")
+            }
+        );
+    }
     list_shortfalls(&mut text, figures);
     for said in outcome.good.iter().filter(|said| !said.is_empty()) {
         let _ = writeln!(text, "false alarm: {}", said.join("; "));

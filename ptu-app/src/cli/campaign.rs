@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use btu_rig::procedure::plan::Connection;
+use btu_rig::rig::Harness;
 use clap::Args;
 use fault_db::DictionaryRecord;
 use glob::Pattern;
@@ -26,9 +28,13 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 ///   ptu campaign                             all fault modes, 5 seeds each
 ///   ptu campaign --faults 'eb_relay.*' --seeds 2
 ///   ptu campaign --held-out 2 --good 1000    the figures of docs/figures.md
+///   ptu campaign --harness none              what a laptop alone on a train can find
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CampaignArguments {
+    /// With `none`, as a laptop alone on a train: only procedures that need no bench harness
+    #[arg(long, value_name = "WHICH", default_value = "bench")]
+    harness: Harness,
     /// Only fault modes whose name matches; such a dictionary knows no others
     #[arg(long, value_name = "GLOB")]
     faults: Option<Pattern>,
@@ -60,7 +66,11 @@ impl CampaignArguments {
     /// Runs, keeps the dictionary and says what it is worth.
     pub fn run(self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
-        let suite = Suite::load(&directory)?;
+        let connection = match self.harness {
+            Harness::None => Connection::Ptu,
+            Harness::Auto | Harness::Bench => Connection::Btu,
+        };
+        let suite = Suite::load(&directory, connection)?;
         let settings = settings(&directory)?;
         let asked = Request {
             faults: self.faults.clone(),

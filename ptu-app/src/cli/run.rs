@@ -301,6 +301,10 @@ impl RunArguments {
                 unit_config_sha256: &setup.config.sha256,
                 line: &self.line,
                 train: &self.train,
+                connection: match self.harness {
+                    Harness::None => Connection::Ptu,
+                    Harness::Auto | Harness::Bench => Connection::Btu,
+                },
             };
             plan.adaptive = Some(adaptive(&store, directory, &serial, &bench)?);
         }

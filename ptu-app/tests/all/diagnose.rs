@@ -250,3 +250,35 @@ fn a_small_campaign_makes_a_dictionary_and_says_what_it_knows() {
     place.recorded_run();
     assert_eq!(list(&diagnosis(&place)["warnings"]).len(), 0);
 }
+
+/// A laptop alone sees less than a bench: it has a dictionary of its own, which its runs are compared with.
+#[test]
+fn a_campaign_on_the_maintenance_port_says_what_needs_the_bench_and_serves_its_runs() {
+    let place = Place::new();
+    let campaign = |faults: &str| {
+        let sizes = ["--seeds", "1", "--held-out", "1", "--good", "1", "--json"];
+        let begin = ["campaign", "--harness", "none", "--faults", faults];
+        place.json(&[begin.as_slice(), sizes.as_slice()].concat())
+    };
+    let said = campaign("io_board.door_enable_dead");
+    assert_eq!(said["need_bench"][0], "io_board.door_enable_dead");
+    let said = campaign("twc_antenna.dead");
+    assert_eq!(said["connection"], "ptu");
+    assert_eq!(said["need_bench"].as_array().map(Vec::len), Some(0));
+    let run = [
+        "run",
+        "ptu",
+        "--harness",
+        "none",
+        "--inject",
+        "twc_antenna.dead",
+    ];
+    place.ptu(&run).exits(1);
+    let diagnosis = place.json(&["diagnose", "latest", "--json"]);
+    assert_eq!(
+        diagnosis["candidates"][0]["lru"], "twc_antenna",
+        "{diagnosis}"
+    );
+    let warnings = diagnosis["warnings"].to_string();
+    assert!(!warnings.contains("another connection"), "{warnings}");
+}

@@ -96,7 +96,7 @@ pub fn run(
         return Ok(None);
     }
     let runs: Vec<SuiteRun> = runs.into_iter().map(|(_, run)| run).collect();
-    let made_of = basis(directory)?;
+    let made_of = basis(directory, suite.connection())?;
     let outcome = conclude(
         made_of, suite, &modes, settings, &samples, &runs, asked.jobs,
     );

@@ -1,6 +1,8 @@
 //! Runs the whole suite on one embedded unit in memory and keeps only what diagnosis reads.
 
+use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
+use btu_rig::rig::Harness;
 use diagnosis::{CheckName, Observation};
 use protocol::injection::FaultCatalogue;
 
@@ -13,9 +15,10 @@ use crate::run::{
 use crate::run_diagnosis::{LINE, TRAIN, UNIT_CONFIG};
 use crate::stop::Stop;
 
-/// All procedures of the default suite, and the bench they run on.
+/// All procedures of the default suite that a connection can run, and the bench they run on.
 pub struct Suite {
     setup: BenchSetup,
+    connection: Connection,
     tasks: Vec<Task>,
     /// Parts and fault modes.
     pub catalogue: FaultCatalogue,
@@ -33,16 +36,20 @@ pub struct SuiteRun {
 }
 
 impl Suite {
-    /// Loads all procedures that are not on request.
+    /// Loads all procedures that are not on request and need nothing that the connection lacks.
     ///
     /// # Errors
     /// A file is missing or wrong.
-    pub fn load(directory: &ScriptsDirectory) -> Result<Self, Failure> {
+    pub fn load(directory: &ScriptsDirectory, connection: Connection) -> Result<Self, Failure> {
         let choice = BenchChoice {
             unit_config: UNIT_CONFIG.into(),
             line: LINE.into(),
             train: TRAIN.into(),
             scatter: true,
+            harness: match connection {
+                Connection::Ptu => Harness::None,
+                Connection::Btu => Harness::Bench,
+            },
             ..BenchChoice::default()
         };
         let setup = choice.setup(directory)?;
@@ -54,9 +61,13 @@ impl Suite {
                 "{error}; `ptu run --check` shows all errors"
             )));
         }
-        let procedures = loaded.procedures.into_iter().filter(|p| !p.on_request);
+        let procedures = loaded
+            .procedures
+            .into_iter()
+            .filter(|p| !p.on_request && p.needs.lacks(connection).is_none());
         Ok(Self {
             setup,
+            connection,
             tasks: procedures
                 .map(|procedure| Task {
                     procedure,
@@ -65,6 +76,11 @@ impl Suite {
                 .collect(),
             catalogue: directory.faults()?,
         })
+    }
+
+    /// How it reaches the units.
+    pub fn connection(&self) -> Connection {
+        self.connection
     }
 
     /// All checks in order.

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use btu_rig::procedure::plan::Connection;
 use diagnosis::{Diagnosis, Dictionary, Finding, Model, Observation};
-use fault_db::{Id, RunDetail, Store, Verdict};
+use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
 
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
@@ -11,7 +12,7 @@ use super::{UNIT_CONFIG, settings};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::process_id;
-use crate::run::{Adaptive, of_run};
+use crate::run::{Adaptive, BenchContents, of_run};
 use crate::stdio;
 
 /// What decides what a healthy unit measures.
@@ -23,6 +24,8 @@ pub struct Bench<'a> {
     pub line: &'a str,
     /// Train.
     pub train: &'a str,
+    /// How the unit is reached.
+    pub connection: Connection,
 }
 
 /// The diagnosis of a run.
@@ -58,7 +61,7 @@ pub fn diagnose_run(
         from,
         mut warnings,
         current,
-    } = choose(Some(store), directory)?;
+    } = choose(Some(store), directory, connection_of(store, &occurrences)?)?;
     let seen = of_run(&run, &occurrences);
     let seen = comparable(&run, seen, &dictionary, &mut warnings);
     if seen.is_empty() {
@@ -81,6 +84,16 @@ pub fn diagnose_run(
         warnings,
         dictionary_from: from,
         dictionary_current: current,
+    })
+}
+
+/// How the unit of a run was reached, as a recording of it tells; without one it counts as on a bench.
+fn connection_of(store: &Store, occurrences: &[RunOccurrence]) -> Result<Connection, Failure> {
+    let trace = occurrences.iter().find_map(|one| one.trace_id);
+    let recording = trace.map(|trace| store.recording(trace)).transpose()?;
+    Ok(match recording.flatten() {
+        Some(recording) => BenchContents::read(&recording)?.0.connection(),
+        None => Connection::Btu,
     })
 }
 
@@ -110,7 +123,7 @@ pub fn adaptive(
     serial: &str,
     bench: &Bench<'_>,
 ) -> Result<Adaptive, Failure> {
-    let chosen = choose(Some(store), directory)?;
+    let chosen = choose(Some(store), directory, bench.connection)?;
     if !chosen.current {
         // A step that does something else now would mislead it at every turn.
         return Err(Failure::usage(chosen.warnings.join("; ")));
@@ -120,6 +133,7 @@ pub fn adaptive(
         unit_config_sha256: &basis.unit_config_sha256,
         line: &basis.line,
         train: &basis.train,
+        connection: bench.connection,
     };
     if *bench != made_on {
         return Err(Failure::usage(format!(

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Settings};
 
 use crate::data::{BENCH_SCATTER, ScriptsDirectory, read, sha256};
@@ -23,12 +24,15 @@ const FILES: [&str; 5] = [
     BENCH_SCATTER,
 ];
 
-/// What a dictionary made now would be made of.
+/// What a dictionary made now on this connection would be made of.
 ///
 /// # Errors
 /// A file cannot be read.
-pub fn basis(directory: &ScriptsDirectory) -> Result<Basis, Failure> {
+pub fn basis(directory: &ScriptsDirectory, connection: Connection) -> Result<Basis, Failure> {
     let mut all = format!("version {}\n", env!("CARGO_PKG_VERSION"));
+    if connection == Connection::Ptu {
+        all += "maintenance port alone\n";
+    }
     let mut procedures = BTreeMap::new();
     for (path, text) in directory.procedures()? {
         let sum = sha256(&text);
@@ -49,6 +53,7 @@ pub fn basis(directory: &ScriptsDirectory) -> Result<Basis, Failure> {
         procedures,
         line: LINE.into(),
         train: TRAIN.into(),
+        connection: connection.word().into(),
         app_version: env!("CARGO_PKG_VERSION").into(),
     })
 }

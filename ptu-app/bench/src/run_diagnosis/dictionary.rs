@@ -1,6 +1,7 @@
 //! Which dictionary a run is compared with: one made by a campaign on this machine, or the one that
 //! comes with the scripts.
 
+use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Dictionary};
 use fault_db::{Store, read_regular_file};
 
@@ -8,8 +9,10 @@ use super::basis;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 
-/// The dictionary that comes with the scripts, in their directory.
+/// The dictionary that comes with the scripts, in their directory: of units on a bench, and of units reached by their
+/// maintenance port alone.
 const SHIPPED: &str = "dictionary.zst";
+const SHIPPED_PTU: &str = "dictionary_ptu.zst";
 /// Longest dictionary, packed, bytes.
 const LONGEST_PACKED: u64 = 64 << 20;
 
@@ -34,13 +37,17 @@ pub struct Chosen {
     pub warnings: Vec<String>,
 }
 
-/// The best dictionary there is: made of what the scripts directory holds now, on this machine or
+/// The best dictionary there is: made on this connection, of what the scripts directory holds now, on this machine or
 /// shipped with it; else a stale one. Of several the one that knows the most, and was made of the most runs.
 ///
 /// # Errors
 /// There is none, or a file cannot be read.
-pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Chosen, Failure> {
-    let now = basis(directory)?;
+pub fn choose(
+    store: Option<&Store>,
+    directory: &ScriptsDirectory,
+    connection: Connection,
+) -> Result<Chosen, Failure> {
+    let now = basis(directory, connection)?;
     let own = match store {
         Some(store) => store
             .dictionary(&now.sha256)?
@@ -53,11 +60,21 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
         None => None,
     };
     let modes = |dictionary: &Dictionary| {
+        let same_connection = dictionary.basis.connection == now.connection;
         let current = dictionary.basis.sha256 == now.sha256;
-        (current, dictionary.modes.len(), dictionary.healthy.runs)
+        let size = dictionary.modes.len();
+        (same_connection, current, size, dictionary.healthy.runs)
     };
-    let of_file = shipped(directory)?;
+    let of_files = match connection {
+        Connection::Ptu => [
+            shipped(directory, SHIPPED_PTU)?,
+            shipped(directory, SHIPPED)?,
+        ],
+        Connection::Btu => [shipped(directory, SHIPPED)?, None],
+    };
+    let [of_file, of_bench] = of_files;
     let candidates = [
+        of_bench.map(|dictionary| (dictionary, Origin::Scripts)),
         of_file.map(|dictionary| (dictionary, Origin::Scripts)),
         own.map(|dictionary| (dictionary, Origin::Campaign)),
     ];
@@ -72,7 +89,16 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
     };
     let mut warnings = Vec::new();
     let current = dictionary.basis.sha256 == now.sha256;
-    if !current {
+    let same_connection = dictionary.basis.connection == now.connection;
+    if !same_connection {
+        let how = match connection {
+            Connection::Ptu => " --harness none",
+            Connection::Btu => "",
+        };
+        warnings.push(format!(
+            "the fault dictionary was made on another connection: make one with `ptu campaign{how}`"
+        ));
+    } else if !current {
         warnings.push(format!(
             "the fault dictionary is stale, {}: make a new one with `ptu campaign`",
             differences(&dictionary.basis, &now)
@@ -93,8 +119,8 @@ pub fn choose(store: Option<&Store>, directory: &ScriptsDirectory) -> Result<Cho
     })
 }
 
-fn shipped(directory: &ScriptsDirectory) -> Result<Option<Dictionary>, Failure> {
-    let file = directory.path().join(SHIPPED);
+fn shipped(directory: &ScriptsDirectory, name: &str) -> Result<Option<Dictionary>, Failure> {
+    let file = directory.path().join(name);
     if !file.exists() {
         return Ok(None);
     }

@@ -77,10 +77,6 @@ const PART_NOT_NAMED: &[(&str, &str)] = &[
         "the relay that does not drop with the cab is what the step looks at",
     ),
     (
-        "twc_antenna.weak",
-        "frames lost in the antenna count as lost in the modem behind it",
-    ),
-    (
         "test_board.marker_dead",
         "what a test signal that does not come leaves undone is looked for in what it tests",
     ),

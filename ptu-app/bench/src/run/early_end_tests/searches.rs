@@ -11,6 +11,7 @@ fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
         unit_config_sha256: &setup.config.sha256,
         line: &choice.line,
         train: &choice.train,
+        connection: choice.connection(),
     };
     let serial = setup.expected_serial();
     let (_folder, store) = store();

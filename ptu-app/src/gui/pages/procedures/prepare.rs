@@ -83,6 +83,7 @@ pub fn order(
                 unit_config_sha256: &setup.config.sha256,
                 line: &choice.line,
                 train: &choice.train,
+                connection: choice.connection(),
             };
             Some(run_diagnosis::adaptive(
                 &store,
