@@ -44,8 +44,8 @@ const NOT_DIAGNOSED: &[(&str, &str)] = &[
         "code lost in spells is code lost in spells, in the antenna or behind it",
     ),
     (
-        "twc_antenna.loose",
-        "frames lost in spells on both ways, which a CPU that hangs in spells loses, too",
+        "twc_cpu.dead",
+        "no station data by loop or test coil, which an antenna that is dead does not bring, either",
     ),
     (
         "twc_cpu.hangs",
@@ -75,6 +75,10 @@ const PART_NOT_NAMED: &[(&str, &str)] = &[
     (
         "io_board.cab_input_stuck",
         "the relay that does not drop with the cab is what the step looks at",
+    ),
+    (
+        "atp_cpu.arms_moving",
+        "what is stored is what comes of it: test mode ends at once, because the train moves",
     ),
     (
         "test_board.marker_dead",
