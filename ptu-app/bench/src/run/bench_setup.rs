@@ -127,7 +127,11 @@ impl BenchSetup {
         let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
         rig.set_train(self.train.clone());
         rig.expect_unit(ExpectedIdentity {
-            serial: self.serial.clone(),
+            // The embedded unit is given its number.
+            serial: self
+                .serial
+                .clone()
+                .filter(|_| self.endpoint != Endpoint::Sim),
             software: self.software,
             config: Some((self.config.content.name.clone(), self.config.crc)),
             tdb_crc: Some(self.line.crc),
