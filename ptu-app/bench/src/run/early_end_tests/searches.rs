@@ -38,7 +38,7 @@ fn a_search_stopped_between_two_procedures_is_aborted() {
 fn a_search_ends_with_the_step_that_found_the_part() {
     let mut setup = setup();
     let faults = directory().faults().expect("faults");
-    setup.faults = vec![faults.fault("tra.dead").expect("mode").clone()];
+    setup.faults = vec![faults.fault("marker_antenna.dead").expect("mode").clone()];
     let plan = search(&[], &setup);
     let (_, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup);
     let last = detail.steps.last().expect("a step");
