@@ -14,7 +14,11 @@ impl Bench {
             | Signal::EbLoop
             | Signal::TcmsFsb
             | Signal::TcmsMsb
-            | Signal::TcmsHolding => vec![self.released, self.applied],
+            | Signal::TcmsHolding
+            | Signal::AskedEb
+            | Signal::AskedFsb
+            | Signal::TcmsBraking
+            | Signal::TcmsLineOpen => vec![self.released, self.applied],
             Signal::Doors => vec![self.doors_open, self.doors_closed],
             Signal::Marker | Signal::MarkerCoil => vec![self.none, "PSM1", "PSM2", "PSM3", "PSM4"],
             Signal::Wayside => vec![self.silent, self.good, self.wayside_corrupt],
@@ -38,7 +42,7 @@ impl Bench {
                     self.ato_run,
                 ]
             }
-            Signal::Mode => vec![
+            Signal::Mode | Signal::AskedMode | Signal::TrainMode => vec![
                 self.mode_off,
                 self.mode_yard,
                 self.mode_manual,
@@ -73,6 +77,7 @@ impl Bench {
                 self.eb_inputs,
                 self.eb_self_test,
                 self.eb_internal,
+                self.test_mode,
             ],
             Signal::FsbCause => vec![
                 self.none,
@@ -82,6 +87,25 @@ impl Bench {
                 self.fsb_tcms,
                 self.fsb_ato,
                 self.fsb_not_permitted,
+                self.test_mode,
+            ],
+            Signal::IdentitySerial
+            | Signal::IdentitySoftware
+            | Signal::IdentityConfig
+            | Signal::IdentityLine => vec![self.differs, self.same, self.not_stated],
+            Signal::ArmRefusal => vec![
+                self.none,
+                self.arm_key_off,
+                self.refused_moving,
+                self.arm_bad_answer,
+                self.arm_busy,
+                self.arm_tester_silent,
+                self.arm_disarmed,
+                self.arm_starting_up,
+                self.arm_brakes_released,
+                self.arm_train_moved,
+                self.arm_code_changed,
+                self.arm_mode_changed,
             ],
             _ => Vec::new(),
         }
