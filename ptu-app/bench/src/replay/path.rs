@@ -45,10 +45,6 @@ const PATH: [&str; 102] = [
     "marker_at",
     "twc_received",
     "tcms_ok",
-    "tcms_braking",
-    "tcms_eb",
-    "tcms_given",
-    "tcms_load",
     "twc_ok",
     "twc_station",
     "twc_section",
@@ -112,6 +108,10 @@ const PATH: [&str; 102] = [
     "tcms_power",
     "tcms_brake",
     "tcms_coast",
+    "tcms_braking",
+    "tcms_eb",
+    "tcms_given",
+    "tcms_load",
 ];
 
 /// Rows within which the unit has reported everything once.
