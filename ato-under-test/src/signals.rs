@@ -25,6 +25,14 @@ pub struct Pulses {
     pub backward: bool,
 }
 
+impl Pulses {
+    /// Way that they stand for, m, backward negative.
+    pub fn way_m(&self, metres_per_pulse: f64) -> f64 {
+        let way_m = f64::from(self.count) * metres_per_pulse;
+        if self.backward { -way_m } else { way_m }
+    }
+}
+
 /// A marker pulse as TRA hands it on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MarkerPulse {

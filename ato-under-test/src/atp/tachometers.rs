@@ -114,8 +114,7 @@ impl Tachometers {
         let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
         self.distance_channel = usize::from(first_dead);
         let pulses = &inputs.pulses[self.distance_channel];
-        let distance = f64::from(pulses.count) * config.metres_per_pulse();
-        self.moved_m = if pulses.backward { -distance } else { distance };
+        self.moved_m = pulses.way_m(config.metres_per_pulse());
     }
 
     /// The safe speed: the greater of the two.

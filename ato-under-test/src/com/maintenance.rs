@@ -122,10 +122,10 @@ impl Maintenance {
         if let Some(outcome) = self.finish_arming(now, conditions, log) {
             return Some(outcome);
         }
-        let silent = self.armed.is_some() && now.since(self.session_heard) >= self.timeout;
-        silent
-            .then(|| self.end(now, ArmRefusal::TesterSilent, board, log))
-            .flatten()
+        if now.since(self.session_heard) >= self.timeout {
+            return self.end(now, ArmRefusal::TesterSilent, board, log);
+        }
+        None
     }
 
     /// Ends arming, if there is any; returns the notice to send.
@@ -136,8 +136,11 @@ impl Maintenance {
         board: &mut TestBoard,
         log: &mut EventLog,
     ) -> Option<Message> {
-        let session = self.armed?;
-        Some(self.disarm(now, session, refusal, board, log))
+        let session = self.armed.take()?;
+        self.self_test = None;
+        board.release_all();
+        log.push(now, Event::ArmingLapsed, i32::from(refusal.code()));
+        Some(arm_state(session, refusal))
     }
 
     /// Arms the session whose challenge was answered, as soon as the brakes are applied.
@@ -168,21 +171,6 @@ impl Maintenance {
         Some(arm_state(session, refusal))
     }
 
-    fn disarm(
-        &mut self,
-        now: Instant,
-        session: u32,
-        refusal: ArmRefusal,
-        board: &mut TestBoard,
-        log: &mut EventLog,
-    ) -> Message {
-        self.armed = None;
-        self.self_test = None;
-        board.release_all();
-        log.push(now, Event::ArmingLapsed, i32::from(refusal.code()));
-        arm_state(session, refusal)
-    }
-
     /// Handles one request; answers go to `replies`.
     pub fn handle(
         &mut self,
@@ -199,8 +187,7 @@ impl Maintenance {
                 replies.extend(self.confirm(now, confirm, conditions));
             }
             Message::Disarm(request) if self.armed == Some(request.session) => {
-                let refusal = ArmRefusal::Disarmed;
-                replies.push(self.disarm(now, request.session, refusal, board, log));
+                replies.extend(self.end(now, ArmRefusal::Disarmed, board, log));
             }
             Message::Subscribe(request) => self.subscribed = Some((now, request.changes != 0)),
             Message::KeepAlive(alive) => self.on_session(now, alive.session),
@@ -212,13 +199,7 @@ impl Maintenance {
                     Err(SetClockError::OutOfRange) => Answer::OutOfRange,
                     Err(SetClockError::Failed) => Answer::BoardFailed,
                 };
-                replies.push(
-                    StimulusAnswer {
-                        request_seq: seq,
-                        answer,
-                    }
-                    .into(),
-                );
+                replies.push(answer_to(seq, answer));
             }
             Message::ReadStored(request) if request.store.is_known() => {
                 let per_cycle = usize::from(request.per_cycle).clamp(1, STORED_PER_CYCLE);
@@ -226,13 +207,7 @@ impl Maintenance {
             }
             other => {
                 if let Some(answer) = self.stimulate(now, (seq, other), board, log) {
-                    replies.push(
-                        StimulusAnswer {
-                            request_seq: seq,
-                            answer,
-                        }
-                        .into(),
-                    );
+                    replies.push(answer_to(seq, answer));
                 }
             }
         }
@@ -375,12 +350,20 @@ impl Maintenance {
     }
 }
 
-/// Outcome of arming; `None` = armed.
+/// Outcome of arming; `ArmRefusal::None` = armed.
 fn arm_state(session: u32, refusal: ArmRefusal) -> Message {
     ArmState {
         session,
         armed: u8::from(refusal == ArmRefusal::None),
         refusal,
+    }
+    .into()
+}
+
+fn answer_to(request_seq: u16, answer: Answer) -> Message {
+    StimulusAnswer {
+        request_seq,
+        answer,
     }
     .into()
 }

@@ -87,6 +87,11 @@ impl Faults {
         self.random.chance(p)
     }
 
+    /// Nothing works at a place now.
+    pub fn dead(&self, place: Place) -> bool {
+        matches!(self.at(place), Some(Effect::Dead))
+    }
+
     /// A frame or pulse passing `place` is lost.
     pub fn loses(&mut self, place: Place) -> bool {
         match self.at(place) {

@@ -24,7 +24,7 @@ impl Defects {
             _ => 0.0,
         };
         Self {
-            dead: matches!(faults.at(Place::TestBoard), Some(Effect::Dead)),
+            dead: faults.dead(Place::TestBoard),
             speed_gain: faults.gain(Place::TestSpeed),
             level_gain: faults.gain(Place::TestCode),
             carrier_offset_hz: offset(Place::TestCarrier),

@@ -160,7 +160,7 @@ impl Unit {
         message: &Message,
         out: &mut Vec<u8>,
     ) {
-        if matches!(self.faults.at(place), Some(Effect::Dead)) {
+        if self.faults.dead(place) {
             return;
         }
         let begin = out.len();
@@ -174,16 +174,15 @@ impl Unit {
     }
 
     fn arm_conditions(&self) -> ArmConditions {
-        let passed_over = |place| matches!(self.faults.at(place), Some(Effect::Dead));
         let tachometers = self.functions.atp.tachometers();
         let lines = self.functions.inputs.lines;
         let line_dead = self.functions.inputs.alive && !lines.contains(TrainLines::EB_LOOP);
         ArmConditions {
             started: self.self_tester.finished(),
             key_on: lines.contains(TrainLines::MAINTENANCE_KEY),
-            standing: passed_over(Place::ArmStandstill)
+            standing: self.faults.dead(Place::ArmStandstill)
                 || tachometers.standstill() && !tachometers.faulty(),
-            brakes_applied: passed_over(Place::ArmBrakes)
+            brakes_applied: self.faults.dead(Place::ArmBrakes)
                 || line_dead
                 || self.tcms.orders_full_service_brake(),
         }

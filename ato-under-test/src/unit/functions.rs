@@ -5,7 +5,7 @@
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;
-use protocol::injection::{Effect, Place};
+use protocol::injection::Place;
 use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
 use protocol::{Duration, Instant, Speed};
 
@@ -221,7 +221,7 @@ impl Functions {
             checks: self.ato_checks(around),
         };
         let fault = around.faults.at(Place::AtoCpu);
-        if matches!(fault, Some(Effect::Dead)) {
+        if around.faults.dead(Place::AtoCpu) {
             // A processor that has stopped leaves its outputs as they were and reports no new event.
             self.ato_outputs.findings = Findings::default();
             self.ato_outputs.slid_m = 0.0;

@@ -265,7 +265,7 @@ impl Unit {
         }
     }
 
-    /// The count of markers goes on: a tester sees it fall as so many markers more.
+    /// The count of markers goes on: to a tester a count that falls has wrapped, and is of many markers more.
     fn leave_test_mode(&mut self) {
         if let Some(mode) = self.test_mode.take() {
             self.functions

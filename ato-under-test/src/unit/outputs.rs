@@ -2,7 +2,7 @@
 //! than lets a train stand.
 
 use protocol::Instant;
-use protocol::injection::{Effect, Place};
+use protocol::injection::Place;
 use protocol::message::{Mode, Outputs};
 
 use super::Unit;
@@ -41,10 +41,10 @@ impl Unit {
         let tested = self.asked();
         let mut wanted = (train | tested) & EITHER | train & tested & BOTH;
         wanted |= tested & Outputs::CODE_VALID;
-        if self.bar_is_broken(Place::DoorBar) {
+        if self.faults.dead(Place::DoorBar) {
             wanted |= tested & DOORS;
         }
-        if !self.bar_is_broken(Place::BrakeHold) {
+        if !self.faults.dead(Place::BrakeHold) {
             wanted |= Outputs::FSB | Outputs::POWER_CUT;
             wanted.set(
                 Outputs::EB_RELAY,
@@ -65,11 +65,11 @@ impl Unit {
             return (effort, mode);
         }
         let (tested_effort, tested_mode) = of(self.tested());
-        let effort = match self.bar_is_broken(Place::TractionBar) {
+        let effort = match self.faults.dead(Place::TractionBar) {
             true => tested_effort,
             false => effort.min(0),
         };
-        let mode = match self.bar_is_broken(Place::StartBar) {
+        let mode = match self.faults.dead(Place::StartBar) {
             true => tested_mode,
             false => mode,
         };
@@ -82,9 +82,5 @@ impl Unit {
         let mut outputs = functions.atp.outputs(healthy);
         outputs.set(Outputs::HOLDING_BRAKE, functions.holds());
         outputs
-    }
-
-    fn bar_is_broken(&self, place: Place) -> bool {
-        matches!(self.faults.at(place), Some(Effect::Dead))
     }
 }

@@ -9,7 +9,7 @@
 //! speed code in the rail or the mode switch changes, and when the maintenance key is taken.
 
 use protocol::config::UnitConfig;
-use protocol::injection::{Effect, Place};
+use protocol::injection::Place;
 use protocol::message::{ArmRefusal, ModeSwitch, TrainLines};
 use protocol::{Duration, Instant, Speed};
 
@@ -58,7 +58,6 @@ impl TestMode {
         config: &UnitConfig,
         faults: &Faults,
     ) -> Option<ArmRefusal> {
-        let works = |guard| !matches!(faults.at(guard), Some(Effect::Dead));
         let code = lookup(inputs.track, config);
         let other_code = self.other_code.update(now, code != self.code, CODE_STEADY);
         let causes = [
@@ -81,14 +80,13 @@ impl TestMode {
         ];
         let broken = causes
             .iter()
-            .find(|(guard, holds, _)| *holds && works(*guard));
+            .find(|(guard, holds, _)| *holds && !faults.dead(*guard));
         broken.map(|(_, _, refusal)| *refusal)
     }
 
     fn moves(&mut self, pulses: &[Pulses; 2], train: &Functions, config: &UnitConfig) -> bool {
         for (moved_m, pulses) in self.moved_m.iter_mut().zip(pulses) {
-            let way_m = f64::from(pulses.count) * config.metres_per_pulse();
-            *moved_m += if pulses.backward { -way_m } else { way_m };
+            *moved_m += pulses.way_m(config.metres_per_pulse());
         }
         let far = self
             .moved_m

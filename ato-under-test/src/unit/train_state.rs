@@ -44,7 +44,8 @@ impl Dated {
 /// When `TrainState` is due.
 #[derive(Debug, Default)]
 pub struct StateReport {
-    last: Dated,
+    /// `None` without a subscribed tester.
+    last: Option<Dated>,
     /// Scans since the first change that no frame has shown yet.
     unsent: Option<u8>,
     /// Scans until a frame may be sent for a change again.
@@ -52,18 +53,14 @@ pub struct StateReport {
 }
 
 impl StateReport {
-    /// One scan, with the state at its end; `changes`: the tester wants changes at once, `None` without
-    /// a subscribed tester. The age of what a frame sent now shows, in scans.
-    fn step(&mut self, state: Dated, changes: Option<bool>, cycle: bool) -> Option<u8> {
+    /// One scan with a subscribed tester, and the state at its end; `changes`: it wants changes at once. The age of
+    /// what a frame sent now shows, in scans.
+    fn step(&mut self, state: Dated, changes: bool, cycle: bool) -> Option<u8> {
         self.wait = self.wait.saturating_sub(1);
         self.unsent = self.unsent.map(|age| age.saturating_add(1));
-        if core::mem::replace(&mut self.last, state) != state {
+        if self.last.replace(state).is_some_and(|last| last != state) {
             self.unsent = self.unsent.or(Some(0));
         }
-        let Some(changes) = changes else {
-            self.unsent = None;
-            return None;
-        };
         let at_once = changes && self.unsent.is_some() && self.wait == 0;
         if !cycle && !at_once {
             return None;
@@ -81,8 +78,11 @@ impl Unit {
         if self.tested().locator.count() != self.marker_at.0 {
             self.marker_at = (self.tested().locator.count(), now.stamp_ms());
         }
+        let Some(changes) = self.maintenance.subscribed(now) else {
+            self.state_report = StateReport::default();
+            return;
+        };
         let mut state = report::train_state(self, now);
-        let changes = self.maintenance.subscribed(now);
         let dated = Dated::of(&state, self.tested().twc.received());
         if let Some(held) = self.state_report.step(dated, changes, cycle) {
             state.held = held;
@@ -107,7 +107,7 @@ mod tests {
         let mut report = StateReport::default();
         let scans = codes.iter().enumerate();
         scans
-            .map(|(i, &code)| report.step(state(code), Some(changes), i % 5 == 0))
+            .map(|(i, &code)| report.step(state(code), changes, i % 5 == 0))
             .collect()
     }
 
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn what_changed_before_a_tester_subscribed_is_not_held() {
         let mut report = StateReport::default();
-        assert_eq!(report.step(state(1), None, false), None);
-        assert_eq!(report.step(state(1), Some(true), true), Some(0));
+        assert_eq!(report.step(state(1), true, false), None);
+        assert_eq!(report.step(state(1), true, true), Some(0));
     }
 }

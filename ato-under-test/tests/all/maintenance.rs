@@ -9,10 +9,11 @@ use protocol::message::{
 
 pub const SESSION: u32 = 0xBEEF;
 
-fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
+/// Why the unit refuses to arm; `None` = it is armed.
+pub fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
     bench.answers.clear();
     bench.send(ArmRequest { session: SESSION });
-    bench.run(0.1);
+    bench.run(0.05);
     let challenge = bench.answers.iter().find_map(|answer| match answer {
         Message::ArmChallenge(challenge) => Some(challenge.challenge),
         _ => None,
@@ -23,12 +24,15 @@ fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
             answer: !challenge ^ SESSION,
         });
         bench.session = SESSION;
-        bench.run(0.1);
+        // Longer than a train may take to prove that it brakes.
+        bench.run(0.4);
     }
-    bench.answers.iter().find_map(|answer| match answer {
-        Message::ArmState(state) if state.armed == 0 => Some(state.refusal),
+    let mut states = bench.answers.iter().filter_map(|answer| match answer {
+        Message::ArmState(state) => Some(state),
         _ => None,
-    })
+    });
+    let state = states.next_back().expect("an outcome of arming");
+    (state.armed == 0).then_some(state.refusal)
 }
 
 fn armed() -> Bench {

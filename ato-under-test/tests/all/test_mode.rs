@@ -1,22 +1,22 @@
 //! What the unit promises while a tester is armed: the train stands and stays braked, whatever test signals say, and
 //! nothing of them is left afterwards.
 
-use crate::common::{Bench, departure, fault, line};
+use crate::common::{Bench, departure, fault, line, test_station};
+use crate::maintenance::{SESSION, arm};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use protocol::injection::{Effect, Place};
+use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{
     ArmConfirm, ArmRefusal, ArmRequest, AtcToTcmsBits, Disarm, DoorSide, EbCause, Message, Mode,
-    ModeSwitch, Outputs, RunningMode, Status, StatusBits, Subscribe, TestCode, TestMarker,
-    TestRelease, TestSignals, TestSpeed, TestTwc, TrainLines,
+    ModeSwitch, Outputs, Status, StatusBits, Subscribe, TestCode, TestMarker, TestRelease,
+    TestSignals, TestSpeed, TestTwc, TrainLines, TwcWayside,
 };
 
-const SESSION: u32 = 0xBEEF;
 const DOORS: Outputs = Outputs::DOOR_ENABLE_LEFT.union(Outputs::DOOR_ENABLE_RIGHT);
 
 /// A train that stands under no code, its service brake on, with the key turned.
-fn keyed(faults: &[protocol::injection::FaultMode]) -> Bench {
+fn keyed(faults: &[FaultMode]) -> Bench {
     let mut bench = Bench::new(faults);
     bench.tcms_obeys = true;
     bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
@@ -24,34 +24,9 @@ fn keyed(faults: &[protocol::injection::FaultMode]) -> Bench {
     bench
 }
 
-/// Outcome of arming; `none` = armed.
-fn arm(bench: &mut Bench) -> ArmRefusal {
-    bench.answers.clear();
-    bench.send(ArmRequest { session: SESSION });
-    bench.run(0.05);
-    let challenge = bench.answers.iter().find_map(|answer| match answer {
-        Message::ArmChallenge(asked) => Some(asked.challenge),
-        _ => None,
-    });
-    if let Some(challenge) = challenge {
-        let answer = !challenge ^ SESSION;
-        bench.session = SESSION;
-        bench.send(ArmConfirm {
-            session: SESSION,
-            answer,
-        });
-        bench.run(0.4);
-    }
-    let mut states = bench.answers.iter().filter_map(|answer| match answer {
-        Message::ArmState(state) => Some(state.refusal),
-        _ => None,
-    });
-    states.next_back().expect("an outcome of arming")
-}
-
-fn armed(faults: &[protocol::injection::FaultMode]) -> Bench {
+fn armed(faults: &[FaultMode]) -> Bench {
     let mut bench = keyed(faults);
-    assert_eq!(arm(&mut bench), ArmRefusal::None);
+    assert_eq!(arm(&mut bench), None);
     bench
 }
 
@@ -77,20 +52,25 @@ fn test_speed(speed_cms: u16) -> TestSpeed {
 }
 
 fn test_departure() -> TestTwc {
-    let data = departure(&line().sections[0]);
-    TestTwc {
-        session: SESSION,
-        route: data.route,
-        section: data.section,
-        station: data.station,
-        next_station: data.next_station,
-        loop_id: data.loop_id,
-        fixed_speed_kmh: 255,
-        running_mode: RunningMode::Normal,
+    let data = TwcWayside {
         door_side: DoorSide::Left,
         departure: 1,
-        train_number: data.train_number,
-    }
+        ..departure(&line().sections[0])
+    };
+    test_station(SESSION, data)
+}
+
+/// Armed in automatic mode, with a test code and a test departure, the start button just pressed.
+fn departing(faults: &[FaultMode]) -> Bench {
+    let mut bench = keyed(faults);
+    bench.input.mode_switch = ModeSwitch::Automatic;
+    bench.run(0.5);
+    assert_eq!(arm(&mut bench), None);
+    bench.send(test_code("75"));
+    bench.send(test_departure());
+    bench.run(2.0);
+    bench.input.lines.insert(TrainLines::START);
+    bench
 }
 
 /// What must hold in every scan while a tester is armed.
@@ -114,27 +94,23 @@ fn held(bench: &Bench) -> Result<(), String> {
     }
 }
 
-fn is_armed(bench: &Bench) -> bool {
-    bench.armed
-}
-
 #[test]
 fn arming_is_refused_with_its_reason() {
     let mut rolling = keyed(&[]);
     rolling.speed_kmh(2.0);
-    assert_eq!(arm(&mut rolling), ArmRefusal::Moving);
+    assert_eq!(arm(&mut rolling), Some(ArmRefusal::Moving));
 
     // A relay that is welded, and a train whose TCMS does not order the service brake.
     let mut released = keyed(&[fault(Place::EbRelay, Effect::StuckOn)]);
     released.tcms_obeys = false;
     released.run(0.3);
     released.welded = true;
-    assert_eq!(arm(&mut released), ArmRefusal::BrakesReleased);
+    assert_eq!(arm(&mut released), Some(ArmRefusal::BrakesReleased));
 
     let mut unkeyed = keyed(&[]);
     unkeyed.input.lines.remove(TrainLines::MAINTENANCE_KEY);
     unkeyed.run(0.1);
-    assert_eq!(arm(&mut unkeyed), ArmRefusal::KeyOff);
+    assert_eq!(arm(&mut unkeyed), Some(ArmRefusal::KeyOff));
 }
 
 /// Without a TCMS that says it brakes, the emergency brake proves it, and is held.
@@ -144,7 +120,7 @@ fn a_train_without_tcms_is_armed_under_the_emergency_brake() {
     bench.tcms = None;
     bench.run(1.0);
     assert!(!bench.braking(), "only the service brake so far");
-    assert_eq!(arm(&mut bench), ArmRefusal::None);
+    assert_eq!(arm(&mut bench), None);
     bench.run(1.0);
     assert!(bench.braking());
     assert_eq!(bench.status.eb_cause, EbCause::TestMode);
@@ -153,14 +129,9 @@ fn a_train_without_tcms_is_armed_under_the_emergency_brake() {
 #[test]
 fn code_station_data_and_start_do_not_drive_the_train() {
     let mut bench = armed(&[]);
-    bench.send(Subscribe { changes: 0 });
-    bench.input.mode_switch = ModeSwitch::Manual;
     bench.send(test_code("75"));
     bench.send(test_departure());
-    for i in 0..500 {
-        if i % 50 == 0 {
-            bench.send(Subscribe { changes: 0 });
-        }
+    for _ in 0..500 {
         bench.scan();
         held(&bench).unwrap();
     }
@@ -173,19 +144,9 @@ fn code_station_data_and_start_do_not_drive_the_train() {
 
 #[test]
 fn the_train_in_automatic_mode_is_not_driven_by_a_test_departure() {
-    let mut bench = keyed(&[]);
-    bench.input.mode_switch = ModeSwitch::Automatic;
-    bench.run(0.5);
-    assert_eq!(arm(&mut bench), ArmRefusal::None);
-    bench.send(test_code("75"));
-    bench.send(test_departure());
-    bench.run(2.0);
-    bench.input.lines.insert(TrainLines::START);
+    let mut bench = departing(&[]);
     let mut would = false;
-    for i in 0..1000 {
-        if i % 50 == 0 {
-            bench.send(Subscribe { changes: 0 });
-        }
+    for _ in 0..1000 {
         bench.scan();
         held(&bench).unwrap();
         would |= bench.status.mode == Mode::AutomaticRun && bench.status.effort > 0;
@@ -216,7 +177,7 @@ fn motion_code_mode_and_key_end_it_with_the_emergency_brake() {
         let mut bench = armed(&[]);
         bench.send(test_speed(0));
         bench.run(1.0);
-        assert!(is_armed(&bench) && !bench.braking(), "{refusal:?}");
+        assert!(bench.armed && !bench.braking(), "{refusal:?}");
         change(&mut bench);
         let moving = refusal == ArmRefusal::TrainMoved;
         // A pulse is 27 mm: the second one tells the speed.
@@ -226,7 +187,7 @@ fn motion_code_mode_and_key_end_it_with_the_emergency_brake() {
             took.is_some_and(|ms| ms <= allowed_ms),
             "{refusal:?}: {took:?}"
         );
-        assert!(!is_armed(&bench));
+        assert!(!bench.armed);
         bench.speeds = [0.0; 2];
         bench.run(0.1);
         assert_eq!(bench.status.eb_cause, EbCause::TestMode, "{refusal:?}");
@@ -264,7 +225,7 @@ fn a_disarmed_unit_knows_what_it_knew_before() {
     bench.send(Disarm { session: SESSION });
     bench.run(0.5);
     let (before, limit) = (known(&bench), bench.output.limit_cms);
-    assert_eq!(arm(&mut bench), ArmRefusal::None);
+    assert_eq!(arm(&mut bench), None);
     bench.send(test_code("75"));
     bench.send(TestTwc {
         section: line().sections[1].section,
@@ -393,7 +354,7 @@ fn stays_held(bench: &mut Bench, acts: &[Act]) -> Result<(), String> {
                     });
                 }
             }
-            if is_armed(bench) {
+            if bench.armed {
                 held(bench).map_err(|what| format!("{what} after {act:?}"))?;
             }
         }
@@ -423,7 +384,7 @@ fn ready(automatic: bool) -> Bench {
         bench.input.mode_switch = ModeSwitch::Automatic;
         bench.run(0.1);
     }
-    assert_eq!(arm(&mut bench), ArmRefusal::None);
+    assert_eq!(arm(&mut bench), None);
     bench
 }
 
@@ -440,7 +401,7 @@ fn a_million_sequences_release_no_armed_train() {
         for _ in 0..100 {
             if !bench.armed {
                 bench.rest();
-                arm(&mut bench);
+                let _ = arm(&mut bench);
             }
             armed_at_start += u32::from(bench.armed);
             let acts = sequence.new_tree(&mut runner).unwrap().current();
@@ -470,21 +431,14 @@ fn a_guard_that_fails_shows() {
             _ => bench.input.lines.remove(TrainLines::MAINTENANCE_KEY),
         }
         bench.run(0.4);
-        assert!(is_armed(&bench), "{place:?}");
+        assert!(bench.armed, "{place:?}");
     }
     let mut unheld = keyed(&[fault(Place::BrakeHold, Effect::Dead)]);
     unheld.input.mode_switch = ModeSwitch::Yard;
     unheld.run(0.5);
-    assert_eq!(arm(&mut unheld), ArmRefusal::BrakesReleased);
+    assert_eq!(arm(&mut unheld), Some(ArmRefusal::BrakesReleased));
     for place in [Place::TractionBar, Place::StartBar] {
-        let mut bench = keyed(&[fault(place, Effect::Dead)]);
-        bench.input.mode_switch = ModeSwitch::Automatic;
-        bench.run(0.5);
-        assert_eq!(arm(&mut bench), ArmRefusal::None);
-        bench.send(test_code("75"));
-        bench.send(test_departure());
-        bench.run(2.0);
-        bench.input.lines.insert(TrainLines::START);
+        let mut bench = departing(&[fault(place, Effect::Dead)]);
         let shows = (0..1000).any(|_| {
             bench.scan();
             held(&bench).is_err()

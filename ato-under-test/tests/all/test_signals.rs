@@ -1,6 +1,6 @@
 //! What leaves the TEST board, and what the unit answers its TEST modem through the TWC antenna.
 
-use crate::common::{Bench, departure, fault, line};
+use crate::common::{Bench, departure, fault, line, test_station};
 use crate::maintenance::{SESSION, answer_to, armed_with};
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{
@@ -28,18 +28,7 @@ fn train_state(bench: &mut Bench) -> TrainState {
 }
 
 fn station() -> TestTwc {
-    let data = departure(&line().sections[0]);
-    TestTwc {
-        session: SESSION,
-        route: data.route,
-        section: data.section,
-        station: data.station,
-        next_station: data.next_station,
-        loop_id: data.loop_id,
-        fixed_speed_kmh: 255,
-        train_number: 8123,
-        ..TestTwc::default()
-    }
+    test_station(SESSION, departure(&line().sections[0]))
 }
 
 /// Frames the unit accepted and answers the TEST modem heard, of 12 that it sends in 3 s.

@@ -12,7 +12,7 @@ use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{
     AtcToTcms, Channel, IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs,
-    ReadLog, Status, TcmsToAtc, TcmsToAtcBits, TrainLines, TrainState, TwcWayside,
+    ReadLog, Status, TcmsToAtc, TcmsToAtcBits, TestTwc, TrainLines, TrainState, TwcWayside,
 };
 use protocol::{Instant, SCAN};
 
@@ -90,6 +90,23 @@ pub fn departure(section: &protocol::line::Section) -> TwcWayside {
         fixed_speed_kmh: 255,
         train_number: 8123,
         ..TwcWayside::default()
+    }
+}
+
+/// The same as a request to the TEST module.
+pub fn test_station(session: u32, data: TwcWayside) -> TestTwc {
+    TestTwc {
+        session,
+        route: data.route,
+        section: data.section,
+        station: data.station,
+        next_station: data.next_station,
+        loop_id: data.loop_id,
+        fixed_speed_kmh: data.fixed_speed_kmh,
+        running_mode: data.running_mode,
+        door_side: data.door_side,
+        departure: data.departure,
+        train_number: data.train_number,
     }
 }
 
