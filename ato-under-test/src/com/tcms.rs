@@ -94,9 +94,21 @@ impl TcmsLink {
         self.says(TcmsToAtcBits::ATO_ENABLE) && !self.says(TcmsToAtcBits::BRAKE_NOT_RELEASED)
     }
 
-    /// TCMS orders the full service brake on the train.
-    pub fn orders_full_service_brake(&self) -> bool {
-        self.says(TcmsToAtcBits::FULL_SERVICE_BRAKE)
+    /// TCMS orders the full service brake on the train, and the service brake is applied.
+    pub fn full_service_brake_applied(&self) -> bool {
+        self.alive
+            && self.last.bits.contains(
+                TcmsToAtcBits::FULL_SERVICE_BRAKE.union(TcmsToAtcBits::SERVICE_BRAKE_APPLIED),
+            )
+    }
+
+    /// Whether the emergency brake is applied, while TCMS says it. An open line does not apply a brake that is cut out.
+    pub fn emergency_brake_applied(&self) -> Option<bool> {
+        self.alive.then_some(
+            self.last
+                .bits
+                .contains(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED),
+        )
     }
 
     /// TCMS cuts powering. What it cuts while its holding brake is on is left out: ATO asks for that

@@ -176,15 +176,22 @@ impl Unit {
     fn arm_conditions(&self) -> ArmConditions {
         let tachometers = self.functions.atp.tachometers();
         let lines = self.functions.inputs.lines;
-        let line_dead = self.functions.inputs.alive && !lines.contains(TrainLines::EB_LOOP);
         ArmConditions {
             started: self.self_tester.finished(),
             key_on: lines.contains(TrainLines::MAINTENANCE_KEY),
             standing: self.faults.dead(Place::ArmStandstill)
                 || tachometers.standstill() && !tachometers.faulty(),
-            brakes_applied: self.faults.dead(Place::ArmBrakes)
-                || line_dead
-                || self.tcms.orders_full_service_brake(),
+            brakes_applied: self.brakes_proved(),
         }
+    }
+
+    /// The train proves that its brakes are applied: by TCMS, or by a dead emergency brake line while no TCMS says that
+    /// it does not brake.
+    pub(super) fn brakes_proved(&self) -> bool {
+        let inputs = &self.functions.inputs;
+        let line_dead = inputs.alive && !inputs.lines.contains(TrainLines::EB_LOOP);
+        self.faults.dead(Place::ArmBrakes)
+            || self.tcms.full_service_brake_applied()
+            || line_dead && self.tcms.emergency_brake_applied().unwrap_or(true)
     }
 }

@@ -234,12 +234,13 @@ impl Unit {
 
     /// Ends test mode where it must end, with the emergency brake.
     fn supervise_test_mode(&mut self, now: Instant, out: &mut Vec<u8>) {
+        let braked = self.brakes_proved();
         let Some(mode) = &mut self.test_mode else {
             return;
         };
         let config = &self.setup.config;
-        let Some(refusal) = mode.ends(now, &self.scanned, &self.functions, config, &self.faults)
-        else {
+        let around = (&self.functions, braked);
+        let Some(refusal) = mode.ends(now, &self.scanned, around, config, &self.faults) else {
             return;
         };
         let parameter = i32::from(refusal.code());

@@ -48,7 +48,7 @@ impl Unit {
             wanted |= Outputs::FSB | Outputs::POWER_CUT;
             wanted.set(
                 Outputs::EB_RELAY,
-                wanted.contains(Outputs::EB_RELAY) && self.tcms.orders_full_service_brake(),
+                wanted.contains(Outputs::EB_RELAY) && self.tcms.full_service_brake_applied(),
             );
         }
         wanted

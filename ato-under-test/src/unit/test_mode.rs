@@ -6,7 +6,8 @@
 //! restrictive of both counts, and the full service brake is held (`outputs`).
 //!
 //! Test mode is for a train that stands. It ends, and the emergency brake is applied, when the train moves, when the
-//! speed code in the rail or the mode switch changes, and when the maintenance key is taken.
+//! speed code in the rail or the mode switch changes, when the maintenance key is taken, and when the train no longer
+//! proves that it is braked.
 
 use protocol::config::UnitConfig;
 use protocol::injection::Place;
@@ -25,6 +26,8 @@ const MOST_MOVED_M: f64 = 0.3;
 const MOVES: Speed = Speed::from_kmh(0.5);
 /// Time for which another code must be in the rail: a scan in which the signal is disturbed is no change.
 const CODE_STEADY: Duration = Duration::from_ms(50);
+/// Time without a proof of applied brakes: one brake takes over from the other, and TCMS tells of it, in less [default].
+const UNPROVED: Duration = Duration::from_ms(1000);
 
 #[derive(Debug)]
 pub struct TestMode {
@@ -35,6 +38,7 @@ pub struct TestMode {
     mode_switch: ModeSwitch,
     code: Code,
     other_code: OnDelay,
+    unbraked: OnDelay,
 }
 
 impl TestMode {
@@ -46,20 +50,23 @@ impl TestMode {
             mode_switch: inputs.train.mode_switch,
             code: lookup(inputs.track, config),
             other_code: OnDelay::default(),
+            unbraked: OnDelay::default(),
         }
     }
 
-    /// One scan: why test mode must end, if it must. `train` is the instance that sees the train alone.
+    /// One scan: why test mode must end, if it must. `train` is the instance that sees the train alone; `braked`: the
+    /// train proves that its brakes are applied.
     pub fn ends(
         &mut self,
         now: Instant,
         inputs: &ScannedInputs,
-        train: &Functions,
+        (train, braked): (&Functions, bool),
         config: &UnitConfig,
         faults: &Faults,
     ) -> Option<ArmRefusal> {
         let code = lookup(inputs.track, config);
         let other_code = self.other_code.update(now, code != self.code, CODE_STEADY);
+        let unbraked = self.unbraked.update(now, !braked, UNPROVED);
         let causes = [
             (
                 Place::KeyGuard,
@@ -77,6 +84,7 @@ impl TestMode {
                 ArmRefusal::ModeChanged,
             ),
             (Place::CodeGuard, other_code, ArmRefusal::CodeChanged),
+            (Place::ArmBrakes, unbraked, ArmRefusal::BrakesReleased),
         ];
         let broken = causes
             .iter()

@@ -500,7 +500,9 @@ impl Player {
                 if let (Message::IoOutput(output), Some(frame)) = (received.message, &mut self.tcms)
                 {
                     let asked = output.outputs.contains(Outputs::FSB);
-                    frame.bits.set(TcmsToAtcBits::FULL_SERVICE_BRAKE, asked);
+                    let braked =
+                        TcmsToAtcBits::FULL_SERVICE_BRAKE | TcmsToAtcBits::SERVICE_BRAKE_APPLIED;
+                    frame.bits.set(braked, asked);
                 }
                 if let Message::ArmChallenge(asked) = received.message {
                     self.challenge = asked.challenge;

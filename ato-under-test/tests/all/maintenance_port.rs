@@ -71,6 +71,7 @@ fn aboard() -> (Bench, Laptop) {
     let mut bench = Bench::new(&[]);
     bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
     bench.keep_alive = false;
+    bench.tcms_obeys = true;
     bench.run(1.1);
     bench.answers.clear();
     (bench, Laptop::new())

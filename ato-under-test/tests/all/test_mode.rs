@@ -113,6 +113,28 @@ fn arming_is_refused_with_its_reason() {
     assert_eq!(arm(&mut unkeyed), Some(ArmRefusal::KeyOff));
 }
 
+/// An open line proves nothing on a train whose emergency brake is cut out, and TCMS that is there says so.
+#[test]
+fn a_train_whose_brakes_are_cut_out_is_not_armed_and_does_not_stay_armed() {
+    let mut cut_out = keyed(&[]);
+    cut_out.tcms_obeys = false;
+    cut_out.eb_cut_out = true;
+    cut_out.run(0.3);
+    assert_eq!(arm(&mut cut_out), Some(ArmRefusal::BrakesReleased));
+
+    let cut_out_later = |faults: &[FaultMode]| {
+        let mut bench = armed(faults);
+        bench.tcms_obeys = false;
+        bench.eb_cut_out = true;
+        bench.run(1.5);
+        bench
+    };
+    let bench = cut_out_later(&[]);
+    assert!(!bench.armed && bench.braking());
+    assert_eq!(bench.status.eb_cause, EbCause::TestMode);
+    assert!(cut_out_later(&[fault(Place::ArmBrakes, Effect::Dead)]).armed);
+}
+
 /// Without a TCMS that says it brakes, the emergency brake proves it, and is held.
 #[test]
 fn a_train_without_tcms_is_armed_under_the_emergency_brake() {

@@ -78,7 +78,7 @@ pub enum Place {
     TestMarker,
     /// Standstill as a condition of arming.
     ArmStandstill,
-    /// Applied brakes as a condition of arming.
+    /// Applied brakes as a condition of arming, and of staying armed.
     ArmBrakes,
     /// Supervision of the train's own motion while armed.
     MotionGuard,

@@ -59,6 +59,8 @@ pub struct Bench {
     pub welded: bool,
     /// Its alive counter stands still.
     pub alive_stands: bool,
+    /// The emergency brake is cut out: an open line does not apply it.
+    pub eb_cut_out: bool,
     /// Something besides the unit's relay opens the emergency brake line.
     pub opens_line: bool,
     /// Bits of the tachometers' phase beside the two that have a meaning.
@@ -158,6 +160,7 @@ impl Bench {
             welded: false,
             alive_stands: false,
             opens_line,
+            eb_cut_out: false,
             backward_bits: 0,
             answers: Vec::new(),
             log: Vec::new(),
@@ -232,7 +235,12 @@ impl Bench {
             }
             let mut bits = frame.bits;
             if self.tcms_obeys && self.has(Outputs::FSB) {
-                bits.insert(TcmsToAtcBits::FULL_SERVICE_BRAKE);
+                bits.insert(
+                    TcmsToAtcBits::FULL_SERVICE_BRAKE | TcmsToAtcBits::SERVICE_BRAKE_APPLIED,
+                );
+            }
+            if !eb_loop && !self.eb_cut_out {
+                bits.insert(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED);
             }
             self.send(TcmsToAtc {
                 alive: self.alive,
