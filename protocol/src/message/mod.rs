@@ -4,8 +4,12 @@
 mod enums;
 mod io;
 mod layout;
+mod log;
 mod ptu;
+mod self_test;
+mod stored;
 mod tcms;
+mod test_board;
 mod train_state;
 mod twc;
 
@@ -20,14 +24,15 @@ pub use io::{IoInput, IoOutput, Outputs, TrainLines};
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
 };
+pub use log::{ClearLog, LogEnd, LogEntry, ReadLog, ReadRun, RunEnd, RunRow};
 pub use ptu::{
-    ArmChallenge, ArmConfirm, ArmRequest, ArmState, ClearLog, Disarm, Identify, Identity,
-    KeepAlive, LogEnd, LogEntry, ReadLog, ReadRun, ReadStored, RunEnd, RunRow, RunSelfTest,
-    SelfTest, SelfTestEnd, SelfTestItem, SetClock, Status, StatusBits, StimulusAnswer, StoredClock,
-    StoredEnd, StoredEntry, StoredRow, Taken, TestCode, TestMarker, TestRelease, TestSignals,
-    TestSpeed, TestTwc,
+    ArmChallenge, ArmConfirm, ArmRequest, ArmState, Disarm, Identify, Identity, KeepAlive, Status,
+    StatusBits, StimulusAnswer, Taken,
 };
+pub use self_test::{RunSelfTest, SelfTest, SelfTestEnd, SelfTestItem};
+pub use stored::{ReadStored, SetClock, StoredClock, StoredEnd, StoredEntry, StoredRow};
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
+pub use test_board::{TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc};
 pub use train_state::{Subscribe, TrainState};
 pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
 

@@ -3,11 +3,10 @@
 //! A session number chosen by the tester ties requests together. Stimuli act through the TEST
 //! board only while the unit is armed for that session.
 
-use super::enums::{
-    Answer, ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, MeasureUnit, Mode, Refusals,
-    RunningMode, StoreKind,
-};
+use super::enums::{Answer, ArmRefusal, AtoState, EbCause, FsbCause, Mode, Refusals};
 use super::layout::{layout, wire_bits};
+use super::self_test::SelfTest;
+use super::test_board::TestSignals;
 
 wire_bits! {
     /// States in `Status`.
@@ -30,42 +29,6 @@ wire_bits! {
         STARTED = 7,
         /// I/O inputs are alive.
         INPUTS_OK = 8,
-    }
-}
-
-wire_bits! {
-    /// Items of the self-test.
-    SelfTest {
-        /// Memory pattern test.
-        MEMORY = 0,
-        /// Unit configuration check.
-        CONFIGURATION = 1,
-        /// Track database check.
-        TRACK_DATABASE = 2,
-        /// Brake line energised although the EB relay is not.
-        EB_RELAY = 3,
-        /// ATP receiver did not decode its test code.
-        ATP_RECEIVER = 4,
-        /// TRA did not answer its test pulse.
-        TRA = 5,
-        /// TWC modem loop-back.
-        TWC_MODEM = 6,
-        /// TEST board.
-        TEST_BOARD = 7,
-    }
-}
-
-wire_bits! {
-    /// Signals the TEST board makes.
-    TestSignals {
-        /// Speed code into the ATP test coil.
-        CODE = 0,
-        /// Speed on tachometer input 1.
-        SPEED_1 = 1,
-        /// Speed on tachometer input 2.
-        SPEED_2 = 2,
-        /// Station data from the TEST modem into the TWC antenna.
-        TWC = 3,
     }
 }
 
@@ -101,128 +64,6 @@ layout! {
     KeepAlive, Ptu, 0x05 {
         /// Session number; 0 = listening only.
         session: u32,
-    }
-}
-layout! {
-    /// Speed code into the ATP test coil. Tester → unit, answered.
-    TestCode, Ptu, 0x10 {
-        /// Session number.
-        session: u32,
-        /// Carrier, Hz.
-        carrier_hz: u16,
-        /// Code rate, 0.01 Hz; 0 = unmodulated.
-        code_rate_chz: u16,
-        /// Level, mV, at most 3000.
-        level_mv: u16,
-    }
-}
-layout! {
-    /// Speed signal in place of the tachometers. Tester → unit, answered.
-    TestSpeed, Ptu, 0x11 {
-        /// Session number.
-        session: u32,
-        /// Inputs driven: bit 0 = tachometer 1, bit 1 = tachometer 2; not 0.
-        channels: u8,
-        /// 1 = backward, 0 = forward.
-        backward: u8,
-        /// Speed to reach, cm/s, at most 3000.
-        speed_cms: u16,
-        /// How fast to get there, mm/s²; 0 = the board's own 3000.
-        accel_mms2: u16,
-    }
-}
-layout! {
-    /// One pulse of the test marker. Tester → unit, answered.
-    TestMarker, Ptu, 0x12 {
-        /// Session number.
-        session: u32,
-        /// Marker 1 to 4.
-        marker: u8,
-    }
-}
-layout! {
-    /// Station data from the TEST modem into the TWC antenna, every 250 ms. Tester → unit, answered.
-    TestTwc, Ptu, 0x13 {
-        /// Session number.
-        session: u32,
-        /// Route number.
-        route: u16,
-        /// Section number.
-        section: u16,
-        /// This station's number.
-        station: u16,
-        /// The next station's number.
-        next_station: u16,
-        /// Loop number.
-        loop_id: u16,
-        /// Fixed speed, km/h; 255 = none.
-        fixed_speed_kmh: u8,
-        /// Running mode.
-        running_mode: RunningMode,
-        /// Door side.
-        door_side: DoorSide,
-        /// Departure: 1 = given, 0 = held.
-        departure: u8,
-        /// Train number.
-        train_number: u16,
-    }
-}
-layout! {
-    /// Takes test signals away. Tester → unit, answered.
-    TestRelease, Ptu, 0x14 {
-        /// Session number.
-        session: u32,
-        /// Signals to take away; either speed bit takes away both.
-        signals: TestSignals,
-    }
-}
-layout! {
-    /// Asks for a self-test: answered, then by one result for each item and the end. Tester → unit.
-    RunSelfTest, Ptu, 0x15 {
-        /// Session number.
-        session: u32,
-    }
-}
-layout! {
-    /// Asks for the event log from an index on; answered by entries, then `LogEnd`. Tester → unit.
-    ReadLog, Ptu, 0x20 {
-        /// First entry wanted.
-        from_index: u32,
-    }
-}
-layout! {
-    /// Asks for the record of automatic runs from an index on; answered by rows, then `RunEnd`. Tester → unit.
-    ReadRun, Ptu, 0x22 {
-        /// First row wanted.
-        from_index: u32,
-    }
-}
-layout! {
-    /// Clears the event log. Tester → unit, answered.
-    ClearLog, Ptu, 0x21 {
-        /// Session number.
-        session: u32,
-    }
-}
-layout! {
-    /// Asks for what the unit has stored over power-ups, from a sequence number on; answered by `StoredEntry` and
-    /// `StoredClock`, or by `StoredRow`, then `StoredEnd`. Tester → unit.
-    ReadStored, Ptu, 0x23 {
-        /// Which of the two stores.
-        store: StoreKind,
-        /// First entry wanted; 4294967295 asks for the end alone.
-        from_sequence: u32,
-        /// Entries wanted in each 50 ms, 1 to 4.
-        per_cycle: u8,
-    }
-}
-layout! {
-    /// Tells the unit the time, which it stores with its own. Tester → unit, answered.
-    SetClock, Ptu, 0x24 {
-        /// Time since 1970 without leap seconds, UTC, ms; from the year 2000 to the year 2100.
-        utc_ms: u64,
-        /// It may be wrong by so much, ms.
-        uncertainty_ms: u16,
     }
 }
 layout! {
@@ -287,36 +128,6 @@ layout! {
     }
 }
 layout! {
-    /// Result of one item of a self-test that was asked for. Unit → tester.
-    SelfTestItem, Ptu, 0x86 {
-        /// Sequence number of the request.
-        request_seq: u16,
-        /// The item, one bit.
-        item: SelfTest,
-        /// 1 = passed.
-        passed: u8,
-        /// Measured value.
-        value: i32,
-        /// Least value allowed.
-        low: i32,
-        /// Greatest value allowed.
-        high: i32,
-        /// What the three are measured in.
-        unit: MeasureUnit,
-    }
-}
-layout! {
-    /// End of a self-test that was asked for. Unit → tester.
-    SelfTestEnd, Ptu, 0x87 {
-        /// Sequence number of the request.
-        request_seq: u16,
-        /// Items that failed.
-        failed: SelfTest,
-        /// Time it took, ms.
-        took_ms: u16,
-    }
-}
-layout! {
     /// State of the unit, every 50 ms while a tester is heard. Unit → tester.
     Status, Ptu, 0x90 {
         /// States.
@@ -363,153 +174,5 @@ layout! {
         ato_state: AtoState,
         /// What ATO adds to the way its wheels tell, found between markers, 10 ppm.
         wheel_correction_10ppm: i16,
-    }
-}
-layout! {
-    /// One entry of the event log. Unit → tester.
-    LogEntry, Ptu, 0xA0 {
-        /// Index since power-up, from 0; never reused.
-        index: u32,
-        /// Event code of the event dictionary.
-        code: u16,
-        /// Time since power-up, ms.
-        at_ms: u32,
-        /// Event's parameter, its meaning given by the dictionary.
-        parameter: i32,
-        /// Freeze frame: measured speed, cm/s.
-        speed_cms: u16,
-        /// Freeze frame: speed limit, cm/s.
-        limit_cms: u16,
-        /// Freeze frame: position, cm.
-        position_cm: i32,
-        /// Freeze frame: operating mode.
-        mode: Mode,
-        /// Freeze frame: emergency brake's cause.
-        eb_cause: EbCause,
-    }
-}
-layout! {
-    /// End of the log as it stands. Unit → tester.
-    LogEnd, Ptu, 0xA1 {
-        /// Index the next event will get.
-        next_index: u32,
-        /// Oldest index still kept.
-        oldest_index: u32,
-    }
-}
-layout! {
-    /// One cycle of an automatic run as ATO recorded it [S0 §2, §3.1]. Unit → tester.
-    RunRow, Ptu, 0xA2 {
-        /// Index since power-up, from 0; never reused.
-        index: u32,
-        /// Run since power-up, from 1, wrapping.
-        run: u16,
-        /// Time since power-up, ms.
-        at_ms: u32,
-        /// Position from the section's start, cm.
-        position_cm: i32,
-        /// Speed ATO goes by, wheel correction applied, cm/s.
-        speed_cms: u16,
-        /// Target speed, cm/s.
-        target_cms: u16,
-        /// Effort, -1024..1023.
-        effort: i16,
-        /// Marker detected since the last row, 1 to 4 = PSM1 to PSM4; 0 = none.
-        marker: u8,
-        /// Operating state of ATO.
-        ato_state: AtoState,
-    }
-}
-layout! {
-    /// End of the run record as it stands. Unit → tester.
-    RunEnd, Ptu, 0xA3 {
-        /// Index the next row will get.
-        next_index: u32,
-        /// Oldest index still kept.
-        oldest_index: u32,
-    }
-}
-layout! {
-    /// One stored entry of the event log. Unit → tester.
-    StoredEntry, Ptu, 0xA4 {
-        /// Sequence number in the store, over all power-ups; never reused.
-        sequence: u32,
-        /// Power-up that it was made in, from 1.
-        power_up: u32,
-        /// Index since that power-up, from 0.
-        index: u32,
-        /// Event code of the event dictionary.
-        code: u16,
-        /// Time since that power-up, ms.
-        at_ms: u32,
-        /// Event's parameter, its meaning given by the dictionary.
-        parameter: i32,
-        /// Freeze frame: measured speed, cm/s.
-        speed_cms: u16,
-        /// Freeze frame: speed limit, cm/s.
-        limit_cms: u16,
-        /// Freeze frame: position, cm.
-        position_cm: i32,
-        /// Freeze frame: operating mode.
-        mode: Mode,
-        /// Freeze frame: emergency brake's cause.
-        eb_cause: EbCause,
-    }
-}
-layout! {
-    /// The time as a tester told it, among the stored entries of the event log. Unit → tester.
-    StoredClock, Ptu, 0xA5 {
-        /// Sequence number in the store of events.
-        sequence: u32,
-        /// Power-up that it was told in, from 1.
-        power_up: u32,
-        /// Time since that power-up, ms.
-        at_ms: u32,
-        /// Time since 1970, UTC, ms.
-        utc_ms: u64,
-        /// It may be wrong by so much, ms.
-        uncertainty_ms: u16,
-    }
-}
-layout! {
-    /// One stored row of the run record. Unit → tester.
-    StoredRow, Ptu, 0xA6 {
-        /// Sequence number in the store, over all power-ups; never reused.
-        sequence: u32,
-        /// Power-up that it was made in, from 1.
-        power_up: u32,
-        /// Index since that power-up, from 0.
-        index: u32,
-        /// Run since that power-up, from 1, wrapping.
-        run: u16,
-        /// Time since that power-up, ms.
-        at_ms: u32,
-        /// Position from the section's start, cm.
-        position_cm: i32,
-        /// Speed ATO goes by, wheel correction applied, cm/s.
-        speed_cms: u16,
-        /// Target speed, cm/s.
-        target_cms: u16,
-        /// Effort, -1024..1023.
-        effort: i16,
-        /// Marker detected since the last row, 1 to 4 = PSM1 to PSM4; 0 = none.
-        marker: u8,
-        /// Operating state of ATO.
-        ato_state: AtoState,
-    }
-}
-layout! {
-    /// End of a store as it stands. Unit → tester.
-    StoredEnd, Ptu, 0xA7 {
-        /// Which of the two stores.
-        store: StoreKind,
-        /// Sequence number that the next entry will get.
-        next_sequence: u32,
-        /// Oldest one still kept.
-        oldest_sequence: u32,
-        /// Present power-up, from 1.
-        power_up: u32,
-        /// 1 = entries are stored; 0 = the memory failed, and nothing is.
-        works: u8,
     }
 }
