@@ -24,9 +24,10 @@ pub mod runner;
 mod step_run;
 mod stimulus_text;
 mod unit_clock;
+pub mod worst_case;
 
 use protocol::event::Event;
-use protocol::message::{EbCause, Mode, SelfTest, SelfTestItem};
+use protocol::message::{EbCause, LogEntry, Mode, SelfTest, SelfTestItem};
 use protocol::{Instant, Speed};
 use thiserror::Error;
 
@@ -115,6 +116,22 @@ pub struct UnitEvent {
 }
 
 impl UnitEvent {
+    /// An entry of the unit's log.
+    pub fn of_log(entry: &LogEntry) -> Self {
+        Self {
+            source: EventSource::Unit,
+            index: entry.index,
+            code: entry.code,
+            at_ms: entry.at_ms,
+            parameter: entry.parameter,
+            speed: Speed::from_cms(entry.speed_cms),
+            limit: Speed::from_cms(entry.limit_cms),
+            position_m: f64::from(entry.position_cm) / 100.0,
+            mode: entry.mode,
+            eb_cause: entry.eb_cause,
+        }
+    }
+
     /// What its parameter says, in words; empty for an event without one.
     pub fn said(&self) -> String {
         Event::from_code(self.code).map_or_else(

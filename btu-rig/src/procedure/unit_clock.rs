@@ -3,13 +3,11 @@
 //! What is new in a frame of state happened after the frame before, and by its stamp; what the unit tells in the
 //! scan of its change, within that scan. Bounds are in ms and wrap as stamps do.
 
+use protocol::SCAN;
 use protocol::signal::Signal;
 
 use super::UnitTime;
 use super::plan::Condition;
-
-/// A scan of the unit, ms.
-const SCAN_MS: u32 = 10;
 
 /// A moment after `after_ms` and, if that is known, by `by_ms`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +46,7 @@ impl Moment {
     pub fn of_answer(time: &UnitTime) -> Self {
         match time.answered_ms {
             Some(stamp_ms) => Self {
-                after_ms: stamp_ms.wrapping_sub(SCAN_MS),
+                after_ms: stamp_ms.wrapping_sub(SCAN.as_ms() as u32),
                 by_ms: Some(stamp_ms),
             },
             None => Self::before_the_next(time),

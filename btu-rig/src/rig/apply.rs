@@ -7,8 +7,8 @@ use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition, W
 use crate::train::TrainData;
 
 use super::antenna::MAX_RATE_HZ;
-use super::exchange::Request;
 use super::ranges::{U16_MAX, in_range, positive};
+use super::request::Request;
 use super::{Rig, Track, test_signals};
 
 /// Fastest wheel, km/h: the catalogue's range.

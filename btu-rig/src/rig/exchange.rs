@@ -8,17 +8,16 @@ use std::collections::VecDeque;
 
 use protocol::link::Link;
 use protocol::message::{
-    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, Message, SelfTest,
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, SelfTest,
     SelfTestEnd, SelfTestItem, StimulusAnswer,
 };
 use protocol::{CYCLE, Duration, Instant};
 
+use super::request::{Current, Request};
 use crate::procedure::Refusal;
 
 /// Requests that may wait.
 const MAX_QUEUE: usize = 32;
-/// Times a request is sent before it is given up.
-const MAX_ATTEMPTS: usize = 3;
 /// Time the unit has to answer; a unit at 115 200 baud answers within two cycles.
 const ANSWER_TIME: Duration = Duration::from_ms(300);
 /// Pause before arming is tried again while the unit starts up or another session lapses.
@@ -28,41 +27,6 @@ const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 
 /// Time a self-test may take once it is accepted.
 const SELF_TEST_TIME: Duration = Duration::from_ms(3000);
-
-/// Something asked of the unit.
-#[derive(Clone, Copy, Debug)]
-pub enum Request {
-    /// The whole arm exchange.
-    Arm {
-        /// A refusal is a failure, and else an outcome.
-        refusal_fails: bool,
-    },
-    /// The end of the session.
-    Disarm,
-    /// A message that is answered by `StimulusAnswer`.
-    Stimulus {
-        message: Message,
-        /// What to call it.
-        what: &'static str,
-        /// Doing it twice is the same as doing it once.
-        repeatable: bool,
-    },
-}
-
-#[derive(Debug)]
-struct Current {
-    request: Request,
-    begun: Instant,
-    /// When it is sent or given up next.
-    due: Instant,
-    attempts: usize,
-    /// Sequence numbers it was sent with: a late answer to an earlier try is an answer.
-    seqs: [u16; MAX_ATTEMPTS],
-    /// Challenge to be answered.
-    challenge: Option<u32>,
-    /// A self-test that the unit accepted: its results are awaited.
-    tests_itself: bool,
-}
 
 /// Requests and their outcome.
 #[derive(Debug)]
@@ -286,24 +250,22 @@ impl Exchange {
 
     /// Takes the result of an item of the self-test asked for.
     pub fn on_self_test_item(&mut self, heard: &SelfTestItem) {
-        if self
-            .current
-            .as_ref()
-            .is_some_and(|current| current.tests_itself && current.asked(heard.request_seq))
-        {
+        if self.awaits_self_test(heard.request_seq) {
             self.self_test.push(*heard);
         }
     }
 
     /// Takes the end of the self-test asked for.
     pub fn on_self_test_end(&mut self, heard: &SelfTestEnd) {
-        if self
-            .current
-            .as_ref()
-            .is_some_and(|current| current.tests_itself && current.asked(heard.request_seq))
-        {
+        if self.awaits_self_test(heard.request_seq) {
             self.current = None;
         }
+    }
+
+    /// The results of the self-test that was asked for with this sequence number are awaited.
+    fn awaits_self_test(&self, seq: u16) -> bool {
+        let current = self.current.as_ref();
+        current.is_some_and(|current| current.tests_itself && current.asked(seq))
     }
 
     /// What the last self-test asked for found of an item.
@@ -339,66 +301,5 @@ impl Exchange {
         }
         self.queue.clear();
         self.failure.get_or_insert(Refusal(text));
-    }
-}
-
-impl Current {
-    fn new(request: Request, now: Instant) -> Self {
-        Self {
-            request,
-            begun: now,
-            due: now,
-            attempts: 0,
-            seqs: [0; MAX_ATTEMPTS],
-            challenge: None,
-            tests_itself: false,
-        }
-    }
-
-    /// A stimulus that was sent with this sequence number.
-    fn asked(&self, seq: u16) -> bool {
-        matches!(self.request, Request::Stimulus { .. })
-            && self.seqs[..self.attempts].contains(&seq)
-    }
-
-    fn is_self_test(&self) -> bool {
-        matches!(
-            self.request,
-            Request::Stimulus {
-                message: Message::RunSelfTest(_),
-                ..
-            }
-        )
-    }
-
-    /// Why it is given up.
-    fn gives_up(&self, now: Instant) -> String {
-        let (what, ms) = (self.what(), now.since(self.begun).as_ms());
-        if self.tests_itself {
-            return format!("the unit did not end its self-test within {ms} ms");
-        }
-        let older = if self.is_self_test() {
-            ": units of older versions do not know it"
-        } else {
-            ""
-        };
-        format!("the unit did not answer {what} within {ms} ms{older}")
-    }
-
-    fn most_attempts(&self) -> usize {
-        match self.request {
-            Request::Stimulus {
-                repeatable: false, ..
-            } => 1,
-            _ => MAX_ATTEMPTS,
-        }
-    }
-
-    fn what(&self) -> &'static str {
-        match self.request {
-            Request::Arm { .. } => "the arm request",
-            Request::Disarm => "the disarm request",
-            Request::Stimulus { what, .. } => what,
-        }
     }
 }

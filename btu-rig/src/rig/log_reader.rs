@@ -9,9 +9,9 @@ use std::collections::VecDeque;
 use protocol::event::LOG_ENTRIES;
 use protocol::link::Link;
 use protocol::message::{LogEnd, LogEntry, ReadLog};
-use protocol::{Duration, Instant, Speed};
+use protocol::{Duration, Instant};
 
-use crate::procedure::{EventSource, LogState, UnitEvent};
+use crate::procedure::{LogState, UnitEvent};
 
 /// Entries kept until they are taken; reading pauses beyond, and the unit keeps the rest.
 pub const MAX_EVENTS: usize = 512;
@@ -154,7 +154,7 @@ impl LogReader {
             self.pause();
             self.asked = self.asked.map(|_| now);
             if self.allowance.take(now) {
-                self.events.push_back(unit_event(entry));
+                self.events.push_back(UnitEvent::of_log(entry));
             } else {
                 self.not_kept += 1;
             }
@@ -244,21 +244,6 @@ impl LogReader {
     /// Entries beyond what a log can hold: read, counted, not kept.
     pub fn not_kept(&self) -> u64 {
         self.not_kept
-    }
-}
-
-fn unit_event(entry: &LogEntry) -> UnitEvent {
-    UnitEvent {
-        source: EventSource::Unit,
-        index: entry.index,
-        code: entry.code,
-        at_ms: entry.at_ms,
-        parameter: entry.parameter,
-        speed: Speed::from_cms(entry.speed_cms),
-        limit: Speed::from_cms(entry.limit_cms),
-        position_m: f64::from(entry.position_cm) / 100.0,
-        mode: entry.mode,
-        eb_cause: entry.eb_cause,
     }
 }
 

@@ -12,9 +12,11 @@ mod antenna;
 mod apply;
 mod bench;
 mod cab_desk;
+mod connection;
 mod exchange;
 mod harness;
 mod identity;
+mod intervention;
 mod line_watch;
 mod link_watch;
 mod log_reader;
@@ -23,6 +25,7 @@ mod markers;
 mod motion;
 pub(crate) mod random;
 mod ranges;
+mod request;
 mod rig_signals;
 mod rolling;
 mod sample;
@@ -37,6 +40,8 @@ mod test_signals;
 mod tester;
 #[cfg(test)]
 mod tests;
+mod told;
+mod told_signals;
 mod track;
 mod train_faults;
 mod true_motion;
@@ -48,13 +53,11 @@ use protocol::Instant;
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
-use protocol::link::{Counters, End, Link};
-use protocol::message::{ArmRefusal, Identity, IoInput, Message, SelfTest, SelfTestItem};
-use protocol::signal::Sample;
+use protocol::link::{End, Link};
+use protocol::message::{IoInput, Message};
 
 use crate::conditions::Conditions;
-use crate::procedure::plan::Connection;
-use crate::procedure::{Evidence, Procedure, UnitEvent};
+use crate::procedure::UnitEvent;
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
@@ -219,29 +222,9 @@ impl Rig {
         rig
     }
 
-    /// Says whether the harness is connected; without this it is. To be said before the first scan.
-    pub fn set_harness(&mut self, asked: Harness) {
-        self.harness = HarnessWatch::new(asked);
-        self.latest = LatestSample::default();
-        self.record();
-    }
-
     /// Says which unit should be there.
     pub fn expect_unit(&mut self, expected: ExpectedIdentity) {
         self.expected = expected;
-    }
-
-    /// How the unit is reached, once that is known.
-    pub fn connection(&self) -> Option<Connection> {
-        self.harness.found().map(|harness| match harness {
-            true => Connection::Btu,
-            false => Connection::Ptu,
-        })
-    }
-
-    /// It is known what the unit tells of itself.
-    pub fn knows_what_is_told(&self) -> bool {
-        self.harness.found().is_some() && self.subscription.settled()
     }
 
     /// Faults of the train and its wiring, each from its time after `power_at`; faults of
@@ -355,50 +338,10 @@ impl Rig {
         }
     }
 
-    /// The present value of every signal. What the unit has not said for 500 ms is not known.
-    pub fn sample(&self) -> &Sample {
-        &self.latest.sample
-    }
-
-    /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
-    /// of the unit begin anew when it is started again.
-    pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        let mut events = self.tester.take_events();
-        events.append(&mut self.tcms_events);
-        events
-    }
-
-    /// Entries the log had when the unit was first heard: those with a lower index are older than
-    /// this bench's work. 0 after a restart of the unit, `None` before it is heard.
-    pub fn events_at_contact(&self) -> Option<u32> {
-        self.tester.events_at_contact()
-    }
-
-    /// Every event the unit says it has logged has been read.
-    pub fn log_up_to_date(&self) -> bool {
-        self.tester.log().up_to_date()
-    }
-
-    /// Log entries that were overwritten or cleared in the unit before they could be read, and those of
-    /// TCMS that were not taken in time.
-    pub fn events_overwritten(&self) -> u64 {
-        self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
-    }
-
-    /// Who the unit is, once it has said so.
-    pub fn identity(&self) -> Option<&Identity> {
-        self.tester.identity()
-    }
-
     /// This bench's own computer stalled for longer than the unit tolerates: frames lost meanwhile are not
     /// counted against the line.
     pub fn note_stalled(&mut self, now: Instant) {
         self.line_watch.note_stalled(now);
-    }
-
-    /// When a frame of the unit came last, and what the unit's clock was when it was made, ms.
-    pub fn unit_stamp_ms(&self) -> Option<(Instant, u32)> {
-        self.unit_stamp
     }
 
     /// What the unit logged before it was first heard is not read.
@@ -409,96 +352,6 @@ impl Rig {
     /// Tells the unit the time, now and after each restart.
     pub fn tell_time(&mut self, time: TimeOfDay) {
         self.tester.tell_time(time);
-    }
-
-    /// Times the unit was started again since it was first heard.
-    pub fn unit_restarts(&self) -> u32 {
-        self.tester.restarts()
-    }
-
-    /// Why nothing that is heard can be judged, after a time allowed for first contact: what is wrong with
-    /// the connection, with who answers, or with reading the unit's log.
-    pub fn link_error(&self) -> Option<String> {
-        let line = self.line_watch.error(self.now);
-        let silence = || {
-            let asks_since = self.tester.speaks_since();
-            let harness = self.harness.is_there();
-            self.watch.error(self.now, &self.link, asks_since, harness)
-        };
-        line.or_else(silence)
-            .or_else(|| self.tester.error(self.now))
-            .or_else(|| self.tester.missed())
-    }
-
-    /// How far what is heard can be trusted.
-    pub fn evidence(&self) -> Evidence {
-        Evidence {
-            log: self.tester.log_state(self.now),
-            not_kept: self.tester.log().not_kept(),
-            line: self.line_watch.state(),
-            self_test: self.tester.self_test(),
-            unit_time: self.subscription.unit_time(),
-        }
-    }
-
-    /// What was done to the unit on a train since this was last asked, by others than this tester, after which nothing
-    /// can be judged: it was started again, or ended the session by itself. On a bench nobody else is there.
-    pub fn take_intervention(&mut self) -> Option<String> {
-        let restarts = self.tester.restarts();
-        let restarted = std::mem::replace(&mut self.restarts_told, restarts) != restarts;
-        let ended = self.tester.take_session_ended();
-        if self.connection() != Some(Connection::Ptu) {
-            return None;
-        }
-        if restarted {
-            return Some("the unit was started again: its supply was interrupted".to_owned());
-        }
-        ended.map(|refusal| {
-            format!(
-                "the unit ended test mode by itself: {}",
-                session_end(refusal)
-            )
-        })
-    }
-
-    /// Why a procedure cannot be run on this connection, if so: it needs the harness, or what this unit does not
-    /// tell.
-    pub fn cannot_run(&self, procedure: &Procedure) -> Option<String> {
-        let connection = self.connection()?;
-        if let Some(why) = procedure.needs.lacks(connection) {
-            return Some(why.to_owned());
-        }
-        if !self.subscription.refused() {
-            return None;
-        }
-        let untold = sample::told_by_train_state(connection);
-        let mut names = Vec::new();
-        procedure.for_each_signal(&mut |signal| {
-            if untold.contains(&signal) && !names.contains(&signal.name()) {
-                names.push(signal.name());
-            }
-        });
-        let software = self.identity().map_or(String::new(), |identity| {
-            let [major, minor, patch] = identity.software;
-            format!(", software {major}.{minor}.{patch},")
-        });
-        (!names.is_empty())
-            .then(|| format!("this unit{software} does not tell {}", names.join(", ")))
-    }
-
-    /// What the last self-test asked for found of an item.
-    pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
-        self.tester.self_test_item(item)
-    }
-
-    /// Why the unit turned this bench away, if it did: another has it.
-    pub fn turned_away(&self) -> Option<String> {
-        self.watch.turned_away()
-    }
-
-    /// Frames taken and refused by the rig.
-    pub fn counters(&self) -> &Counters {
-        self.link.counters()
     }
 
     /// The wheels do what they were last told to: speed reached, or distance run.
@@ -525,18 +378,5 @@ impl Rig {
             mode_switch: self.desk.mode_switch,
             controller: self.desk.lever.wire(),
         }
-    }
-}
-
-/// Why a unit ends a session, in words a technician can act on.
-fn session_end(refusal: ArmRefusal) -> &'static str {
-    match refusal {
-        ArmRefusal::KeyOff => "the maintenance key was turned off",
-        ArmRefusal::Moving | ArmRefusal::TrainMoved => "the train moved",
-        ArmRefusal::CodeChanged => "the speed code in the rail changed",
-        ArmRefusal::ModeChanged => "the mode switch was turned",
-        ArmRefusal::BrakesReleased => "the train does not prove that its brakes are applied",
-        ArmRefusal::TesterSilent => "it did not hear the tester for a second",
-        other => other.label(),
     }
 }

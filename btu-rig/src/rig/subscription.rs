@@ -5,7 +5,7 @@
 
 use protocol::link::{Counters, Link};
 use protocol::message::{Channel, Subscribe, TrainState};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, SCAN};
 
 use crate::procedure::{UnitTime, UnitTimeBounds};
 
@@ -13,11 +13,9 @@ use crate::procedure::{UnitTime, UnitTimeBounds};
 const AGAIN: Duration = Duration::from_ms(400);
 /// Times a unit is asked that does not answer.
 const ATTEMPTS: u32 = 4;
-/// A scan of the unit, ms.
-const SCAN_MS: u32 = 10;
 
 /// What is asked for and what came.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Subscription {
     /// Changes are wanted in their scan, as nothing else shows them.
     changes: bool,
@@ -31,21 +29,6 @@ pub struct Subscription {
     cycles: [Option<u32>; 2],
     /// Stamp of the last answer to a request.
     answered: Option<u32>,
-}
-
-impl Default for Subscription {
-    fn default() -> Self {
-        Self {
-            changes: false,
-            due: Instant::ZERO,
-            asked: 0,
-            heard: false,
-            gaps: 0,
-            times: None,
-            cycles: [None; 2],
-            answered: None,
-        }
-    }
 }
 
 impl Subscription {
@@ -103,7 +86,7 @@ impl Subscription {
             answered_ms: self.answered,
             after: UnitTimeBounds {
                 scan_ms: match whole {
-                    true => stamp_ms.wrapping_sub(SCAN_MS),
+                    true => stamp_ms.wrapping_sub(SCAN.as_ms() as u32),
                     false => before,
                 },
                 frame_ms: before,

@@ -9,8 +9,8 @@ use protocol::message::{
 use crate::procedure::Refusal;
 use crate::stimulus::StationData;
 
-use super::exchange::Request;
 use super::ranges::{U16_MAX, in_range};
+use super::request::Request;
 use super::wayside::wire_data;
 
 /// Signal into the ATP test coil.

@@ -9,8 +9,9 @@ use protocol::{Duration, Instant};
 
 use crate::procedure::{LogState, Refusal, UnitEvent};
 
-use super::exchange::{Exchange, Request};
+use super::exchange::Exchange;
 use super::log_reader::LogReader;
+use super::request::Request;
 use super::test_signals;
 use super::unit_clock::{TimeOfDay, UnitClock};
 

@@ -1,177 +1,21 @@
 //! Stimuli: everything that can be done to a unit, as typed values that scripts build and the rig carries
 //! out.
 
+mod conditions;
+mod station;
+
 use protocol::Speed;
-use protocol::line::Section;
-use protocol::message::{DoorSide, ModeSwitch, RunningMode};
+use protocol::message::ModeSwitch;
 use serde::{Deserialize, Serialize};
 
 use crate::lever::Lever;
-use crate::stored::{door_side, mode_switch, mps, running_mode};
+use crate::stored::{mode_switch, mps};
+
+pub use conditions::{CutOut, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition};
+pub use station::StationData;
 
 /// Steepest gradient that can be added to the track's, ‰.
 pub const MAX_GRADIENT_PERMILLE: f64 = 100.0;
-
-/// Condition of one tachometer channel's generator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TachoCondition {
-    /// As it should be.
-    Good,
-    /// No pulses.
-    Dead,
-    /// Spurious pulses on top, mean per second.
-    Noisy {
-        /// Mean spurious pulses per second.
-        per_s: f64,
-    },
-    /// Pulses of a speed multiplied by a factor (missing teeth, wrong wheel diameter).
-    Scaled {
-        /// The factor.
-        factor: f64,
-    },
-}
-
-/// Condition of the TWC wayside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WaysideCondition {
-    /// Sends nothing.
-    Silent,
-    /// Sends sound frames every 250 ms.
-    Good,
-    /// Sends frames with bit errors.
-    Corrupt,
-}
-
-/// Condition of the TCMS link.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TcmsCondition {
-    /// Answers every cycle.
-    Good,
-    /// Sends nothing.
-    Silent,
-    /// Sends with a standing alive counter.
-    Stale,
-}
-
-/// A switch, contact or valve of the train that is on or off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TrainSwitch {
-    /// Head control relay of the other cab.
-    OtherCab,
-    /// Dead man held down.
-    DeadMan,
-    /// Emergency push button of the first cab, the one the unit is in.
-    Button1,
-    /// Emergency push button of the other cab.
-    Button2,
-    /// Emergency brake cut out.
-    EbCutOut,
-    /// Main reservoir pressure low.
-    MainReservoirLow,
-    /// Security brake.
-    SecurityBrake,
-    /// Parking brake.
-    ParkingBrake,
-    /// Button for release of the brakes by force.
-    ForcedRelease,
-    /// Driverless initialisation or turn-back.
-    TurnBack,
-    /// The line takes regenerated power.
-    Regeneration,
-}
-
-impl TrainSwitch {
-    /// As people call it.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::OtherCab => "head control relay of the other cab",
-            Self::DeadMan => "dead man held",
-            Self::Button1 => "emergency button of the first cab",
-            Self::Button2 => "emergency button of the other cab",
-            Self::EbCutOut => "emergency brake cut-out",
-            Self::MainReservoirLow => "main reservoir low",
-            Self::SecurityBrake => "security brake",
-            Self::ParkingBrake => "parking brake",
-            Self::ForcedRelease => "forced release",
-            Self::TurnBack => "driverless turn-back",
-            Self::Regeneration => "line takes regenerated power",
-        }
-    }
-}
-
-/// Equipment of a car that can be cut out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CutOut {
-    /// Its brake.
-    Brake,
-    /// Its inverter.
-    Inverter,
-}
-
-/// Station data for the wayside or the TWC TEST module.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub struct StationData {
-    /// Route number.
-    pub route: u16,
-    /// Section number.
-    pub section: u16,
-    /// This station.
-    pub station: u16,
-    /// Next station.
-    pub next_station: u16,
-    /// Loop number.
-    pub loop_id: u16,
-    /// Fixed speed, km/h; `None` = no order.
-    pub fixed_speed_kmh: Option<u8>,
-    /// Running mode.
-    #[serde(with = "running_mode")]
-    pub running_mode: RunningMode,
-    /// Door side.
-    #[serde(with = "door_side")]
-    pub door_side: DoorSide,
-    /// Departure given.
-    pub departure: bool,
-    /// Train number.
-    pub train_number: u16,
-}
-
-/// Train number of generated station data [default].
-const TRAIN_NUMBER: u16 = 8001;
-
-impl StationData {
-    /// What the loop of a section's departure station sends: no door side, departure held.
-    pub fn at_departure(section: &Section) -> Self {
-        Self {
-            route: section.route,
-            section: section.section,
-            station: section.from_station,
-            next_station: section.to_station,
-            loop_id: section.from_loop,
-            fixed_speed_kmh: None,
-            running_mode: RunningMode::Normal,
-            door_side: DoorSide::None,
-            departure: false,
-            train_number: TRAIN_NUMBER,
-        }
-    }
-
-    /// What the loop of its arrival station sends; `next_station` is the one after it.
-    pub fn at_arrival(section: &Section, next_station: u16) -> Self {
-        Self {
-            station: section.to_station,
-            next_station,
-            loop_id: section.to_loop,
-            door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
-            ..Self::at_departure(section)
-        }
-    }
-}
 
 /// One thing done to the unit, through the bench harness or, for `Ptu…`, through the TEST board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

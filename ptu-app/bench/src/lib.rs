@@ -37,4 +37,6 @@ pub mod stdio;
 pub mod stop;
 pub mod stored;
 pub mod table;
+#[cfg(test)]
+mod test_support;
 pub mod train_server;

@@ -15,6 +15,7 @@ mod ports;
 mod record;
 mod reports;
 mod run;
+mod run_list;
 mod runs;
 mod saved;
 mod trace;

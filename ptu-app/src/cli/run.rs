@@ -8,10 +8,9 @@ use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use btu_rig::rig::Harness;
 use clap::Args;
 use fault_db::Store;
-use serde_json::json;
 
 use super::reports::ReportOption;
-use super::{Database, ScriptsOption, print_json, print_out};
+use super::{Database, ScriptsOption, print_out, run_list};
 use crate::console::{Console, verdict_table};
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::drive::Setting;
@@ -176,7 +175,7 @@ impl RunArguments {
         let procedures = self.asked_for(procedures);
         let tasks = self.tasks(procedures)?;
         if self.list {
-            return self.show(&tasks);
+            return run_list::show(&tasks, self.harness, self.json);
         }
         let mut plan = RunPlan {
             tasks,
@@ -272,16 +271,6 @@ impl RunArguments {
         Ok(tasks)
     }
 
-    fn show(&self, tasks: &[Task]) -> Result<Exit, Failure> {
-        if self.json {
-            let listed = |task| listed(task, self.harness);
-            return print_json(&tasks.iter().map(listed).collect::<Vec<_>>());
-        }
-        let described = |task| described(task, self.harness);
-        let lines: Vec<String> = tasks.iter().flat_map(described).collect();
-        print_out(&lines.join("\n"))
-    }
-
     fn execute(
         &self,
         plan: &mut RunPlan,
@@ -351,56 +340,4 @@ impl RunArguments {
         }
         Ok(())
     }
-}
-
-/// Why a procedure will be skipped, as far as is known before the unit is reached.
-fn skipped(procedure: &Procedure, harness: Harness) -> Option<&'static str> {
-    match harness {
-        Harness::None => procedure.needs.lacks(Connection::Ptu),
-        Harness::Auto | Harness::Bench => None,
-    }
-}
-
-/// The plan in words, with the chosen steps only.
-fn described(task: &Task, harness: Harness) -> Vec<String> {
-    if let Some(why) = skipped(&task.procedure, harness) {
-        return vec![format!("{}: skipped, {why}", task.procedure.id)];
-    }
-    let mut procedure = (*task.procedure).clone();
-    if let Some(chosen) = &task.options.chosen {
-        let steps = std::mem::take(&mut procedure.steps).into_iter().enumerate();
-        procedure.steps = steps
-            .filter(|(index, _)| chosen.contains(index))
-            .map(|(_, step)| step)
-            .collect();
-    }
-    procedure.describe()
-}
-
-fn listed(task: &Task, harness: Harness) -> serde_json::Value {
-    let procedure = &task.procedure;
-    let chosen = |index: &usize| {
-        task.options
-            .chosen
-            .as_ref()
-            .is_none_or(|chosen| chosen.contains(index))
-    };
-    let steps: Vec<_> = procedure
-        .steps
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| chosen(index))
-        .map(|(_, step)| {
-            json!({
-                "name": step.name, "line": step.line, "repeat": step.repeat,
-                "worst_case_s": step.worst_case.as_secs(), "note": step.note,
-            })
-        })
-        .collect();
-    json!({
-        "procedure": procedure.id, "title": procedure.title, "title_ko": procedure.title_ko,
-        "needs": procedure.needs.word(), "skipped": skipped(procedure, harness),
-        "on_request": procedure.on_request, "sha256": procedure.sha256, "worst_case_s": procedure.worst_case().as_secs(),
-        "steps": steps,
-    })
 }

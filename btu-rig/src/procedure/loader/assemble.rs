@@ -8,9 +8,9 @@ use super::draft::{Declaration, ProcedureDraft, StepDraft};
 use super::suggest::hint;
 use super::{LoadError, error_at};
 use crate::procedure::plan::{
-    Action, Condition, Expectation, Measure, Operand, Procedure, Step, TIME_LIMIT_MARGIN, TimeFrom,
-    What, of_self_test,
+    Action, Condition, Expectation, Measure, Operand, Procedure, Step, TimeFrom, What, of_self_test,
 };
+use crate::procedure::worst_case::TIME_LIMIT_MARGIN;
 use crate::stimulus::Stimulus;
 
 /// Longest time a whole procedure may take.

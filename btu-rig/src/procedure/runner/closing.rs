@@ -9,8 +9,8 @@ use super::{Phase, Runner, Stop};
 use crate::procedure::Driver;
 use crate::procedure::action_run::{Progress, Scan};
 use crate::procedure::evidence::{LogState, counted};
-use crate::procedure::plan::{TIME_LIMIT_MARGIN, total_worst_case};
 use crate::procedure::report::RunEvent;
+use crate::procedure::worst_case::{TIME_LIMIT_MARGIN, total_worst_case};
 
 /// Time outputs have to become safe: a wheel at top speed comes to rest first, because one that
 /// stops at once would be an impossible wheel.

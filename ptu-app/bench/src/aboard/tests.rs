@@ -8,18 +8,7 @@ use protocol::signal::Signal;
 use protocol::{CYCLE, SCAN};
 
 use super::*;
-use crate::data::ScriptsDirectory;
-use crate::run::{BenchChoice, BenchSetup};
-
-fn setup(faults: &[&str]) -> BenchSetup {
-    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-    let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-    let choice = BenchChoice {
-        faults: faults.iter().map(|fault| (*fault).to_owned()).collect(),
-        ..BenchChoice::default()
-    };
-    choice.setup(&directory).expect("a bench")
-}
+use crate::test_support::setup;
 
 /// A laptop on the maintenance port, that listens.
 struct Laptop {

@@ -1,9 +1,9 @@
 //! Reads a unit's log to its end, or until the link fails.
 
-use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::procedure::UnitEvent;
 use btu_rig::rig::{LogSession, StoredData, TimeOfDay, UnitLink};
-use protocol::message::{Identity, Mode, StatusBits, StoredClock, StoredEntry, StoredRow};
-use protocol::{Duration, Instant, SCAN, Speed};
+use protocol::message::{Identity, Mode, StatusBits, StoredClock, StoredRow};
+use protocol::{Duration, Instant, SCAN};
 
 use super::date::{ClockPair, StoredClocks, dates};
 use crate::clock::UNCERTAINTY_MS;
@@ -206,7 +206,7 @@ fn from_store(
         };
         not_after_us = at_us.or(not_after_us);
         Entry {
-            event: unit_event(entry),
+            event: UnitEvent::of_log(&entry.log_entry()),
             at_us,
             stored: Some(place),
         }
@@ -244,21 +244,6 @@ fn from_store(
         notes,
     };
     (entries, read)
-}
-
-fn unit_event(entry: &StoredEntry) -> UnitEvent {
-    UnitEvent {
-        source: EventSource::Unit,
-        index: entry.index,
-        code: entry.code,
-        at_ms: entry.at_ms,
-        parameter: entry.parameter,
-        speed: Speed::from_cms(entry.speed_cms),
-        limit: Speed::from_cms(entry.limit_cms),
-        position_m: f64::from(entry.position_cm) / 100.0,
-        mode: entry.mode,
-        eb_cause: entry.eb_cause,
-    }
 }
 
 #[cfg(test)]

@@ -70,13 +70,7 @@ impl AskedUnit {
         let read = read_log(&mut link, Instant::ZERO, rows, &mut pace, stop, &now_us);
         let read = read.map_err(|why| Failure::bench(format!("{}: {why}", self.endpoint)))?;
         let identity = &read.identity;
-        let serial = unit_text::serial(identity);
-        if let Some(expected) = self.serial.as_ref().filter(|e| **e != serial) {
-            return Err(Failure::bench(format!(
-                "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
-                self.endpoint
-            )));
-        }
+        unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
         let mut warnings = Vec::new();
         if identity.tdb_crc != line.crc {
             warnings.push(format!(
@@ -107,7 +101,7 @@ impl AskedUnit {
             from_us,
             until_us: now_us(),
             broken_off: read.broken_off.is_some(),
-            serial,
+            serial: unit_text::serial(identity),
         };
         Ok(UnitReading {
             read,

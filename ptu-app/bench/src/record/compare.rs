@@ -6,6 +6,7 @@
 
 use std::fmt;
 
+use btu_rig::drive::Ending;
 use fault_db::TraceData;
 use protocol::CYCLE;
 use protocol::line::Section;
@@ -25,7 +26,7 @@ const BRAKES: f64 = -20.0;
 const SLOW_KMH: f64 = 3.0;
 /// Up to this speed a record that ends counts as one that ends at rest, km/h: the train goes 8 cm more at most. ATP
 /// takes the train out of Automatic Run, and the record ends, when ATO has arrived.
-const RESTS_KMH: f64 = 1.0;
+pub(super) const RESTS_KMH: f64 = 1.0;
 
 /// Where two curves part for the first time.
 #[derive(Clone, Debug, PartialEq)]
@@ -149,7 +150,7 @@ pub fn compare(
     if trace.gaps {
         notes.push("rows of the record are missing: nothing is said of them".to_owned());
     }
-    if !outcome.ending.to_string().starts_with("stopped") {
+    if !matches!(outcome.ending, Ending::Stopped) {
         notes.push(format!(
             "the sound unit's own run ended otherwise: {}",
             outcome.ending

@@ -4,6 +4,7 @@ use fault_db::TraceData;
 use protocol::line::{Line, Section};
 use protocol::signal::Signal;
 
+use super::compare::RESTS_KMH;
 use crate::failure::Failure;
 
 /// Greatest difference of a marker's place, or of the stop, that is still of this section, m.
@@ -66,7 +67,7 @@ fn places(trace: &TraceData) -> Vec<(usize, f64)> {
     }
     let moved = speed.iter().any(|kmh| *kmh > 0.0);
     // The record ends when ATO has arrived.
-    let stands = |row: &usize| speed[*row] < 1.0;
+    let stands = |row: &usize| speed[*row] <= RESTS_KMH;
     let last = (0..trace.rows()).rev().find(|row| !speed[*row].is_nan());
     seen.extend(
         last.filter(|row| moved && stands(row))

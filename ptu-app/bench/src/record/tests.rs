@@ -1,23 +1,20 @@
 //! Runs that an embedded unit recorded, read over the wire, compared with a sound unit's.
 
-use std::path::Path;
-
 use btu_rig::drive::{Drive, DrivePlan};
 use fault_db::Store;
 
 use super::*;
 use crate::clock::open_options;
-use crate::data::ScriptsDirectory;
 use crate::drive::{Case, Fixed, Request, SectionChoice};
 use crate::field::{LogRead, Source, UnitReading, read_log};
 use crate::link::Pace;
 use crate::stop::Stop;
+use crate::test_support::scripts;
 
 const NOW_US: i64 = 1_000_000_000_000;
 
 fn case(settings: &[&str], wheel: Option<f64>) -> Case {
-    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
-    let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
+    let directory = scripts();
     let request = Request {
         line: None,
         sections: Some(SectionChoice::One(61)),
@@ -162,8 +159,7 @@ fn pulling_a_record_again_adds_nothing_and_two_laptops_make_the_same_trace() {
         }
     }
     // A trace with another's name is that of the record: it can be held against what it should have been.
-    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
-    let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
+    let directory = scripts();
     let compared = CompareRequest::default().compare(&b, &directory, first.new[0].id);
     let compared = compared.expect("compared");
     assert_eq!(

@@ -196,12 +196,7 @@ impl BenchSetup {
 
     fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
         let serial = unit_text::serial(identity);
-        if let Some(expected) = self.serial.as_ref().filter(|expected| **expected != serial) {
-            return Err(Failure::bench(format!(
-                "the unit on {} is {serial}, not {expected}; check the port or leave --serial-no out",
-                self.endpoint
-            )));
-        }
+        unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
         let checks = [
             (
                 "unit configuration",

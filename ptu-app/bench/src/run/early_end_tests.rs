@@ -15,15 +15,15 @@ use fault_db::Store;
 use protocol::Instant;
 
 use super::{
-    BenchChoice, BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan, RunStart,
-    SessionEvent, Suite, Task, run, run_on,
+    BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan, RunStart, SessionEvent, Suite,
+    Task, run, run_on,
 };
 use crate::clock;
-use crate::data::ScriptsDirectory;
 use crate::failure::Exit;
 use crate::link::Endpoint;
 use crate::run_diagnosis;
 use crate::stop::Stop;
+use crate::test_support::{scripts, setup};
 
 const PASSES: &str =
     "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms(200))])\n";
@@ -67,16 +67,6 @@ impl RunControl for StopBeforeScan {
     }
 }
 
-fn directory() -> ScriptsDirectory {
-    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-    ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts")
-}
-
-fn setup() -> BenchSetup {
-    let choice = BenchChoice::default();
-    choice.setup(&directory()).expect("its configuration")
-}
-
 /// A database of its own and the folder that holds it.
 fn store() -> (tempfile::TempDir, Store) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -102,7 +92,7 @@ fn plan(procedures: impl IntoIterator<Item = Arc<Procedure>>) -> RunPlan {
 
 /// Procedures of these texts, in their order.
 fn plan_of(texts: &[&str]) -> RunPlan {
-    let setup = setup();
+    let setup = setup(&[]);
     let named = |(place, text): (usize, &&str)| (format!("{place}.star"), (*text).to_owned());
     let texts: BTreeMap<_, _> = texts.iter().enumerate().map(named).collect();
     let (config, line) = (&setup.config.content, &setup.line.content);
@@ -141,7 +131,7 @@ fn recorded(
 /// in every run.
 fn ends(plan: &RunPlan) -> Vec<usize> {
     let counter = Arc::new(StopBeforeScan::default());
-    run_with(&counter, plan, setup());
+    run_with(&counter, plan, setup(&[]));
     let count = counter.count.lock().expect("no thread panics with it");
     let ends = [&count.before[..], &[count.scans]].concat();
     // A search may come back to one.
@@ -155,7 +145,7 @@ fn stopped_at(scan: usize, plan: &RunPlan) -> (Outcome, fault_db::Verdict) {
         at: Some(scan),
         ..StopBeforeScan::default()
     });
-    let came_to = run_with(&presser, plan, setup());
+    let came_to = run_with(&presser, plan, setup(&[]));
     assert_eq!(presser.stop.presses(), 1);
     came_to
 }
@@ -169,7 +159,7 @@ fn stopped_after(place: usize, plan: &RunPlan) -> (Outcome, fault_db::Verdict) {
 fn a_run_stopped_before_its_first_procedure_is_aborted() {
     let presser = Arc::new(StopBeforeScan::default());
     presser.stop.press();
-    let (outcome, stored) = run_with(&presser, &plan_of(&[PASSES]), setup());
+    let (outcome, stored) = run_with(&presser, &plan_of(&[PASSES]), setup(&[]));
     assert_eq!(stored, fault_db::Verdict::Aborted);
     assert_eq!(outcome.exit, Exit::Aborted);
     assert_eq!(presser.count.lock().expect("alone").scans, 0);
@@ -210,7 +200,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
     let mut plan = plan_of(&[PASSES, FAILS, FAILS, PASSES]);
     plan.stop_on_fail = true;
     let (_folder, mut store) = store();
-    let (over, setup) = (AtomicBool::new(false), setup());
+    let (over, setup) = (AtomicBool::new(false), setup(&[]));
     std::thread::scope(|scope| {
         for _ in 0..crate::pool::cores() {
             scope.spawn(|| {
@@ -287,7 +277,7 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
     let options = clock::open_options().max_pages(pages + 20);
     let store = Store::open(&file, options).expect("the database");
     let slowly = Arc::new(SlowClock::default());
-    let mut setup = setup();
+    let mut setup = setup(&[]);
     setup.run_control = Some(slowly.clone());
     let stop = Stop::default();
     let mut busy = Busy {
@@ -343,7 +333,7 @@ impl Listener for Busy {
 fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
     let address = format!("tcp:{}", listener.local_addr().expect("its address"));
-    let mut setup = setup();
+    let mut setup = setup(&[]);
     setup.endpoint = address.parse::<Endpoint>().expect("an address");
     let stop = Stop::default();
     stop.press();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use btu_rig::procedure::{Measurement, Procedure, RunEvent, RunOptions, Verdict, loader};
+use btu_rig::procedure::{Measurement, Procedure, RunEvent, RunOptions, Verdict};
 use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{Bench, Harness, LinkFailure, UnitLink};
 use btu_rig::stimulus::Stimulus;
@@ -15,11 +15,11 @@ use protocol::{Instant, Speed};
 use super::session::Session;
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
-use super::{BenchChoice, BenchSetup, SessionEvent, Task};
+use super::{BenchSetup, SessionEvent, Task};
 use crate::aboard::UnitAboard;
-use crate::data::ScriptsDirectory;
 use crate::link::Pace;
 use crate::stop::Stop;
+use crate::test_support::{procedures, setup};
 
 /// When it happens, after power-up: the steps are under way.
 const AT_MS: u64 = 10_000;
@@ -142,17 +142,11 @@ struct Laptop {
 
 impl Laptop {
     fn new(faults: &[&str]) -> Self {
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let choice = BenchChoice {
+        let setup = BenchSetup {
             harness: Harness::Auto,
-            faults: faults.iter().map(|fault| (*fault).to_owned()).collect(),
-            ..BenchChoice::default()
+            ..setup(faults)
         };
-        let setup = choice.setup(&directory).expect("its configuration");
-        let texts = directory.procedures().expect("procedures");
-        let (config, line) = (&setup.config.content, &setup.line.content);
-        let procedures = loader::load(&texts, config, line, &setup.train).procedures;
+        let procedures = procedures(&setup);
         Self { setup, procedures }
     }
 

@@ -2,6 +2,9 @@
 
 use protocol::message::Identity;
 
+use crate::failure::Failure;
+use crate::link::Endpoint;
+
 /// Stands for a serial number that is not set. It is longer than any field, so that no unit can say it.
 const NO_SERIAL: &str = "(no serial number)";
 /// Stands for a configuration without a name.
@@ -17,6 +20,24 @@ pub fn serial(identity: &Identity) -> String {
 /// The same of a serial number alone.
 pub fn of_serial(bytes: &[u8]) -> String {
     text(bytes).unwrap_or(NO_SERIAL.into())
+}
+
+/// Compares the unit at `endpoint` with the serial number that is expected there, if one is.
+///
+/// # Errors
+/// It is another unit.
+pub fn check_expected(
+    endpoint: &Endpoint,
+    identity: &Identity,
+    expected: Option<&str>,
+) -> Result<(), Failure> {
+    let serial = serial(identity);
+    match expected.filter(|expected| *expected != serial) {
+        None => Ok(()),
+        Some(expected) => Err(Failure::bench(format!(
+            "the unit on {endpoint} is {serial}, not {expected}; check the port or leave --serial-no out"
+        ))),
+    }
 }
 
 /// Name of a unit's configuration.

@@ -1,7 +1,7 @@
 //! Runs on a bad line or with an untrustworthy unit: the embedded unit behind a link that
 //! harms what passes.
 
-use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict, loader};
+use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
 use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{LinkFailure, Random, UnitLink};
 use protocol::frame::{self, Decoder};
@@ -11,9 +11,9 @@ use std::sync::Arc;
 
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
-use super::{BenchChoice, BenchSetup, SessionEvent, Task};
-use crate::data::ScriptsDirectory;
+use super::{BenchSetup, SessionEvent, Task};
 use crate::stop::Stop;
+use crate::test_support::{procedures, setup};
 
 /// When what is wrong begins: the first procedure is under way.
 const FROM: Duration = Duration::from_ms(13_500);
@@ -125,13 +125,8 @@ struct FaultyBench {
 
 impl FaultyBench {
     fn new() -> Self {
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let choice = BenchChoice::default();
-        let setup = choice.setup(&directory).expect("its configuration");
-        let texts = directory.procedures().expect("procedures");
-        let (config, line) = (&setup.config.content, &setup.line.content);
-        let procedures = loader::load(&texts, config, line, &setup.train).procedures;
+        let setup = setup(&[]);
+        let procedures = procedures(&setup);
         Self { setup, procedures }
     }
 

@@ -4,16 +4,7 @@ use protocol::Speed;
 use protocol::message::ModeSwitch;
 
 use super::*;
-
-fn setup(faults: &[&str]) -> BenchSetup {
-    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-    let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-    let choice = BenchChoice {
-        faults: faults.iter().map(|fault| (*fault).to_owned()).collect(),
-        ..BenchChoice::default()
-    };
-    choice.setup(&directory).expect("a bench")
-}
+use crate::test_support::setup;
 
 fn cab() -> Cab {
     Cab::new(&setup(&[]).config.content)

@@ -8,6 +8,7 @@ use protocol::message::FsbCause;
 
 use super::*;
 use crate::drive::SectionChoice;
+use crate::test_support::scripts;
 
 fn request() -> Request {
     Request {
@@ -23,11 +24,6 @@ fn request() -> Request {
         settings: Vec::new(),
         seed: 1,
     }
-}
-
-fn scripts() -> ScriptsDirectory {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts"));
-    ScriptsDirectory::find(Some(path)).unwrap()
 }
 
 /// The case of a sequence written here.

@@ -1,7 +1,5 @@
 //! Reading the log of embedded units, and of links that fail while it is read.
 
-use std::path::Path;
-
 use btu_rig::procedure::EventSource;
 use btu_rig::rig::LinkFailure;
 use protocol::Speed;
@@ -10,9 +8,9 @@ use protocol::link::{End, Link};
 use protocol::message::{EbCause, IoOutput, LogEnd, LogEntry, Message, Mode, Status};
 
 use super::*;
-use crate::data::ScriptsDirectory;
 use crate::link::Delayed;
-use crate::run::{BenchChoice, Session};
+use crate::run::Session;
+use crate::test_support::setup;
 
 /// An entry made standing.
 pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
@@ -32,13 +30,7 @@ pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
 
 /// A bench with an embedded unit, these faults injected.
 pub fn bench(faults: &[&str]) -> Session<Delayed<crate::run::bench_setup::SimUnit>> {
-    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
-    let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
-    let choice = BenchChoice {
-        faults: faults.iter().map(|name| (*name).to_owned()).collect(),
-        ..BenchChoice::default()
-    };
-    let setup = choice.setup(&directory).expect("a bench");
+    let setup = setup(faults);
     let mut session = setup.sim_session("field", &Stop::default());
     session.judge_bring_up(Duration::from_ms(20_000), |_| false);
     session

@@ -11,7 +11,7 @@ const LEAVES_THE_KEY_ON: &str = "procedure(title = \"Key\", suspect = \"-\", set
 fn a_repetition_is_the_procedure_again_with_its_set_up_and_clean_up() {
     let mut plan = plan_of(&[LEAVES_THE_KEY_ON, PASSES]);
     plan.tasks[0].options.repeat = 3;
-    let (outcome, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup());
+    let (outcome, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup(&[]));
     assert_eq!(outcome.exit, Exit::Passed, "{:#?}", detail.steps);
     let names: Vec<_> = detail.steps.iter().map(|step| step.name.as_str()).collect();
     let rounds = [
@@ -38,7 +38,7 @@ fn a_procedure_stopped_between_two_repetitions_is_aborted() {
         at: Some(2 * scans),
         ..StopBeforeScan::default()
     });
-    let (outcome, detail) = recorded(&presser, &plan, setup());
+    let (outcome, detail) = recorded(&presser, &plan, setup(&[]));
     assert_eq!(outcome.exit, Exit::Aborted);
     let verdicts: Vec<_> = detail.steps.iter().map(|step| step.verdict).collect();
     assert_eq!(verdicts, [fault_db::Verdict::Passed; 4]);
@@ -53,7 +53,7 @@ fn a_failed_repetition_ends_a_run_that_stops_on_fail() {
         plan.stop_on_fail = ends;
         plan.tasks[0].options.repeat = 3;
         plan.tasks[0].options.stop_on_fail = ends;
-        let (outcome, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup());
+        let (outcome, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup(&[]));
         assert_eq!(outcome.exit, Exit::Failed);
         assert_eq!(detail.steps.len(), turns);
     }

@@ -1,10 +1,11 @@
 //! The verdict of a search for a part that ends early.
 
 use super::*;
+use crate::run::BenchChoice;
 
 /// A search for a part among these procedures.
 fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
-    let suite = Suite::load(&directory(), procedures, setup).expect("the suite");
+    let suite = Suite::load(&scripts(), procedures, setup).expect("the suite");
     let mut plan = plan(suite.procedures.into_iter().filter(|p| !p.on_request));
     let choice = BenchChoice::default();
     let bench = run_diagnosis::Bench {
@@ -15,7 +16,7 @@ fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
     };
     let serial = setup.expected_serial();
     let (_folder, store) = store();
-    let adaptive = run_diagnosis::adaptive(&store, &directory(), &serial, &bench);
+    let adaptive = run_diagnosis::adaptive(&store, &scripts(), &serial, &bench);
     plan.adaptive = Some(adaptive.expect("the shipped dictionary"));
     plan
 }
@@ -25,7 +26,7 @@ fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
 #[test]
 fn a_search_stopped_between_two_procedures_is_aborted() {
     let two = ["atp/limit_speed", "door/interlocks"].map(str::to_owned);
-    let plan = search(&two, &setup());
+    let plan = search(&two, &setup(&[]));
     assert_eq!(plan.tasks.len(), 2);
     let (outcome, stored) = stopped_after(0, &plan);
     assert_eq!(stored, fault_db::Verdict::Aborted);
@@ -36,8 +37,8 @@ fn a_search_stopped_between_two_procedures_is_aborted() {
 /// step that others follow at once.
 #[test]
 fn a_search_ends_with_the_step_that_found_the_part() {
-    let mut setup = setup();
-    let faults = directory().faults().expect("faults");
+    let mut setup = setup(&[]);
+    let faults = scripts().faults().expect("faults");
     setup.faults = vec![faults.fault("marker_antenna.dead").expect("mode").clone()];
     let plan = search(&[], &setup);
     let (_, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup);

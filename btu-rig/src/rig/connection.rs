@@ -1,0 +1,52 @@
+//! How the unit is reached, and what can be run there.
+
+use super::{Harness, HarnessWatch, LatestSample, Rig, told_signals};
+use crate::procedure::Procedure;
+use crate::procedure::plan::Connection;
+
+impl Rig {
+    /// Says whether the harness is connected; without this it is. To be said before the first scan.
+    pub fn set_harness(&mut self, asked: Harness) {
+        self.harness = HarnessWatch::new(asked);
+        self.latest = LatestSample::default();
+        self.record();
+    }
+
+    /// How the unit is reached, once that is known.
+    pub fn connection(&self) -> Option<Connection> {
+        self.harness.found().map(|harness| match harness {
+            true => Connection::Btu,
+            false => Connection::Ptu,
+        })
+    }
+
+    /// It is known what the unit tells of itself.
+    pub fn knows_what_is_told(&self) -> bool {
+        self.harness.found().is_some() && self.subscription.settled()
+    }
+
+    /// Why a procedure cannot be run on this connection, if so: it needs the harness, or what this unit does not
+    /// tell.
+    pub fn cannot_run(&self, procedure: &Procedure) -> Option<String> {
+        let connection = self.connection()?;
+        if let Some(why) = procedure.needs.lacks(connection) {
+            return Some(why.to_owned());
+        }
+        if !self.subscription.refused() {
+            return None;
+        }
+        let untold = told_signals::told_by_train_state(connection);
+        let mut names = Vec::new();
+        procedure.for_each_signal(&mut |signal| {
+            if untold.contains(&signal) && !names.contains(&signal.name()) {
+                names.push(signal.name());
+            }
+        });
+        let software = self.identity().map_or(String::new(), |identity| {
+            let [major, minor, patch] = identity.software;
+            format!(", software {major}.{minor}.{patch},")
+        });
+        (!names.is_empty())
+            .then(|| format!("this unit{software} does not tell {}", names.join(", ")))
+    }
+}

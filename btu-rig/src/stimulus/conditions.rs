@@ -1,0 +1,104 @@
+//! Conditions of generators and links, and the train's switches.
+
+use serde::{Deserialize, Serialize};
+
+/// Condition of one tachometer channel's generator.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TachoCondition {
+    /// As it should be.
+    Good,
+    /// No pulses.
+    Dead,
+    /// Spurious pulses on top, mean per second.
+    Noisy {
+        /// Mean spurious pulses per second.
+        per_s: f64,
+    },
+    /// Pulses of a speed multiplied by a factor (missing teeth, wrong wheel diameter).
+    Scaled {
+        /// The factor.
+        factor: f64,
+    },
+}
+
+/// Condition of the TWC wayside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WaysideCondition {
+    /// Sends nothing.
+    Silent,
+    /// Sends sound frames every 250 ms.
+    Good,
+    /// Sends frames with bit errors.
+    Corrupt,
+}
+
+/// Condition of the TCMS link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TcmsCondition {
+    /// Answers every cycle.
+    Good,
+    /// Sends nothing.
+    Silent,
+    /// Sends with a standing alive counter.
+    Stale,
+}
+
+/// A switch, contact or valve of the train that is on or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrainSwitch {
+    /// Head control relay of the other cab.
+    OtherCab,
+    /// Dead man held down.
+    DeadMan,
+    /// Emergency push button of the first cab, the one the unit is in.
+    Button1,
+    /// Emergency push button of the other cab.
+    Button2,
+    /// Emergency brake cut out.
+    EbCutOut,
+    /// Main reservoir pressure low.
+    MainReservoirLow,
+    /// Security brake.
+    SecurityBrake,
+    /// Parking brake.
+    ParkingBrake,
+    /// Button for release of the brakes by force.
+    ForcedRelease,
+    /// Driverless initialisation or turn-back.
+    TurnBack,
+    /// The line takes regenerated power.
+    Regeneration,
+}
+
+impl TrainSwitch {
+    /// As people call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::OtherCab => "head control relay of the other cab",
+            Self::DeadMan => "dead man held",
+            Self::Button1 => "emergency button of the first cab",
+            Self::Button2 => "emergency button of the other cab",
+            Self::EbCutOut => "emergency brake cut-out",
+            Self::MainReservoirLow => "main reservoir low",
+            Self::SecurityBrake => "security brake",
+            Self::ParkingBrake => "parking brake",
+            Self::ForcedRelease => "forced release",
+            Self::TurnBack => "driverless turn-back",
+            Self::Regeneration => "line takes regenerated power",
+        }
+    }
+}
+
+/// Equipment of a car that can be cut out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CutOut {
+    /// Its brake.
+    Brake,
+    /// Its inverter.
+    Inverter,
+}

@@ -1,0 +1,67 @@
+//! Station data.
+
+use protocol::line::Section;
+use protocol::message::{DoorSide, RunningMode};
+use serde::{Deserialize, Serialize};
+
+use crate::stored::{door_side, running_mode};
+
+/// Station data for the wayside or the TWC TEST module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub struct StationData {
+    /// Route number.
+    pub route: u16,
+    /// Section number.
+    pub section: u16,
+    /// This station.
+    pub station: u16,
+    /// Next station.
+    pub next_station: u16,
+    /// Loop number.
+    pub loop_id: u16,
+    /// Fixed speed, km/h; `None` = no order.
+    pub fixed_speed_kmh: Option<u8>,
+    /// Running mode.
+    #[serde(with = "running_mode")]
+    pub running_mode: RunningMode,
+    /// Door side.
+    #[serde(with = "door_side")]
+    pub door_side: DoorSide,
+    /// Departure given.
+    pub departure: bool,
+    /// Train number.
+    pub train_number: u16,
+}
+
+/// Train number of generated station data [default].
+const TRAIN_NUMBER: u16 = 8001;
+
+impl StationData {
+    /// What the loop of a section's departure station sends: no door side, departure held.
+    pub fn at_departure(section: &Section) -> Self {
+        Self {
+            route: section.route,
+            section: section.section,
+            station: section.from_station,
+            next_station: section.to_station,
+            loop_id: section.from_loop,
+            fixed_speed_kmh: None,
+            running_mode: RunningMode::Normal,
+            door_side: DoorSide::None,
+            departure: false,
+            train_number: TRAIN_NUMBER,
+        }
+    }
+
+    /// What the loop of its arrival station sends; `next_station` is the one after it.
+    pub fn at_arrival(section: &Section, next_station: u16) -> Self {
+        Self {
+            station: section.to_station,
+            next_station,
+            loop_id: section.to_loop,
+            door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
+            ..Self::at_departure(section)
+        }
+    }
+}
