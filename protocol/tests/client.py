@@ -7,7 +7,8 @@ import argparse, collections, contextlib, os, random, re, select, struct, sys, t
 UNIT, PTU, IO, TCMS = 0x20, 1, 2, 3
 PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40}                             # channel: address
 DOORS_CLOSED, HCR, MAINTENANCE_KEY, ACKNOWLEDGE, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x08, 0x20, 0x40
-EB_LOOP_FED, FULL_SERVICE_BRAKE = 0x100, 0x40
+EB_LOOP_FED = 0x100
+SERVICE_BRAKED, EMERGENCY_BRAKED = 0x44, 0x08     # FULL_SERVICE_BRAKE with SERVICE_BRAKE_APPLIED; EMERGENCY_BRAKE_APPLIED
 EB_RELAY, FSB, ALARM, CODE_VALID, STANDSTILL = 0x001, 0x002, 0x008, 0x080, 0x100
 ARMED, UP, MANUAL = 0x001, 0x180, 2                                     # UP: STARTED and INPUTS_OK
 EB_OVERSPEED, FSB_OVERSPEED = 2, 1
@@ -53,11 +54,12 @@ class Client:
             released = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & EB_RELAY
             self.send(IO, "B7H3B2HBb", 0x01, 0, 0, 0, 0, 0xFFFF, 0, 0xFFFF, 0, 0, 0, 0xFFFF,
                       self.lines | (EB_LOOP if released else 0), MANUAL, 0)
-        if now >= self.due[TCMS]:           # orders the full service brake, as the unit asks
+        if now >= self.due[TCMS]:           # the train brakes as the unit asks, and says so
             self.due[TCMS] = now + 0.050
             self.alive = (self.alive + 1) & 0xFF
-            braking = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & FSB
-            self.send(TCMS, "BHHBh", 0x01, FULL_SERVICE_BRAKE if braking else 0, 0, self.alive, 0)
+            contacts = self.heard["IoOutput"].outputs if "IoOutput" in self.heard else 0
+            brakes = (SERVICE_BRAKED if contacts & FSB else 0) | (0 if contacts & EB_RELAY else EMERGENCY_BRAKED)
+            self.send(TCMS, "BHHBh", 0x01, brakes, 0, self.alive, 0)
         if now >= self.due[PTU]:
             self.due[PTU] = now + 0.400
             self.send(PTU, "BI", 0x05, self.session)

@@ -38,6 +38,7 @@ mod tests {
     fn the_most_restrictive_counts() {
         use RunningMode::{Normal, Recovery, Unknown};
         let mut config = config();
+        config.below_limit_kmh = 5.0;
         config.normal_lowering_kmh = 3.0;
         for (limit, fixed, running_mode, expected) in [
             (65.0, None, Recovery, 60.0),

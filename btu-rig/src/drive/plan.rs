@@ -91,7 +91,7 @@ pub struct DrivePlan {
     pub onward_station: u16,
     /// Speed codes on it.
     pub codes: Codes,
-    /// ATO's target below the limit, km/h, from the unit's configuration.
+    /// ATO's target below the limit in normal running, km/h, from the unit's configuration.
     pub below_limit_kmh: f64,
     /// Train on the track: cars, or one point mass.
     pub train: TrainData,
@@ -131,7 +131,7 @@ impl DrivePlan {
             section: found.clone(),
             onward_station: onward.map_or(found.to_station, |s| s.to_station),
             codes,
-            below_limit_kmh: config.ato.below_limit_kmh,
+            below_limit_kmh: config.ato.below_limit_kmh + config.ato.normal_lowering_kmh,
             train,
             load_kg: 0.0,
             conditions: Conditions::default(),

@@ -104,9 +104,9 @@ pub struct AtoWatchConfig {
 pub struct AtoConfig {
     /// The speed controller in use.
     pub controller: ControllerKind,
-    /// Target below the limit, km/h [S2 §3.3: 5].
+    /// Target below the limit in recovery running, km/h.
     pub below_limit_kmh: f64,
-    /// Further lowering in normal running mode, km/h [S0 §3.1.1].
+    /// Further lowering in normal running mode, km/h [S0 §3.1.1]; both together are 5 in S2 §3.3.
     pub normal_lowering_kmh: f64,
     /// Distance before the stop point at which a train that stands has arrived, m.
     pub arrived_m: f64,

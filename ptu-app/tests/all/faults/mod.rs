@@ -26,6 +26,7 @@ const WORKERS: usize = 2;
 
 /// For each fault mode (or glob): procedure, and words in the name of a step that must fail.
 const FOUND_BY: &str = include_str!("found_by.txt");
+const PROTECTION: &str = include_str!("../../../../docs/protection.md");
 /// Modes run through the program itself, command line, printed reports and exit codes included: of the unit,
 /// of the train, of a link, a weak one, one that comes and goes, one that starts the unit again and again.
 const THROUGH_THE_PROGRAM: [&str; 6] = [
@@ -164,6 +165,41 @@ fn the_tables_name_no_fault_that_is_gone() {
             "no fault mode {glob}"
         );
     }
+}
+
+/// Each row of the table of protections is run: a step proves it, and each fault mode that takes it away is found by
+/// the step of the table here. A mode that leaves a train less protected is in one of them.
+#[test]
+fn every_row_of_the_protection_table_is_run() {
+    let bench = TestBench::new();
+    let modes = &bench.catalogue.faults;
+    let mut wrong = Vec::new();
+    let mut broken = Vec::new();
+    for row in PROTECTION.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<_> = row.trim_matches('|').split(" | ").map(str::trim).collect();
+        let [name, .., proved_by, broken_by] = cells[..] else {
+            panic!("columns of {row}");
+        };
+        let (procedure, words) = proved_by.split_once(": ").expect("procedure and step");
+        if !bench.has_step(procedure.trim_matches('`'), words) {
+            wrong.push(format!("{name}: no step {proved_by}"));
+        }
+        for glob in broken_by.split('`').skip(1).step_by(2) {
+            let fitting = modes.iter().filter(|mode| fits(glob, &mode.id));
+            let before = broken.len();
+            broken.extend(fitting.map(|mode| mode.id.as_str()));
+            if before == broken.len() {
+                wrong.push(format!("{name}: no fault mode {glob}"));
+            }
+        }
+    }
+    let found = |id: &str| found_by().any(|(glob, ..)| fits(glob, id));
+    let unfound = broken.iter().filter(|id| !found(id));
+    wrong.extend(unfound.map(|id| format!("{id}: no step finds it")));
+    let unsafe_modes = modes.iter().filter(|mode| mode.unsafe_);
+    let unnamed = unsafe_modes.filter(|mode| !broken.contains(&mode.id.as_str()));
+    wrong.extend(unnamed.map(|mode| format!("{}: in no row", mode.id)));
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]

@@ -60,6 +60,12 @@ impl TestBench {
         }
     }
 
+    /// A procedure has a step with these words in its name.
+    pub fn has_step(&self, procedure: &str, words: &str) -> bool {
+        let procedure = self.suite.procedures.iter().find(|p| p.id == procedure);
+        procedure.is_some_and(|p| p.steps.iter().any(|step| step.name.contains(words)))
+    }
+
     /// Runs and records the suite on a unit with this fault.
     pub fn run(&self, mode: &FaultMode) -> FaultRun {
         let setup = BenchSetup {
