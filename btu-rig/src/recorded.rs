@@ -2,6 +2,7 @@
 //! open loop, whatever the unit answers this time.
 
 use protocol::message::{SelfTest, SelfTestItem};
+use protocol::signal::Signal;
 use protocol::{Duration, Instant, SCAN};
 use serde::{Deserialize, Serialize};
 
@@ -120,6 +121,10 @@ impl Driver for RecordingDriver<'_> {
 
     fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
         self.rig.self_test_item(item)
+    }
+
+    fn said(&self, signal: Signal) -> Option<&str> {
+        self.rig.said(signal)
     }
 }
 

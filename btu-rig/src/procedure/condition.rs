@@ -3,6 +3,8 @@
 use protocol::signal::{Kind, Sample, Signal};
 use serde::{Deserialize, Serialize};
 
+use super::Driver;
+
 /// What a signal is compared with, or a limit: a number in the unit of the thing compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
@@ -127,6 +129,13 @@ impl Condition {
             Self::All(parts) => fold(parts, sample, captured, Answer::Yes, Answer::No),
             Self::Any(parts) => fold(parts, sample, captured, Answer::No, Answer::Yes),
         }
+    }
+
+    /// What is behind the first of its signals that has more to say than its value.
+    pub(super) fn said<'a>(&self, driver: &'a dyn Driver) -> Option<&'a str> {
+        let mut said = None;
+        self.for_each_signal(&mut |signal| said = said.or_else(|| driver.said(signal)));
+        said
     }
 
     /// Calls `f` with each signal it looks at.

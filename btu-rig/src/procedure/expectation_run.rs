@@ -2,13 +2,13 @@
 
 use protocol::Instant;
 
-use super::EventSource;
 use super::action_run::{Problem, Scan};
 use super::condition::{Answer, MissingData};
 use super::describe::bits_seen;
 use super::event_set::EventSet;
 use super::evidence::LogState;
 use super::plan::Expectation;
+use super::{Driver, EventSource};
 
 /// What is known about an expectation so far.
 #[derive(Clone, Debug, Default)]
@@ -82,6 +82,20 @@ impl ExpectationRun {
                     self.fail(Answer::Yes, || format!("{who} logged {name}"));
                 }
             }
+        }
+    }
+
+    /// Adds what is behind the signals that did not come.
+    pub(super) fn explain(&mut self, expectation: &Expectation, driver: &dyn Driver) {
+        let Expectation::Becomes { condition, .. } = expectation else {
+            return;
+        };
+        if let Some(Problem::Failed(text)) = &mut self.problem
+            && let Some(said) = condition.said(driver)
+            && !text.ends_with(said)
+        {
+            text.push_str(": ");
+            text.push_str(said);
         }
     }
 

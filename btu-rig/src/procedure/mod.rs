@@ -28,6 +28,7 @@ pub mod worst_case;
 
 use protocol::event::Event;
 use protocol::message::{EbCause, LogEntry, Mode, SelfTest, SelfTestItem};
+use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 use thiserror::Error;
 
@@ -72,6 +73,11 @@ pub trait Driver {
 
     /// What the last self-test asked for found of an item; `None` before its result came.
     fn self_test_item(&self, _item: SelfTest) -> Option<SelfTestItem> {
+        None
+    }
+
+    /// What is behind a signal that says only whether the unit is as it should be.
+    fn said(&self, _signal: Signal) -> Option<&str> {
         None
     }
 }

@@ -209,6 +209,9 @@ impl StepRun {
             return true;
         }
         if self.is_complete(step, scan.now) {
+            for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
+                run.explain(expectation, driver);
+            }
             return !self.waits_for_log(scan.now);
         }
         let late = scan.now.since(self.started) >= step.time_limit;

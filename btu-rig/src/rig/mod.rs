@@ -64,7 +64,7 @@ use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use harness::Harness;
-pub use identity::ExpectedIdentity;
+pub use identity::{ExpectedIdentity, UnitRecord};
 pub use log_session::LogSession;
 pub use random::Random;
 pub use store_reader::StoredData;
@@ -76,6 +76,7 @@ pub use unit_clock::TimeOfDay;
 use antenna::Antenna;
 use cab_desk::CabDesk;
 use harness::HarnessWatch;
+use identity::IdentityCheck;
 use line_watch::LineWatch;
 use link_watch::LinkWatch;
 use markers::Markers;
@@ -149,7 +150,7 @@ pub struct Rig {
     latest: LatestSample,
     harness: HarnessWatch,
     subscription: Subscription,
-    expected: ExpectedIdentity,
+    identity: IdentityCheck,
     /// Restarts of the unit that were told as interventions.
     restarts_told: u32,
     now: Instant,
@@ -213,7 +214,7 @@ impl Rig {
             latest: LatestSample::default(),
             harness: HarnessWatch::new(Harness::Bench),
             subscription: Subscription::default(),
-            expected: ExpectedIdentity::default(),
+            identity: IdentityCheck::default(),
             restarts_told: 0,
             now: Instant::ZERO,
             unit_stamp: None,
@@ -224,7 +225,7 @@ impl Rig {
 
     /// Says which unit should be there.
     pub fn expect_unit(&mut self, expected: ExpectedIdentity) {
-        self.expected = expected;
+        self.identity = IdentityCheck::new(expected);
     }
 
     /// Faults of the train and its wiring, each from its time after `power_at`; faults of
@@ -324,6 +325,9 @@ impl Rig {
         if self.tester.restarts() != restarts {
             self.line_watch.note_restart(now);
             self.subscription.restart();
+        }
+        if let Message::Identity(identity) = message {
+            self.identity.on_identity(identity);
         }
         if let Message::StimulusAnswer(_) | Message::ArmState(_) = message {
             self.subscription.on_answer(stamp_ms);

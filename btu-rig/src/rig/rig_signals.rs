@@ -10,8 +10,7 @@ impl Rig {
     pub(super) fn record(&mut self) {
         let refusal = f64::from(self.tester.arm_refusal().code());
         self.latest.sample.set(Signal::ArmRefusal, refusal);
-        let identity = self.tester.identity();
-        self.expected.compare(identity, &mut self.latest.sample);
+        self.identity.record(&mut self.latest.sample);
         if !self.harness.is_there() {
             return;
         }

@@ -3,7 +3,7 @@
 use protocol::Instant;
 use protocol::link::Counters;
 use protocol::message::{Identity, SelfTest, SelfTestItem};
-use protocol::signal::Sample;
+use protocol::signal::{Sample, Signal};
 
 use super::Rig;
 use crate::procedure::{Evidence, UnitEvent};
@@ -82,6 +82,11 @@ impl Rig {
     /// What the last self-test asked for found of an item.
     pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
         self.tester.self_test_item(item)
+    }
+
+    /// What is behind a signal that says only whether the unit is as it should be.
+    pub fn said(&self, signal: Signal) -> Option<&str> {
+        self.identity.said(signal)
     }
 
     /// Why the unit turned this bench away, if it did: another has it.

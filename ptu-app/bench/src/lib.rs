@@ -12,7 +12,7 @@
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
 //! * [`stored`]: the columns of the database for verdicts and faults;
-//! * [`data`]: the scripts directory; [`clock`]: the computer's time; [`failure`]: what a person is told;
+//! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person is told;
 //!   [`stop`]: interruption by a signal.
 
 pub mod aboard;
@@ -23,6 +23,7 @@ pub mod data;
 pub mod drive;
 pub mod failure;
 pub mod field;
+mod fleet;
 pub mod link;
 pub mod new_file;
 pub mod owner_only;

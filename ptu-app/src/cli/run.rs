@@ -67,10 +67,11 @@ pub struct RunArguments {
     /// Serial number: of the embedded unit, or expected of a real one
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
-    /// Software version the unit should have, compared by `ptu/identity`
+    /// Software version the unit should have, compared by `ptu/identity` in place of the record's
     #[arg(long, value_name = "VERSION", value_parser = software_version)]
     software: Option<[u8; 3]>,
-    /// Train the unit is in, as the depot names it
+    /// Train the unit is in, as the depot names it; `ptu/identity` compares the unit with its record in
+    /// scripts/fleet.toml
     #[arg(long, value_name = "TEXT", default_value = "")]
     train_no: String,
     /// Who tests
@@ -212,6 +213,7 @@ impl RunArguments {
             settings: self.set.clone(),
             serial: self.serial_no.clone().unwrap_or_default(),
             software: self.software,
+            train_no: self.train_no.clone(),
             faults: self.inject.clone(),
             seed: self.seed,
             scatter: self.scatter.is_some(),

@@ -38,7 +38,7 @@ impl Runner {
             if idle && self.holds_back(|| turn.name(step), now) {
                 return;
             }
-            if !idle || self.start_step(step, turn, now, sample) {
+            if !idle || self.start_step(step, turn, (now, sample), driver) {
                 let Phase::Steps {
                     live: Some(live), ..
                 } = &mut self.phase
@@ -67,8 +67,8 @@ impl Runner {
         &mut self,
         step: &Step,
         turn: ScheduledStep,
-        now: Instant,
-        sample: &Sample,
+        (now, sample): (Instant, &Sample),
+        driver: &dyn Driver,
     ) -> bool {
         let truth = step
             .when
@@ -77,7 +77,9 @@ impl Runner {
         match truth {
             Answer::Yes => {}
             Answer::No => {
-                self.pass_over(turn, now, Verdict::Skipped, "its condition does not hold");
+                let said = step.when.as_ref().and_then(|when| when.said(driver));
+                let why = said.unwrap_or("its condition does not hold");
+                self.pass_over(turn, now, Verdict::Skipped, why);
                 return false;
             }
             Answer::NoData(missing_data) => {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::procedure::plan::Connection;
 use btu_rig::recorded::StimulusRecord;
-use btu_rig::rig::Harness;
+use btu_rig::rig::{ExpectedIdentity, Harness};
 use btu_rig::train::TrainData;
 use fault_db::{Recording, RecordingRecord};
 use protocol::Instant;
@@ -171,7 +171,7 @@ impl BenchContents {
             seed: self.seed,
             scatter: self.scatter.map(Arc::new),
             serial: Some(self.serial.clone()),
-            software: None,
+            expected: ExpectedIdentity::default(),
             realtime: false,
             slower: 1,
             run_control: None,

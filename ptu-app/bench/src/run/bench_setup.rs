@@ -50,8 +50,8 @@ pub struct BenchSetup {
     pub scatter: Option<Arc<BenchScatter>>,
     /// Serial number asked for.
     pub serial: Option<String>,
-    /// Software version that the unit should have.
-    pub software: Option<[u8; 3]>,
+    /// What the unit's identity is compared with.
+    pub expected: ExpectedIdentity,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,
     /// Times the bench is slower than the clock, where it goes by the clock.
@@ -126,16 +126,7 @@ impl BenchSetup {
     pub(super) fn rig(&self, seed: u64, power_at: Instant) -> Rig {
         let mut rig = Rig::new(&self.config.content, &self.line.content, seed);
         rig.set_train(self.train.clone());
-        rig.expect_unit(ExpectedIdentity {
-            // The embedded unit is given its number.
-            serial: self
-                .serial
-                .clone()
-                .filter(|_| self.endpoint != Endpoint::Sim),
-            software: self.software,
-            config: Some((self.config.content.name.clone(), self.config.crc)),
-            tdb_crc: Some(self.line.crc),
-        });
+        rig.expect_unit(self.expected.clone());
         if let Some(drawn) = self.drawn() {
             rig.set_conditions(drawn.conditions);
             rig.set_sensors(&drawn.sensors);

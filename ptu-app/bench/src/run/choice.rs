@@ -8,7 +8,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::rig::{Harness, check_places};
+use btu_rig::rig::{ExpectedIdentity, Harness, check_places};
 use protocol::message::Identity;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -17,6 +17,7 @@ use crate::data::ScriptsDirectory;
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::Failure;
+use crate::fleet;
 use crate::link::Endpoint;
 
 /// A unit and the bench around it, by name. Its JSON form is part of the window's settings file.
@@ -140,7 +141,6 @@ impl BenchChoice {
             false => None,
         };
         Ok(BenchSetup {
-            endpoint,
             harness: self.harness,
             config,
             line,
@@ -148,8 +148,15 @@ impl BenchChoice {
             faults,
             seed: self.seed,
             scatter,
+            expected: ExpectedIdentity {
+                records: fleet::unit_records(directory)?,
+                train: Some(self.train_no.trim().to_owned()).filter(|train| !train.is_empty()),
+                // The embedded unit is given its number.
+                serial: serial.clone().filter(|_| endpoint != Endpoint::Sim),
+                software: self.software,
+            },
+            endpoint,
             serial,
-            software: self.software,
             realtime: self.realtime,
             slower: self.slower,
             run_control: None,

@@ -64,6 +64,11 @@ wordings! {
         about: "About", "정보";
         versions: "software {software}, unit configuration {config}, track database {line}",
             "소프트웨어 {software}, 유닛 구성 {config}, 선로 데이터 {line}";
+        not_as_recorded: "not as the train's record says: {what}", "편성 기록과 다름: {what}";
+        recorded_serial: "serial number", "일련번호";
+        recorded_software: "software", "소프트웨어";
+        recorded_config: "unit configuration", "유닛 구성";
+        recorded_line: "track database", "선로 데이터";
         database: "database", "데이터베이스";
         scripts: "scripts", "스크립트";
         font_licence: "Licence of the font Pretendard (SIL Open Font License 1.1)", "Pretendard 글꼴 라이선스 (SIL Open Font License 1.1)";

@@ -3,13 +3,14 @@
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Align, Button, Color32, Frame, Layout, Margin, RichText, Ui};
 use protocol::message::Identity;
+use protocol::signal::{Sample, Signal};
 
 use super::keys::STOP_ALL;
 use super::setup::Setup;
 use crate::gui::parts::chip;
 use crate::gui::{Page, PageContext, Palette};
 use ptu_bench::bench_worker::Phase;
-use ptu_report::words::{Words, fill};
+use ptu_report::words::{self, Words, fill};
 
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
     ui.horizontal(|ui| {
@@ -89,9 +90,10 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
     let frame = &words.frame;
     let palette = Palette::of(ui);
     let unit = context.units.chosen();
-    let (phase, identity, share) = {
+    let (phase, identity, share, differs) = {
         let live = unit.bench.live();
-        (live.phase, live.identity, live.link.share())
+        let differs = differs_from_record(&live.sample, frame);
+        (live.phase, live.identity, live.link.share(), differs)
     };
     if phase == Phase::Offline {
         ui.label(RichText::new(frame.not_connected).color(palette.quiet));
@@ -109,6 +111,9 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
         let serial = ptu_bench::run::unit_text::serial(&identity);
         let label = ui.label(RichText::new(serial).strong());
         label.on_hover_text(versions(&identity, words));
+        if let Some(differs) = differs {
+            chip(ui, &differs, palette.bad);
+        }
         let share = 100.0 * share.unwrap_or(1.0);
         let colour = if share >= 99.9 {
             palette.good
@@ -121,6 +126,20 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
             colour,
         );
     }
+}
+
+/// What of the unit is not as the record of its train says.
+fn differs_from_record(sample: &Sample, frame: &words::Frame) -> Option<String> {
+    let compared = [
+        (Signal::IdentitySerial, frame.recorded_serial),
+        (Signal::IdentitySoftware, frame.recorded_software),
+        (Signal::IdentityConfig, frame.recorded_config),
+        (Signal::IdentityLine, frame.recorded_line),
+    ];
+    let differs = |(signal, _): &(Signal, &str)| sample.get(*signal) == Some(0.0);
+    let parts: Vec<_> = compared.into_iter().filter(differs).collect();
+    let what: Vec<_> = parts.iter().map(|(_, name)| *name).collect();
+    (!what.is_empty()).then(|| fill(frame.not_as_recorded, &[("what", &what.join(", "))]))
 }
 
 /// Software and data of the unit.
