@@ -11,6 +11,7 @@ use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
+use crate::operator::HOW_TO_ANSWER;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_bench::stdio;
@@ -118,6 +119,9 @@ impl Listener for Console {
 
     fn line(&self, procedure: &Procedure, event: &SessionEvent) -> Option<String> {
         match event {
+            SessionEvent::Run(RunEvent::Prompt { text, .. }) => {
+                Some(format!("asks    {}: {text} {HOW_TO_ANSWER}", procedure.id))
+            }
             SessionEvent::Run(RunEvent::StepFinished(result))
                 if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) =>
             {

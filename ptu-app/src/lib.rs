@@ -9,4 +9,5 @@
 pub mod cli;
 mod console;
 pub mod gui;
+mod operator;
 mod sparkline;

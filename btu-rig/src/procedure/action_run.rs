@@ -24,7 +24,7 @@ pub(super) struct Scan<'a> {
 }
 
 /// Operator's side of a prompt.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct Operator {
     pub policy: PromptPolicy,
     /// Answer given since the last scan.
@@ -93,7 +93,7 @@ impl ActionRun {
         &mut self,
         actions: &[Action],
         scan: Scan<'_>,
-        operator: Operator,
+        operator: &mut Operator,
         driver: &mut dyn Driver,
         out: &mut Vec<RunEvent>,
     ) -> Progress {
@@ -194,8 +194,8 @@ fn until(truth: Answer, late: bool) -> Result<bool, fn(String) -> Problem> {
     }
 }
 
-fn prompt(text: &str, operator: Operator, late: bool) -> Result<bool, Problem> {
-    match (operator.policy, operator.answer) {
+fn prompt(text: &str, operator: &mut Operator, late: bool) -> Result<bool, Problem> {
+    match (operator.policy, operator.answer.take()) {
         (PromptPolicy::Refuse, _) => Err(Problem::Bench(format!("needs an operator: {text}"))),
         (PromptPolicy::Ask, Some(true)) => Ok(true),
         (PromptPolicy::Ask, Some(false)) => {

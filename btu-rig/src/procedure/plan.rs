@@ -332,6 +332,18 @@ impl Step {
 }
 
 impl Procedure {
+    /// It asks the operator something, on a bench or on a train.
+    pub fn asks(&self) -> bool {
+        let steps = self.steps.iter().flat_map(|step| &step.actions);
+        let mut actions = self.setup.iter().chain(&self.cleanup).chain(steps);
+        actions.any(|action| match action {
+            Action::OnBench(action) | Action::OnTrain(action) => {
+                matches!(**action, Action::Prompt { .. })
+            }
+            action => matches!(action, Action::Prompt { .. }),
+        })
+    }
+
     /// Calls `f` with each signal that set-up or a step looks at.
     pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
         self.setup

@@ -180,7 +180,7 @@ impl StepRun {
         &mut self,
         step: &Step,
         scan: Scan<'_>,
-        operator: Operator,
+        operator: &mut Operator,
         driver: &mut dyn Driver,
         out: &mut Vec<RunEvent>,
     ) -> bool {

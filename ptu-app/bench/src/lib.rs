@@ -13,7 +13,7 @@
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person is told;
-//!   [`stop`]: interruption by a signal.
+//!   [`typed`]: lines of standard input; [`stop`]: interruption by a signal.
 
 pub mod aboard;
 pub mod bench_worker;
@@ -41,3 +41,4 @@ pub mod table;
 #[cfg(test)]
 mod test_support;
 pub mod train_server;
+pub mod typed;

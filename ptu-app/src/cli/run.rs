@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use btu_rig::rig::Harness;
 use clap::Args;
@@ -12,12 +11,13 @@ use fault_db::Store;
 use super::reports::ReportOption;
 use super::{Database, ScriptsOption, print_out, run_list};
 use crate::console::{Console, verdict_table};
+use crate::operator::Operator;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::drive::Setting;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{
-    self, BenchChoice, BenchSetup, Outcome, RunPlan, Suite, Task, check_serial, select,
+    self, BenchChoice, BenchSetup, Outcome, RunControl, RunPlan, Suite, Task, check_serial, select,
     software_version,
 };
 use ptu_bench::run_diagnosis::{Bench, adaptive, diagnose_run};
@@ -134,7 +134,7 @@ impl RunArguments {
     /// Loads, then checks, lists or runs.
     pub fn run(self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
-        let setup = self.setup(&directory)?;
+        let mut setup = self.setup(&directory)?;
         let Suite {
             procedures,
             errors,
@@ -174,7 +174,10 @@ impl RunArguments {
             ));
         }
         let procedures = self.asked_for(procedures);
-        let tasks = self.tasks(procedures)?;
+        let asks = procedures.iter().any(|procedure| procedure.asks());
+        let drives = asks && !self.list && self.jobs == 1;
+        let operator = drives.then(Operator::at_terminal).flatten();
+        let tasks = self.tasks(procedures, operator.is_some())?;
         if self.list {
             return run_list::show(&tasks, self.harness, self.json);
         }
@@ -187,6 +190,7 @@ impl RunArguments {
             scripts_sha256,
             adaptive: None,
         };
+        setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
         self.execute(&mut plan, setup, &directory)
     }
 
@@ -239,7 +243,7 @@ impl RunArguments {
     }
 
     /// Procedures with the steps chosen; those with none are left out.
-    fn tasks(&self, procedures: Vec<Arc<Procedure>>) -> Result<Vec<Task>, Failure> {
+    fn tasks(&self, procedures: Vec<Arc<Procedure>>, operator: bool) -> Result<Vec<Task>, Failure> {
         let pattern = select::step_pattern(self.step.as_deref())?;
         let task = |procedure: Arc<Procedure>| {
             let chosen = pattern.as_ref().map(|pattern| {
@@ -253,7 +257,10 @@ impl RunArguments {
                 chosen,
                 repeat: self.repeat,
                 stop_on_fail: self.stop_on_fail,
-                prompts: PromptPolicy::Refuse,
+                prompts: match operator {
+                    true => PromptPolicy::Ask,
+                    false => PromptPolicy::Refuse,
+                },
                 ..RunOptions::default()
             };
             Task { procedure, options }
@@ -287,22 +294,26 @@ impl RunArguments {
                     "--adaptive does one step after the other, each once; leave --repeat and --jobs out",
                 ));
             }
-            let serial = setup.expected_serial();
-            let bench = Bench {
-                unit_config_sha256: &setup.config.sha256,
-                line: &self.line,
-                train: &self.train,
-                connection: match self.harness {
-                    Harness::None => Connection::Ptu,
-                    Harness::Auto | Harness::Bench => Connection::Btu,
-                },
-            };
-            plan.adaptive = Some(adaptive(&store, directory, &serial, &bench)?);
         }
         let stop = Stop::default();
         stop.listen();
         let mut console = Console::new(plan)?;
-        let result = run::run(plan, setup, store, &stop, &mut console);
+        let result = match self.adaptive {
+            false => run::run(plan, setup, store, &stop, &mut console),
+            true => {
+                let config = setup.config.sha256.clone();
+                let prepare = |store: &Store, serial: &str, connection| {
+                    let bench = Bench {
+                        unit_config_sha256: &config,
+                        line: &self.line,
+                        train: &self.train,
+                        connection,
+                    };
+                    adaptive(store, directory, serial, &bench)
+                };
+                run::search(plan, setup, store, &stop, &mut console, prepare)
+            }
+        };
         console.finish();
         let (store, outcome) = result?;
         let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;

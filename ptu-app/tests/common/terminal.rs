@@ -1,7 +1,7 @@
 //! A terminal of its own for a program, which it loses when this is dropped.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
@@ -66,6 +66,33 @@ impl Terminal {
         let mut screen = File::from(self.screen.try_clone().expect("a copy"));
         let mut chunk = [0; 4096];
         while screen.read(&mut chunk).is_ok_and(|count| count > 0) {}
+    }
+
+    /// Reads until this is shown; gives all that was.
+    pub fn until_shown(&self, wanted: &str) -> String {
+        let mut screen = File::from(self.screen.try_clone().expect("a copy"));
+        let (began, mut shown) = (Instant::now(), Vec::new());
+        let mut chunk = [0; 4096];
+        loop {
+            while let Ok(count @ 1..) = screen.read(&mut chunk) {
+                shown.extend_from_slice(&chunk[..count]);
+            }
+            let text = String::from_utf8_lossy(&shown);
+            if text.contains(wanted) {
+                return text.into_owned();
+            }
+            assert!(
+                began.elapsed() < PATIENCE,
+                "\"{wanted}\" is not shown: {text}"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Types a line.
+    pub fn type_line(&self, line: &str) {
+        let mut keys = File::from(self.screen.try_clone().expect("a copy"));
+        writeln!(keys, "{line}").expect("typed");
     }
 
     /// Waits until it takes keys as they are typed.

@@ -9,6 +9,7 @@ use rustix::process::Signal;
 use serde_json::Value;
 
 use crate::common::served::{Observer, Running, Unit};
+use crate::common::terminal::{Terminal, ended};
 use crate::common::{Place, list, text};
 
 /// Longest time anything takes here, on a busy machine.
@@ -173,6 +174,51 @@ fn the_unit_of_a_train_is_compared_with_the_trains_record() {
             assert!(message.contains(why), "{message}");
         }
     }
+}
+
+/// Goal: what a script asks is answered at the terminal by whoever stands in the cab. Method: the switches of a train,
+/// each turned when it is asked for; then without a terminal.
+#[test]
+fn somebody_at_the_terminal_answers_what_a_script_asks() {
+    let mut train = Unit::aboard(&[]);
+    let place = Place::new();
+    let address = train.address.clone();
+    let arguments = ["run", "cab/inputs", "--unit", &address];
+    let terminal = Terminal::open();
+    let mut run = terminal.start(&place.command(&arguments));
+    for (question, order) in [
+        ("Is it off? [y/n]", "key off"),
+        ("Is it on? [y/n]", "key on"),
+        ("switch to yard. Is it there? [y/n]", "mode yard"),
+        ("switch to manual. Is it there? [y/n]", "mode manual"),
+    ] {
+        terminal.until_shown(question);
+        train.say(order);
+        terminal.type_line("perhaps");
+        terminal.until_shown("type y for yes");
+        terminal.type_line("y");
+    }
+    assert_eq!(ended(&mut run, || terminal.read()), Some(0));
+    let told = Running::start(&place, &train, &["cab/inputs"]).finish();
+    told.exits(3);
+    let run = place.json(&["runs", "show", "latest", "--json"]);
+    for step in list(&run["steps"]) {
+        assert_eq!(step["verdict"], "skipped", "{run}");
+        assert!(text(&step["message"]).starts_with("needs an operator: Turn the"));
+    }
+}
+
+/// Goal: an adaptive run goes by the dictionary of the connection that was found, not of the one that is usual. Method:
+/// a train without the harness, which nobody stated, and a dictionary for laptops of one fault mode.
+#[test]
+fn a_search_on_a_train_takes_the_dictionary_of_a_laptop() {
+    let place = Place::new();
+    let campaign = ["campaign", "--harness", "none", "--faults", "tra.dead"];
+    place.ptu(&campaign).exits(0);
+    let train = Unit::aboard(&["--inject", "tra.dead"]);
+    let said = Running::start(&place, &train, &["--adaptive"]).finish();
+    assert!(said.out.contains("replace tra"), "{}", said.all());
+    said.exits(1);
 }
 
 #[test]

@@ -24,7 +24,7 @@ impl Runner {
     /// An action of clean-up that does not succeed is reported and the next one tried.
     pub(super) fn run_clean_up(&mut self, now: Instant, sample: &Sample, driver: &mut dyn Driver) {
         let procedure = Arc::clone(&self.procedure);
-        let operator = self.operator();
+        let mut operator = self.operator();
         let Phase::CleanUp { actions, since } = &mut self.phase else {
             return;
         };
@@ -40,7 +40,13 @@ impl Runner {
         };
         let mut problems = Vec::new();
         let mut over = loop {
-            match actions.advance(&procedure.cleanup, scan, operator, driver, &mut self.out) {
+            match actions.advance(
+                &procedure.cleanup,
+                scan,
+                &mut operator,
+                driver,
+                &mut self.out,
+            ) {
                 Progress::Waiting => break false,
                 Progress::Done => break true,
                 Progress::Stuck(problem) => {

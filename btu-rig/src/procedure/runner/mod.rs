@@ -268,7 +268,7 @@ impl Runner {
 
     fn run_setup(&mut self, now: Instant, sample: &Sample, driver: &mut dyn Driver) {
         let procedure = Arc::clone(&self.procedure);
-        let operator = self.operator();
+        let mut operator = self.operator();
         let Phase::Setup(actions) = &mut self.phase else {
             return;
         };
@@ -278,7 +278,8 @@ impl Runner {
             captured: &self.captured,
             unit_time: self.evidence.unit_time,
         };
-        let progress = actions.advance(&procedure.setup, scan, operator, driver, &mut self.out);
+        let progress =
+            actions.advance(&procedure.setup, scan, &mut operator, driver, &mut self.out);
         if progress == Progress::Waiting {
             return;
         }
@@ -351,10 +352,11 @@ impl Runner {
         self.train_part.clone().or_else(|| step.suspect.clone())
     }
 
-    fn operator(&self) -> Operator {
+    /// The operator's answer is for one prompt.
+    fn operator(&mut self) -> Operator {
         Operator {
             policy: self.options.prompts,
-            answer: self.answer,
+            answer: self.answer.take(),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::procedure::plan::{Procedure, Step};
 /// What a prompt does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PromptPolicy {
-    /// No operator is present: a prompt is an error.
+    /// No operator is present: a step with a prompt is skipped; one in set-up or clean-up is an error.
     #[default]
     Refuse,
     /// A [`RunEvent::Prompt`](crate::procedure::RunEvent::Prompt) is sent and [`Runner::answer`](super::Runner::answer) awaited.

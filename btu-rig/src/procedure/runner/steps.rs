@@ -6,10 +6,10 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::schedule::ScheduledStep;
-use super::{Phase, Runner};
+use super::{Phase, PromptPolicy, Runner};
 use crate::procedure::action_run::{ActionRun, Scan};
 use crate::procedure::condition::Answer;
-use crate::procedure::plan::{OnFail, Step};
+use crate::procedure::plan::{Action, OnFail, Step};
 use crate::procedure::report::{RunEvent, StepResult};
 use crate::procedure::step_run::StepRun;
 use crate::procedure::{Driver, Verdict};
@@ -20,7 +20,7 @@ const STEPS_PER_SCAN: usize = 32;
 impl Runner {
     pub(super) fn run_steps(&mut self, now: Instant, sample: &Sample, driver: &mut dyn Driver) {
         let procedure = Arc::clone(&self.procedure);
-        let operator = self.operator();
+        let mut operator = self.operator();
         for _ in 0..STEPS_PER_SCAN {
             let Phase::Steps { next, live } = &mut self.phase else {
                 return;
@@ -51,7 +51,7 @@ impl Runner {
                     captured: &self.captured,
                     unit_time: self.evidence.unit_time,
                 };
-                if !live.advance(step, scan, operator, driver, &mut self.out) {
+                if !live.advance(step, scan, &mut operator, driver, &mut self.out) {
                     return;
                 }
                 self.finish_step(now, sample, false);
@@ -75,6 +75,13 @@ impl Runner {
             .as_ref()
             .map_or(Answer::Yes, |when| when.truth(sample, &self.captured));
         match truth {
+            Answer::Yes if self.options.prompts == PromptPolicy::Refuse => {
+                if let Some(text) = question(step, driver.has_harness()) {
+                    let why = format!("needs an operator: {text}");
+                    self.pass_over(turn, now, Verdict::Skipped, &why);
+                    return false;
+                }
+            }
             Answer::Yes => {}
             Answer::No => {
                 let said = step.when.as_ref().and_then(|when| when.said(driver));
@@ -187,4 +194,14 @@ impl Runner {
             *next += 1;
         }
     }
+}
+
+/// What a step asks the operator.
+fn question(step: &Step, with_harness: bool) -> Option<&str> {
+    step.actions
+        .iter()
+        .find_map(|action| match action.where_done(with_harness) {
+            (Action::Prompt { text, .. }, true) => Some(text.as_str()),
+            _ => None,
+        })
 }

@@ -128,7 +128,7 @@ fn prompts_need_an_operator() {
     let script = format!("{HEAD}step('a', do = prompt('Is the lamp lit?', within = s(5)))");
     let outcome = run(&script, |_| {});
     let message = "needs an operator: Is the lamp lit?";
-    assert_eq!(outcome.summary(), [("a", Verdict::Error, message)]);
+    assert_eq!(outcome.summary(), [("a", Verdict::Skipped, message)]);
     let answers = [
         (Some(true), Verdict::Passed),
         (Some(false), Verdict::Failed),
@@ -148,6 +148,31 @@ fn prompts_need_an_operator() {
         let asked = |e: &&RunEvent| matches!(e, RunEvent::Prompt { .. });
         assert_eq!(outcome.events.iter().filter(asked).count(), 1);
     }
+}
+
+#[test]
+fn an_answer_is_for_one_question() {
+    let script = format!(
+        "{HEAD}step('a', do = [prompt('One?', within = s(5)), prompt('Two?', within = s(5))])\n\
+         step('b', do = prompt('Three?', within = s(5)))"
+    );
+    let options = RunOptions {
+        prompts: PromptPolicy::Ask,
+        ..RunOptions::default()
+    };
+    let outcome = run_with(&script, options, |world| {
+        if [1000, 2000].contains(&world.ms()) {
+            world.runner.answer(true);
+        }
+    });
+    let unanswered = "the operator did not answer: Three?";
+    assert_eq!(
+        outcome.summary(),
+        [
+            ("a", Verdict::Passed, ""),
+            ("b", Verdict::Error, unanswered)
+        ]
+    );
 }
 
 #[test]

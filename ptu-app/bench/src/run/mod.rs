@@ -39,6 +39,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
+use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{self, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 
@@ -112,12 +113,42 @@ pub fn run(
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
-    run_record(plan, &setup, setup.expected_serial(), began.at_us).check()?;
+    let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    run_on(&mut connected, &began, plan, &setup, store, stop, listener)
+}
+
+/// The same of an adaptive run, which goes by what `adaptive` makes for the unit as it was reached.
+///
+/// # Errors
+/// The unit cannot be reached, it has no dictionary, or the database fails; what was recorded stays.
+pub fn search(
+    plan: &mut RunPlan,
+    setup: BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+    adaptive: impl FnOnce(&Store, &str, Connection) -> Result<Adaptive, Failure>,
+) -> Result<(Store, Outcome), Failure> {
+    let began = RunStart::now();
+    let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    let connection = connected.connection();
+    plan.adaptive = Some(adaptive(&store, &connected.serial(), connection)?);
+    run_on(&mut connected, &began, plan, &setup, store, stop, listener)
+}
+
+/// Reaches the unit; a run that cannot is recorded, too.
+fn reach(
+    plan: &RunPlan,
+    setup: &BenchSetup,
+    store: Store,
+    stop: &Stop,
+    began: &RunStart,
+) -> Result<(Connected, Store), Failure> {
+    run_record(plan, setup, setup.expected_serial(), began.at_us).check()?;
     match setup.connect(stop) {
-        Ok(mut connected) => run_on(&mut connected, &began, plan, &setup, store, stop, listener),
+        Ok(connected) => Ok((connected, store)),
         Err(failure) => {
-            // A run that never started is kept, too.
-            let record = run_record(plan, &setup, setup.expected_serial(), began.at_us);
+            let record = run_record(plan, setup, setup.expected_serial(), began.at_us);
             let verdict = match failure.exit {
                 Exit::Aborted => Verdict::Aborted,
                 _ => Verdict::Error,

@@ -90,17 +90,17 @@ pub fn choose(
     let mut warnings = Vec::new();
     let current = dictionary.basis.sha256 == now.sha256;
     let same_connection = dictionary.basis.connection == now.connection;
+    let how = match connection {
+        Connection::Ptu => " --harness none",
+        Connection::Btu => "",
+    };
     if !same_connection {
-        let how = match connection {
-            Connection::Ptu => " --harness none",
-            Connection::Btu => "",
-        };
         warnings.push(format!(
             "the fault dictionary was made on another connection: make one with `ptu campaign{how}`"
         ));
     } else if !current {
         warnings.push(format!(
-            "the fault dictionary is stale, {}: make a new one with `ptu campaign`",
+            "the fault dictionary is stale, {}: make a new one with `ptu campaign{how}`",
             differences(&dictionary.basis, &now)
         ));
     }

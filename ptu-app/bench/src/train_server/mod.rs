@@ -2,14 +2,12 @@
 //! of the unit by itself; only the maintenance port leaves the process.
 //!
 //! * `cab`: what a person in the cab says, one order a line;
-//! * `typed`: lines that come on standard input, read beside the clock;
 //! * `service`: sections driven before the port is opened, in virtual time.
 
 mod cab;
 mod service;
 #[cfg(test)]
 mod tests;
-mod typed;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -27,9 +25,9 @@ use crate::failure::Failure;
 use crate::run::{BenchChoice, BenchSetup};
 use crate::stdio;
 use crate::stop::Stop;
+use crate::typed::Typed;
 
 use cab::{Cab, Order};
-use typed::Typed;
 
 /// What is asked for.
 #[derive(Clone, Debug)]

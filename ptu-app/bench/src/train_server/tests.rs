@@ -78,7 +78,7 @@ fn what_is_no_order_is_refused_with_what_is_one() {
 fn lines_come_whole_and_the_end_of_input_ends_nothing() {
     let (send, lines) = std::sync::mpsc::sync_channel(16);
     let long = "x".repeat(450);
-    typed::read(
+    crate::typed::read(
         format!("key off\r\n\n  ack\n{long}\nquit").as_bytes(),
         &send,
     );

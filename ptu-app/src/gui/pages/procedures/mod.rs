@@ -222,10 +222,11 @@ impl ProceduresPage {
         let Some(unit) = context.units.of_id(id) else {
             return;
         };
-        let (choice, serial) = (unit.choice.clone(), unit.name());
-        let order = context
-            .queries
-            .run(move |paths| prepare::order(paths, &choice, &serial, &selection, how, &shown));
+        let (choice, serial, connection) = (unit.choice.clone(), unit.name(), unit.connection());
+        let order = context.queries.run(move |paths| {
+            let unit = (serial.as_str(), connection);
+            prepare::order(paths, &choice, unit, &selection, how, &shown)
+        });
         self.orders.push(PendingOrder {
             unit: id,
             order: Request::Pending(order),

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use btu_rig::procedure::plan::Connection;
+
 use super::selection::Selection;
 use crate::gui::DataPaths;
 use ptu_bench::bench_worker::RunOrder;
@@ -55,7 +57,7 @@ pub enum Prepared {
 pub fn order(
     paths: &DataPaths,
     choice: &BenchChoice,
-    serial: &str,
+    (serial, connection): (&str, Connection),
     selection: &Selection,
     how: RunSettings,
     shown: &ShownSuite,
@@ -83,7 +85,7 @@ pub fn order(
                 unit_config_sha256: &setup.config.sha256,
                 line: &choice.line,
                 train: &choice.train,
-                connection: choice.connection(),
+                connection,
             };
             Some(run_diagnosis::adaptive(
                 &store,
@@ -154,7 +156,15 @@ mod tests {
             stop_on_fail: false,
             adaptive: false,
         };
-        order(paths, choice, "SIM-0001", &selection, how, shown).expect("prepared")
+        order(
+            paths,
+            choice,
+            ("SIM-0001", choice.connection()),
+            &selection,
+            how,
+            shown,
+        )
+        .expect("prepared")
     }
 
     /// Goal: what was shown is what is run. Method: an order from unchanged files, then from each kind of file

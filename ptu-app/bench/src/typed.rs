@@ -1,8 +1,10 @@
-//! Lines of standard input, read on a thread of their own, so that the train keeps its time. Their end ends nothing: a
-//! train may run under a supervisor.
+//! Lines of standard input, read on a thread of their own, so that train and bench keep their time. Their end ends
+//! nothing: a train may run under a supervisor.
 
 use std::io::{BufRead, IsTerminal, Read, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use crate::stdio;
 
 /// Lines that wait for the next scan; whoever writes more waits.
 const WAITING: usize = 16;
@@ -19,9 +21,9 @@ impl Typed {
     pub fn listen() -> Self {
         let (send, lines) = sync_channel(WAITING);
         if in_foreground() {
-            // Without a thread nothing is heard, and the train runs all the same.
+            // Without a thread nothing is heard, and all else goes on.
             let _ = std::thread::Builder::new()
-                .name("cab".into())
+                .name("typed".into())
                 .spawn(move || read(stdin().lock(), &send));
         }
         Self { lines }
@@ -33,12 +35,17 @@ impl Typed {
     }
 }
 
+/// Somebody at a terminal can be asked: its lines come here, and what is asked is shown there.
+pub fn somebody_is_there() -> bool {
+    stdin().is_terminal() && in_foreground() && stdio::draws()
+}
+
 fn in_foreground() -> bool {
     let of_terminal = || rustix::termios::tcgetpgrp(stdin());
     !stdin().is_terminal() || of_terminal().is_ok_and(|group| group == rustix::process::getpgrp())
 }
 
-pub(super) fn read(mut input: impl BufRead, send: &SyncSender<String>) {
+pub(crate) fn read(mut input: impl BufRead, send: &SyncSender<String>) {
     let mut bytes = Vec::new();
     loop {
         bytes.clear();

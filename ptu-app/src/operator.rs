@@ -1,0 +1,53 @@
+//! Who is at the terminal of a run answers what its scripts ask.
+
+use std::sync::{Arc, Mutex};
+
+use btu_rig::procedure::Runner;
+use btu_rig::rig::Rig;
+use protocol::Instant;
+
+use ptu_bench::run::RunControl;
+use ptu_bench::stdio;
+use ptu_bench::typed::{Typed, somebody_is_there};
+
+/// Takes lines of the terminal while a script asks.
+pub struct Operator {
+    typed: Mutex<Typed>,
+}
+
+impl Operator {
+    /// Whoever can be asked, if anybody.
+    pub fn at_terminal() -> Option<Arc<Self>> {
+        let typed = || Mutex::new(Typed::listen());
+        somebody_is_there().then(|| Arc::new(Self { typed: typed() }))
+    }
+}
+
+/// What follows a question.
+pub const HOW_TO_ANSWER: &str = "[y/n]";
+
+impl RunControl for Operator {
+    fn after_cycle(&self, _now: Instant, _rig: &Rig) {}
+
+    fn before_scan(&self, runner: &mut Runner) {
+        let Ok(typed) = self.typed.try_lock() else {
+            return;
+        };
+        // What was typed before the question answers another one.
+        let asks = runner.awaits_operator();
+        for line in typed.lines().iter().filter(|_| asks) {
+            match answer(line) {
+                Some(yes) => runner.answer(yes),
+                None => stdio::note(&format!("type y for yes or n for no {HOW_TO_ANSWER}")),
+            }
+        }
+    }
+}
+
+fn answer(line: &str) -> Option<bool> {
+    match line.to_lowercase().as_str() {
+        "y" | "yes" | "예" | "네" => Some(true),
+        "n" | "no" | "아니오" | "아니요" => Some(false),
+        _ => None,
+    }
+}
