@@ -152,8 +152,8 @@ def overspeed(client, session, speed):
     codes = [entry.code for entry in client.log]
     excess = next((entry.parameter for entry in client.log if entry.code == 212), 0)
     print(f"acknowledged: emergency brake released; events {codes}, excess {excess} cm/s")
-    if codes != [210, 211, 212, 214] or not 0 < excess <= speed:
-        sys.exit("failed: events 210, 211, 212 with its excess, and 214 were expected")
+    if codes != [210, 211, 212, 216, 214] or not 0 < excess <= speed:
+        sys.exit("failed: events 210, 211, 212 with its excess, 216 (refused under way) and 214 were expected")
     client.stimulate("TestRelease", "BIH", 0x14, session, 0x000F)
 
 def run(client, carrier, rate, level, limit, speed):
