@@ -111,6 +111,8 @@ events! {
     OverspeedEb = 212 "overspeed_eb" Major "-" "Overspeed: emergency brake" "과속 비상제동" "excess, cm/s";
     ServiceBrakeIneffective = 213 "service_brake_ineffective" Major "fsb_output" "Full service brake did not slow the train" "상용제동 효과 없음" "deceleration, mm/s²";
     EbReleased = 214 "eb_released" Info "-" "Emergency brake released" "비상제동 완해" "";
+    MovedAtStop = 215 "moved_at_stop" Minor "-" "Moved after it had stood under a stop code or none: full service brake" "정지신호 하에서 이동: 상용전제동" "speed, cm/s";
+    EbReleaseRefused = 216 "eb_release_refused" Info "-" "Acknowledgement refused: the emergency brake's cause still holds" "비상제동 원인 지속: 완해 불허" "what holds, `EbCause`; 0 = the train moves";
     TachoDisagree = 220 "tacho_disagree" Critical "-" "The two tachometers disagree" "속도센서 불일치" "difference, cm/s";
     TachoDead1 = 221 "tacho1_dead" Critical "speed_sensor_1" "No pulses on tachometer 1 while 2 turns" "속도센서 1 무신호" "speed 2, cm/s";
     TachoDead2 = 222 "tacho2_dead" Critical "speed_sensor_2" "No pulses on tachometer 2 while 1 turns" "속도센서 2 무신호" "speed 1, cm/s";

@@ -15,13 +15,13 @@ pub struct Rollback {
 }
 
 impl Rollback {
-    /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the train stands.
+    /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the wheels stand still.
     pub fn step(
         &mut self,
         now: Instant,
         moved_m: f64,
         lines: TrainLines,
-        standstill: bool,
+        still: bool,
         allowed_m: f64,
         log: &mut EventLog,
     ) -> bool {
@@ -32,7 +32,7 @@ impl Rollback {
             (false, true) => moved_m,
             _ => 0.0,
         };
-        self.against_m = if standstill && against <= 0.0 {
+        self.against_m = if still {
             0.0
         } else {
             (self.against_m + against).max(0.0)

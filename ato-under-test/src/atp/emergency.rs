@@ -1,10 +1,13 @@
 //! The emergency brake: applied by any cause, latched until standstill and acknowledgement.
+//!
+//! An acknowledgement releases it only when nothing of its cause is left: no cause holds, the train stands, the
+//! doors that opened on the way are closed, somebody is in the cab. Otherwise it is refused, and what holds is logged.
 
 use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::{EbCause, TrainLines};
 
-use super::Overspeed;
+use super::Proof;
 use crate::kernel::EventLog;
 use crate::timer::Edge;
 
@@ -13,11 +16,15 @@ use crate::timer::Edge;
 pub struct BrakeInputs {
     /// A cause that holds now, `None` = none.
     pub cause: EbCause,
-    pub overspeed: Overspeed,
+    /// Speed above the limit, cm/s.
+    pub excess_cms: i32,
+    pub proof: Proof,
     /// Unit started, cab active, mode chosen, inputs alive.
     pub may_release: bool,
     pub standstill: bool,
     pub lines: TrainLines,
+    /// An acknowledgement is not compared with the cause: an injected fault.
+    pub release_guard_dead: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -41,16 +48,40 @@ impl EmergencyBrake {
             .rises(inputs.lines.contains(TrainLines::ACKNOWLEDGE));
         if inputs.cause != EbCause::None {
             self.apply(now, &inputs, log);
-        } else if !inputs.may_release {
-            if self.cause == EbCause::None {
-                self.cause = EbCause::NotReleased;
-            }
-        } else if inputs.standstill
-            && (self.cause == EbCause::NotReleased || (self.cause != EbCause::None && acknowledged))
-        {
-            self.cause = EbCause::None;
-            log.push(now, Event::EbReleased, 0);
+        } else if !inputs.may_release && self.cause == EbCause::None {
+            self.cause = EbCause::NotReleased;
         }
+        if self.cause == EbCause::None {
+            return;
+        }
+        let holds = match inputs.release_guard_dead && acknowledged {
+            true => None,
+            false => self.holds(&inputs),
+        };
+        match holds {
+            None if acknowledged || self.cause == EbCause::NotReleased => {
+                self.cause = EbCause::None;
+                log.push(now, Event::EbReleased, 0);
+            }
+            Some(cause) if acknowledged => {
+                log.push(now, Event::EbReleaseRefused, i32::from(cause.code()));
+            }
+            _ => {}
+        }
+    }
+
+    /// What keeps the brake applied whoever acknowledges it; [`EbCause::None`] = the train moves.
+    fn holds(&self, inputs: &BrakeInputs) -> Option<EbCause> {
+        let closed = inputs.lines.contains(TrainLines::DOORS_CLOSED);
+        let open = self.cause == EbCause::DoorOpen && !closed;
+        [
+            (inputs.cause != EbCause::None, inputs.cause),
+            (!inputs.may_release, EbCause::NotReleased),
+            (open, EbCause::DoorOpen),
+            (!inputs.standstill, EbCause::None),
+        ]
+        .into_iter()
+        .find_map(|(holds, cause)| holds.then_some(cause))
     }
 
     /// Applies it for a cause that is over at once, and is acknowledged all the same.
@@ -66,10 +97,9 @@ impl EmergencyBrake {
         }
         self.cause = inputs.cause;
         let (event, parameter) = match self.cause {
-            EbCause::Overspeed => (Event::OverspeedEb, inputs.overspeed.excess_cms),
+            EbCause::Overspeed => (Event::OverspeedEb, inputs.excess_cms),
             EbCause::ServiceBrakeIneffective => {
-                let decel_mms2 = inputs.overspeed.decel_mms2;
-                (Event::ServiceBrakeIneffective, decel_mms2)
+                (Event::ServiceBrakeIneffective, inputs.proof.decel_mms2)
             }
             _ => return,
         };

@@ -1,6 +1,7 @@
 //! ATP: automatic train protection. [`Atp::scan`] runs every 10 ms, in order: speed code, speed, limit,
 //! overspeed, doors, direction of travel, brakes. The mode sequence runs with the 50 ms cycle.
 
+mod brake_proof;
 mod code;
 mod direction;
 mod doors;
@@ -10,7 +11,7 @@ mod overspeed;
 mod speedometer;
 mod tachometers;
 
-use protocol::config::UnitConfig;
+use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, Speed};
@@ -20,11 +21,12 @@ use crate::signals::Inputs;
 use crate::timer::Edge;
 use direction::Rollback;
 
+pub use brake_proof::{BrakeProof, Demand, Proof};
 pub use code::{Code, CodeDecoder, lookup};
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
-pub use overspeed::{Overspeed, OverspeedSupervision};
+pub use overspeed::{Overspeed, OverspeedSupervision, SupervisedMotion};
 pub use speedometer::Speedometer;
 pub use tachometers::Tachometers;
 
@@ -43,6 +45,17 @@ pub struct ScanContext {
     pub twc_up: bool,
     pub tcms_up: bool,
     pub ato_ready: bool,
+    /// Guards that an injected fault has put out of action.
+    pub dead_guards: DeadGuards,
+}
+
+/// Guards of ATP that do not work.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DeadGuards {
+    /// A stop has the margins of a limit, and an absolute stop asks for no brake.
+    pub stop: bool,
+    /// An acknowledgement is not compared with the emergency brake's cause.
+    pub release: bool,
 }
 
 /// State of the protection functions from scan to scan.
@@ -51,6 +64,7 @@ pub struct Atp {
     decoder: CodeDecoder,
     tachometers: Tachometers,
     supervision: OverspeedSupervision,
+    proof: BrakeProof,
     doors: Doors,
     rollback: Rollback,
     brake: EmergencyBrake,
@@ -70,6 +84,7 @@ impl Atp {
             decoder: CodeDecoder::new(),
             tachometers: Tachometers::new(config),
             supervision: OverspeedSupervision::new(),
+            proof: BrakeProof::new(),
             doors: Doors::default(),
             rollback: Rollback::default(),
             brake: EmergencyBrake::new(),
@@ -95,7 +110,20 @@ impl Atp {
         self.tachometers.step(now, inputs, config, log);
         self.limit = self.limit_in_force(config);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
-        self.overspeed = self.supervision.step(now, speed, self.limit, config, log);
+        let motion = SupervisedMotion {
+            speed,
+            limit: self.limit,
+            stop: self.by_code() && self.limit == Speed::ZERO && !context.dead_guards.stop,
+            standstill,
+            moves: self.tachometers.moves(config),
+        };
+        self.overspeed = self.supervision.step(now, motion, config, log);
+        self.fsb_cause = self.service_cause(context, motion.stop);
+        let margins = &config.overspeed;
+        let proof = self
+            .proof
+            .step(now, speed, self.demand(motion, margins), margins);
+        let beyond = self.supervision.emergency(now, motion, proof, margins);
         self.doors_closed = inputs.lines.contains(TrainLines::DOORS_CLOSED);
         let door_inputs = DoorInputs {
             closed: self.doors_closed || !inputs.alive,
@@ -106,21 +134,51 @@ impl Atp {
             speed,
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
-        let moved_m = self.tachometers.moved_m();
+        let (moved_m, still) = (self.tachometers.moved_m(), self.tachometers.still());
         let allowed_m = config.tacho.rollback_m;
         let rollback = self
             .rollback
-            .step(now, moved_m, inputs.lines, standstill, allowed_m, log);
-        let cause = self.emergency_cause(now, inputs, context, (door_open, rollback), log);
+            .step(now, moved_m, inputs.lines, still, allowed_m, log);
+        let found = [
+            (rollback, EbCause::Rollback),
+            (door_open, EbCause::DoorOpen),
+            (beyond, EbCause::Overspeed),
+            (proof.ineffective, EbCause::ServiceBrakeIneffective),
+        ];
+        let cause = self.emergency_cause(now, inputs, context, &found, log);
         let brake_inputs = BrakeInputs {
             cause,
-            overspeed: self.overspeed,
+            excess_cms: self.overspeed.excess_cms,
+            proof,
             may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
             standstill,
             lines: inputs.lines,
+            release_guard_dead: context.dead_guards.release,
         };
         self.brake.step(now, brake_inputs, log);
-        self.fsb_cause = self.service_cause(context);
+    }
+
+    /// The mode is one in which the speed code counts.
+    fn by_code(&self) -> bool {
+        let mode = self.sequence.mode();
+        matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun)
+    }
+
+    /// Whether the service brake that is asked for has a train to slow.
+    fn demand(&self, motion: SupervisedMotion, margins: &OverspeedConfig) -> Demand {
+        let alarm_kmh = motion.limit.kmh() + margins.alarm_margin_kmh;
+        match self.fsb_cause {
+            FsbCause::None => Demand::default(),
+            // Close to the limit a deceleration is no longer to be measured.
+            FsbCause::Overspeed => Demand {
+                holds: true,
+                measurable: motion.speed.kmh() > alarm_kmh,
+            },
+            _ => Demand {
+                holds: motion.moves,
+                measurable: motion.moves,
+            },
+        }
     }
 
     /// The limit by mode: by code under cab signal, fixed in yard and emergency mode.
@@ -141,7 +199,7 @@ impl Atp {
         now: Instant,
         inputs: &Inputs,
         context: ScanContext,
-        (door_open, rollback): (bool, bool),
+        found: &[(bool, EbCause)],
         log: &mut EventLog,
     ) -> EbCause {
         let lost = context.ever_alive && !inputs.alive;
@@ -159,13 +217,10 @@ impl Atp {
             (context.started && !context.vital_passed, EbCause::SelfTest),
             (lost, EbCause::InputsLost),
             (self.tachometers.faulty(), EbCause::Tachometer),
-            (rollback, EbCause::Rollback),
-            (door_open, EbCause::DoorOpen),
-            (self.overspeed.emergency, EbCause::Overspeed),
-            (self.overspeed.ineffective, EbCause::ServiceBrakeIneffective),
         ];
         causes
             .iter()
+            .chain(found)
             .find(|(holds, _)| *holds)
             .map_or(EbCause::None, |(_, cause)| *cause)
     }
@@ -186,16 +241,17 @@ impl Atp {
             .map(|number| number as i32)
     }
 
-    fn service_cause(&self, context: ScanContext) -> FsbCause {
-        let mode = self.sequence.mode();
-        let by_code = matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun);
-        let running = mode == Mode::AutomaticRun;
+    fn service_cause(&self, context: ScanContext, stop: bool) -> FsbCause {
+        let running = self.sequence.mode() == Mode::AutomaticRun;
+        let code = self.decoder.code();
+        let over = self.overspeed.service_brake;
         let causes = [
-            (self.overspeed.service_brake, FsbCause::Overspeed),
+            (self.by_code() && code == Code::None, FsbCause::NoCode),
             (
-                by_code && self.decoder.code() == Code::None,
-                FsbCause::NoCode,
+                stop && (over || code == Code::AbsoluteStop),
+                FsbCause::StopCode,
             ),
+            (over, FsbCause::Overspeed),
             (running && !context.twc_up, FsbCause::TwcLost),
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),

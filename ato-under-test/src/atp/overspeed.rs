@@ -1,17 +1,30 @@
 //! Overspeed supervision in stages: alarm, full service brake, emergency brake.
 //!
 //! The service brake brings the train back under the limit by itself and releases there; when it
-//! does not slow the train, or the speed passes the emergency margin, the emergency brake follows.
+//! does not slow the train (`brake_proof`), or the speed passes the emergency margin, the emergency brake follows.
+//!
+//! Margins are of limits above zero. Under a stop (code 0, absolute stop, no code) alarm and service brake come
+//! as soon as the train does what no standing train does, and the service brake is held until a code lets it run.
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
+use super::Proof;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
-/// Scans over which the deceleration is measured (0.5 s).
-const DECEL_SCANS: usize = 50;
+/// How the train moves in one scan, and what it may.
+#[derive(Clone, Copy, Debug)]
+pub struct SupervisedMotion {
+    pub speed: Speed,
+    pub limit: Speed,
+    /// The limit is zero because the code, or none, says so.
+    pub stop: bool,
+    pub standstill: bool,
+    /// It does what no standing train does ([`Tachometers::moves`](super::Tachometers::moves)).
+    pub moves: bool,
+}
 
 /// Result of the supervision in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,14 +33,8 @@ pub struct Overspeed {
     pub alarm: bool,
     /// Request the full service brake.
     pub service_brake: bool,
-    /// Speed is beyond the emergency margin.
-    pub emergency: bool,
-    /// The service brake has shown no effect.
-    pub ineffective: bool,
     /// Speed above the limit, cm/s.
     pub excess_cms: i32,
-    /// Deceleration, negative while the train gains speed, mm/s².
-    pub decel_mms2: i32,
 }
 
 /// Compares the speed with the limit in force, scan by scan.
@@ -37,17 +44,14 @@ pub struct OverspeedSupervision {
     above_alarm: OnDelay,
     above_service: OnDelay,
     above_emergency: OnDelay,
-    effect_changes: OnDelay,
-    effective: bool,
     alarm: bool,
     service: bool,
-    service_since: Instant,
+    /// The train has stood under the present stop.
+    stood: bool,
     stepped_down: bool,
     grace_until: Instant,
     alarmed: Edge,
     braked: Edge,
-    history: [f64; DECEL_SCANS],
-    at: usize,
 }
 
 impl OverspeedSupervision {
@@ -58,69 +62,62 @@ impl OverspeedSupervision {
             above_alarm: OnDelay::default(),
             above_service: OnDelay::default(),
             above_emergency: OnDelay::default(),
-            effect_changes: OnDelay::default(),
-            effective: false,
             alarm: false,
             service: false,
-            service_since: Instant::ZERO,
+            stood: false,
             stepped_down: false,
             grace_until: Instant::ZERO,
             alarmed: Edge::default(),
             braked: Edge::default(),
-            history: [0.0; DECEL_SCANS],
-            at: 0,
         }
     }
 
+    /// Alarm and service brake.
     pub fn step(
         &mut self,
         now: Instant,
-        speed: Speed,
-        limit: Speed,
+        motion: SupervisedMotion,
         config: &UnitConfig,
         log: &mut EventLog,
     ) -> Overspeed {
         let margins = &config.overspeed;
-        let decel_mps2 = self.deceleration(speed);
-        self.watch_step_down(now, speed, limit, margins);
-        self.stage(now, speed, limit, margins);
-        let excess_cms = i32::from((speed - limit).to_cms());
+        self.watch_step_down(now, motion.speed, motion.limit, margins);
+        self.stage(now, motion, margins);
+        let excess_cms = i32::from((motion.speed - motion.limit).to_cms());
         if self.alarmed.rises(self.alarm) {
             log.push(now, Event::Overspeed, excess_cms);
         }
         if self.braked.rises(self.service) {
-            self.service_since = now;
-            log.push(now, Event::OverspeedFsb, excess_cms);
+            let event = if self.stood {
+                Event::MovedAtStop
+            } else {
+                Event::OverspeedFsb
+            };
+            log.push(now, event, excess_cms);
         }
-        let proof = Duration::from_ms(u64::from(margins.brake_proof_ms));
-        let proved = decel_mps2 >= margins.brake_proof_mps2;
-        let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
-        // A pulse too many in a tachometer hides a deceleration, or feigns one, for as long as its speed window.
-        let differs = proved != self.effective;
-        if self.effect_changes.update(now, differs, delay) {
-            self.effective = proved;
-        }
-        // Close to the limit, and to standstill, a deceleration is no longer to be measured.
-        let well_over = speed.kmh() > limit.kmh() + margins.alarm_margin_kmh;
-        let ineffective =
-            self.service && !self.effective && now.since(self.service_since) >= proof && well_over;
-        let in_grace = self.stepped_down && !ineffective && (proved || now < self.grace_until);
-        let beyond = speed.kmh() > limit.kmh() + margins.eb_margin_kmh && !in_grace;
-        let emergency = self.above_emergency.update(now, beyond, delay);
+        // What has set off braking is told before a train that is stopped counts as standing under a stop.
+        self.stood = motion.stop && (self.stood || motion.standstill);
         Overspeed {
             alarm: self.alarm,
             service_brake: self.service,
-            emergency,
-            ineffective,
             excess_cms,
-            decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
         }
     }
 
-    fn deceleration(&mut self, speed: Speed) -> f64 {
-        let before = core::mem::replace(&mut self.history[self.at], speed.mps());
-        self.at = (self.at + 1) % DECEL_SCANS;
-        (before - speed.mps()) / (DECEL_SCANS as f64 * protocol::SCAN.as_secs())
+    /// The speed is beyond the emergency margin.
+    pub fn emergency(
+        &mut self,
+        now: Instant,
+        motion: SupervisedMotion,
+        proof: Proof,
+        margins: &OverspeedConfig,
+    ) -> bool {
+        let in_grace =
+            self.stepped_down && !proof.ineffective && (proof.proved || now < self.grace_until);
+        let most_kmh = motion.limit.kmh() + margins.eb_margin_kmh;
+        let beyond = motion.speed.kmh() > most_kmh && !in_grace;
+        let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
+        self.above_emergency.update(now, beyond, delay)
     }
 
     /// At a step down the train may be over the new limit at once: the service brake gets its
@@ -142,8 +139,14 @@ impl OverspeedSupervision {
         self.limit = limit;
     }
 
-    fn stage(&mut self, now: Instant, speed: Speed, limit: Speed, margins: &OverspeedConfig) {
-        let over = |margin_kmh: f64| speed.kmh() > limit.kmh() + margin_kmh;
+    fn stage(&mut self, now: Instant, motion: SupervisedMotion, margins: &OverspeedConfig) {
+        let over = |margin_kmh: f64| {
+            if motion.stop {
+                motion.moves
+            } else {
+                motion.speed.kmh() > motion.limit.kmh() + margin_kmh
+            }
+        };
         let alarm_delay = Duration::from_ms(u64::from(margins.alarm_delay_ms));
         let service_delay = Duration::from_ms(u64::from(margins.fsb_delay_ms));
         self.alarm |= self
@@ -152,9 +155,10 @@ impl OverspeedSupervision {
         self.service |= self
             .above_service
             .update(now, over(margins.fsb_margin_kmh), service_delay);
-        if speed <= limit {
+        if motion.speed <= motion.limit {
             self.alarm = false;
-            self.service = false;
+            // A train that moved under a stop, or was stopped by it, would roll away again.
+            self.service &= motion.stop;
         }
     }
 }

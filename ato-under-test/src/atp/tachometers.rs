@@ -28,6 +28,10 @@ pub struct Tachometers {
     faulty: bool,
     slow: OnDelay,
     standstill: bool,
+    silent: OnDelay,
+    still: bool,
+    /// Way by each channel at a speed that counts as standing, since the wheels last stood still, m.
+    crept_m: [f64; 2],
     moved_m: f64,
     distance_channel: usize,
 }
@@ -53,6 +57,9 @@ impl Tachometers {
             faulty: false,
             slow: OnDelay::default(),
             standstill: false,
+            silent: OnDelay::default(),
+            still: false,
+            crept_m: [0.0; 2],
             moved_m: 0.0,
             distance_channel: 0,
         }
@@ -75,6 +82,15 @@ impl Tachometers {
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
         self.standstill = self.slow.update(now, slow, span);
+        let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
+        self.still = self.silent.update(now, silent, span);
+        let pulses = self.crept_m.iter_mut().zip(&inputs.pulses);
+        for (crept_m, pulses) in pulses {
+            *crept_m = match slow && !self.still {
+                true => *crept_m + pulses.way_m(config.metres_per_pulse()),
+                false => 0.0,
+            };
+        }
     }
 
     fn compare(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
@@ -134,6 +150,17 @@ impl Tachometers {
 
     pub fn standstill(&self) -> bool {
         self.standstill
+    }
+
+    /// No wheel has made a pulse for the time of standstill.
+    pub fn still(&self) -> bool {
+        self.still
+    }
+
+    /// The train does what no standing one does: it is faster, or creeps farther without a stop.
+    pub fn moves(&self, config: &UnitConfig) -> bool {
+        let far = |way_m: &f64| libm::fabs(*way_m) > config.tacho.creep_m;
+        self.speed().kmh() > config.tacho.standstill_kmh || self.crept_m.iter().any(far)
     }
 
     /// The channel that counts the distance, 0 or 1.

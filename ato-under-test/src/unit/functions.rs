@@ -10,7 +10,7 @@ use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainL
 use protocol::{Duration, Instant, Speed};
 
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
-use crate::atp::{Atp, Code, ModeInputs, ScanContext};
+use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
@@ -95,6 +95,10 @@ impl Functions {
             twc_up: self.twc.up(),
             tcms_up: around.tcms.alive(),
             ato_ready: self.ato_outputs.ready,
+            dead_guards: DeadGuards {
+                stop: around.faults.dead(Place::StopGuard),
+                release: around.faults.dead(Place::ReleaseGuard),
+            },
         };
         log.freeze(FreezeFrame {
             speed: self.atp.tachometers().speed(),

@@ -3,6 +3,7 @@
 mod as_written;
 mod ato_inputs;
 mod automatic_operation;
+mod brake_release;
 mod common;
 mod journey;
 mod maintenance;
@@ -12,6 +13,7 @@ mod protection;
 mod robustness;
 mod self_test;
 mod speed_control;
+mod stop_codes;
 mod stored_memory;
 mod tcms;
 mod test_mode;

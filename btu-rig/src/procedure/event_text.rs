@@ -1,7 +1,9 @@
 //! Parameters of events in words: everything that shows an entry of a log to a person uses this.
 
 use protocol::event::{ALL_CARS, Event};
-use protocol::message::{AbsurdInputs, ArmRefusal, AtoFailure, Channel, Mode, Refusals, SelfTest};
+use protocol::message::{
+    AbsurdInputs, ArmRefusal, AtoFailure, Channel, EbCause, Mode, Refusals, SelfTest,
+};
 
 use super::describe::meanings;
 
@@ -19,6 +21,10 @@ pub fn named(event: Event, number: i32) -> Option<String> {
     let (code, bits) = (number as u8, number as u16);
     Some(match event {
         Event::ModeChanged => Mode::from_code(code).label().to_owned(),
+        Event::EbReleaseRefused => match EbCause::from_code(code) {
+            EbCause::None => "the train moves".into(),
+            cause => plain(cause.label()),
+        },
         Event::AtoFailed => plain(AtoFailure::from_code(code).label()),
         Event::ArmingLapsed | Event::TestModeBroken => plain(ArmRefusal::from_code(code).label()),
         Event::AutomaticRefused => meanings(&Refusals::SPEC, bits),
@@ -76,6 +82,8 @@ mod tests {
                 0x0401,
                 "The train is not at standstill; ATO is not ready",
             ),
+            (Event::EbReleaseRefused, 6, "door open"),
+            (Event::EbReleaseRefused, 0, "the train moves"),
             (Event::OverspeedFsb, 139, "excess 139 cm/s"),
             (Event::WheelDiameter, -150, "difference -1.50 %"),
             (Event::BrakeUnitFailed, 4, "car 4"),

@@ -97,6 +97,16 @@ pub struct TachoConfig {
     pub standstill_ms: u32,
     /// Way against the reverser that trips, m.
     pub rollback_m: f64,
+    /// Way without a stop, at a speed that counts as standing, from which on a train moves, m.
+    #[serde(default = "TachoConfig::default_creep_m")]
+    pub creep_m: f64,
+}
+
+impl TachoConfig {
+    /// That of `sg100`, for configurations without the key.
+    const fn default_creep_m() -> f64 {
+        0.5
+    }
 }
 
 /// Overspeed supervision.
@@ -292,6 +302,7 @@ impl UnitConfig {
             tacho.difference_kmh: 1.0, 20.0;
             tacho.standstill_kmh: 0.1, 3.0;
             tacho.rollback_m: 0.05, 5.0;
+            tacho.creep_m: 0.05, 5.0;
             overspeed.alarm_margin_kmh: 0.0, 20.0;
             overspeed.fsb_margin_kmh: 0.0, 20.0;
             overspeed.eb_margin_kmh: 0.0, 30.0;

@@ -58,7 +58,9 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::ModeInput | Place::ControllerInput => &[DEAD, STUCK_OFF],
         Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
         Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
-        Place::ArmStandstill
+        Place::StopGuard
+        | Place::ReleaseGuard
+        | Place::ArmStandstill
         | Place::ArmBrakes
         | Place::MotionGuard
         | Place::CodeGuard

@@ -76,6 +76,10 @@ pub enum Place {
     TestSpeed,
     /// Pulses of the TEST board's marker generator.
     TestMarker,
+    /// Supervision of motion under a stop.
+    StopGuard,
+    /// Comparison of an acknowledgement with the emergency brake's cause.
+    ReleaseGuard,
     /// Standstill as a condition of arming.
     ArmStandstill,
     /// Applied brakes as a condition of arming, and of staying armed.

@@ -167,6 +167,8 @@ wire_enum! {
         NotPermitted = 6 "not_permitted",
         /// Armed for maintenance.
         TestMode = 7 "test_mode",
+        /// Absolute stop, or moving under a code that says stop.
+        StopCode = 8 "stop_code",
     }
 }
 

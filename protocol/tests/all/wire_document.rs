@@ -165,6 +165,14 @@ fn configuration() -> String {
             format!("{:.3} mm", 1000.0 * config.metres_per_pulse()),
         ),
         (
+            "`tacho.standstill_kmh`, `standstill_ms`",
+            margin(tacho.standstill_kmh, tacho.standstill_ms),
+        ),
+        (
+            "`tacho.creep_m`, way without a stop from which on a train moves",
+            format!("{} m", tacho.creep_m),
+        ),
+        (
             "`overspeed.alarm_margin_kmh`, `alarm_delay_ms`",
             margin(speed.alarm_margin_kmh, speed.alarm_delay_ms),
         ),

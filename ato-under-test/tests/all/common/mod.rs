@@ -182,6 +182,12 @@ impl Bench {
         self.input.level_mv = 500;
     }
 
+    /// A carrier that nothing modulates.
+    pub fn unmodulated(&mut self) {
+        self.code("0");
+        self.input.code_rate_chz = 0;
+    }
+
     /// Both wheels at a speed, reached at 3 m/s².
     pub fn speed_kmh(&mut self, kmh: f64) {
         let goal = kmh / 3.6;

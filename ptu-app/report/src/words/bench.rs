@@ -243,6 +243,7 @@ wordings! {
         fsb_tcms: "TCMS lost", "TCMS 두절";
         fsb_ato: "ATO failed", "ATO 고장";
         fsb_not_permitted: "not permitted", "허가 없음";
+        fsb_stop_code: "stop code", "정지신호";
         test_mode: "test mode", "정비 시험 모드";
         differs: "differs", "불일치";
         same: "same", "일치";

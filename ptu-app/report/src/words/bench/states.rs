@@ -88,6 +88,7 @@ impl Bench {
                 self.fsb_ato,
                 self.fsb_not_permitted,
                 self.test_mode,
+                self.fsb_stop_code,
             ],
             Signal::IdentitySerial
             | Signal::IdentitySoftware

@@ -1,0 +1,84 @@
+//! Proof that the service brake works: whatever asks for it, the train must slow, or the emergency brake follows.
+
+use protocol::config::OverspeedConfig;
+use protocol::{Duration, Instant, Speed};
+
+use crate::timer::OnDelay;
+
+/// Scans over which the deceleration is measured (0.5 s).
+const DECEL_SCANS: usize = 50;
+
+/// What is known of the service brake in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Proof {
+    /// Deceleration, negative while the train gains speed, mm/s².
+    pub decel_mms2: i32,
+    /// The train slows as a braked one.
+    pub proved: bool,
+    /// It has had its time and the train does not slow.
+    pub ineffective: bool,
+}
+
+/// For what the service brake is asked in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Demand {
+    /// It is asked for, and the train must slow.
+    pub holds: bool,
+    /// The speed is one at which a deceleration is to be measured: not close to what the train is braked to.
+    pub measurable: bool,
+}
+
+/// Measures the deceleration from scan to scan.
+#[derive(Clone, Debug)]
+pub struct BrakeProof {
+    history: [f64; DECEL_SCANS],
+    at: usize,
+    effect_changes: OnDelay,
+    effective: bool,
+    demanded: OnDelay,
+}
+
+impl BrakeProof {
+    /// Standing, nothing asked for.
+    pub fn new() -> Self {
+        Self {
+            history: [0.0; DECEL_SCANS],
+            at: 0,
+            effect_changes: OnDelay::default(),
+            effective: false,
+            demanded: OnDelay::default(),
+        }
+    }
+
+    pub fn step(
+        &mut self,
+        now: Instant,
+        speed: Speed,
+        demand: Demand,
+        config: &OverspeedConfig,
+    ) -> Proof {
+        let before = core::mem::replace(&mut self.history[self.at], speed.mps());
+        self.at = (self.at + 1) % DECEL_SCANS;
+        let decel_mps2 = (before - speed.mps()) / (DECEL_SCANS as f64 * protocol::SCAN.as_secs());
+        let proved = decel_mps2 >= config.brake_proof_mps2;
+        // A pulse too many in a tachometer hides a deceleration, or feigns one, for as long as its speed window.
+        let delay = Duration::from_ms(u64::from(config.eb_delay_ms));
+        let differs = proved != self.effective;
+        if self.effect_changes.update(now, differs, delay) {
+            self.effective = proved;
+        }
+        let time = Duration::from_ms(u64::from(config.brake_proof_ms));
+        let waited = self.demanded.update(now, demand.holds, time);
+        Proof {
+            decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
+            proved,
+            ineffective: waited && demand.measurable && !self.effective,
+        }
+    }
+}
+
+impl Default for BrakeProof {
+    fn default() -> Self {
+        Self::new()
+    }
+}
