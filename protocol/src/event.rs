@@ -131,6 +131,7 @@ events! {
     TraRestored = 304 "tra_restored" Info "-" "TRA answers again" "TRA 복귀" "";
     WheelDiameter = 305 "wheel_diameter" Major "-" "Way by wheels and way between markers differ" "차륜 직경 오차" "difference, 0.01 %";
     PositionUnsure = 306 "position_unsure" Minor "marker_antenna" "No marker where one must be: position unsure" "위치 불확실" "PSM that did not come";
+    TraBounces = 307 "tra_bounces" Minor "tra" "The same marker again after its debounce time: TRA bounces" "TRA 접점 떨림" "after its first edge, ms";
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";

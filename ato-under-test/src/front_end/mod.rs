@@ -52,6 +52,8 @@ struct Received {
 pub struct FrontEnd {
     sensors: [PulseSensor; 2],
     marker_edges: Option<u8>,
+    /// Pulses that a bouncing TRA gives a second time, and whether they are of the test marker.
+    bounces: DelayQueue<(MarkerPulse, bool)>,
     held_signal: AntennaSignal,
     metres_per_pulse: f64,
 }
@@ -62,6 +64,7 @@ impl FrontEnd {
         Self {
             sensors: [PulseSensor::default(), PulseSensor::default()],
             marker_edges: None,
+            bounces: DelayQueue::default(),
             held_signal: AntennaSignal::default(),
             metres_per_pulse,
         }
@@ -103,7 +106,7 @@ impl FrontEnd {
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
         let received = self.receive(&frame, board.code(), built_in, faults);
-        let (marker, from_board) = self.marker(input.map(|(frame, _)| frame), board, faults);
+        let (marker, from_board) = self.marker(now, input.map(|(frame, _)| frame), board, faults);
         let tested = Inputs {
             alive: image.alive(),
             signal: match built_in {
@@ -189,6 +192,7 @@ impl FrontEnd {
     /// Marker antenna and TRA: the pulse, and whether it is of the test marker.
     fn marker(
         &mut self,
+        now: Instant,
         frame: Option<&IoInput>,
         board: &mut TestBoard,
         faults: &mut Faults,
@@ -210,13 +214,19 @@ impl FrontEnd {
             // TRA has four inputs; anything else on the wire is no marker.
             .filter(|pulse| matches!(pulse.marker, 1..=4));
         let Some(pulse) = pulse else {
-            return (None, false);
+            let again = self.bounces.pop(now);
+            return again.map_or((None, false), |(pulse, made)| (Some(pulse), made));
         };
         let deaf = match faults.at(Place::MarkerAntenna) {
             Some(Effect::Deaf { to_marker }) => pulse.marker == to_marker,
             _ => faults.loses(Place::MarkerAntenna),
         };
         let heard = !deaf && !faults.loses(Place::Tra);
+        if let (true, Some(Effect::Bounce { ms })) = (heard, faults.at(Place::Tra)) {
+            let again = MarkerPulse { age_us: 0, ..pulse };
+            let due = now + Duration::from_ms(u64::from(ms));
+            self.bounces.push(due, (again, made.is_some()));
+        }
         (heard.then_some(pulse), made.is_some())
     }
 }

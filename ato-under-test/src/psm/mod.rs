@@ -1,6 +1,7 @@
 //! PSM: where the train is in its section, from distance run, corrected at markers whose order and
 //! place are checked; and the health of TRA [S0 §3.3].
 
+mod debounce;
 mod locator;
 mod marker_check;
 mod odometer;
@@ -8,6 +9,7 @@ mod odometer;
 mod tra;
 mod wheel;
 
+pub use debounce::Debounce;
 pub use locator::Locator;
 pub use odometer::{Movement, Odometer};
 pub use tra::Tra;

@@ -14,7 +14,7 @@ use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
-use crate::psm::{Locator, Movement, Tra};
+use crate::psm::{Debounce, Locator, Movement, Tra};
 use crate::setup::Setup;
 use crate::signals::Inputs;
 use crate::twc::{TrainState, Twc};
@@ -38,6 +38,7 @@ pub struct Functions {
     pub atp: Atp,
     pub twc: Twc,
     pub locator: Locator,
+    debounce: Debounce,
     pub ato: Ato,
     pub ato_outputs: AtoOutputs,
     effort_output: EffortOutput,
@@ -54,6 +55,7 @@ impl Functions {
             atp: Atp::new(config),
             twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
             locator: Locator::new(config),
+            debounce: Debounce::default(),
             ato: Ato::new(config),
             ato_outputs: AtoOutputs::default(),
             effort_output: EffortOutput::default(),
@@ -65,7 +67,7 @@ impl Functions {
     /// One scan.
     pub fn scan(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         self.protect(now, around, log);
-        self.locate(now, log);
+        self.locate(now, around, log);
     }
 
     /// One cycle.
@@ -111,7 +113,7 @@ impl Functions {
             .scan(now, &self.inputs, context, &around.setup.config, log);
     }
 
-    fn locate(&mut self, now: Instant, log: &mut EventLog) {
+    fn locate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         let tachometers = self.atp.tachometers();
         let channel = tachometers.distance_channel();
         let pulses = &self.inputs.pulses[channel];
@@ -122,7 +124,12 @@ impl Functions {
             standstill: tachometers.standstill(),
             driven: self.atp.sequence().mode() == Mode::AutomaticRun,
         };
-        self.locator.step(now, movement, self.inputs.marker, log);
+        let dead = around.faults.dead(Place::MarkerDebounce);
+        let config = &around.setup.config.marker;
+        let marker = self
+            .debounce
+            .take(now, self.inputs.marker, dead, config, log);
+        self.locator.step(now, movement, marker, log);
     }
 
     pub fn aligned(&self, config: &UnitConfig) -> bool {

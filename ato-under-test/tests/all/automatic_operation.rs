@@ -144,7 +144,7 @@ fn an_extra_marker_is_reported_and_ignored() {
     for (extra, at_m, event) in [
         (3, 500.0, "marker_position"),
         (1, 600.0, "marker_position"),
-        (2, 741.9, "marker_order"),
+        (2, 765.0, "marker_position"),
         (4, 836.5, "marker_position"),
     ] {
         let mut journey = Journey::new(&[]);
@@ -153,6 +153,33 @@ fn an_extra_marker_is_reported_and_ignored() {
         let error_m = journey.stop_error_m();
         assert!(error_m.abs() < 0.3, "PSM{extra} at {at_m}: {error_m}");
         assert_eq!(journey.faults(), [event], "PSM{extra} at {at_m}");
+    }
+}
+
+/// The contact of TRA closes again: within the debounce time the same edge, later TRA's fault. The position is that of
+/// the first edge, and nobody blames the order of the markers.
+#[test]
+fn a_marker_that_bounces_counts_once_and_leaves_the_position_right() {
+    for (marker, again_m, faults) in [
+        (1, &[0.3, 0.7][..], &[][..]),
+        (2, &[0.4], &[]),
+        (1, &[3.0], &["tra_bounces"]),
+        (2, &[2.5, 4.0, 6.0], &["tra_bounces"]),
+        (3, &[1.5, 2.0], &["tra_bounces"]),
+    ] {
+        let mut journey = Journey::new(&[]);
+        let place_m = journey.section.markers_m[usize::from(marker) - 1];
+        for beyond_m in again_m {
+            journey.markers.push((marker, place_m + beyond_m));
+        }
+        let journey = journey.until_position(place_m + 8.0);
+        let error_m = journey.position_error_m;
+        assert!(error_m.abs() < 0.03, "PSM{marker} {again_m:?}: {error_m}");
+        assert_eq!(journey.bench.output.marker_count, marker, "{again_m:?}");
+        let mut journey = journey.run();
+        let error_m = journey.stop_error_m();
+        assert!(error_m.abs() < 0.3, "PSM{marker} {again_m:?}: {error_m}");
+        assert_eq!(journey.faults(), faults, "PSM{marker} {again_m:?}");
     }
 }
 

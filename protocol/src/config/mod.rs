@@ -182,6 +182,23 @@ pub struct MarkerConfig {
     pub wheel_spread: f64,
     /// Time between TRA tests, ms.
     pub tra_test_ms: u32,
+    /// Time within which the same marker again is the same edge, ms.
+    #[serde(default = "MarkerConfig::default_debounce_ms")]
+    pub debounce_ms: u32,
+    /// Time within which the same marker again is TRA's, and no marker of the track, ms.
+    #[serde(default = "MarkerConfig::default_bounce_ms")]
+    pub bounce_ms: u32,
+}
+
+/// Those of `sg100`, for configurations without the keys.
+impl MarkerConfig {
+    const fn default_debounce_ms() -> u32 {
+        100
+    }
+
+    const fn default_bounce_ms() -> u32 {
+        500
+    }
 }
 
 /// How far what the TEST board makes may be from what it is asked for.
@@ -284,6 +301,9 @@ impl UnitConfig {
         if self.receiver.level_min_mv >= self.receiver.level_max_mv {
             return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
         }
+        if self.marker.debounce_ms > self.marker.bounce_ms {
+            return Err(conflict("marker.debounce_ms must not be above bounce_ms"));
+        }
         self.ato.check()?;
         self.check_codes()
     }
@@ -314,6 +334,8 @@ impl UnitConfig {
             marker.window_share: 0.0, 0.2;
             marker.scatter_m: 0.001, 2.0;
             marker.wheel_spread: 0.0001, 0.1;
+            marker.debounce_ms: 0.0, 1000.0;
+            marker.bounce_ms: 0.0, 2000.0;
             test_board.carrier_tolerance_hz: 1.0, 100.0;
             test_board.rate_tolerance_hz: 0.01, 5.0;
             test_board.level_tolerance: 0.001, 0.5;

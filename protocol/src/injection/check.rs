@@ -60,6 +60,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
         Place::StopGuard
         | Place::ReleaseGuard
+        | Place::MarkerDebounce
         | Place::ArmStandstill
         | Place::ArmBrakes
         | Place::MotionGuard
@@ -79,8 +80,8 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::PowerSupply => &[DEAD, ("noise", 0.0, 1.0)],
         Place::Clock => &[("gain", 0.5, 2.0)],
         Place::Inverter => &[DEAD, ("gain", 0.0, 1.0)],
-        Place::Tra
-        | Place::TestMarker
+        Place::Tra => &[DEAD, BIT_ERRORS, ("bounce", 0.0, LONGEST_DELAY_MS)],
+        Place::TestMarker
         | Place::TwcAntenna
         | Place::FskReceiver
         | Place::FskTransmitter
@@ -117,6 +118,7 @@ fn parts(effect: Effect) -> (&'static str, Option<(&'static str, f64)>) {
         Effect::Offset { by } => ("offset", Some(("by", by))),
         Effect::Limit { to } => ("limit", Some(("to", to))),
         Effect::Delay { ms } => ("delay", Some(("ms", f64::from(ms)))),
+        Effect::Bounce { ms } => ("bounce", Some(("ms", f64::from(ms)))),
         Effect::Deaf { to_marker } => ("deaf", Some(("to_marker", f64::from(to_marker)))),
         Effect::Noise { per_s } => ("noise", Some(("per_s", per_s))),
         Effect::BitErrors { rate } => ("bit_errors", Some(("rate", rate))),
@@ -215,7 +217,9 @@ fn levels(fault: &FaultMode, low: f64, high: f64) -> Result<(), ConfigError> {
                 "levels has {level} twice, or effect.{key} has it already"
             )));
         }
-        if matches!(fault.effect, Effect::Delay { .. }) && libm::trunc(*level) != *level {
+        if matches!(fault.effect, Effect::Delay { .. } | Effect::Bounce { .. })
+            && libm::trunc(*level) != *level
+        {
             return Err(wrong(format!("levels has {level}: whole ms only")));
         }
     }

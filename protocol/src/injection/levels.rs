@@ -72,7 +72,7 @@ impl Effect {
             Self::Offset { by: number }
             | Self::Noise { per_s: number }
             | Self::BitErrors { rate: number } => self.with_number(number * share),
-            Self::Delay { ms } => self.with_number(f64::from(ms) * share),
+            Self::Delay { ms } | Self::Bounce { ms } => self.with_number(f64::from(ms) * share),
         })
     }
 
@@ -84,6 +84,7 @@ impl Effect {
             Self::Offset { .. } => Self::Offset { by: number },
             Self::Limit { .. } => Self::Limit { to: number },
             Self::Delay { .. } => Self::Delay { ms: number as u32 },
+            Self::Bounce { .. } => Self::Bounce { ms: number as u32 },
             Self::Noise { .. } => Self::Noise { per_s: number },
             Self::BitErrors { .. } => Self::BitErrors { rate: number },
         }

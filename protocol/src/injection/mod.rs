@@ -80,6 +80,8 @@ pub enum Place {
     StopGuard,
     /// Comparison of an acknowledgement with the emergency brake's cause.
     ReleaseGuard,
+    /// Debouncing of marker pulses.
+    MarkerDebounce,
     /// Standstill as a condition of arming.
     ArmStandstill,
     /// Applied brakes as a condition of arming, and of staying armed.
@@ -191,6 +193,11 @@ pub enum Effect {
     /// The value, contact or frame comes late.
     Delay {
         /// By this, ms.
+        ms: u32,
+    },
+    /// What comes through comes a second time.
+    Bounce {
+        /// Later by this, ms.
         ms: u32,
     },
     /// One marker does not come through.
