@@ -156,6 +156,12 @@ impl BenchSetup {
         UnitAboard::in_depot(self.rig(seed, power_at), self.unit(seed, power_at))
     }
 
+    /// The embedded unit on a bench, without a procedure.
+    #[cfg(test)]
+    pub(super) fn on_bench(&self, seed: u64, power_at: Instant) -> Bench<SimLink> {
+        Bench::new(self.rig(seed, power_at), self.unit(seed, power_at))
+    }
+
     /// What was drawn for this run.
     fn drawn(&self) -> Option<BenchDraw> {
         let scatter = self.scatter.as_ref()?;

@@ -18,6 +18,8 @@ mod early_end_tests;
 mod event;
 mod fault_watch;
 mod first_failure;
+#[cfg(test)]
+mod hazards;
 pub mod loading;
 mod observe;
 #[cfg(test)]
