@@ -120,8 +120,12 @@ events! {
     TachoNoise1 = 224 "tacho1_noise" Major "speed_sensor_1" "Speed from tachometer 1 jumps impossibly" "속도센서 1 잡음" "jump, cm/s";
     TachoNoise2 = 225 "tacho2_noise" Major "speed_sensor_2" "Speed from tachometer 2 jumps impossibly" "속도센서 2 잡음" "jump, cm/s";
     Rollback = 226 "rollback" Major "-" "Moving against the reverser" "후진 검지" "distance, cm";
+    TachoRatio = 227 "tacho_ratio" Minor "-" "Tachometers differ by a share of the way: worn wheel or missing teeth" "속도센서 비율 차이: 차륜 마모 또는 치 결손" "1 over 2, 0.01 %";
+    TachoShare1 = 228 "tacho1_share" Minor "speed_sensor_1" "Tachometer 1 counts another way than lies between markers: worn wheel if more, missing teeth if less" "속도센서 1 거리 비율 오차" "difference, 0.01 %";
+    TachoShare2 = 229 "tacho2_share" Minor "speed_sensor_2" "Tachometer 2 counts another way than lies between markers: worn wheel if more, missing teeth if less" "속도센서 2 거리 비율 오차" "difference, 0.01 %";
     EbRelayWelded = 230 "eb_relay_welded" Critical "eb_relay" "EB relay dropped but the brake line stays energised" "EB 계전기 융착" "";
     EbRelayOpen = 231 "eb_relay_open" Critical "eb_relay" "EB relay energised but the brake line stays dead" "EB 계전기 개방" "";
+    WheelSlip = 232 "wheel_slip" Info "-" "A wheel spins or slides: its speed changes faster than adhesion lets a train" "차륜 공전/활주" "acceleration, cm/s²";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
     MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";

@@ -17,6 +17,9 @@ const EDGES: usize = 128;
 const JUMP_SCANS: usize = 10;
 /// Jump allowed beyond the plausible acceleration, for the first pulses after standing, m/s.
 const JUMP_ALLOWANCE_MPS: f64 = 0.5;
+/// Jump that uneven teeth alone make, m/s.
+const TEETH_MPS: f64 = 0.1;
+const GRAVITY_MPS2: f64 = 9.81;
 
 #[derive(Clone, Debug)]
 pub struct Speedometer {
@@ -102,6 +105,15 @@ impl Speedometer {
 
     pub fn speed(&self) -> Speed {
         self.speed
+    }
+
+    /// Acceleration or deceleration that a jump over the compared scans stands for, m/s², where it is more than a wheel that
+    /// rolls can have at this adhesion.
+    pub fn accel_beyond(jump_mps: f64, adhesion: f64) -> Option<f64> {
+        let span_s = JUMP_SCANS as f64 * protocol::SCAN.as_secs();
+        let accel_mps2 = libm::fabs(jump_mps) / span_s;
+        let most_mps2 = adhesion * GRAVITY_MPS2 + TEETH_MPS / span_s;
+        (accel_mps2 > most_mps2).then_some(accel_mps2)
     }
 
     /// Whether a jump over the compared scans is more than a wheel can do.

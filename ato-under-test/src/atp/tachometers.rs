@@ -32,6 +32,8 @@ pub struct Tachometers {
     still: bool,
     /// Way by each channel at a speed that counts as standing, since the wheels last stood still, m.
     crept_m: [f64; 2],
+    /// The greater change of speed that no adhesion explains, m/s².
+    loose_mps2: Option<f64>,
     moved_m: f64,
     distance_channel: usize,
 }
@@ -60,12 +62,14 @@ impl Tachometers {
             silent: OnDelay::default(),
             still: false,
             crept_m: [0.0; 2],
+            loose_mps2: None,
             moved_m: 0.0,
             distance_channel: 0,
         }
     }
 
     pub fn step(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
+        self.loose_mps2 = None;
         for i in 0..2 {
             if self.from_board[i] != inputs.test_speed[i] {
                 self.from_board[i] = inputs.test_speed[i];
@@ -74,6 +78,10 @@ impl Tachometers {
             }
             let jump = self.meters[i].step(&inputs.pulses[i]);
             let impossible = Speedometer::impossible(jump, config.tacho.plausible_accel_mps2);
+            let loose = Speedometer::accel_beyond(jump, config.tacho.adhesion);
+            if loose.is_some_and(|mps2| mps2 > self.loose_mps2.unwrap_or_default()) {
+                self.loose_mps2 = loose;
+            }
             let event = [Event::TachoNoise1, Event::TachoNoise2][i];
             self.noise[i].step(now, impossible, jump, event, log);
         }
@@ -161,6 +169,11 @@ impl Tachometers {
     pub fn moves(&self, config: &UnitConfig) -> bool {
         let far = |way_m: &f64| libm::fabs(*way_m) > config.tacho.creep_m;
         self.speed().kmh() > config.tacho.standstill_kmh || self.crept_m.iter().any(far)
+    }
+
+    /// The greater change of speed of a wheel in this scan that no adhesion explains, m/s²: it spins or slides.
+    pub fn loose_mps2(&self) -> Option<f64> {
+        self.loose_mps2
     }
 
     /// The channel that counts the distance, 0 or 1.

@@ -16,7 +16,7 @@ use super::marker_check::{
     MarkerCheck, MarkerDetection, PendingDetection, PositionFix, Wheels, further_m, judge, place_m,
     window_m,
 };
-use super::{Movement, Odometer, WheelCalibration};
+use super::{MarkerSpan, Movement, Odometer, WheelCalibration};
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
 
@@ -47,6 +47,8 @@ pub struct Locator {
     /// Distance by which a marker that was not believed came early, m.
     early_m: f64,
     wheel_reported: bool,
+    /// Way that the marker of this scan ends, if it was believed and the wheels rolled.
+    span: Option<MarkerSpan>,
     last_marker: u8,
     count: u8,
 }
@@ -78,6 +80,7 @@ impl Locator {
             unsure_since_m: None,
             early_m: 0.0,
             wheel_reported: false,
+            span: None,
             last_marker: 0,
             count: 0,
         }
@@ -118,6 +121,7 @@ impl Locator {
         log: &mut EventLog,
     ) {
         self.odometer.step(&movement);
+        self.span = None;
         if let Some(pulse) = pulse {
             self.last_marker = pulse.marker;
             self.count = self.count.wrapping_add(1);
@@ -187,11 +191,12 @@ impl Locator {
             }
         }
         // A span on sliding wheels tells nothing of their diameter.
-        if let Some((from_m, distance_m)) =
+        if let Some((from, from_m, distance_m)) =
             self.span_from(&detection).filter(|_| self.slid_m == 0.0)
         {
-            self.wheel
-                .learn(place_m - from_m, detection.distance_m - distance_m);
+            let track_m = place_m - from_m;
+            self.span = Some(MarkerSpan { from, track_m });
+            self.wheel.learn(track_m, detection.distance_m - distance_m);
             self.report_wheel(now, log);
         }
         self.fix = PositionFix {
@@ -206,16 +211,16 @@ impl Locator {
         self.early_m = 0.0;
     }
 
-    /// Where a span that ends at a believed marker begins, place and distance told, m: at the marker of the
+    /// Where a span that ends at a believed marker begins, marker, place and distance told, m: at the marker of the
     /// fix, or, where only the distance from the section's start is known, at a marker that waits for
     /// a second one to agree with.
-    fn span_from(&self, end: &MarkerDetection) -> Option<(f64, f64)> {
+    fn span_from(&self, end: &MarkerDetection) -> Option<(u8, f64, f64)> {
         if self.fix.marker != 0 {
-            return Some((self.fix.place_m, self.fix.distance_m));
+            return Some((self.fix.marker, self.fix.place_m, self.fix.distance_m));
         }
         let first = self.pending.filter(|first| first.marker < end.marker)?;
         let place_m = place_m(self.section.as_ref()?, first.marker)?;
-        Some((place_m, first.distance_m))
+        Some((first.marker, place_m, first.distance_m))
     }
 
     fn report_wheel(&mut self, now: Instant, log: &mut EventLog) {
@@ -239,6 +244,11 @@ impl Locator {
             self.unsure_since_m = Some(self.odometer.distance_m());
             log.push(now, Event::PositionUnsure, i32::from(next));
         }
+    }
+
+    /// The way that this scan's marker ends.
+    pub fn span(&self) -> Option<MarkerSpan> {
+        self.span
     }
 
     /// Stopped within `tolerance_m` of the stop point, the last marker having been seen.

@@ -6,11 +6,13 @@ mod locator;
 mod marker_check;
 mod odometer;
 
+mod tacho_compare;
 mod tra;
 mod wheel;
 
 pub use debounce::Debounce;
 pub use locator::Locator;
 pub use odometer::{Movement, Odometer};
+pub use tacho_compare::{MarkerSpan, TachoCompare, WheelMotion};
 pub use tra::Tra;
 pub use wheel::WheelCalibration;

@@ -3,7 +3,7 @@
 //! A scan is protection and position, a cycle is station data, mode and ATO. Nothing here drives an output: the
 //! unit does that with what its functions ask for.
 
-use protocol::config::UnitConfig;
+use protocol::config::{TachoConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::injection::Place;
 use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
@@ -14,9 +14,9 @@ use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
-use crate::psm::{Debounce, Locator, Movement, Tra};
+use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
 use crate::setup::Setup;
-use crate::signals::Inputs;
+use crate::signals::{Inputs, MarkerPulse};
 use crate::twc::{TrainState, Twc};
 
 /// What the functions look at beside their inputs.
@@ -39,6 +39,7 @@ pub struct Functions {
     pub twc: Twc,
     pub locator: Locator,
     debounce: Debounce,
+    tacho_compare: TachoCompare,
     pub ato: Ato,
     pub ato_outputs: AtoOutputs,
     effort_output: EffortOutput,
@@ -56,6 +57,7 @@ impl Functions {
             twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
             locator: Locator::new(config),
             debounce: Debounce::default(),
+            tacho_compare: TachoCompare::new(config.metres_per_pulse()),
             ato: Ato::new(config),
             ato_outputs: AtoOutputs::default(),
             effort_output: EffortOutput::default(),
@@ -130,6 +132,28 @@ impl Functions {
             .debounce
             .take(now, self.inputs.marker, dead, config, log);
         self.locator.step(now, movement, marker, log);
+        self.compare_tachometers(now, marker, &around.setup.config.tacho, log);
+    }
+
+    fn compare_tachometers(
+        &mut self,
+        now: Instant,
+        marker: Option<MarkerPulse>,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        let tachometers = self.atp.tachometers();
+        let motion = WheelMotion {
+            pulses: self.inputs.pulses,
+            speeds: [0, 1].map(|channel| tachometers.channel(channel)),
+            loose_mps2: tachometers.loose_mps2(),
+        };
+        self.tacho_compare.step(now, &motion, config, log);
+        if let Some(pulse) = marker {
+            let span = self.locator.span();
+            self.tacho_compare
+                .pass_marker(now, pulse.marker, span, config, log);
+        }
     }
 
     pub fn aligned(&self, config: &UnitConfig) -> bool {

@@ -15,6 +15,7 @@ mod self_test;
 mod speed_control;
 mod stop_codes;
 mod stored_memory;
+mod tacho_share;
 mod tcms;
 mod test_mode;
 mod test_signals;

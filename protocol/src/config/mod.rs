@@ -91,6 +91,12 @@ pub struct TachoConfig {
     pub difference_ms: u32,
     /// Greatest believable acceleration of a wheel, m/s².
     pub plausible_accel_mps2: f64,
+    /// Adhesion on a dry rail: a wheel whose speed changes faster than it gives the train spins or slides.
+    #[serde(default = "TachoConfig::default_adhesion")]
+    pub adhesion: f64,
+    /// Share of the way by which the tachometers may differ from each other, and each from the track's way.
+    #[serde(default = "TachoConfig::default_share")]
+    pub share: f64,
     /// Speed that counts as standing, km/h [ASCE: 0.3 m/s].
     pub standstill_kmh: f64,
     /// How long it must last, ms.
@@ -103,9 +109,17 @@ pub struct TachoConfig {
 }
 
 impl TachoConfig {
-    /// That of `sg100`, for configurations without the key.
+    /// Those of `sg100`, for configurations without the keys.
     const fn default_creep_m() -> f64 {
         0.5
+    }
+
+    const fn default_adhesion() -> f64 {
+        0.35
+    }
+
+    const fn default_share() -> f64 {
+        0.03
     }
 }
 
@@ -301,6 +315,14 @@ impl UnitConfig {
         if self.receiver.level_min_mv >= self.receiver.level_max_mv {
             return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
         }
+        // A wheel may spin faster than adhesion lets it roll, never the other way round.
+        let rolls_mps2 = self.tacho.adhesion * 9.81;
+        within(
+            "tacho.plausible_accel_mps2",
+            self.tacho.plausible_accel_mps2,
+            rolls_mps2,
+            30.0,
+        )?;
         if self.marker.debounce_ms > self.marker.bounce_ms {
             return Err(conflict("marker.debounce_ms must not be above bounce_ms"));
         }
@@ -323,6 +345,8 @@ impl UnitConfig {
             tacho.standstill_kmh: 0.1, 3.0;
             tacho.rollback_m: 0.05, 5.0;
             tacho.creep_m: 0.05, 5.0;
+            tacho.adhesion: 0.05, 0.6;
+            tacho.share: 0.005, 0.2;
             overspeed.alarm_margin_kmh: 0.0, 20.0;
             overspeed.fsb_margin_kmh: 0.0, 20.0;
             overspeed.eb_margin_kmh: 0.0, 30.0;

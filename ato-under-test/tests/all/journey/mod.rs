@@ -20,6 +20,8 @@ pub struct Journey {
     pub accel_mps2: f64,
     /// Distance the wheels count over distance run.
     pub wheels_tell: f64,
+    /// Each tachometer's pulses over those of a sound one on these wheels.
+    pub channels_tell: [f64; 2],
     /// Marker and where its pulse comes, m.
     pub markers: Vec<(u8, f64)>,
     /// What traction and brake give of what is asked.
@@ -53,6 +55,7 @@ impl Journey {
             v_mps: 0.0,
             accel_mps2: 0.0,
             wheels_tell: 1.0,
+            channels_tell: [1.0; 2],
             markers: (1..).zip(section.markers_m).collect(),
             follows: 1.0,
             says: 1.0,
@@ -84,7 +87,8 @@ impl Journey {
         let before = self.x_m;
         self.v_mps = (self.v_mps + self.accel_mps2 * dt).max(0.0);
         self.x_m += self.v_mps * dt;
-        self.bench.speeds = [self.v_mps * self.wheels_tell; 2];
+        let wheel_mps = self.v_mps * self.wheels_tell;
+        self.bench.speeds = self.channels_tell.map(|tells| wheel_mps * tells);
         let passed = |&&(_, at): &&(u8, f64)| before < at && at <= self.x_m;
         if let Some(&(marker, at)) = self.markers.iter().find(passed) {
             let input = &mut self.bench.input;
