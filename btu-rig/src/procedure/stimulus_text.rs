@@ -81,6 +81,9 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
             };
             format!("{part} of car {car} cut {}", if on { "out" } else { "in" })
         }
+        Stimulus::Failure { what, car, on } => {
+            format!("{} on car {car}: {}", what.label(), on_off(on))
+        }
         Stimulus::Gradient {
             permille: Some(permille),
         } => format!("gradient {} ‰", number(permille)),

@@ -3,8 +3,10 @@
 use protocol::Instant;
 
 use crate::procedure::{Evidence, Refusal};
-use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition, WaysideCondition};
-use crate::train::TrainData;
+use crate::stimulus::{
+    CarFailure, CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition, WaysideCondition,
+};
+use crate::train::{EquipmentFaults, TrainData};
 
 use super::antenna::MAX_RATE_HZ;
 use super::ranges::{U16_MAX, in_range, positive};
@@ -132,7 +134,15 @@ impl Rig {
             }
             Stimulus::ControllerContacts { contacts } => self.desk.contacts = contacts,
             Stimulus::Switch { switch, on } => self.desk.switch(switch, on),
-            Stimulus::CutOut { what, car, on } => self.cut_out(what, car, on)?,
+            Stimulus::CutOut { what, car, on } => {
+                let place = self.place_of(car, what == CutOut::Inverter)?;
+                self.desk.cut_out(what, place, on);
+            }
+            Stimulus::Failure { what, car, on } => {
+                let place = self.place_of(car, what == CarFailure::InverterSilent)?;
+                self.made.set(what, place, on);
+                self.fail_equipment();
+            }
             Stimulus::Reverser { position } => {
                 in_range("reverser position", f64::from(position), -1.0, 1.0, "")?;
                 self.desk.reverser = position;
@@ -229,6 +239,8 @@ impl Rig {
         self.quiescent = true;
         self.tcms.rest();
         self.train.set_conditions(&self.conditions);
+        self.made = EquipmentFaults::default();
+        self.fail_equipment();
         self.antenna.off();
         self.codes_along = false;
         self.track = None;
@@ -288,23 +300,30 @@ impl Rig {
         Ok(())
     }
 
-    fn cut_out(&mut self, what: CutOut, car: u8, on: bool) -> Result<(), Refusal> {
+    /// Place from 0 of a car that people count from 1, of a motor car if its `inverter` is meant.
+    fn place_of(&self, car: u8, inverter: bool) -> Result<usize, Refusal> {
         let TrainData::Cars(data) = &self.train_data else {
             return Err(Refusal(
-                "a point mass has no cars to cut anything out on: take a train of cars".to_owned(),
+                "a point mass has no cars with equipment of their own: take a train of cars"
+                    .to_owned(),
             ));
         };
         let cars = data.cars.len();
         let place = usize::from(car).checked_sub(1).filter(|at| *at < cars);
         let place = place
             .ok_or_else(|| Refusal(format!("there is no car {car}: the train has 1 to {cars}")))?;
-        if what == CutOut::Inverter && !data.motor_cars().contains(place) {
+        if inverter && !data.motor_cars().contains(place) {
             return Err(Refusal(format!(
-                "car {car} is a trailer: it has no inverter to cut out"
+                "car {car} is a trailer: it has no inverter"
             )));
         }
-        self.desk.cut_out(what, place, on);
-        Ok(())
+        Ok(place)
+    }
+
+    /// Hands the train what is wrong with its equipment, injected or made.
+    pub(super) fn fail_equipment(&mut self) {
+        self.train
+            .set_faults(self.faults.equipment.with(&self.made));
     }
 
     fn drive_train(&mut self, on: bool) {

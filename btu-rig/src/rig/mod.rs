@@ -60,7 +60,7 @@ use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
-use crate::train::{Train, TrainData, TrainInputs, TrainState};
+use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use harness::Harness;
@@ -85,7 +85,7 @@ use sample::LatestSample;
 use subscription::Subscription;
 use tacho::Tacho;
 use tcms::{PairCars, pair_cars};
-use tcms_port::TcmsPort;
+use tcms_port::{TcmsPort, TrainSeen};
 use tester::Tester;
 use track::Track;
 use train_faults::{Injected, TrainFaults};
@@ -135,6 +135,8 @@ pub struct Rig {
     tcms_dropped: u64,
     injected: Injected,
     faults: TrainFaults,
+    /// What a procedure makes wrong with the train's equipment.
+    made: EquipmentFaults,
     desk: CabDesk,
     tester: Tester,
     /// Slowing down to a standstill, after which the rest is made quiescent.
@@ -195,6 +197,7 @@ impl Rig {
             tcms_dropped: 0,
             injected: Injected::new(seed),
             faults: TrainFaults::default(),
+            made: EquipmentFaults::default(),
             train_data,
             train_state: TrainState::default(),
             speeds: SpeedHistory::default(),
@@ -272,7 +275,12 @@ impl Rig {
     /// Frames of I/O rack, TCMS and wayside that are due.
     fn play_train(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.link.send(now, &self.io_input(now).into(), out);
-        if let Some(message) = self.tcms_port.step(now, self.tcms.view(), self.braking) {
+        let seen = TrainSeen {
+            braking: self.braking,
+            doors_closed: self.desk.doors_proved(),
+            hcr: self.desk.hcr_energised(),
+        };
+        if let Some(message) = self.tcms_port.step(now, self.tcms.view(), seen) {
             self.link.send(now, &message.into(), out);
         }
         self.wayside.step(now, &mut self.link, out);

@@ -50,7 +50,7 @@ impl Rig {
         let rims = Speed::from_mps(self.wheel.velocity_mps().abs());
         if let Some(faults) = self.injected.step(self.now, rims) {
             self.faults = faults;
-            self.train.set_faults(self.faults.equipment);
+            self.fail_equipment();
             self.desk.faults = self.faults.desk;
             self.tcms_port.fault = self.faults.tcms;
         }

@@ -9,6 +9,17 @@ use crate::tcms::TcmsView;
 /// Age of the last moved alive counter at which TCMS does not count as sending.
 const SILENT: Duration = Duration::from_ms(500);
 
+/// What TCMS sees of the train, beside what it does itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TrainSeen {
+    /// The service brake is applied.
+    pub braking: bool,
+    /// Door line, as its contact says.
+    pub doors_closed: bool,
+    /// Head control relay of the unit's cab.
+    pub hcr: bool,
+}
+
 #[derive(Debug)]
 pub struct TcmsPort {
     /// Condition of the link as the procedure wants it.
@@ -64,7 +75,7 @@ impl TcmsPort {
     }
 
     /// The message that is due this scan, if any.
-    pub fn step(&mut self, now: Instant, view: &TcmsView, braking: bool) -> Option<TcmsToAtc> {
+    pub fn step(&mut self, now: Instant, view: &TcmsView, seen: TrainSeen) -> Option<TcmsToAtc> {
         if now < self.next_due {
             return None;
         }
@@ -84,11 +95,14 @@ impl TcmsPort {
                 TcmsToAtcBits::BRAKE_NOT_RELEASED,
                 !view.found.not_released.is_empty(),
             ),
-            (TcmsToAtcBits::SERVICE_BRAKE_APPLIED, braking),
+            (TcmsToAtcBits::SERVICE_BRAKE_APPLIED, seen.braking),
             (TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED, view.line.applied),
             (TcmsToAtcBits::HOLDING_BRAKE_APPLIED, view.holding),
             (TcmsToAtcBits::POWERING_CUT, !view.power_cuts.is_empty()),
             (TcmsToAtcBits::FULL_SERVICE_BRAKE, view.brake.bcymsb),
+            (TcmsToAtcBits::TELLS_LINES, true),
+            (TcmsToAtcBits::DOORS_CLOSED, seen.doors_closed),
+            (TcmsToAtcBits::CAB_MANNED, seen.hcr),
         ] {
             bits.set(bit, on);
         }
@@ -111,7 +125,13 @@ mod tests {
         let view = TcmsView::default();
         let sent = |port: &mut TcmsPort, from_ms: u64| -> Vec<u8> {
             (0..10)
-                .filter_map(|i| port.step(Instant::from_ms(from_ms + 10 * i), &view, false))
+                .filter_map(|i| {
+                    port.step(
+                        Instant::from_ms(from_ms + 10 * i),
+                        &view,
+                        TrainSeen::default(),
+                    )
+                })
                 .map(|m| m.alive)
                 .collect()
         };

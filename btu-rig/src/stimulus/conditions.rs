@@ -93,6 +93,32 @@ impl TrainSwitch {
     }
 }
 
+/// What equipment of a car does wrong when a bench makes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CarFailure {
+    /// Its inverter does nothing and does not answer.
+    InverterSilent,
+    /// Its brake control unit does nothing and does not answer.
+    BrakeUnitSilent,
+    /// Its brake cylinders get no pressure of the service brake.
+    CylinderEmpty,
+    /// Its brake cylinders keep the pressure they have.
+    BrakeStuck,
+}
+
+impl CarFailure {
+    /// As people call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::InverterSilent => "inverter silent",
+            Self::BrakeUnitSilent => "brake control unit silent",
+            Self::CylinderEmpty => "brake cylinders empty",
+            Self::BrakeStuck => "brake stuck",
+        }
+    }
+}
+
 /// Equipment of a car that can be cut out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

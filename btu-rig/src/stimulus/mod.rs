@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use crate::lever::Lever;
 use crate::stored::{mode_switch, mps};
 
-pub use conditions::{CutOut, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition};
+pub use conditions::{
+    CarFailure, CutOut, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
+};
 pub use station::StationData;
 
 /// Steepest gradient that can be added to the track's, ‰.
@@ -152,6 +154,15 @@ pub enum Stimulus {
         /// Car, counted from 1 at the head.
         car: u8,
         /// Cut out.
+        on: bool,
+    },
+    /// Equipment of a car fails, or is in order again.
+    Failure {
+        /// What.
+        what: CarFailure,
+        /// Car, counted from 1 at the head.
+        car: u8,
+        /// Failed.
         on: bool,
     },
     /// Gradient added to the track's.

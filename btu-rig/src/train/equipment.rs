@@ -1,6 +1,8 @@
 //! Equipment between TCMS and the rails: inverters and brake control units, what they report, and their
 //! faults.
 
+use crate::stimulus::CarFailure;
+
 use super::{CarSet, PerCar};
 
 /// What the train's equipment reports to TCMS each scan. Efforts are sizes.
@@ -39,4 +41,34 @@ pub struct EquipmentFaults {
     pub brakes_stuck: CarSet,
     /// Share of the service brake's pressure that is lost on the way to each car's cylinders, 0..1.
     pub pressure_lost: PerCar,
+}
+
+impl EquipmentFaults {
+    /// What is wrong when these and `other` come together.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        let worse = |of: &PerCar, than: &PerCar| std::array::from_fn(|car| of[car].max(than[car]));
+        Self {
+            inverters_dead: self.inverters_dead.with(other.inverters_dead),
+            regeneration_lost: self.regeneration_lost.with(other.regeneration_lost),
+            brake_units_dead: self.brake_units_dead.with(other.brake_units_dead),
+            motor_lost: worse(&self.motor_lost, &other.motor_lost),
+            brakes_stuck: self.brakes_stuck.with(other.brakes_stuck),
+            pressure_lost: worse(&self.pressure_lost, &other.pressure_lost),
+        }
+    }
+
+    /// Makes equipment of the car at a place fail, or puts it in order again.
+    pub fn set(&mut self, what: CarFailure, car: usize, on: bool) {
+        match what {
+            CarFailure::InverterSilent => self.inverters_dead.set(car, on),
+            CarFailure::BrakeUnitSilent => self.brake_units_dead.set(car, on),
+            CarFailure::BrakeStuck => self.brakes_stuck.set(car, on),
+            CarFailure::CylinderEmpty => {
+                if let Some(lost) = self.pressure_lost.get_mut(car) {
+                    *lost = f64::from(u8::from(on));
+                }
+            }
+        }
+    }
 }

@@ -72,7 +72,8 @@ fn in_cab(stimulus: &Stimulus) -> bool {
 mod tests {
     use btu_rig::lever::Lever;
     use btu_rig::stimulus::{
-        CutOut, StationData, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
+        CarFailure, CutOut, StationData, TachoCondition, TcmsCondition, TrainSwitch,
+        WaysideCondition,
     };
     use protocol::Speed;
     use protocol::message::{DoorSide, ModeSwitch, RunningMode};
@@ -154,6 +155,11 @@ mod tests {
                 car: 1,
                 on: true,
             },
+            Stimulus::Failure {
+                what: CarFailure::BrakeStuck,
+                car: 1,
+                on: true,
+            },
             Stimulus::Gradient { permille: None },
             Stimulus::Reverser { position: 0 },
             Stimulus::Acknowledge,
@@ -203,6 +209,7 @@ mod tests {
             | Stimulus::Wayside(_)
             | Stimulus::ControllerVolts { .. }
             | Stimulus::ControllerContacts { .. }
+            | Stimulus::Failure { .. }
             | Stimulus::Gradient { .. }
             | Stimulus::Tcms(_)
             | Stimulus::AtoEnable { .. }
@@ -256,7 +263,7 @@ mod tests {
     fn a_stimulus_is_permitted_when_its_requirements_are_met() {
         let all = one_of_every_kind();
         let kinds: std::collections::HashSet<_> = all.iter().map(std::mem::discriminant).collect();
-        assert_eq!(kinds.len(), 42);
+        assert_eq!(kinds.len(), 43);
         let phases = [
             Phase::Offline,
             Phase::Connecting,

@@ -3,7 +3,7 @@
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::verb::{Param, Verb, needs, takes};
-use crate::stimulus::{CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TrainSwitch};
+use crate::stimulus::{CarFailure, CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TrainSwitch};
 use crate::train::MAX_CARS;
 
 /// A switch of the train.
@@ -12,6 +12,17 @@ macro_rules! train_switch {
         switch!($name, |on| Stimulus::Switch {
             switch: TrainSwitch::$switch,
             on,
+        })
+    };
+}
+
+/// Equipment of a car that fails.
+macro_rules! failure {
+    ($name:literal, $what:ident) => {
+        stimulus!($name, CAR_SWITCH, |args| Stimulus::Failure {
+            what: CarFailure::$what,
+            car: car(args)?,
+            on: args.flag("on", true),
         })
     };
 }
@@ -52,6 +63,10 @@ pub(super) static VERBS: &[Verb] = &[
         args,
         CutOut::Inverter
     )?),
+    failure!("train.inverter_silent", InverterSilent),
+    failure!("train.brake_unit_silent", BrakeUnitSilent),
+    failure!("train.cylinder_empty", CylinderEmpty),
+    failure!("train.brake_stuck", BrakeStuck),
     stimulus!(
         "train.gradient",
         &[takes("permille", ParamType::Number)],
@@ -75,7 +90,11 @@ const CAR_SWITCH: &[Param] = &[
 fn cut_out(args: &Args<'_>, what: CutOut) -> Result<Stimulus, String> {
     Ok(Stimulus::CutOut {
         what,
-        car: u8::try_from(args.int("car")?).map_err(|e| e.to_string())?,
+        car: car(args)?,
         on: args.flag("on", true),
     })
+}
+
+fn car(args: &Args<'_>) -> Result<u8, String> {
+    u8::try_from(args.int("car")?).map_err(|e| e.to_string())
 }
