@@ -181,6 +181,8 @@ impl Event {
                     (SelfTest::ATP_RECEIVER, "atp_receiver"),
                     (SelfTest::TRA, "tra"),
                     (SelfTest::TWC_MODEM, "fsk_board"),
+                    (SelfTest::TWC_CPU, "twc_cpu"),
+                    (SelfTest::TCMS_LINK, "rs485_link"),
                     (SelfTest::TEST_BOARD, "test_board"),
                     (SelfTest::EB_RELAY, "eb_relay"),
                     (SelfTest::MEMORY.union(SelfTest::CONFIGURATION), "atp_cpu"),
@@ -216,6 +218,11 @@ impl Event {
     /// Whether TCMS logs it, and not the unit.
     pub const fn by_tcms(self) -> bool {
         self.definition().code / 100 == 8
+    }
+
+    /// Whether the unit logs it of a restart of its own, by a part of it that failed.
+    pub const fn restarts_unit(self) -> bool {
+        matches!(self, Self::SupplyDip)
     }
 
     /// Whether it is about the train's own equipment, which stays broken whatever is tested next; what

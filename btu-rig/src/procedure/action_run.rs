@@ -38,6 +38,8 @@ pub(super) enum Problem {
     Failed(String),
     /// Data are missing, so nothing can be said.
     NoData(String),
+    /// The unit refused a request of the tester, or did not answer it.
+    Refused(String),
     /// The bench, the link or the operator did not do theirs.
     Bench(String),
 }
@@ -49,7 +51,9 @@ impl Problem {
 
     pub(super) fn message(&self) -> &str {
         match self {
-            Self::Failed(text) | Self::NoData(text) | Self::Bench(text) => text,
+            Self::Failed(text) | Self::NoData(text) | Self::Refused(text) | Self::Bench(text) => {
+                text
+            }
         }
     }
 }
@@ -130,10 +134,10 @@ impl ActionRun {
                     }
                 }
                 Action::Settle { within } => match driver.settled() {
-                    Err(refusal) => return Progress::Stuck(Problem::Bench(refusal.0)),
+                    Err(refusal) => return Progress::Stuck(Problem::Refused(refusal.0)),
                     Ok(false) if waited >= *within => {
                         let text = format!("motion or tester request not finished within {within}");
-                        return Progress::Stuck(Problem::Bench(text));
+                        return Progress::Stuck(Problem::Refused(text));
                     }
                     Ok(settled) => settled,
                 },

@@ -64,6 +64,8 @@ pub(super) struct MeasurementRun {
     value: Option<f64>,
     uncertainty: Option<f64>,
     item: Option<SelfTestItem>,
+    /// The unit does not make this test.
+    left_out: bool,
     missing_data: Option<MissingData>,
     done: bool,
     /// The step need not wait for it any longer.
@@ -121,8 +123,20 @@ impl MeasurementRun {
         self.item = item;
     }
 
+    /// The unit does not make this test: there is nothing to judge.
+    pub(super) fn leave_out(&mut self) {
+        self.left_out = true;
+    }
+
     /// Ends the measurement with the step's last scan and judges it.
     pub(super) fn finish(mut self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+        if self.left_out {
+            let measurement = Measurement {
+                verdict: Verdict::Skipped,
+                ..measured(measure, None, None, scan.captured)
+            };
+            return (measurement, String::new());
+        }
         if let Some(item) = self.item {
             let measurement = of_item(measure, &item);
             let message = self.message(measure, &measurement);

@@ -15,6 +15,10 @@ use super::{Driver, UnitEvent, Verdict};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
 const TOO_LATE: Duration = CYCLE;
+/// After a request that was refused, what the unit says about it may still be on its way for so long.
+const SAYS_WHY_WITHIN: Duration = Duration::from_ms(150);
+/// And its log, for so long.
+const LOGS_WHY_WITHIN: Duration = Duration::from_ms(2_000);
 /// A step waits no longer for the unit's log; whoever reads the log gives up before.
 const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
@@ -32,6 +36,10 @@ pub(super) struct StepRun {
     named_part: Option<LruId>,
     /// The step was given up: its remaining expectations are not judged.
     given_up: bool,
+    /// When a request of it was refused.
+    refused_at: Option<Instant>,
+    /// The unit has restarted by itself in this procedure, as its log says: it refuses what it no longer knows.
+    restarted: bool,
     /// Nothing is measured any more: what is seen now is not the unit's doing.
     broken_off: bool,
     /// How far the bench was behind at most.
@@ -65,6 +73,8 @@ impl StepRun {
             logged: EventSet::default(),
             named_part: None,
             given_up: false,
+            refused_at: None,
+            restarted: false,
             broken_off: false,
             behind: Duration::ZERO,
             log: LogState::Read,
@@ -114,6 +124,11 @@ impl StepRun {
         ));
     }
 
+    /// Takes note that the unit has restarted by itself.
+    pub(super) fn note_restart(&mut self) {
+        self.restarted = true;
+    }
+
     /// Ends the step as it stands, with a reason.
     pub(super) fn give_up(&mut self, problem: Problem) {
         self.hold(problem);
@@ -158,6 +173,15 @@ impl StepRun {
             .any(|(problem, _)| problem.is_failure())
     }
 
+    /// Whether a step that was given up is over. A unit that refused a request may have restarted: its log says so.
+    fn is_told_why(&self, now: Instant) -> bool {
+        let Some(since) = self.refused_at.filter(|_| !self.broken_off) else {
+            return true;
+        };
+        let waited = now.since(since);
+        waited >= LOGS_WHY_WITHIN || waited >= SAYS_WHY_WITHIN && self.log == LogState::Read
+    }
+
     /// Whether the step is held back until the unit's log is read: what it logged in the step's time is
     /// not known before.
     fn waits_for_log(&mut self, now: Instant) -> bool {
@@ -185,7 +209,7 @@ impl StepRun {
         out: &mut Vec<RunEvent>,
     ) -> bool {
         if self.given_up {
-            return true;
+            return self.is_told_why(scan.now);
         }
         let was_done = self.actions_done;
         self.look(step, scan, was_done);
@@ -199,14 +223,18 @@ impl StepRun {
                     self.actions_done = Some(scan.now);
                     self.take_self_test(step, driver);
                 }
-                Progress::Stuck(problem) => self.give_up(problem),
+                Progress::Stuck(problem) => {
+                    let refused = matches!(problem, Problem::Refused(_));
+                    self.refused_at = refused.then_some(scan.now);
+                    self.give_up(problem);
+                }
             }
             if self.actions_done.is_some() && !self.actions.sample_is_stale(scan.now) {
                 self.look(step, scan, self.actions_done);
             }
         }
         if self.given_up {
-            return true;
+            return self.is_told_why(scan.now);
         }
         if self.is_complete(step, scan.now) {
             for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
@@ -229,9 +257,15 @@ impl StepRun {
 
     /// Takes the results of a self-test that the actions asked for.
     fn take_self_test(&mut self, step: &Step, driver: &dyn Driver) {
+        let item = |bit: u8| driver.self_test_item(SelfTest::from_bits_retain(1 << bit));
+        let any = (0..u16::BITS as u8).any(|bit| item(bit).is_some());
         for (run, measure) in self.measurements.iter_mut().zip(&step.measures) {
             if let What::SelfTest { bit } = measure.what {
-                run.take_item(driver.self_test_item(SelfTest::from_bits_retain(1 << bit)));
+                match item(bit) {
+                    // A unit of an older version makes fewer tests.
+                    None if any => run.leave_out(),
+                    made => run.take_item(made),
+                }
             }
         }
     }
@@ -262,7 +296,7 @@ impl StepRun {
                 false => run.finish(measure, scan),
             };
             match measurement.verdict {
-                Verdict::Passed => {}
+                Verdict::Passed | Verdict::Skipped => {}
                 Verdict::Failed => {
                     if let What::SelfTest { bit } = measure.what {
                         let part = Event::SelfTestFailed.suspect(1 << bit);
@@ -295,7 +329,7 @@ impl StepRun {
             }
         }
         StepEnd {
-            verdict: verdict(&self.problems, aborted),
+            verdict: verdict(&self.problems, self.restarted, aborted),
             message: message(&self.problems, step, aborted),
             bench_time,
             measurements,
@@ -345,13 +379,14 @@ pub(super) fn logged(entry: &UnitEvent) -> String {
     )
 }
 
-fn verdict(problems: &[(Problem, u32)], aborted: bool) -> Verdict {
+fn verdict(problems: &[(Problem, u32)], restarted: bool, aborted: bool) -> Verdict {
     let any = |wanted: fn(&Problem) -> bool| problems.iter().any(|(problem, _)| wanted(problem));
+    let refused = any(|p| matches!(p, Problem::Refused(_)));
     if aborted {
         Verdict::Aborted
-    } else if any(|p| matches!(p, Problem::Bench(_))) {
+    } else if any(|p| matches!(p, Problem::Bench(_))) || refused && !restarted {
         Verdict::Error
-    } else if any(Problem::is_failure) {
+    } else if refused || any(Problem::is_failure) {
         Verdict::Failed
     } else if any(|p| matches!(p, Problem::NoData(_))) {
         Verdict::Error

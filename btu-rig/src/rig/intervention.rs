@@ -7,10 +7,16 @@ use crate::procedure::plan::Connection;
 
 impl Rig {
     /// What was done to the unit on a train since this was last asked, by others than this tester, after which nothing
-    /// can be judged: it was started again, or ended the session by itself. On a bench nobody else is there.
+    /// can be judged: it was started again, or ended the session by itself. On a bench nobody else is there. A unit that
+    /// restarts by itself says so in its log, which is read first.
     pub fn take_intervention(&mut self) -> Option<String> {
         let restarts = self.tester.restarts();
-        let restarted = std::mem::replace(&mut self.restarts_told, restarts) != restarts;
+        let told = self.tester.restarted_itself(self.now);
+        let new = told.filter(|_| self.restarts_told != restarts);
+        let restarted = new == Some(false);
+        if new.is_some() {
+            self.restarts_told = restarts;
+        }
         let ended = self.tester.take_session_ended();
         if self.connection() != Some(Connection::Ptu) {
             return None;

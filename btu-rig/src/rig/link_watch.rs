@@ -15,6 +15,10 @@ const FIRST_CONTACT: Duration = Duration::from_ms(3000);
 /// Silence that is an error: longer than the link takes to hear a unit again that was started anew.
 const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 
+/// Silence that is an error while frames of the unit come that do not continue those before them: it starts again, and
+/// may do so while it is about to be heard again.
+const STARTING: Duration = Duration::from_ms(10_000);
+
 /// Channels that are watched, by their names.
 const WATCHED: [(Channel, &str); 2] = [(Channel::Io, "I/O"), (Channel::Ptu, "PTU")];
 
@@ -27,29 +31,41 @@ pub struct LinkWatch {
     refused: [Refused; WATCHED.len()],
 }
 
-/// Frames refused: all, and those for their sequence number, as the frames of a unit that starts again
-/// are.
+/// Frames refused: all, and those for their sequence number or stamp, as the frames of a unit that starts
+/// again are.
 #[derive(Clone, Copy, Debug, Default)]
 struct Refused {
     total: u64,
-    sequence: u64,
+    anew: u64,
 }
 
 impl Refused {
     fn until_now(counters: &Counters) -> Self {
         Self {
             total: counters.rejected_total(),
-            sequence: counters.rejected(Reject::Sequence),
+            anew: counters.rejected(Reject::Sequence) + counters.rejected(Reject::Stamp),
         }
     }
 
-    /// What to say of those refused since `before`.
-    fn said(self, before: Self) -> Option<String> {
-        let (total, sequence) = (self.total - before.total, self.sequence - before.sequence);
+    fn since(self, before: Self) -> Self {
+        Self {
+            total: self.total - before.total,
+            anew: self.anew - before.anew,
+        }
+    }
+
+    /// Most of them are of a unit that starts again.
+    fn of_a_start(self) -> bool {
+        2 * self.anew > self.total
+    }
+
+    /// What to say of them.
+    fn said(self) -> Option<String> {
+        let Self { total, anew } = self;
         match total {
             0 => None,
-            _ if 2 * sequence > total => Some(format!(
-                "while {sequence} frames did not continue those before them — the unit starts again and again: check its supply"
+            _ if self.of_a_start() => Some(format!(
+                "while {anew} frames did not continue those before them — the unit starts again and again: check its supply"
             )),
             _ => Some(format!(
                 "while {total} frames were refused — check the line between tester and unit"
@@ -123,10 +139,16 @@ impl LinkWatch {
         watched.find_map(|((&(channel, name), since), refused_before)| {
             let heard = link.last_heard(channel).unwrap_or(begun).max(since?);
             let silence = now.since(heard);
-            (silence > SILENCE).then(|| {
+            let refused = Refused::until_now(link.counters()).since(refused_before);
+            let at_most = if refused.of_a_start() {
+                STARTING
+            } else {
+                SILENCE
+            };
+            (silence > at_most).then(|| {
                 let seconds = silence.as_secs();
                 let silent = format!("unit silent for {seconds:.1} s on the {name} channel");
-                match Refused::until_now(link.counters()).said(refused_before) {
+                match refused.said() {
                     None => silent,
                     Some(refused) => format!("{silent}, {refused}"),
                 }

@@ -1,5 +1,6 @@
 //! The tester's session on the PTU channel: who the unit is, keep-alive, requests, event log.
 
+use protocol::event::Event;
 use protocol::link::Link;
 use protocol::message::{
     ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, SelfTestItem, Status,
@@ -43,6 +44,8 @@ pub struct Tester {
     /// Those are not read.
     leaves_old: bool,
     restarts: u32,
+    /// Its log says that it restarted by itself, since it was started.
+    restarted_itself: bool,
     exchange: Exchange,
     log: LogReader,
     /// The log is not read: what is stored is, instead.
@@ -71,6 +74,7 @@ impl Tester {
             events_at_contact: None,
             leaves_old: false,
             restarts: 0,
+            restarted_itself: false,
             exchange: Exchange::new(session),
             log: LogReader::default(),
             holds_log: false,
@@ -125,7 +129,11 @@ impl Tester {
             }
             Message::SelfTestItem(item) => self.exchange.on_self_test_item(item),
             Message::SelfTestEnd(end) => self.exchange.on_self_test_end(end),
-            Message::LogEntry(entry) => self.log.on_entry(now, entry),
+            Message::LogEntry(entry) => {
+                let event = Event::from_code(entry.code);
+                self.restarted_itself |= event.is_some_and(Event::restarts_unit);
+                self.log.on_entry(now, entry);
+            }
             Message::LogEnd(end) => self.on_log_end(now, end),
             _ => {}
         }
@@ -172,6 +180,7 @@ impl Tester {
 
     fn on_restart(&mut self, now: Instant) {
         self.restarts += 1;
+        self.restarted_itself = false;
         self.logged = None;
         self.events_at_contact = Some(0);
         self.identify_due = now;
@@ -293,6 +302,12 @@ impl Tester {
     /// Times the unit was started again.
     pub fn restarts(&self) -> u32 {
         self.restarts
+    }
+
+    /// Whether it restarted by itself when it was started last, as its log says; `None` until that is read.
+    pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
+        let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
+        read.then_some(self.restarted_itself)
     }
 
     /// Log entries not yet taken.

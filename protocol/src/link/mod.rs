@@ -355,4 +355,30 @@ mod tests {
         }
         assert!(unit.counters().rejected(Reject::Sequence) > 12);
     }
+
+    /// Method: a unit that lives for 300 ms, and again 100 ms later, with numbers and clock from the beginning.
+    #[test]
+    fn a_sender_that_is_started_again_soon_is_not_out_of_place() {
+        let mut bench = Link::new(End::Bench);
+        let mut now = Instant::from_ms(10_000);
+        for frames in [30, 60] {
+            let mut unit = Link::new(End::Unit);
+            for i in 0..frames {
+                now += Duration::from_ms(10);
+                let mut frame = Vec::new();
+                let status = crate::message::Status::default();
+                unit.send(Instant::from_ms(10 * i), &status.into(), &mut frame);
+                bench.push(&frame);
+                while bench.poll(now).is_some() {}
+            }
+            now += Duration::from_ms(100);
+        }
+        let counters = bench.counters();
+        assert!(counters.rejected(Reject::Sequence) > 20);
+        assert!(
+            counters.accepted(Channel::Ptu) > 50,
+            "the second is heard, too"
+        );
+        assert_eq!(counters.out_of_place(Channel::Ptu), 0);
+    }
 }

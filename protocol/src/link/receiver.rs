@@ -7,6 +7,9 @@ use crate::{Duration, Instant};
 pub const MAX_AHEAD: u16 = 1000;
 /// How much longer than the fastest frame so far a frame may take.
 pub const MAX_DELAY: Duration = Duration::from_ms(500);
+/// A sender's clock that has fallen behind by this much since its last accepted frame stood still: the sender was
+/// started again, and the frames refused since then began with it.
+pub const STOOD: Duration = Duration::from_ms(100);
 /// Silence after which a channel accepts any sequence number, as after a restart of its sender.
 pub const RESYNC: Duration = Duration::from_ms(1000);
 /// The shortest transit is taken to be one millisecond longer each time this has passed: 200 ppm, so that
@@ -97,7 +100,11 @@ impl Receiver {
         Ok(Acceptance {
             receiver,
             gap: ahead - 1,
-            out_of_place: last.out_of_place,
+            out_of_place: if delay_ms >= STOOD.as_ms() as i32 {
+                0
+            } else {
+                last.out_of_place
+            },
         })
     }
 

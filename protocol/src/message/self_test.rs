@@ -22,6 +22,10 @@ wire_bits! {
         TWC_MODEM = 6,
         /// TEST board.
         TEST_BOARD = 7,
+        /// TWC CPU did not hand on its test frame.
+        TWC_CPU = 8,
+        /// RS-485 link to TCMS did not hear its own test frame.
+        TCMS_LINK = 9,
     }
 }
 

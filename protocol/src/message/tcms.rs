@@ -21,6 +21,12 @@ wire_bits! {
         POWERING_CUT = 5,
         /// TCMS orders the full service brake, for whatever cause.
         FULL_SERVICE_BRAKE = 6,
+        /// TCMS tells what it reads of the train lines in the bits below; else they say nothing.
+        TELLS_LINES = 7,
+        /// TCMS reads the door line as proved closed.
+        DOORS_CLOSED = 8,
+        /// TCMS reads the head control relay of the unit's cab as picked up.
+        CAB_MANNED = 9,
     }
 }
 

@@ -85,6 +85,8 @@ pub struct Runner {
     not_kept_before: Option<u64>,
     /// Self-test items that failed, as the unit said while steps were run.
     self_test: SelfTest,
+    /// The unit has restarted by itself, as its log says.
+    restarted: bool,
     /// Reported events that no step provoked.
     reported: usize,
     /// Those that were not, because there were too many.
@@ -116,6 +118,7 @@ impl Runner {
             evidence: Evidence::default(),
             not_kept_before: None,
             self_test: SelfTest::empty(),
+            restarted: false,
             reported: 0,
             not_reported: 0,
             leaving: false,

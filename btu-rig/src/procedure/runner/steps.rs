@@ -107,7 +107,11 @@ impl Runner {
         });
         self.provoked = self.provoked.union(step.provoked().collect());
         if let Phase::Steps { live, .. } = &mut self.phase {
-            *live = Some(StepRun::new(step, now));
+            let mut run = StepRun::new(step, now);
+            if self.restarted {
+                run.note_restart();
+            }
+            *live = Some(run);
         }
         true
     }

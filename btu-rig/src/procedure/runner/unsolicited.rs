@@ -35,11 +35,22 @@ impl Runner {
     /// Hands the unit's events to the live step and reports those that no step provoked.
     ///
     /// Only while steps run: power-up, making safe and what the last procedure left behind cause
-    /// events of their own.
+    /// events of their own. A restart of the unit by itself counts at any time.
     pub(super) fn take_unit_events(&mut self, events: &[UnitEvent]) {
+        let restarts =
+            |entry: &&UnitEvent| Event::from_code(entry.code).is_some_and(Event::restarts_unit);
         let Phase::Steps { live, .. } = &mut self.phase else {
+            for entry in events.iter().filter(restarts) {
+                self.restarted = true;
+                self.verdict = self.verdict.and(Verdict::Failed);
+                self.out.push(RunEvent::UnsolicitedEvent(*entry));
+            }
             return;
         };
+        self.restarted |= events.iter().any(|entry| restarts(&entry));
+        if let Some(step) = live.as_mut().filter(|_| self.restarted) {
+            step.note_restart();
+        }
         for entry in events {
             let known = Event::from_code(entry.code);
             if let (Some(step), Some(event)) = (live.as_mut(), known) {

@@ -1,6 +1,7 @@
 //! Measurements of a step and their limits.
 
 use btu_rig::procedure::{RunOptions, Verdict};
+use protocol::message::SelfTest;
 use protocol::signal::Signal;
 
 use super::stand_in::{HEAD, run, run_with};
@@ -165,4 +166,26 @@ step('none', do = wait(ms(100)), measure = [change('pulses', marker_count, high 
     assert_eq!(outcome.finished(), (Verdict::Passed, ""));
     let speed = outcome.steps()[2].measurements[1].value;
     assert_eq!(speed, Some(-100.0));
+}
+
+/// A unit of an older version makes fewer items: those it does not make are left out, and say nothing.
+#[test]
+fn an_item_of_the_self_test_that_the_unit_does_not_make_is_left_out() {
+    let script = format!("{HEAD}step('a', do = ptu.self_test())");
+    let known = SelfTest::from_bits_retain(0xFF);
+    let outcome = run(&script, |world| world.fake.self_test = known);
+    let step = outcome.steps()[0];
+    assert_eq!(step.verdict, Verdict::Passed, "{}", step.message);
+    for measurement in &step.measurements {
+        let new = ["self_test.twc_cpu", "self_test.tcms_link"].contains(&measurement.name.as_str());
+        let expected = if new {
+            (Verdict::Skipped, None)
+        } else {
+            (Verdict::Passed, Some(0.0))
+        };
+        assert_eq!((measurement.verdict, measurement.value), expected);
+    }
+    // A unit that says nothing of any is another matter.
+    let silent = run(&script, |_| {});
+    assert_eq!(silent.steps()[0].verdict, Verdict::Error);
 }

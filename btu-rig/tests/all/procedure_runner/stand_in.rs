@@ -14,7 +14,7 @@ use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::line::Line;
-use protocol::message::{EbCause, Mode};
+use protocol::message::{EbCause, Mode, SelfTest, SelfTestItem};
 use protocol::signal::{Sample, Signal};
 use protocol::{Instant, SCAN, Speed};
 
@@ -38,6 +38,10 @@ pub struct Fake {
     pub applied: Vec<Stimulus>,
     pub refuse: bool,
     pub unsettled: bool,
+    /// What the unit refuses.
+    pub refusal: Option<&'static str>,
+    /// Items of the self-test that the unit makes, all of them passed.
+    pub self_test: SelfTest,
     pub made_safe: u32,
     pub never_safe: bool,
     pub evidence: Evidence,
@@ -53,7 +57,18 @@ impl Driver for Fake {
     }
 
     fn settled(&mut self) -> Result<bool, Refusal> {
-        Ok(!self.unsettled)
+        match self.refusal {
+            Some(refusal) => Err(Refusal(refusal.to_owned())),
+            None => Ok(!self.unsettled),
+        }
+    }
+
+    fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
+        self.self_test.contains(item).then_some(SelfTestItem {
+            item,
+            passed: 1,
+            ..SelfTestItem::default()
+        })
     }
 
     fn make_safe(&mut self, _: Instant) {

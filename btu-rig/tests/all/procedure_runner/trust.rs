@@ -249,9 +249,53 @@ fn an_event_that_lost_frames_explain_is_an_error_and_no_fault() {
 #[test]
 fn a_failed_self_test_is_reported_item_by_item_and_is_no_pass() {
     let outcome = run(&format!("{HEAD}step('a', do = wait(s(1)))"), |world| {
-        world.fake.evidence.self_test = SelfTest::MEMORY | SelfTest::from_bits_retain(1 << 9);
+        world.fake.evidence.self_test = SelfTest::MEMORY | SelfTest::from_bits_retain(1 << 12);
     });
-    let message = "the unit says its self-test failed: Memory pattern test; bit 9";
+    let message = "the unit says its self-test failed: Memory pattern test; bit 12";
     assert_eq!(outcome.summary(), [("a", Verdict::Passed, "")]);
     assert_eq!(outcome.finished(), (Verdict::Failed, message));
+}
+
+/// Goal: one fault, one part: what a unit refuses because it restarted by itself is its failure, and what it refuses
+/// otherwise is none. Method: a refused request, and the unit's log read a moment later, with the restart in it or without.
+#[test]
+fn what_a_unit_refuses_after_a_restart_of_its_own_is_a_failure_with_the_part_it_names() {
+    let script = format!("{HEAD}step('a', do = ptu.code('75'), suspect = 'test_board')\nstep('b')");
+    let text = "unit refused the test code: not_armed";
+    for (dips, expected) in [(true, Verdict::Failed), (false, Verdict::Error)] {
+        let outcome = run(&script, |world| {
+            world.fake.refusal = Some(text);
+            if world.ms() == 100 && dips {
+                world.log(Event::SupplyDip);
+            }
+        });
+        let steps = outcome.steps();
+        assert_eq!(steps[0].verdict, expected, "{}", steps[0].message);
+        assert!(steps[0].message.contains(text), "{}", steps[0].message);
+        let part = steps[0].suspect.as_ref().map(|part| part.as_str());
+        assert_eq!(part, Some(if dips { "power_supply" } else { "test_board" }));
+        assert_eq!(outcome.finished().0, expected);
+    }
+}
+
+#[test]
+fn a_restart_of_the_units_own_counts_beside_the_steps_too() {
+    let script = "procedure(title = 'x', setup = wait(s(1)), cleanup = wait(s(1)))\nstep('a')";
+    for at_ms in [500, 1500] {
+        let outcome = run(script, |world| {
+            if world.ms() == at_ms {
+                world.log(Event::SupplyDip);
+                world.log(Event::TcmsLost);
+            }
+        });
+        let told = outcome.events.iter();
+        let told: Vec<_> = told
+            .filter_map(|event| match event {
+                RunEvent::UnsolicitedEvent(entry) => Event::from_code(entry.code),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(told, [Event::SupplyDip], "{at_ms}");
+        assert_eq!(outcome.finished().0, Verdict::Failed, "{at_ms}");
+    }
 }

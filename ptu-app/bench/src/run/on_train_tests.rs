@@ -331,3 +331,14 @@ fn a_procedure_of_a_bench_is_skipped_on_a_train() {
     );
     assert!(!came.steps.is_empty());
 }
+
+/// Goal: a unit that restarts by itself says so, and is the finding: not an error, as a supply that somebody switched is.
+#[test]
+fn a_supply_that_dips_on_a_train_is_a_fault_of_the_unit() {
+    let laptop = Laptop::new(&["power_supply.dips"]);
+    let mut session = laptop.on_train(Happens::Nothing);
+    let came = laptop.run("ptu/overspeed", &mut session);
+    let what = format!("{} {:?}", came.message, came.steps);
+    assert_eq!(came.verdict, Some(Verdict::Failed), "{what}");
+    assert!(came.faults.contains(&"supply_dip".to_owned()), "{what}");
+}
