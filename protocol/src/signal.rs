@@ -231,6 +231,9 @@ signals! {
     TwcSection "twc_section" "" UNITY, 0 ..= 65535, Unit, "Section number in the station data in force; 0 = none";
     TwcLoop "twc_loop" "" UNITY, 0 ..= 65535, Unit, "Loop number in the station data in force; 0 = none";
     TwcTrain "twc_train" "" UNITY, 0 ..= 65535, Unit, "Train number in the station data in force; 0 = none";
+    TcmsTellsLines "tcms_tells_lines" "" Kind::Bit, 0 ..= 1, Unit, "TCMS tells the unit how it reads the train lines";
+    TcmsDoors "tcms_doors" "" DOORS, 0 ..= 1, Unit, "Door train line as TCMS tells the unit";
+    TcmsHcr "tcms_hcr" "" Kind::Bit, 0 ..= 1, Unit, "Head control relay of the unit's cab as TCMS tells the unit";
     TwcSent "twc_sent" "" UNITY, 0 ..= 65535, Unit, "TWC answers the unit sent into the loop";
 }
 

@@ -118,6 +118,7 @@ mod tests {
             unsafe_: false,
             place: Place::AtpAntenna,
             effect: Effect::Dead,
+            out_of_reach: None,
             onset_s: 0.0,
             car: None,
             occurs: Occurrence::AboveSpeed { kmh },

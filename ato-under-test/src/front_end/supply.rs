@@ -94,6 +94,7 @@ mod tests {
             unsafe_: false,
             place,
             effect,
+            out_of_reach: None,
             onset_s: 0.0,
             car: None,
             occurs: Occurrence::Always,

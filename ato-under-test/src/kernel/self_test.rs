@@ -17,7 +17,7 @@ use crate::timer::OnDelay;
 const LINE_ENERGISED_MS: i32 = 190;
 /// Time for which the EB relay is dropped at most on request; its supervision takes 500 ms for a failure.
 const RELAY_DROPPED: Duration = Duration::from_ms(450);
-/// Tests on request of TRA, modem and TEST board, one in a scan.
+/// Tests on request of TRA, modem, TEST board, TWC CPU and RS-485 link, one in a scan.
 const TESTS: u16 = 10;
 /// Time beyond that of detecting a code that the receiver may take on request, ms, and how long it is waited for.
 const DECODE_BEYOND_MS: u32 = 100;
@@ -35,6 +35,10 @@ pub struct SelfTestInputs {
     pub tra_answers: bool,
     /// The TWC modem heard its own test frame.
     pub modem_hears: bool,
+    /// The TWC CPU handed on the test frame that was put in behind the modem, unchanged and in time.
+    pub twc_cpu_hands_on: bool,
+    /// The RS-485 link to TCMS heard its own test frame.
+    pub tcms_link_hears: bool,
     pub board_answers: bool,
     pub line_energised: bool,
     /// Cells of the tested memory that do not keep what is written.
@@ -54,6 +58,8 @@ struct Run {
     tra_answers: u16,
     modem_frames: u16,
     board_answers: u16,
+    twc_cpu_frames: u16,
+    tcms_link_frames: u16,
     energised_since: Option<Instant>,
     energised: Duration,
     relay_off: bool,
@@ -109,7 +115,7 @@ impl SelfTester {
         run.is_some_and(|run| run.request.is_none() || run.decoded_after.is_none())
     }
 
-    /// Tests of TRA, modem and TEST board go on.
+    /// Tests of TRA, modem, TEST board, TWC CPU and RS-485 link go on.
     pub fn tests(&self) -> bool {
         let run = self.run.as_ref();
         run.is_some_and(|run| run.request.is_none() || run.tests < TESTS)
@@ -140,6 +146,8 @@ impl SelfTester {
             run.tra_answers += u16::from(inputs.tra_answers);
             run.modem_frames += u16::from(inputs.modem_hears);
             run.board_answers += u16::from(inputs.board_answers);
+            run.twc_cpu_frames += u16::from(inputs.twc_cpu_hands_on);
+            run.tcms_link_frames += u16::from(inputs.tcms_link_hears);
         }
         run.watch_line(now, inputs.line_energised);
         if now < run.ends {
@@ -206,6 +214,8 @@ impl Run {
             tra_answers: 0,
             modem_frames: 0,
             board_answers: 0,
+            twc_cpu_frames: 0,
+            tcms_link_frames: 0,
             energised_since: None,
             energised: Duration::ZERO,
             relay_off: true,
@@ -235,7 +245,7 @@ impl Run {
         bad_cells: usize,
         config: &UnitConfig,
         line: &Line,
-    ) -> [SelfTestItem; 8] {
+    ) -> [SelfTestItem; 10] {
         use MeasureUnit::{Answers, Bytes, Errors, Frames, Milliseconds};
         let whole = |span: Duration| i32::try_from(span.as_ms()).unwrap_or(i32::MAX);
         let run_ms = whole(self.ends.since(self.begun));
@@ -277,6 +287,8 @@ impl Run {
             (SelfTest::TRA, counted(self.tra_answers), Answers),
             (SelfTest::TWC_MODEM, counted(self.modem_frames), Frames),
             (SelfTest::TEST_BOARD, counted(self.board_answers), Answers),
+            (SelfTest::TWC_CPU, counted(self.twc_cpu_frames), Frames),
+            (SelfTest::TCMS_LINK, counted(self.tcms_link_frames), Frames),
         ];
         items.map(|(item, (value, low, high), unit)| SelfTestItem {
             request_seq: self.request.unwrap_or_default(),

@@ -311,7 +311,9 @@ impl Functions {
                 AtoFailure::StoredData,
             ),
             (
-                failed.intersects(SelfTest::MEMORY | SelfTest::TRA | SelfTest::TWC_MODEM),
+                failed.intersects(
+                    SelfTest::MEMORY | SelfTest::TRA | SelfTest::TWC_MODEM | SelfTest::TWC_CPU,
+                ),
                 AtoFailure::SelfTest,
             ),
             (

@@ -34,6 +34,8 @@ impl Unit {
             tra_answers: inputs.tra_answers,
             line_energised: inputs.lines.contains(TrainLines::EB_LOOP),
             modem_hears: self.self_tester.tests() && self.loop_back(),
+            twc_cpu_hands_on: self.faults.at(Place::TwcCpu).is_none(),
+            tcms_link_hears: self.self_tester.tests() && self.tcms_loop_back(),
             board_answers: self.board.answers(),
             bad_cells: self.faults.at(Place::Memory).map_or(0, |_| BAD_CELLS),
         };
@@ -63,5 +65,11 @@ impl Unit {
     fn loop_back(&mut self) -> bool {
         let sent = !self.faults.loses(Place::FskTransmitter);
         sent && !self.faults.loses(Place::FskReceiver)
+    }
+
+    /// The test frame of the RS-485 link, which its receiver hears on the two wires that its transmitter drives.
+    fn tcms_loop_back(&mut self) -> bool {
+        let sent = !self.faults.loses(Place::TcmsTransmitter);
+        sent && !self.faults.loses(Place::TcmsReceiver)
     }
 }

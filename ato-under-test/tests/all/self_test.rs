@@ -79,6 +79,8 @@ fn a_sound_unit_passes_each_item_by_name_with_its_value_as_often_as_asked() {
             ("TRA", 10, (10, 10), "answers"),
             ("TWC_MODEM", 10, (10, 10), "frames"),
             ("TEST_BOARD", 10, (10, 10), "answers"),
+            ("TWC_CPU", 10, (10, 10), "frames"),
+            ("TCMS_LINK", 10, (10, 10), "frames"),
         ];
         assert_eq!(items, expected);
         assert_eq!((end.failed, end.took_ms), (SelfTest::empty(), 600));
@@ -120,6 +122,21 @@ fn each_part_that_fails_later_fails_its_item_and_the_log_names_it() {
         (Place::Tra, Effect::Dead, SelfTest::TRA, 0),
         (Place::FskReceiver, Effect::Dead, SelfTest::TWC_MODEM, 0),
         (Place::FskTransmitter, Effect::Dead, SelfTest::TWC_MODEM, 0),
+        (Place::TwcCpu, Effect::Dead, SelfTest::TWC_CPU, 0),
+        (
+            Place::TwcCpu,
+            Effect::Delay { ms: 900 },
+            SelfTest::TWC_CPU,
+            0,
+        ),
+        (
+            Place::TwcCpu,
+            Effect::Offset { by: 1.0 },
+            SelfTest::TWC_CPU,
+            0,
+        ),
+        (Place::TcmsReceiver, Effect::Dead, SelfTest::TCMS_LINK, 0),
+        (Place::TcmsTransmitter, Effect::Dead, SelfTest::TCMS_LINK, 0),
     ];
     for (place, effect, item, value) in cases {
         let mut bench = held(&[later(place, effect)]);

@@ -131,6 +131,9 @@ impl Dating {
             | Signal::TcmsLineOpen
             | Signal::TcmsGiven
             | Signal::TcmsLoad
+            | Signal::TcmsTellsLines
+            | Signal::TcmsDoors
+            | Signal::TcmsHcr
             | Signal::TwcStation
             | Signal::TwcSection
             | Signal::TwcLoop

@@ -160,6 +160,9 @@ impl LatestSample {
                 Signal::TcmsLineOpen,
                 tcms(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED),
             ),
+            (Signal::TcmsTellsLines, tcms(TcmsToAtcBits::TELLS_LINES)),
+            (Signal::TcmsDoors, tcms(TcmsToAtcBits::DOORS_CLOSED)),
+            (Signal::TcmsHcr, tcms(TcmsToAtcBits::CAB_MANNED)),
         ] {
             self.sample.set_bit(signal, on);
         }

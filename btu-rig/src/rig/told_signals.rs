@@ -49,7 +49,7 @@ const IO_SIGNALS: [Signal; 14] = [
 
 /// What only the unit itself can tell. Without a harness it tells [`IO_SIGNALS`], what it sends to TCMS and
 /// [`LINE_SIGNALS`] with them.
-const TRAIN_STATE_SIGNALS: [Signal; 27] = [
+const TRAIN_STATE_SIGNALS: [Signal; 30] = [
     Signal::TestPulses,
     Signal::TestMarkers,
     Signal::TestAnswers,
@@ -72,6 +72,9 @@ const TRAIN_STATE_SIGNALS: [Signal; 27] = [
     Signal::TcmsLineOpen,
     Signal::TcmsGiven,
     Signal::TcmsLoad,
+    Signal::TcmsTellsLines,
+    Signal::TcmsDoors,
+    Signal::TcmsHcr,
     Signal::TwcStation,
     Signal::TwcSection,
     Signal::TwcLoop,

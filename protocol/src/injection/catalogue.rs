@@ -112,6 +112,45 @@ car = 5
         );
     }
 
+    /// A laptop reaches the TEST board, what its signals go through, and what the self-test tests: such a mode is out
+    /// of its reach only while it acts on wheels that turn.
+    #[test]
+    fn what_test_signals_go_through_is_out_of_reach_only_while_the_wheels_turn() {
+        use crate::injection::{Occurrence, OutOfReach, Place};
+        let text = include_str!("../../../scripts/units/faults.toml");
+        let catalogue = FaultCatalogue::from_toml(text).unwrap();
+        for mode in &catalogue.faults {
+            let tested = matches!(
+                mode.place,
+                Place::AtpAntenna
+                    | Place::AtpReceiver
+                    | Place::EbRelay
+                    | Place::MarkerAntenna
+                    | Place::Tra
+                    | Place::TwcAntenna
+                    | Place::FskReceiver
+                    | Place::FskTransmitter
+                    | Place::TwcCpu
+                    | Place::TcmsReceiver
+                    | Place::TcmsTransmitter
+                    | Place::TestBoard
+                    | Place::TestCode
+                    | Place::TestCarrier
+                    | Place::TestRate
+                    | Place::TestSpeed
+                    | Place::TestMarker
+                    | Place::Memory
+                    | Place::Clock
+                    | Place::TrackDatabase
+            );
+            let turning = matches!(mode.occurs, Occurrence::AboveSpeed { .. });
+            let expected = turning.then_some(OutOfReach::Motion);
+            if tested || turning {
+                assert_eq!(mode.out_of_reach, expected, "{}", mode.id);
+            }
+        }
+    }
+
     #[test]
     fn a_fault_mode_that_cannot_be_injected_is_refused_with_the_reason() {
         let cases = [

@@ -217,6 +217,30 @@ pub enum Effect {
     },
 }
 
+/// What a laptop alone lacks to find a fault: it has the maintenance port of a unit on a train at rest in a depot, and
+/// with it the TEST board, the antennas' test coils, the unit's read-backs, its self-test and its log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OutOfReach {
+    /// Wheels that turn, or a train that is driven.
+    Motion,
+    /// Somebody at the desk of a cab, or at its doors.
+    Cab,
+    /// The train's own equipment, or a code in the rail.
+    Train,
+}
+
+impl OutOfReach {
+    /// The word in the catalogue's file.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Motion => "motion",
+            Self::Cab => "cab",
+            Self::Train => "train",
+        }
+    }
+}
+
 /// One fault mode of one part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -238,6 +262,9 @@ pub struct FaultMode {
     pub place: Place,
     /// What it does.
     pub effect: Effect,
+    /// What is lacking to find it with a laptop alone; `None` = such a laptop should find it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub out_of_reach: Option<OutOfReach>,
     /// When it begins, s after power-up.
     #[serde(default)]
     pub onset_s: f64,

@@ -30,6 +30,8 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "shares": {
             "detected": figures.detected.iter().map(|(kind, s)| ((*kind).to_owned(), share(*s))).collect::<serde_json::Map<_, _>>(),
             "unsafe_detected": share(figures.unsafe_detected),
+            "reachable_detected": share(figures.reachable_detected),
+            "detected_isolated_1": share(figures.detected_isolated),
             "isolated_1": share(figures.isolated[0]),
             "isolated_2": share(figures.isolated[1]),
             "isolated_3": share(figures.isolated[2]),
@@ -134,6 +136,18 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     );
     if dictionary.basis.connection == ALONE && figures.modes > 0 {
         let bench = need_bench(outcome);
+        let Share { of, all } = figures.reachable_detected;
+        let _ = writeln!(
+            text,
+            "reachable: detected {of} of {all} runs ({:.1} %); of all runs detected isolated to one part {} of {} ({:.1} %)",
+            percent(of as f64, all as f64),
+            figures.detected_isolated.of,
+            figures.detected_isolated.all,
+            percent(
+                figures.detected_isolated.of as f64,
+                figures.detected_isolated.all as f64
+            ),
+        );
         let _ = writeln!(
             text,
             "a laptop alone finds {} of {} fault modes; the bench is needed for: {}",

@@ -4,6 +4,7 @@ use btu_rig::procedure::describe::bit_names;
 use btu_rig::tcms::Consist;
 use btu_rig::train::{CarSet, MAX_CARS, Role, TrainData};
 use clap::{Args, ValueEnum};
+use protocol::injection::OutOfReach;
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
@@ -71,7 +72,7 @@ impl CatalogArguments {
                 "id": fault.id, "lru": fault.lru, "mode": fault.mode,
                 "severity": fault.severity, "weight": fault.weight, "unsafe": fault.unsafe_,
                 "on": if fault.place.on_train() { "train" } else { "unit" }, "car": fault.car,
-                "kind": fault.kind().word(),
+                "kind": fault.kind().word(), "out_of_reach": fault.out_of_reach.map(OutOfReach::word),
             })
         };
         Ok(catalogue.faults.iter().map(entry).collect())

@@ -27,6 +27,7 @@ pub fn fault(place: Place, effect: Effect) -> FaultMode {
         unsafe_: false,
         place,
         effect,
+        out_of_reach: None,
         onset_s: 0.0,
         car: None,
         occurs: Occurrence::Always,

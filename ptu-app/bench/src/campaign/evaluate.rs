@@ -28,6 +28,8 @@ pub struct Assessment {
     pub kind: &'static str,
     /// It can leave the train less protected.
     pub unsafe_: bool,
+    /// A laptop alone should find it.
+    pub reachable: bool,
     /// Which of its levels.
     pub level: usize,
     /// Seed.
@@ -102,6 +104,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         lru: mode.lru.clone(),
         kind: mode.kind().word(),
         unsafe_: mode.unsafe_,
+        reachable: mode.out_of_reach.is_none(),
         level: sample.level,
         seed: sample.seed,
         detected: !run.passed,
@@ -166,6 +169,10 @@ pub struct Figures {
     pub detected: BTreeMap<&'static str, Share>,
     /// Runs of unsafe modes detected.
     pub unsafe_detected: Share,
+    /// Runs detected, of modes that a laptop alone should find.
+    pub reachable_detected: Share,
+    /// Runs isolated to one part, of those detected.
+    pub detected_isolated: Share,
     /// Runs isolated to at most 1, 2, 3 parts.
     pub isolated: [Share; MOST_PARTS],
     /// Runs in which diagnosis names one part for certain, and it is the wrong one.
@@ -234,6 +241,8 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
             })
             .collect(),
         unsafe_detected: Share::over(all().filter(|run| run.unsafe_), |run| run.detected),
+        reachable_detected: Share::over(all().filter(|run| run.reachable), |run| run.detected),
+        detected_isolated: Share::over(all().filter(|run| run.detected), |run| run.isolated(1)),
         isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
         wrong: Share::over(all(), |run| {
             let certain = matches!(run.finding, Finding::Found | Finding::TwoFound);

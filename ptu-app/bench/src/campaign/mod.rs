@@ -10,6 +10,8 @@ mod evaluate;
 mod redundant;
 mod samples;
 mod suite;
+#[cfg(test)]
+mod tests;
 
 use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;

@@ -4,7 +4,7 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
-const PATH: [&str; 102] = [
+const PATH: [&str; 105] = [
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",
@@ -112,6 +112,9 @@ const PATH: [&str; 102] = [
     "tcms_eb",
     "tcms_given",
     "tcms_load",
+    "tcms_tells_lines",
+    "tcms_doors",
+    "tcms_hcr",
 ];
 
 /// Rows within which the unit has reported everything once.

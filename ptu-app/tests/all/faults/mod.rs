@@ -45,10 +45,6 @@ const NOT_DIAGNOSED: &[(&str, &str)] = &[
         "code lost in spells is code lost in spells, in the antenna or behind it",
     ),
     (
-        "twc_cpu.dead",
-        "no station data by loop or test coil, which an antenna that is dead does not bring, either",
-    ),
-    (
         "twc_cpu.hangs",
         "frames lost in spells, which a modem that fades loses, too",
     ),
@@ -237,13 +233,7 @@ fn found_by() -> impl Iterator<Item = (&'static str, &'static str, &'static str)
 /// What is wrong with the outcome of a run on a unit with this fault.
 fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     let mut problems = Vec::new();
-    // A unit that starts again and again is also lost on the link now and then.
-    let exits: &[u8] = if mode.lru == "power_supply" {
-        &[1, 3]
-    } else {
-        &[1]
-    };
-    if !exits.contains(&run.exit) {
+    if run.exit != 1 {
         problems.push(format!("exit {}", run.exit));
     }
     problems.extend(check_steps(mode, run));

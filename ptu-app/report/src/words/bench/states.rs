@@ -19,7 +19,7 @@ impl Bench {
             | Signal::AskedFsb
             | Signal::TcmsBraking
             | Signal::TcmsLineOpen => vec![self.released, self.applied],
-            Signal::Doors => vec![self.doors_open, self.doors_closed],
+            Signal::Doors | Signal::TcmsDoors => vec![self.doors_open, self.doors_closed],
             Signal::Marker | Signal::MarkerCoil => vec![self.none, "PSM1", "PSM2", "PSM3", "PSM4"],
             Signal::Wayside => vec![self.silent, self.good, self.wayside_corrupt],
             Signal::Tacho1 | Signal::Tacho2 => {
