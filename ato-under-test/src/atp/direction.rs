@@ -10,7 +10,8 @@ use crate::timer::Edge;
 /// Adds up the distance run against the reverser.
 #[derive(Clone, Debug, Default)]
 pub struct Rollback {
-    against_m: f64,
+    /// By each tachometer: one that is dead hides nothing.
+    against_m: [f64; 2],
     tripped: Edge,
 }
 
@@ -19,7 +20,7 @@ impl Rollback {
     pub fn step(
         &mut self,
         now: Instant,
-        moved_m: f64,
+        moved_m: [f64; 2],
         lines: TrainLines,
         still: bool,
         allowed_m: f64,
@@ -27,23 +28,21 @@ impl Rollback {
     ) -> bool {
         let forward = lines.contains(TrainLines::FORWARD);
         let backward = lines.contains(TrainLines::BACKWARD);
-        let against = match (forward, backward) {
-            (true, false) => -moved_m,
-            (false, true) => moved_m,
+        let sign = match (forward, backward) {
+            (true, false) => -1.0,
+            (false, true) => 1.0,
             _ => 0.0,
         };
-        self.against_m = if still {
-            0.0
-        } else {
-            (self.against_m + against).max(0.0)
-        };
-        let trips = self.against_m > allowed_m;
+        for (against_m, moved_m) in self.against_m.iter_mut().zip(moved_m) {
+            *against_m = match still {
+                true => 0.0,
+                false => (*against_m + sign * moved_m).max(0.0),
+            };
+        }
+        let farthest_m = self.against_m[0].max(self.against_m[1]);
+        let trips = farthest_m > allowed_m;
         if self.tripped.rises(trips) {
-            log.push(
-                now,
-                Event::Rollback,
-                libm::round(self.against_m * 100.0) as i32,
-            );
+            log.push(now, Event::Rollback, libm::round(farthest_m * 100.0) as i32);
         }
         trips
     }

@@ -134,7 +134,10 @@ impl Atp {
             speed,
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
-        let (moved_m, still) = (self.tachometers.moved_m(), self.tachometers.still());
+        let moved_m = inputs
+            .pulses
+            .map(|pulses| pulses.way_m(config.metres_per_pulse()));
+        let still = self.tachometers.still();
         let allowed_m = config.tacho.rollback_m;
         let rollback = self
             .rollback

@@ -349,3 +349,21 @@ fn doors_are_enabled_only_aligned_on_the_right_side() {
     );
     assert!(!bench.has(Outputs::DOOR_ENABLE_LEFT));
 }
+
+/// Found by the hazard search: a train that creeps back, its first tachometer dead.
+#[test]
+fn a_dead_tachometer_hides_no_rollback() {
+    for speeds in [[0.0, -0.2], [-0.2, 0.0], [-0.2, -0.2]] {
+        let mut bench = Bench::new(&[]);
+        bench.code("25");
+        bench.run(1.0);
+        bench.rest();
+        assert!(!bench.braking(), "{speeds:?}");
+        bench.speeds = speeds;
+        let took = bench.until(6.0, |bench| bench.braking());
+        let way_m = took.expect("braked") as f64 / 1000.0 * 0.2;
+        assert!((0.45..0.6).contains(&way_m), "{speeds:?}: {way_m} m");
+        bench.run(0.1);
+        assert_eq!(bench.status.eb_cause, EbCause::Rollback);
+    }
+}

@@ -240,7 +240,8 @@ impl Monitor {
     fn rolled_back(&mut self, seen: Observed<'_>) -> bool {
         let against_m = -f64::from(seen.reverser) * seen.speed_mps * 0.01;
         self.against_m = (self.against_m + against_m).max(0.0);
-        if seen.kmh() < 0.1 {
+        // A brake that was released at standstill begins anew.
+        if seen.kmh() < 0.1 || seen.on(Signal::EbLoop) {
             self.against_m = 0.0;
         }
         self.against_m > ROLLED_BACK_M
