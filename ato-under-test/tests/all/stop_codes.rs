@@ -274,3 +274,27 @@ proptest! {
         }
     }
 }
+
+/// A run that a stop interrupts is braked and held, goes on with the next code, and ends where it should.
+#[test]
+fn an_automatic_run_goes_on_after_a_stop() {
+    for (stop, _) in STOPS {
+        let mut journey = Journey::new(&[]).until_position(300.0);
+        say(&mut journey.bench, stop);
+        for _ in 0..4_000 {
+            journey.step();
+        }
+        assert_eq!(journey.v_mps, 0.0, "{stop:?}");
+        assert!(journey.bench.has(Outputs::FSB) && !journey.bench.braking());
+        journey.bench.code("65");
+        for _ in 0..500 {
+            journey.step();
+        }
+        assert!(journey.v_mps > 1.0, "{stop:?}: it stands");
+        let mut journey = journey.run();
+        let error_m = journey.stop_error_m();
+        assert!(error_m.abs() < 0.3, "{stop:?}: {error_m}");
+        let events = journey.faults();
+        assert!(!events.contains(&"moved_at_stop"), "{stop:?}: {events:?}");
+    }
+}
