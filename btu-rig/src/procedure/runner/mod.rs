@@ -45,10 +45,20 @@ pub enum Poll {
 enum Phase {
     NotStarted,
     Setup(ActionRun),
-    Steps { next: usize, live: Option<StepRun> },
-    CleanUp { actions: ActionRun, since: Instant },
-    MakeSafe { since: Instant },
-    ReadLog { since: Instant },
+    Steps {
+        next: usize,
+        live: Option<Box<StepRun>>,
+    },
+    CleanUp {
+        actions: ActionRun,
+        since: Instant,
+    },
+    MakeSafe {
+        since: Instant,
+    },
+    ReadLog {
+        since: Instant,
+    },
     Done,
 }
 

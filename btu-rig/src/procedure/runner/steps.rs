@@ -111,7 +111,7 @@ impl Runner {
             if self.restarted {
                 run.note_restart();
             }
-            *live = Some(run);
+            *live = Some(Box::new(run));
         }
         true
     }
