@@ -1,0 +1,86 @@
+//! What speed and position are measured by: tachometers and markers.
+
+use serde::{Deserialize, Serialize};
+
+/// Tachometers, standstill and rollback.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TachoConfig {
+    /// Pulses per wheel turn.
+    pub pulses_per_turn: u32,
+    /// Wheel diameter, mm.
+    pub wheel_diameter_mm: f64,
+    /// Averaging time of the speed measurement, ms.
+    pub window_ms: u32,
+    /// Difference between the channels that is a fault, km/h.
+    pub difference_kmh: f64,
+    /// How long the difference must last, ms.
+    pub difference_ms: u32,
+    /// Greatest believable acceleration of a wheel, m/s².
+    pub plausible_accel_mps2: f64,
+    /// Adhesion on a dry rail: a wheel whose speed changes faster than it gives the train spins or slides.
+    #[serde(default = "TachoConfig::default_adhesion")]
+    pub adhesion: f64,
+    /// Share of the way by which the tachometers may differ from each other, and each from the track's way.
+    #[serde(default = "TachoConfig::default_share")]
+    pub share: f64,
+    /// Speed that counts as standing, km/h [ASCE: 0.3 m/s].
+    pub standstill_kmh: f64,
+    /// How long it must last, ms.
+    pub standstill_ms: u32,
+    /// Way against the reverser that trips, m.
+    pub rollback_m: f64,
+    /// Way without a stop, at a speed that counts as standing, from which on a train moves, m.
+    #[serde(default = "TachoConfig::default_creep_m")]
+    pub creep_m: f64,
+}
+
+impl TachoConfig {
+    /// Those of `sg100`, for configurations without the keys.
+    const fn default_creep_m() -> f64 {
+        0.5
+    }
+
+    const fn default_adhesion() -> f64 {
+        0.35
+    }
+
+    const fn default_share() -> f64 {
+        0.03
+    }
+}
+
+/// Supervision of markers and TRA.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerConfig {
+    /// Distance from its place at which a marker is believed right after another one, m.
+    pub window_m: f64,
+    /// The same right after the section's start, where trains do not stand to the metre, m.
+    pub start_window_m: f64,
+    /// What is added per way run since the last marker or the start: wheels and sliding, share.
+    pub window_share: f64,
+    /// Scatter of markers around their places, m (1σ).
+    pub scatter_m: f64,
+    /// Scatter of wheels around the configured diameter, share (1σ).
+    pub wheel_spread: f64,
+    /// Time between TRA tests, ms.
+    pub tra_test_ms: u32,
+    /// Time within which the same marker again is the same edge, ms.
+    #[serde(default = "MarkerConfig::default_debounce_ms")]
+    pub debounce_ms: u32,
+    /// Time within which the same marker again is TRA's, and no marker of the track, ms.
+    #[serde(default = "MarkerConfig::default_bounce_ms")]
+    pub bounce_ms: u32,
+}
+
+/// Those of `sg100`, for configurations without the keys.
+impl MarkerConfig {
+    const fn default_debounce_ms() -> u32 {
+        100
+    }
+
+    const fn default_bounce_ms() -> u32 {
+        500
+    }
+}
