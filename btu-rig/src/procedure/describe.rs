@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use protocol::message::{SelfTest, WordSpec};
+use protocol::message::{Refusals, SelfTest, WordSpec};
 use protocol::signal::{Kind, Sample, Signal};
 
 use super::plan::{
@@ -132,6 +132,8 @@ pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
                 .map(|(car, _): (u32, _)| format!("car {car}"))
                 .collect()
         }
+        Signal::SelfTest => words_of(&SelfTest::SPEC, bits),
+        Signal::Refusals => words_of(&Refusals::SPEC, bits),
         _ => return None,
     };
     match (bits, names.is_empty()) {
@@ -143,6 +145,15 @@ pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
 
 /// What the bits that are set in a word of the wire mean.
 pub fn meanings(word: &WordSpec, bits: u16) -> String {
+    let found = words_of(word, bits);
+    if found.is_empty() {
+        return "nothing".into();
+    }
+    found.join("; ")
+}
+
+/// What each of the bits that are set in a word of the wire means.
+fn words_of(word: &WordSpec, bits: u16) -> Vec<String> {
     let meaning = |bit: u8| {
         let known = word.entries.iter().find(|entry| entry.0 == bit);
         known.map_or_else(
@@ -150,14 +161,8 @@ pub fn meanings(word: &WordSpec, bits: u16) -> String {
             |entry| entry.2.trim_end_matches('.').to_owned(),
         )
     };
-    let found: Vec<_> = (0..16)
-        .filter(|bit| bits & 1 << bit != 0)
-        .map(meaning)
-        .collect();
-    if found.is_empty() {
-        return "nothing".into();
-    }
-    found.join("; ")
+    let set = (0..16).filter(|bit| bits & 1 << bit != 0);
+    set.map(meaning).collect()
 }
 
 /// An operand as the signal's reader knows it: a label, on or off, a number with its unit.
@@ -169,6 +174,9 @@ fn value(signal: Signal, operand: &Operand) -> String {
             None => number(*v),
         },
         (Kind::Bit, Operand::Literal(v)) => if *v == 0.0 { "off" } else { "on" }.into(),
+        (Kind::Number { .. }, Operand::Literal(v)) => {
+            bit_names(signal, *v as u16).unwrap_or_else(|| with_unit(operand, definition.unit))
+        }
         _ => with_unit(operand, definition.unit),
     }
 }
@@ -282,12 +290,10 @@ fn force(newtons: f64) -> String {
     format!("{:.1} kN", newtons / 1000.0)
 }
 
-/// What the bits a condition asks for are instead, as the end of a sentence; empty for other conditions.
+/// What the bits a condition asks for are instead, as the end of a sentence; empty for a signal that is no set.
 pub(super) fn bits_seen(condition: &Condition, sample: &Sample) -> String {
     match condition {
-        Condition::Compare {
-            signal, comparison, ..
-        } if comparison.is_bits() => sample
+        Condition::Compare { signal, .. } => sample
             .get(*signal)
             .and_then(|bits| bit_names(*signal, bits as u16))
             .map_or(String::new(), |names| {

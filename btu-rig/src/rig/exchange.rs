@@ -8,8 +8,8 @@ use std::collections::VecDeque;
 
 use protocol::link::Link;
 use protocol::message::{
-    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, SelfTest,
-    SelfTestEnd, SelfTestItem, StimulusAnswer,
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Disarm, SelfTestEnd,
+    SelfTestItem, StimulusAnswer,
 };
 use protocol::{CYCLE, Duration, Instant};
 
@@ -268,9 +268,9 @@ impl Exchange {
         current.is_some_and(|current| current.tests_itself && current.asked(seq))
     }
 
-    /// What the last self-test asked for found of an item.
-    pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
-        self.self_test.iter().copied().find(|one| one.item == item)
+    /// What the last self-test asked for found, as far as it came.
+    pub fn self_test(&self) -> &[SelfTestItem] {
+        &self.self_test
     }
 
     /// Takes the armed bit of the unit's status.

@@ -79,9 +79,15 @@ impl Rig {
         }
     }
 
-    /// What the last self-test asked for found of an item.
+    /// What the last self-test asked for found, item by item, as far as it came.
+    pub fn self_test_items(&self) -> &[SelfTestItem] {
+        self.tester.self_test_items()
+    }
+
+    /// What it found of an item.
     pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
-        self.tester.self_test_item(item)
+        let items = self.self_test_items().iter();
+        items.copied().find(|one| one.item == item)
     }
 
     /// What is behind a signal that says only whether the unit is as it should be.

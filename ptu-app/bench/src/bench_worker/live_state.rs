@@ -9,7 +9,7 @@ use btu_rig::procedure::Runner;
 use btu_rig::procedure::plan::Connection;
 use btu_rig::recorder::{Ring, Row, rows_of};
 use btu_rig::rig::Rig;
-use protocol::message::Identity;
+use protocol::message::{Identity, SelfTestItem};
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant};
 
@@ -60,6 +60,8 @@ pub struct LiveData {
     pub connection: Option<Connection>,
     /// Share of frames received over the last seconds.
     pub link: LinkQuality,
+    /// What the last self-test asked for found, as far as it came.
+    pub self_test: Vec<SelfTestItem>,
     /// Restarts of the unit since it was connected.
     pub restarts: u32,
     /// Counts how often the bench was rebuilt or made safe; manual orders of an earlier epoch are not executed.
@@ -213,6 +215,8 @@ impl RunControl for LiveState {
         live.identity = rig.identity().copied();
         live.connection = rig.connection();
         live.link.note(now, rig.counters());
+        live.self_test.clear();
+        live.self_test.extend(rig.self_test_items());
         live.restarts = rig.unit_restarts();
         drop(live);
         let shown = rig.sample().values().map(f64::to_bits);

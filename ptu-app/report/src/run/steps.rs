@@ -79,7 +79,7 @@ fn measured(measurement: &MeasurementRecord, uncertainty: Option<f64>, words: &W
     Row {
         kind: RowKind::Detail,
         cells: vec![
-            soft(name.clone()),
+            soft(words.bench.measurement(name)),
             (Cell::Text(tone, value_text), 1),
             soft(unit.clone()),
             limit(low),

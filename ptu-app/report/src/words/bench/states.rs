@@ -1,5 +1,6 @@
 //! Names of the states and the bits of signals.
 
+use protocol::message::SelfTest;
 use protocol::signal::Signal;
 
 use super::Bench;
@@ -112,6 +113,20 @@ impl Bench {
         }
     }
 
+    /// Name of a measurement, which scripts give, but for those of the unit's self-test.
+    pub fn measurement(&self, name: &str) -> String {
+        let item = name.strip_prefix("self_test.").and_then(|item| {
+            let known = SelfTest::SPEC.entries.iter();
+            let mut known = known.filter(|entry| entry.1.eq_ignore_ascii_case(item));
+            let bit = known.next()?.0;
+            self.bits(Signal::SelfTest).get(usize::from(bit)).copied()
+        });
+        item.map_or_else(
+            || name.to_owned(),
+            |item| format!("{}: {item}", self.self_test),
+        )
+    }
+
     /// Names of a signal's bits, bit 0 first; empty for a signal whose bits have no names here.
     pub fn bits(&self, signal: Signal) -> Vec<&'static str> {
         match signal {
@@ -164,6 +179,16 @@ impl Bench {
                 self.refused_self_test,
                 self.refused_departure,
             ],
+            Signal::SelfTest => vec![
+                self.item_memory,
+                self.item_configuration,
+                self.item_track_database,
+                self.item_eb_relay,
+                self.item_atp_receiver,
+                self.item_tra,
+                self.item_twc_modem,
+                self.item_test_board,
+            ],
             _ => Vec::new(),
         }
     }
@@ -193,6 +218,7 @@ mod tests {
                 (Signal::EbSources, EbSources::ALL.len()),
                 (Signal::Lamps, Lamps::ALL.len()),
                 (Signal::Refusals, 14),
+                (Signal::SelfTest, SelfTest::SPEC.entries.len()),
             ] {
                 assert_eq!(words.bits(signal).len(), count, "{signal:?}");
             }

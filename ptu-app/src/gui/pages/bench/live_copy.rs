@@ -1,5 +1,6 @@
 //! A copy of the live data for one frame, so that the bench thread is blocked for a moment only.
 
+use protocol::message::SelfTestItem;
 use protocol::signal::{Sample, Signal};
 
 use ptu_bench::bench_worker::{BenchWorker, Phase};
@@ -11,6 +12,8 @@ pub struct BenchSnapshot {
     /// Counts benches made anew and made safe.
     pub bench_epoch: u64,
     pub sample: Sample,
+    /// What the last self-test asked for found.
+    pub self_test: Vec<SelfTestItem>,
 }
 
 impl BenchSnapshot {
@@ -21,6 +24,7 @@ impl BenchSnapshot {
             phase: live.phase,
             bench_epoch: live.bench_epoch,
             sample: live.sample.clone(),
+            self_test: live.self_test.clone(),
         }
     }
 

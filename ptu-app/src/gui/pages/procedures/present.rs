@@ -47,7 +47,7 @@ pub fn present(
         ui.label(format!("{}: {note}", words.common.note));
     }
     source(ui, texts, &procedure.path, step.line, AROUND);
-    measurements(ui, &present.measured);
+    measurements(ui, words, &present.measured);
     answer
 }
 

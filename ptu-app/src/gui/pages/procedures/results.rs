@@ -154,18 +154,18 @@ fn details(
     if result.measurements.is_empty() {
         ui.label(RichText::new(words.procedures.no_measurements).color(Palette::of(ui).quiet));
     }
-    measurements(ui, &result.measurements);
+    measurements(ui, words, &result.measurements);
     source(ui, texts, &procedure.path, result.line, AROUND);
 }
 
 /// Measurements with their limits as bars.
-pub fn measurements(ui: &mut Ui, measured: &[Measurement]) {
+pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
     if measured.is_empty() {
         return;
     }
     Grid::new("measurements").num_columns(3).show(ui, |ui| {
         for measurement in measured {
-            ui.label(&measurement.name);
+            ui.label(words.bench.measurement(&measurement.name));
             limit_bar(ui, measurement);
             let colour = Palette::of(ui).verdict(measurement.verdict);
             ui.colored_label(colour, value_text(measurement));

@@ -5,6 +5,7 @@ mod buttons;
 mod controller;
 mod lines;
 mod markers;
+mod self_test;
 mod speed;
 mod tcms;
 mod test_board;

@@ -7,7 +7,7 @@ use protocol::line::Line;
 use protocol::signal::Signal;
 
 use super::buttons::{StimulusPanel, check, named_number, number, one_of, row};
-use super::{atp, speed, twc};
+use super::{atp, self_test, speed, twc};
 use crate::gui::pages::bench::forms::{Forms, MotionForm, StimulusPath};
 use crate::gui::pages::bench::text;
 use ptu_report::words::Bench;
@@ -66,6 +66,7 @@ pub fn show(
         hand.choice(ui, words.test_twc, words.send_frame, false, stimulus);
     });
     ui.separator();
+    self_test::show(ui, hand);
     row(ui, "", |ui, _| {
         hand.button(ui, words.release_all, Stimulus::PtuRelease);
         hand.button(ui, words.clear_log, Stimulus::PtuClearLog);
