@@ -1,6 +1,7 @@
 //! The whole acceptance suite on the embedded unit: it passes, it is recorded as it was planned, and
 //! the same seed gives the same record.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crate::common::{Place, has_shape, list, normalised, number, text};
@@ -37,6 +38,19 @@ fn a_good_unit_passes_every_step_and_leaves_no_fault() {
     }
     assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
     assert!(list(&place.json(&["faults", "list", "--json"])).is_empty());
+}
+
+/// The time to the nearest five minutes.
+#[test]
+fn the_readme_tells_how_many_procedures_there_are_and_how_long_they_take() {
+    let (_, report) = whole_suite();
+    let procedures = list(&report["steps"]).iter();
+    let procedures: BTreeSet<_> = procedures.map(|step| text(&step["procedure"])).collect();
+    let minutes = number(&report["run"]["bench_time_s"]) / 60.0;
+    let nearest = (minutes / 5.0).round() * 5.0;
+    let count = procedures.len();
+    let told = format!("{count} procedures, about {nearest} minutes of bench time");
+    assert!(include_str!("../../../README.md").contains(&told), "{told}");
 }
 
 #[test]

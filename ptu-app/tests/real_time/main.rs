@@ -13,3 +13,4 @@ mod train;
 mod train_faults;
 mod unit_memory;
 mod window;
+mod window_on_train;

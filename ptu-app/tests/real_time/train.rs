@@ -133,6 +133,51 @@ fn a_laptop_alone_tests_the_unit_of_a_train() {
         .explains(&["the maintenance key was turned off"]);
 }
 
+/// Goal: what happens to a train on a port during a run blames no part: the run is an error that says what happened.
+/// Method: each of it once a step of the overspeed procedure is over.
+#[test]
+fn what_happens_to_a_train_on_a_port_is_an_error_that_says_so() {
+    for (orders, words) in [
+        (&["move 5"][..], "the train moved"),
+        (&["power off"], "unit silent for"),
+        (&["power off", "power on"], "the unit restarted"),
+        (&[], "the unit is gone"),
+    ] {
+        let mut train = Unit::aboard(&[]);
+        let place = Place::new();
+        let mut run = Running::start(&place, &train, &["ptu/overspeed"]);
+        run.recorded_steps(1);
+        for order in orders {
+            train.say(order);
+            std::thread::sleep(Duration::from_millis(700));
+        }
+        if orders.is_empty() {
+            train.kill();
+        }
+        let said = run.finish();
+        let told = if orders.is_empty() { "serial:" } else { words };
+        assert!(said.err.contains(told), "{orders:?}: {}", said.all());
+        let shown = place.json(&["runs", "show", "latest", "--json"]);
+        assert_eq!(
+            shown["run"]["verdict"],
+            "error",
+            "{orders:?}: {}",
+            said.all()
+        );
+        assert_eq!(shown["run"]["state"], "finished");
+        assert_eq!(
+            list(&shown["faults"]).len(),
+            0,
+            "{orders:?}: {}",
+            said.all()
+        );
+        for step in list(&shown["steps"]) {
+            assert_ne!(step["verdict"], "failed", "{step}");
+        }
+        said.exits(3);
+    }
+}
+
 /// Goal: the unit of a train is held against the train's record, each part of it by name. Method: the unit of train 301
 /// in `scripts/fleet.toml`, found by its number; another in its place, and so named; a train without a record.
 #[test]

@@ -93,6 +93,68 @@ fn the_windows_buttons_read_the_unit_that_is_not_connected() {
     window.wait_for_part("MEM-3: 0 rows read, 0 new runs");
 }
 
+/// Goal: a laptop on a train reads all that is whole of a damaged memory, and is told what is not. Method: the memory of a
+/// train after a service: a bit of an entry is wrong, an entry is torn in two, a block is overwritten by something else;
+/// log and run record over its port each time. A memory that was cut off, or is none, is refused and left as it is.
+#[test]
+fn a_damaged_memory_aboard_a_train_is_read_as_far_as_it_is_whole() {
+    let place = Place::new();
+    let flash = place.path("train.flash");
+    let arguments = ["--flash", flash.to_str().expect("text")];
+    let sound = {
+        let mut train = Unit::aboard(&[&arguments[..], &["--service", "61"]].concat());
+        let sound = import(&place, &train);
+        train.say("quit");
+        assert_eq!(train.exit_code(), Some(0));
+        sound
+    };
+    assert_eq!(number(&sound["damaged"]), 0.0, "{sound}");
+    let whole = std::fs::read(&flash).expect("the unit's memory");
+    let entry = 16;
+    for (what, damage) in [
+        ("a wrong bit", (entry + 11, 1)),
+        ("a torn entry", (entry + 20, 20)),
+        ("a block of something else", (0, 4096)),
+    ] {
+        let mut bytes = whole.clone();
+        let (from, length) = damage;
+        for byte in &mut bytes[from..from + length] {
+            *byte = !*byte ^ 0x5A;
+        }
+        std::fs::write(&flash, &bytes).expect("written");
+        let train = Unit::aboard(&arguments);
+        let depot = Place::new();
+        let log = import(&depot, &train);
+        let lost = number(&sound["entries"]) - number(&log["entries"]);
+        assert!(log["complete"] == true, "{what}: {log}");
+        if length < 4096 {
+            assert_eq!(number(&log["damaged"]), 1.0, "{what}: {log}");
+            assert!(lost <= 1.0, "{what}: {lost} entries lost, {log}");
+            let told = list(&log["warnings"]);
+            assert!(
+                told.iter().any(|w| text(w).contains("damaged")),
+                "{what}: {log}"
+            );
+        }
+        let pulled = depot.json(&["record", "pull", "--unit", &train.address, "--json"]);
+        assert_eq!(number(&pulled["pulled"]), 1.0, "{what}: {pulled}");
+    }
+    let cut = &whole[..whole.len() / 2];
+    let text_file = "a letter".repeat(200).into_bytes();
+    for (bytes, words) in [(cut, "was cut off"), (&text_file[..], "something else")] {
+        std::fs::write(&flash, bytes).expect("written");
+        let all = [&["train", "--pty"], &arguments[..]].concat();
+        let said = place.ptu(&all);
+        assert!(matches!(said.code, Some(2 | 3)), "{}", said.all());
+        assert!(said.err.contains(words), "{}", said.all());
+        assert_eq!(
+            std::fs::read(&flash).expect("there"),
+            bytes,
+            "left as it is"
+        );
+    }
+}
+
 /// Goal: damage in the memory is told, and costs the damaged entry alone; a file that is something else is refused.
 /// Method: bytes of the first entry are changed while the unit is off.
 #[test]

@@ -201,7 +201,7 @@ wordings! {
         test_speed: "Test speed", "시험 속도";
         test_marker: "Test marker", "시험 지상자";
         test_twc: "Test TWC frame", "시험 TWC 전문";
-        self_test: "self-test", "자체시험";
+        self_test: "Self-test", "자체시험";
         run_self_test: "Self-test now", "자체시험 실행";
         item_memory: "memory", "메모리";
         item_configuration: "unit configuration", "유닛 구성";
@@ -304,7 +304,7 @@ wordings! {
         refused_tcms: "TCMS", "TCMS";
         refused_ato: "ATO not ready", "ATO 준비 안 됨";
         refused_tra: "TRA", "TRA";
-        refused_self_test: "self-test", "자체시험";
+        refused_self_test: "Self-test", "자체시험";
         refused_departure: "no departure or start", "출발 지시·버튼 없음";
     }
 }

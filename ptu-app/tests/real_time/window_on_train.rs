@@ -1,0 +1,105 @@
+//! The window on the unit of a train, without the bench harness: the whole way from the connection to the part that
+//! failed, the unit's log and its run record, in both languages.
+
+use crate::common::served::Unit;
+use crate::common::window::Window;
+use crate::common::{Place, scripts};
+use ptu_app::gui::{Page, Settings};
+use ptu_report::words::{Language, Words};
+
+/// Something that begins with `first` and ends with the last words of `pattern` is shown.
+fn told(window: &Window, first: &str, pattern: &str) -> bool {
+    let last = pattern.rsplit('}').next().expect("words");
+    let shown = window.shown();
+    let mut shown = shown.iter();
+    shown.any(|text| text.starts_with(first) && text.ends_with(last))
+}
+
+/// Goal: everything a laptop can do is done by clicks. Method: a train whose EB relay is slow, after a service of one section:
+/// the Bench page and a self-test by hand, identity and self-test as procedures, the part, log, run record, comparison.
+fn the_whole_way(language: Language) {
+    let words: &Words = language.words();
+    let place = Place::new();
+    // What is known of this fault, whatever the age of the shipped dictionary.
+    let campaign = ["campaign", "--harness", "none", "--faults", "eb_relay.slow"];
+    place.ptu(&campaign).exits(0);
+    let train = Unit::aboard(&["--service", "61", "--inject", "eb_relay.slow"]);
+    let mut settings = Settings {
+        page: Page::Bench,
+        language,
+        ..Settings::default()
+    };
+    settings.unit.endpoint = train.address.clone();
+    settings.unit.train_no = "301".into();
+    let mut window = Window::with(place, scripts(), settings);
+    window.click(words.frame.connect);
+    window.wait_for(words.frame.disarmed);
+
+    let test_code = format!("{}: 55", words.bench.test_code);
+    window.wait_for(&test_code);
+    assert!(!window.enabled(&test_code));
+    window.wait_for(words.bench.run_self_test);
+    assert!(!window.enabled(words.bench.run_self_test));
+    window.click(words.frame.arm);
+    window.wait_for(words.frame.armed);
+    window.click(words.bench.run_self_test);
+    let failed = format!(", {}", words.common.failed);
+    let of_item = |text: &str, item: &str| text.starts_with(&format!("{item}: "));
+    window.until("what the self-test found", |window| {
+        let shown = window.shown();
+        let mut items = shown.iter();
+        let relay = items.find(|text| of_item(text, words.bench.item_eb_relay));
+        relay.is_some_and(|text| text.ends_with(&failed))
+            && shown
+                .iter()
+                .any(|text| of_item(text, words.bench.item_test_board))
+    });
+    window.click(words.frame.disarm);
+    window.wait_for(words.frame.disarmed);
+
+    window.key(Page::Procedures.key());
+    window.click(words.procedures.none);
+    window.click("ptu/identity");
+    window.click("ptu/self_test");
+    window.click(words.procedures.run);
+    window.wait_for_part("replace eb_relay");
+    let run = window.place.json(&["runs", "show", "latest", "--json"]);
+    for step in run["steps"].as_array().expect("steps") {
+        if step["procedure"] == "ptu/identity" {
+            assert_eq!(step["verdict"], "passed", "{step}");
+        }
+    }
+
+    window.click(words.frame.disconnect);
+    window.wait_for(words.frame.not_connected);
+    window.key(Page::Faults.key());
+    window.click(words.memory.import);
+    window.until("the log", |window| {
+        told(window, "SIM-0001: ", words.memory.imported)
+    });
+    window.key(Page::Traces.key());
+    window.click(words.memory.pull);
+    window.until("the run record", |window| {
+        told(window, "SIM-0001: ", words.memory.pulled)
+    });
+    let pulled = |window: &Window| {
+        let shown = window.shown();
+        let mut shown = shown.into_iter();
+        shown.find(|text| text.ends_with(&format!("  {}", words.traces.no_fault)))
+    };
+    window.until("the pulled run", |window| pulled(window).is_some());
+    let trace = pulled(&window).expect("just seen");
+    window.click(&trace);
+    window.click(words.memory.compare);
+    window.wait_for_part("line line8 section 61");
+}
+
+#[test]
+fn the_whole_way_on_a_train_is_clicked_through() {
+    the_whole_way(Language::English);
+}
+
+#[test]
+fn the_whole_way_on_a_train_is_clicked_through_in_korean() {
+    the_whole_way(Language::Korean);
+}
