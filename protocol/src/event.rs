@@ -139,6 +139,10 @@ events! {
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";
+    TwcWrongNext = 403 "twc_wrong_next_station" Minor "twc_cpu" "Station data refused: next station contradicts the track database" "다음 역 불일치" "next station";
+    TwcWrongSide = 404 "twc_wrong_side" Major "twc_cpu" "Station data refused: door side contradicts the track database" "출입문 방향 불일치" "door side";
+    TwcWrongMode = 406 "twc_wrong_running_mode" Minor "twc_cpu" "Station data refused: no such running mode" "운행 모드 오류" "running mode";
+    TwcOtherTrain = 409 "twc_other_train" Minor "twc_cpu" "Station data for another train, not acted on" "다른 열차의 역 정보 수신" "train number";
     TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "1 = frames come, their alive counter stands";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason, `AtoFailure`";

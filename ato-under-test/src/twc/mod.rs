@@ -1,11 +1,17 @@
-//! TWC: station and train data through the loop [S2 §2.1].
+//! TWC: station and train data through the loop [S2 §2.1]. Data for another train are not acted on, data that
+//! contradict the track database are refused (`check`).
+
+mod check;
 
 use protocol::event::Event;
-use protocol::line::{Line, Section};
+use protocol::injection::Place;
+use protocol::line::Line;
 use protocol::message::{Mode, TwcTrain, TwcTrainBits, TwcWayside};
 use protocol::{Duration, Instant, Speed};
 
+use crate::front_end::Faults;
 use crate::kernel::EventLog;
+use check::contradiction;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrainState {
@@ -35,15 +41,24 @@ impl StationSender {
     }
 }
 
+/// The number of the unit's own train; 0 = none: data for any train are for this one.
+pub type TrainNumber = u16;
+
 #[derive(Clone, Debug)]
 pub struct Twc {
     timeout: Duration,
     heard: Option<Instant>,
     up: bool,
+    /// The last data that were not refused.
     data: Option<TwcWayside>,
+    /// The last frame was not refused.
     valid: bool,
-    invalid_reported: Option<u16>,
+    refusal_reported: Option<(Event, i32)>,
+    /// Train that data were for last, and when.
+    other_train: Option<(u16, Instant)>,
     received: u16,
+    others: u16,
+    refused: u16,
     answers: u16,
 }
 
@@ -56,30 +71,62 @@ impl Twc {
             up: false,
             data: None,
             valid: false,
-            invalid_reported: None,
+            refusal_reported: None,
+            other_train: None,
             received: 0,
+            others: 0,
+            refused: 0,
             answers: 0,
         }
     }
 
-    /// Takes station data and checks them against the track database.
-    pub fn take(&mut self, now: Instant, data: TwcWayside, line: &Line, log: &mut EventLog) {
+    /// Takes station data unless they are for another train, and checks them against the track database.
+    pub fn take(
+        &mut self,
+        now: Instant,
+        data: TwcWayside,
+        own: TrainNumber,
+        line: &Line,
+        faults: &Faults,
+        log: &mut EventLog,
+    ) {
+        let others = own != 0 && data.train_number != own;
+        if others && !faults.dead(Place::TrainGuard) {
+            self.pass_over(now, data.train_number, log);
+            return;
+        }
         self.received = self.received.wrapping_add(1);
         if !self.up && self.heard.is_some() {
             log.push(now, Event::TwcRestored, 0);
         }
         self.heard = Some(now);
         self.up = true;
-        self.valid = line
-            .section(data.section)
-            .is_some_and(|section| agrees(&data, section));
-        if self.valid {
-            self.invalid_reported = None;
-        } else if self.invalid_reported != Some(data.station) {
-            self.invalid_reported = Some(data.station);
-            log.push(now, Event::TwcStationInvalid, i32::from(data.station));
+        let refusal = contradiction(&data, line, faults);
+        self.valid = refusal.is_none();
+        match refusal {
+            None => {
+                self.data = Some(data);
+            }
+            Some((event, parameter)) => {
+                self.refused = self.refused.wrapping_add(1);
+                if self.refusal_reported != refusal {
+                    log.push(now, event, parameter);
+                }
+            }
         }
-        self.data = Some(data);
+        self.refusal_reported = refusal;
+    }
+
+    /// Data for another train: logged once for as long as they come.
+    fn pass_over(&mut self, now: Instant, number: u16, log: &mut EventLog) {
+        self.others = self.others.wrapping_add(1);
+        let goes_on = self
+            .other_train
+            .is_some_and(|(before, at)| before == number && now.since(at) < self.timeout);
+        self.other_train = Some((number, now));
+        if !goes_on {
+            log.push(now, Event::TwcOtherTrain, i32::from(number));
+        }
     }
 
     pub fn step(&mut self, now: Instant, log: &mut EventLog) {
@@ -103,11 +150,12 @@ impl Twc {
         self.data = None;
     }
 
-    /// The answer to a frame of `sender`.
+    /// The answer to a frame of `sender`, with the unit's own train number.
     pub fn answer(
         &mut self,
         sender: StationSender,
         data: &TwcWayside,
+        own: TrainNumber,
         train: TrainState,
     ) -> TwcTrain {
         if !sender.is_test() {
@@ -121,7 +169,7 @@ impl Twc {
         TwcTrain {
             answered_seq: sender.seq(),
             station: data.station,
-            train_number: data.train_number,
+            train_number: if own == 0 { data.train_number } else { own },
             mode: train.mode,
             bits,
             speed_cms: train.speed.to_cms(),
@@ -132,11 +180,12 @@ impl Twc {
         self.up
     }
 
-    /// The station data match the track database.
+    /// The last station data heard match the track database.
     pub fn valid(&self) -> bool {
         self.valid
     }
 
+    /// The last station data that were not refused, while there is communication.
     pub fn data(&self) -> Option<&TwcWayside> {
         self.data.as_ref()
     }
@@ -152,10 +201,115 @@ impl Twc {
     }
 }
 
-/// Station, loop and route are those of the section's departure or arrival.
-fn agrees(data: &TwcWayside, section: &Section) -> bool {
-    let departure = data.station == section.from_station && data.loop_id == section.from_loop;
-    let arrival = data.station == section.to_station && data.loop_id == section.to_loop;
-    let onward = arrival || data.next_station == section.to_station;
-    data.route == section.route && (departure || arrival) && onward
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OWN: TrainNumber = 8001;
+
+    struct Bench {
+        twc: Twc,
+        line: Line,
+        faults: Faults,
+        log: EventLog,
+        now: Instant,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let line = include_str!("../../../scripts/lines/line8.toml");
+            Self {
+                twc: Twc::new(Duration::from_ms(1000)),
+                line: Line::from_toml(line).unwrap(),
+                faults: Faults::new(&[], 1),
+                log: EventLog::default(),
+                now: Instant::ZERO,
+            }
+        }
+
+        /// Data of the first section's departure, for a train of this number.
+        fn data(&self, train_number: u16) -> TwcWayside {
+            let section = &self.line.sections[0];
+            TwcWayside {
+                route: section.route,
+                section: section.section,
+                station: section.from_station,
+                next_station: section.to_station,
+                loop_id: section.from_loop,
+                train_number,
+                ..TwcWayside::default()
+            }
+        }
+
+        fn take(&mut self, data: TwcWayside, own: TrainNumber) {
+            let (line, faults) = (&self.line, &self.faults);
+            self.twc
+                .take(self.now, data, own, line, faults, &mut self.log);
+            self.now += Duration::from_ms(250);
+            self.twc.step(self.now, &mut self.log);
+        }
+
+        fn logged(&self, event: Event) -> usize {
+            let code = event.definition().code;
+            let entries = self.log.entries();
+            let entries = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
+            entries.filter(|entry| entry.code == code).count()
+        }
+    }
+
+    #[test]
+    fn data_for_another_train_change_nothing_and_keep_no_communication_up() {
+        let mut bench = Bench::new();
+        bench.take(bench.data(OWN), OWN);
+        assert!(bench.twc.valid());
+        for _ in 0..8 {
+            bench.take(bench.data(9999), OWN);
+        }
+        assert!(!bench.twc.up() && bench.twc.data().is_none());
+        assert_eq!(
+            bench.logged(Event::TwcOtherTrain),
+            1,
+            "once while they come"
+        );
+        assert_eq!(bench.logged(Event::TwcLost), 1);
+        assert_eq!((bench.twc.received(), bench.twc.others), (1, 8));
+    }
+
+    #[test]
+    fn the_answer_carries_the_units_own_number() {
+        let mut bench = Bench::new();
+        let data = bench.data(9999);
+        let mut number = |own| {
+            let sender = StationSender::Loop(3);
+            let answer = bench.twc.answer(sender, &data, own, TrainState::default());
+            answer.train_number
+        };
+        assert_eq!(number(OWN), OWN);
+        assert_eq!(number(0), 9999, "a unit without a number");
+    }
+
+    #[test]
+    fn a_unit_without_a_number_takes_data_for_any_train() {
+        let mut bench = Bench::new();
+        bench.take(bench.data(9999), 0);
+        assert!(bench.twc.valid());
+    }
+
+    /// A refusal is logged once, and what was taken before stays in force.
+    #[test]
+    fn refused_data_do_not_take_the_place_of_good_ones() {
+        let mut bench = Bench::new();
+        bench.take(bench.data(OWN), OWN);
+        let wrong = TwcWayside {
+            next_station: 999,
+            fixed_speed_kmh: 80,
+            departure: 1,
+            ..bench.data(OWN)
+        };
+        (0..4).for_each(|_| bench.take(wrong, OWN));
+        assert!(bench.twc.up() && !bench.twc.valid());
+        assert_eq!(bench.twc.data(), Some(&bench.data(OWN)));
+        assert_eq!(bench.logged(Event::TwcWrongNext), 1);
+        assert_eq!(bench.twc.refused, 4);
+    }
 }

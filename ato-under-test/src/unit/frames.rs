@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use protocol::injection::{Effect, Place};
 use protocol::link::Received;
-use protocol::message::{Channel, Message, TcmsToAtc, TrainLines, TwcWayside};
+use protocol::message::{Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcWayside};
 use protocol::{Duration, Instant};
 
 use super::{Unit, report};
@@ -92,6 +92,12 @@ impl Unit {
             }
             _ => {}
         }
+        if let Some(Effect::Offset { by }) = self.faults.at(Place::TwcDoorSide)
+            && data.door_side != DoorSide::None
+        {
+            let side = data.door_side.code().wrapping_add_signed(by as i8);
+            data.door_side = DoorSide::from_code(side);
+        }
         self.handle_station(now, sender, data, out);
     }
 
@@ -108,22 +114,28 @@ impl Unit {
             return;
         }
         let Setup { line, config, .. } = &self.setup;
+        let own = config.train.number;
+        let faults = &self.faults;
         let before = self.log.next_index();
         if let Some(mode) = &mut self.test_mode {
-            mode.functions.twc.take(now, data, line, &mut self.log);
+            let twc = &mut mode.functions.twc;
+            twc.take(now, data, own, line, faults, &mut self.log);
         }
         let functions = match (sender, &mut self.test_mode) {
             (StationSender::TestModem(_), Some(mode)) => &mut mode.functions,
             (StationSender::TestModem(_), None) => return,
             (StationSender::Loop(_), _) => {
                 self.log.leave_out_repeats(Some(before));
-                self.functions.twc.take(now, data, line, &mut self.log);
+                let twc = &mut self.functions.twc;
+                twc.take(now, data, own, line, faults, &mut self.log);
                 self.log.leave_out_repeats(None);
                 &mut self.functions
             }
         };
         let train = functions.train_state(config);
-        let answer = functions.twc.answer(sender, &data, train);
+        let echoes = faults.at(Place::TwcAnswer).is_some();
+        let told = if echoes { data.train_number } else { own };
+        let answer = functions.twc.answer(sender, &data, told, train);
         if self.loses(Place::TwcAntenna) {
             return;
         }

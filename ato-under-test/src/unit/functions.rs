@@ -222,7 +222,9 @@ impl Functions {
                 ModeSwitch::Off
             },
             lacking,
-            departure: !around.barred && self.twc.data().is_some_and(|data| data.departure == 1),
+            departure: !around.barred
+                && self.twc.valid()
+                && self.twc.data().is_some_and(|data| data.departure == 1),
             start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),

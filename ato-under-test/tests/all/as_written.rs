@@ -9,7 +9,7 @@ use ato_under_test::{Setup, Unit};
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
-    IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status,
+    IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status, StatusBits,
     StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines,
 };
 use protocol::{CYCLE, Duration, Instant, SCAN};
@@ -329,6 +329,10 @@ fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
                     answers_nothing_to(rule.set(request, value));
                     continue;
                 }
+                "the data are refused" => {
+                    refuses_station(holding(&rule, value), &name);
+                    continue;
+                }
                 // What changes nothing is accepted, and held above.
                 "passed over" if rule.spec.name == "TestRelease" => continue,
                 "passed over" => (beside(&rule, value), beside(&rule, 0)),
@@ -347,6 +351,20 @@ fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
             assert!(same, "{name} is not {}", rule.otherwise);
         }
     }
+}
+
+#[track_caller]
+fn refuses_station(act: Act, name: &str) {
+    let mut bench = Bench::new(&[]);
+    bench.keep_alive = true;
+    bench.run(1.0);
+    assert!(bench.status.bits.contains(StatusBits::STATION_VALID));
+    act(&mut bench);
+    bench.run(0.5);
+    assert!(
+        !bench.status.bits.contains(StatusBits::STATION_VALID),
+        "{name}"
+    );
 }
 
 #[track_caller]

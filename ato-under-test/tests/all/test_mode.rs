@@ -53,7 +53,7 @@ fn test_speed(speed_cms: u16) -> TestSpeed {
 
 fn test_departure() -> TestTwc {
     let data = TwcWayside {
-        door_side: DoorSide::Left,
+        door_side: DoorSide::Right,
         departure: 1,
         ..departure(&line().sections[0])
     };
@@ -488,6 +488,7 @@ fn arrive(bench: &mut Bench) {
     bench.send(test_speed(0));
     bench.send(TestTwc {
         station: section.to_station,
+        next_station: line().sections[1].to_station,
         loop_id: section.to_loop,
         ..test_departure()
     });
@@ -511,7 +512,7 @@ fn doors_are_enabled_for_the_tester_and_not_for_the_train() {
         bench.run(0.1);
         assert!(bench.status.bits.contains(StatusBits::ALIGNED));
         let state = bench.train_state().expect("TrainState");
-        assert!(state.asked.contains(Outputs::DOOR_ENABLE_LEFT));
+        assert!(state.asked.contains(Outputs::DOOR_ENABLE_RIGHT));
         assert_eq!(bench.output.outputs.intersects(DOORS), for_train);
     }
 }

@@ -41,7 +41,7 @@ fn exchanged(faults: &[FaultMode]) -> [u16; 2] {
     assert_eq!(after.twc_answers, state.twc_answers, "none to the wayside");
     if after.test_answers != state.test_answers {
         let answered = (after.test_answer_station, after.test_answer_train);
-        assert_eq!(answered, (station().station, 8123));
+        assert_eq!(answered, (station().station, station().train_number));
     }
     [
         bench.status.twc_received - before,

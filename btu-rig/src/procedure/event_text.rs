@@ -2,7 +2,7 @@
 
 use protocol::event::{ALL_CARS, Event};
 use protocol::message::{
-    AbsurdInputs, ArmRefusal, AtoFailure, Channel, EbCause, Mode, Refusals, SelfTest,
+    AbsurdInputs, ArmRefusal, AtoFailure, Channel, DoorSide, EbCause, Mode, Refusals, SelfTest,
 };
 
 use super::describe::meanings;
@@ -30,6 +30,7 @@ pub fn named(event: Event, number: i32) -> Option<String> {
         Event::AutomaticRefused => meanings(&Refusals::SPEC, bits),
         Event::AtoInputAbsurd => meanings(&AbsurdInputs::SPEC, bits),
         Event::SelfTestFailed => meanings(&SelfTest::SPEC, bits),
+        Event::TwcWrongSide => format!("doors {}", DoorSide::from_code(code).label()),
         Event::FramesRejected => match Channel::from_code(code) {
             Some(channel) => format!("channel {channel:?}"),
             None => format!("channel {number}"),
@@ -67,6 +68,7 @@ mod tests {
     fn parameters_are_told_in_words_and_units() {
         for (event, number, words) in [
             (Event::AtoFailed, 7, "not following"),
+            (Event::TwcWrongSide, 1, "doors left"),
             (
                 Event::SelfTestFailed,
                 0x48,

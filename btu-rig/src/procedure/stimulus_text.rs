@@ -133,8 +133,12 @@ fn station_text(data: &StationData) -> String {
     let speed = data
         .fixed_speed_kmh
         .map_or(String::new(), |v| format!(", fixed speed {v} km/h"));
+    let train = match data.train_number {
+        0 => "this train".to_owned(),
+        other => format!("train {other}"),
+    };
     format!(
-        "section {}, station {}, next {}, loop {}, {}, doors {}, departure {}, train {}{speed}",
+        "section {}, station {}, next {}, loop {}, {}, doors {}, departure {}, {train}{speed}",
         data.section,
         data.station,
         data.next_station,
@@ -142,6 +146,5 @@ fn station_text(data: &StationData) -> String {
         data.running_mode.label(),
         data.door_side.label(),
         if data.departure { "given" } else { "not given" },
-        data.train_number,
     )
 }

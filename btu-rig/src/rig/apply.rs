@@ -187,7 +187,7 @@ impl Rig {
                 accel_mps2,
             } => test_signals::speed(session, channels, backward, to, accel_mps2)?,
             Stimulus::PtuMarker { psm } => test_signals::marker(session, psm),
-            Stimulus::PtuTwc(data) => test_signals::station(session, &data),
+            Stimulus::PtuTwc(data) => test_signals::station(session, &data, self.train_number),
             Stimulus::PtuRelease => test_signals::release(session),
             Stimulus::PtuSelfTest => test_signals::self_test(session),
             Stimulus::PtuClearLog => test_signals::clear_log(session),

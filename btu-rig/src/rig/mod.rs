@@ -123,6 +123,8 @@ pub struct Rig {
     track: Option<Track>,
     markers: Markers,
     wayside: Wayside,
+    /// Number of the train.
+    train_number: u16,
     tcms: Tcms,
     /// What TCMS told the train last.
     train_orders: TrainInputs,
@@ -205,6 +207,7 @@ impl Rig {
             track: None,
             markers: Markers::default(),
             wayside,
+            train_number: config.train.number,
             desk: CabDesk::default(),
             tester: Tester::new(session),
             making_safe: false,
@@ -283,7 +286,8 @@ impl Rig {
         if let Some(message) = self.tcms_port.step(now, self.tcms.view(), seen) {
             self.link.send(now, &message.into(), out);
         }
-        self.wayside.step(now, &mut self.link, out);
+        self.wayside
+            .step(now, self.train_number, &mut self.link, out);
     }
 
     /// Takes bytes from the unit.

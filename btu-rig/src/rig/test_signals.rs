@@ -78,9 +78,9 @@ pub fn marker(session: u32, psm: u8) -> Request {
     }
 }
 
-/// Station data from the TEST modem into the TWC antenna.
-pub fn station(session: u32, data: &StationData) -> Request {
-    let data = wire_data(data);
+/// Station data from the TEST modem into the TWC antenna; `train` is the number of the train.
+pub fn station(session: u32, data: &StationData, train: u16) -> Request {
+    let data = wire_data(data, train);
     let message = TestTwc {
         session,
         route: data.route,

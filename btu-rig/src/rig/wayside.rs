@@ -62,13 +62,13 @@ impl Wayside {
         self.condition
     }
 
-    /// Sends the frame that is due, if any.
-    pub fn step(&mut self, now: Instant, link: &mut Link, out: &mut Vec<u8>) {
+    /// Sends the frame that is due, if any, to the train of this number.
+    pub fn step(&mut self, now: Instant, train: u16, link: &mut Link, out: &mut Vec<u8>) {
         if now < self.next_due {
             return;
         }
         self.next_due = now + PERIOD;
-        let message = wire_data(&self.data).into();
+        let message = wire_data(&self.data, train).into();
         match self.condition {
             WaysideCondition::Silent => {}
             WaysideCondition::Good => {
@@ -106,8 +106,8 @@ impl Wayside {
     }
 }
 
-/// Station data as the wire carries them.
-pub fn wire_data(data: &StationData) -> TwcWayside {
+/// Station data as the wire carries them; `train` is the number of the train.
+pub fn wire_data(data: &StationData, train: u16) -> TwcWayside {
     TwcWayside {
         route: data.route,
         section: data.section,
@@ -118,7 +118,10 @@ pub fn wire_data(data: &StationData) -> TwcWayside {
         running_mode: data.running_mode,
         door_side: data.door_side,
         departure: u8::from(data.departure),
-        train_number: data.train_number,
+        train_number: match data.train_number {
+            0 => train,
+            other => other,
+        },
     }
 }
 
@@ -142,7 +145,7 @@ mod tests {
         for _ in 0..10_000 {
             let mut out = Vec::new();
             bench.send(now, &KeepAlive::default().into(), &mut out);
-            wayside.step(now, &mut bench, &mut out);
+            wayside.step(now, 8001, &mut bench, &mut out);
             bench.send(now, &KeepAlive::default().into(), &mut out);
             unit.push(&out);
             while unit.poll(now).is_some() {}

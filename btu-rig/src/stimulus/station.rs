@@ -30,12 +30,9 @@ pub struct StationData {
     pub door_side: DoorSide,
     /// Departure given.
     pub departure: bool,
-    /// Train number.
+    /// Train number; 0 = that of the train.
     pub train_number: u16,
 }
-
-/// Train number of generated station data [default].
-const TRAIN_NUMBER: u16 = 8001;
 
 impl StationData {
     /// What the loop of a section's departure station sends: no door side, departure held.
@@ -50,7 +47,7 @@ impl StationData {
             running_mode: RunningMode::Normal,
             door_side: DoorSide::None,
             departure: false,
-            train_number: TRAIN_NUMBER,
+            train_number: 0,
         }
     }
 

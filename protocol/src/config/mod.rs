@@ -118,6 +118,14 @@ pub struct DoorConfig {
     pub open_moving_ms: u32,
 }
 
+/// The train that the unit is in.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainConfig {
+    /// Train number; 0 = none: station data for any train are taken, and the answers carry the number received.
+    pub number: u16,
+}
+
 /// Silence that each channel is allowed, and frames rejected on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -184,6 +192,9 @@ pub struct UnitConfig {
     pub overspeed: OverspeedConfig,
     /// Supervision of the doors.
     pub doors: DoorConfig,
+    /// The train that the unit is in.
+    #[serde(default)]
+    pub train: TrainConfig,
     /// Time-outs of the channels.
     pub link: LinkConfig,
     /// Supervision of markers and TRA.

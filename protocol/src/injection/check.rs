@@ -70,7 +70,12 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::BrakeHold
         | Place::TractionBar
         | Place::StartBar
-        | Place::DoorBar => &[DEAD],
+        | Place::DoorBar
+        | Place::TrainGuard
+        | Place::StationGuard
+        | Place::SideGuard => &[DEAD],
+        Place::TwcDoorSide => &[("offset", -3.0, 3.0)],
+        Place::TwcAnswer => &[STUCK_ON],
         Place::TestCode => &[("gain", 0.0, 10.0)],
         // Hz.
         Place::TestCarrier => &[("offset", -1000.0, 1000.0)],

@@ -60,6 +60,16 @@ pub enum Place {
     FskTransmitter,
     /// TWC CPU: what it hands on, and when.
     TwcCpu,
+    /// Door side as the TWC CPU hands it on.
+    TwcDoorSide,
+    /// Train number in the TWC CPU's answer.
+    TwcAnswer,
+    /// Comparison of the train number in station data with the unit's own.
+    TrainGuard,
+    /// Comparison of station data with the track database, door side left out.
+    StationGuard,
+    /// Comparison of the door side in station data with the track database.
+    SideGuard,
     /// RS-485 link to TCMS, receiving side.
     TcmsReceiver,
     /// RS-485 link to TCMS, sending side.

@@ -91,7 +91,7 @@ pub fn departure(section: &protocol::line::Section) -> TwcWayside {
         next_station: section.to_station,
         loop_id: section.from_loop,
         fixed_speed_kmh: 255,
-        train_number: 8123,
+        train_number: config().train.number,
         ..TwcWayside::default()
     }
 }

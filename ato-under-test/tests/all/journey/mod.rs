@@ -101,7 +101,7 @@ impl Journey {
                 station: self.section.to_station,
                 next_station: self.section.to_station + 1,
                 loop_id: self.section.to_loop,
-                door_side: DoorSide::Right,
+                door_side: DoorSide::from_label(&self.section.door_side).unwrap(),
                 ..common::departure(&self.section)
             });
         }

@@ -91,17 +91,12 @@ pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, Stri
 }
 
 fn defaults(section: &Section, place: Place, all: &[Section]) -> StationData {
-    let data = match place {
+    match place {
         Place::Departure => StationData::at_departure(section),
         Place::Arrival => {
             let onward = all.iter().find(|s| s.from_station == section.to_station);
             let next = onward.map_or(section.to_station, |s| s.to_station);
             StationData::at_arrival(section, next)
         }
-    };
-    StationData {
-        door_side: DoorSide::from_label(&section.door_side).unwrap_or(DoorSide::None),
-        train_number: 1,
-        ..data
     }
 }

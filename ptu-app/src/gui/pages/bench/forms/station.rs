@@ -16,9 +16,6 @@ pub struct StationForm {
     pub fixed_speed_kmh: u8,
 }
 
-/// Train number until another is filled in [default].
-const TRAIN: u16 = 8001;
-
 impl StationForm {
     /// A train waiting at the start of the line's first section.
     pub fn new(line: &Line) -> Self {
@@ -33,7 +30,7 @@ impl StationForm {
                 running_mode: RunningMode::Normal,
                 door_side: DoorSide::None,
                 departure: false,
-                train_number: TRAIN,
+                train_number: 0,
             },
             ordered: false,
             fixed_speed_kmh: 60,

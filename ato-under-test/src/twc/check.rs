@@ -1,0 +1,212 @@
+//! Station data against the unit's track database [S2 §3.1].
+//!
+//! Data that contradict it are refused whole: one wrong number says that the rest cannot be trusted either.
+
+use protocol::event::Event;
+use protocol::injection::Place;
+use protocol::line::{Line, Section};
+use protocol::message::{DoorSide, TwcWayside};
+
+use crate::front_end::Faults;
+
+/// What the data say that the track database does not: its event, with the parameter.
+pub fn contradiction(data: &TwcWayside, line: &Line, faults: &Faults) -> Option<(Event, i32)> {
+    let unknown = (Event::TwcStationInvalid, i32::from(data.station));
+    let Some(section) = line.section(data.section) else {
+        return Some(unknown);
+    };
+    let compared = !faults.dead(Place::StationGuard);
+    let checks = [
+        (compared && !stands_in(data, section), unknown),
+        (
+            compared && !goes_to(data, line, section),
+            (Event::TwcWrongNext, i32::from(data.next_station)),
+        ),
+        (
+            !faults.dead(Place::SideGuard) && !has_platform(data, line, section),
+            (Event::TwcWrongSide, i32::from(data.door_side.code())),
+        ),
+        (
+            !data.running_mode.is_known(),
+            (Event::TwcWrongMode, i32::from(data.running_mode.code())),
+        ),
+    ];
+    let found = checks.iter().find(|(contradicts, _)| *contradicts);
+    found.map(|(_, event)| *event)
+}
+
+/// Route, station and loop are those of the section's departure or arrival.
+fn stands_in(data: &TwcWayside, section: &Section) -> bool {
+    data.route == section.route && (departs(data, section) || arrives(data, section))
+}
+
+fn departs(data: &TwcWayside, section: &Section) -> bool {
+    data.station == section.from_station && data.loop_id == section.from_loop
+}
+
+fn arrives(data: &TwcWayside, section: &Section) -> bool {
+    data.station == section.to_station && data.loop_id == section.to_loop
+}
+
+/// The next station is the section's end or, at that, the end of the section that follows. Behind the last one the
+/// track database knows nothing.
+fn goes_to(data: &TwcWayside, line: &Line, section: &Section) -> bool {
+    if departs(data, section) {
+        return data.next_station == section.to_station;
+    }
+    let onward = line
+        .sections
+        .iter()
+        .find(|onward| onward.from_station == section.to_station);
+    onward.is_none_or(|onward| data.next_station == onward.to_station)
+}
+
+/// Doors may open only where a platform is: that of the section's end, and at its departure also that of the station
+/// the train stands in.
+fn has_platform(data: &TwcWayside, line: &Line, section: &Section) -> bool {
+    let platform = |section: &Section| DoorSide::from_label(&section.door_side);
+    let arrived = departs(data, section)
+        .then(|| {
+            let mut sections = line.sections.iter();
+            sections.find(|before| before.to_station == section.from_station)
+        })
+        .flatten()
+        .and_then(platform);
+    [platform(section), arrived]
+        .into_iter()
+        .flatten()
+        .any(|platform| lies_within(data.door_side, platform))
+}
+
+fn lies_within(side: DoorSide, platform: DoorSide) -> bool {
+    side == DoorSide::None || side == platform || side.is_known() && platform == DoorSide::Both
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use protocol::message::RunningMode;
+
+    use super::*;
+
+    fn line() -> Line {
+        Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
+    }
+
+    fn arrival(line: &Line, at: usize) -> TwcWayside {
+        let section = &line.sections[at];
+        let onward = line.sections.get(at + 1);
+        TwcWayside {
+            route: section.route,
+            section: section.section,
+            station: section.to_station,
+            next_station: onward.map_or(section.to_station, |onward| onward.to_station),
+            loop_id: section.to_loop,
+            fixed_speed_kmh: u8::MAX,
+            door_side: DoorSide::from_label(&section.door_side).unwrap(),
+            ..TwcWayside::default()
+        }
+    }
+
+    fn departure(line: &Line, at: usize) -> TwcWayside {
+        let section = &line.sections[at];
+        TwcWayside {
+            station: section.from_station,
+            next_station: section.to_station,
+            loop_id: section.from_loop,
+            door_side: DoorSide::None,
+            ..arrival(line, at)
+        }
+    }
+
+    fn found(data: TwcWayside, line: &Line) -> Option<Event> {
+        contradiction(&data, line, &Faults::new(&[], 1)).map(|(event, _)| event)
+    }
+
+    #[test]
+    fn every_station_of_the_line_agrees_with_it() {
+        let line = line();
+        for at in 0..line.sections.len() {
+            assert_eq!(found(departure(&line, at), &line), None, "{at}");
+            assert_eq!(found(arrival(&line, at), &line), None, "{at}");
+        }
+    }
+
+    #[test]
+    fn each_wrong_number_has_its_event() {
+        let line = line();
+        let good = arrival(&line, 0);
+        for (data, event) in [
+            (
+                TwcWayside {
+                    station: 999,
+                    ..good
+                },
+                Event::TwcStationInvalid,
+            ),
+            (
+                TwcWayside {
+                    section: 999,
+                    ..good
+                },
+                Event::TwcStationInvalid,
+            ),
+            (TwcWayside { route: 5, ..good }, Event::TwcStationInvalid),
+            (
+                TwcWayside {
+                    loop_id: good.loop_id + 1,
+                    ..good
+                },
+                Event::TwcStationInvalid,
+            ),
+            (
+                TwcWayside {
+                    next_station: 999,
+                    ..good
+                },
+                Event::TwcWrongNext,
+            ),
+            (
+                TwcWayside {
+                    next_station: 999,
+                    ..departure(&line, 3)
+                },
+                Event::TwcWrongNext,
+            ),
+            (
+                TwcWayside {
+                    running_mode: RunningMode::Unknown(2),
+                    ..good
+                },
+                Event::TwcWrongMode,
+            ),
+        ] {
+            assert_eq!(found(data, &line), Some(event), "{data:?}");
+        }
+    }
+
+    /// At a platform on one side no other side agrees; where a platform lies on both, each does.
+    #[test]
+    fn doors_may_open_where_a_platform_is() {
+        let mut line = line();
+        for (platform, allowed) in [
+            ("left", [true, true, false, false, false]),
+            ("right", [true, false, true, false, false]),
+            ("both", [true, true, true, true, false]),
+        ] {
+            line.sections[0].door_side = platform.into();
+            let agrees: Vec<_> = (0..5)
+                .map(|side| {
+                    let door_side = DoorSide::from_code(side);
+                    let data = TwcWayside {
+                        door_side,
+                        ..arrival(&line, 0)
+                    };
+                    found(data, &line) != Some(Event::TwcWrongSide)
+                })
+                .collect();
+            assert_eq!(agrees, allowed, "{platform}");
+        }
+    }
+}
