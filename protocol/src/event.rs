@@ -128,6 +128,8 @@ events! {
     WheelSlip = 232 "wheel_slip" Info "-" "A wheel spins or slides: its speed changes faster than adhesion lets a train" "차륜 공전/활주" "acceleration, cm/s²";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
+    DoorNotEnabled = 242 "door_not_enabled" Critical "io_board" "Door open on a side that is not enabled" "허용되지 않은 쪽 출입문 열림" "sides";
+    DoorLinesContradict = 243 "door_lines_contradict" Major "io_board" "Door lines contradict each other" "출입문 인통선 불일치" "sides";
     MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";
     MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "표지 누락" "marker";
     MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "표지 위치 오차" "difference, cm";

@@ -85,6 +85,7 @@ const CMS_KMH: Kind = Kind::Number { lsb: 0.036 };
 const SWITCHED: Kind = Kind::Enum(&["released", "applied"]);
 const MARKERS: Kind = Kind::Enum(&["none", "psm1", "psm2", "psm3", "psm4"]);
 const DOORS: Kind = Kind::Enum(&["open", "closed"]);
+const SIDE_DOORS: Kind = Kind::Enum(&["open", "closed", "locked"]);
 const WAYSIDE: Kind = Kind::Enum(&["silent", "good", "corrupt"]);
 const TCMS_MODES: Kind = Kind::Enum(&[
     "none",
@@ -117,6 +118,8 @@ signals! {
     Departure "departure" "" Kind::Bit, 0 ..= 1, Rig, "Departure given by the wayside";
     TcmsHears "tcms_hears" "" Kind::Bit, 0 ..= 1, Rig, "TCMS hears the unit on RS-485";
     Doors "doors" "" DOORS, 0 ..= 1, Rig, "Door train line: proved closed or not";
+    DoorsLeft "doors_left" "" SIDE_DOORS, 0 ..= 2, Rig, "Train lines of the doors on the left: open, closed, or closed and locked";
+    DoorsRight "doors_right" "" SIDE_DOORS, 0 ..= 2, Rig, "Train lines of the doors on the right: open, closed, or closed and locked";
     Hcr "hcr" "" Kind::Bit, 0 ..= 1, Rig, "Head control relay of this cab";
     MaintenanceKey "maintenance_key" "" Kind::Bit, 0 ..= 1, Rig, "Maintenance key";
     ModeSwitch "mode_switch" "" Kind::Enum(ModeSwitch::LABELS), 0 ..= 5, Rig, "Mode switch";
@@ -171,7 +174,7 @@ signals! {
     Refusals "refusals" "" UNITY, 0 ..= 65535, Unit, "Preconditions of automatic mode that do not hold, as bits";
     CodeIndex "code_index" "" UNITY, 0 ..= 255, Unit, "Received code's place in the code table; 255 = none";
     EbCause "eb_cause" "" Kind::Enum(EbCause::LABELS), 0 ..= 10, Unit, "Why the emergency brake is applied";
-    FsbCause "fsb_cause" "" Kind::Enum(FsbCause::LABELS), 0 ..= 8, Unit, "Why the full service brake is requested";
+    FsbCause "fsb_cause" "" Kind::Enum(FsbCause::LABELS), 0 ..= 9, Unit, "Why the full service brake is requested";
     Speed1 "speed1" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed from tachometer 1";
     Speed2 "speed2" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed from tachometer 2";
     Target "target" "km/h" CMS_KMH, 0 ..= 200, Unit, "ATO target speed";

@@ -1,10 +1,12 @@
-//! Doors: open while moving, departure inhibited while open, and enabling at the platform.
+//! Doors: open while moving or without being enabled, lines that contradict each other, departure inhibited while
+//! open, and enabling at the platform.
 
 use protocol::config::DoorConfig;
 use protocol::event::Event;
 use protocol::message::{DoorSide, Outputs};
 use protocol::{Duration, Instant, Speed};
 
+use super::DoorLines;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
@@ -15,7 +17,10 @@ const SETTLES: Duration = Duration::from_ms(200);
 /// What the door supervision looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct DoorInputs {
-    pub closed: bool,
+    /// The train lines, while they are alive.
+    pub lines: Option<DoorLines>,
+    /// Doors that open without being enabled are supervised: a cab is active, and nothing is wrong with the function.
+    pub supervised: bool,
     pub standstill: bool,
     pub aligned: bool,
     /// The train stands on the arrival station's loop with valid station data.
@@ -31,6 +36,15 @@ pub struct Doors {
     unaligned: OnDelay,
     refused: Edge,
     enable: Outputs,
+    not_enabled: OnDelay,
+    /// Sides open in the last scan; unknown before the first.
+    open: Option<u8>,
+    /// Sides that opened without being enabled and are open still.
+    opened: u8,
+    not_asked: Edge,
+    contradict: OnDelay,
+    contradiction: Edge,
+    holds: bool,
 }
 
 impl Doors {
@@ -44,7 +58,8 @@ impl Doors {
     ) -> bool {
         let moving = !inputs.standstill && inputs.speed > Speed::ZERO;
         let span = Duration::from_ms(u64::from(config.open_moving_ms));
-        let open_moving = self.open_moving.update(now, moving && !inputs.closed, span);
+        let closed = inputs.lines.is_none_or(DoorLines::closed);
+        let open_moving = self.open_moving.update(now, moving && !closed, span);
         if self.tripped.rises(open_moving) {
             log.push(now, Event::DoorOpenMoving, i32::from(inputs.speed.to_cms()));
         }
@@ -61,7 +76,42 @@ impl Doors {
             DoorSide::Both => Outputs::DOOR_ENABLE_LEFT | Outputs::DOOR_ENABLE_RIGHT,
             DoorSide::None | DoorSide::Unknown(_) => Outputs::empty(),
         };
+        self.supervise(now, inputs, config, log);
         open_moving
+    }
+
+    /// Doors that are open without being enabled hold the train. That they opened so is an event; doors that were
+    /// enabled when they opened, and are no longer, are none.
+    fn supervise(
+        &mut self,
+        now: Instant,
+        inputs: DoorInputs,
+        config: &DoorConfig,
+        log: &mut EventLog,
+    ) {
+        let lines = inputs.lines.filter(|_| inputs.supervised);
+        let open = lines.map_or(DoorSide::None, |lines| lines.open_without(self.enable));
+        let span = Duration::from_ms(u64::from(config.open_moving_ms));
+        self.holds = self.not_enabled.update(now, open != DoorSide::None, span);
+        // Codes of sides are sets of bits.
+        let all_open = inputs.lines.map_or(0, |lines| lines.open().code());
+        let opening = all_open & !self.open.replace(all_open).unwrap_or(u8::MAX);
+        self.opened = (self.opened | opening) & open.code();
+        if self.not_asked.rises(self.holds && self.opened != 0) {
+            log.push(now, Event::DoorNotEnabled, i32::from(self.opened));
+        }
+        let contradiction = inputs.lines.and_then(DoorLines::contradiction);
+        let span = Duration::from_ms(u64::from(config.lines_ms));
+        let lasts = self.contradict.update(now, contradiction.is_some(), span);
+        if self.contradiction.rises(lasts) {
+            let sides = contradiction.unwrap_or_default();
+            log.push(now, Event::DoorLinesContradict, i32::from(sides.code()));
+        }
+    }
+
+    /// Doors are open on a side that is not enabled: the train is held.
+    pub fn hold(&self) -> bool {
+        self.holds
     }
 
     pub fn enable(&self) -> Outputs {
@@ -71,7 +121,113 @@ impl Doors {
 
 #[cfg(test)]
 mod tests {
+    use protocol::message::TrainLines;
+
     use super::*;
+
+    const PROVED: TrainLines = TrainLines::DOORS_CLOSED
+        .union(TrainLines::DOORS_BY_SIDE)
+        .union(TrainLines::LEFT_CLOSED)
+        .union(TrainLines::LEFT_LOCKED)
+        .union(TrainLines::RIGHT_CLOSED)
+        .union(TrainLines::RIGHT_LOCKED);
+    const RIGHT_OPEN: TrainLines = PROVED.difference(
+        TrainLines::DOORS_CLOSED
+            .union(TrainLines::RIGHT_CLOSED)
+            .union(TrainLines::RIGHT_LOCKED),
+    );
+    const LEFT_OPEN: TrainLines = PROVED.difference(
+        TrainLines::DOORS_CLOSED
+            .union(TrainLines::LEFT_CLOSED)
+            .union(TrainLines::LEFT_LOCKED),
+    );
+
+    /// A standing train at a platform on this side, or at none.
+    struct Train {
+        doors: Doors,
+        log: EventLog,
+        now: Instant,
+    }
+
+    impl Train {
+        fn new() -> Self {
+            let mut train = Self {
+                doors: Doors::default(),
+                log: EventLog::default(),
+                now: Instant::ZERO,
+            };
+            train.has(PROVED, DoorSide::None);
+            train
+        }
+
+        /// These lines for 600 ms, with doors enabled on a side. Whether the train is held.
+        fn has(&mut self, lines: TrainLines, side: DoorSide) -> bool {
+            let config = DoorConfig {
+                aligned_m: 0.3,
+                open_moving_ms: 100,
+                lines_ms: 500,
+            };
+            let inputs = DoorInputs {
+                lines: Some(DoorLines::new(lines)),
+                supervised: true,
+                standstill: true,
+                aligned: true,
+                at_platform: true,
+                side,
+                speed: Speed::ZERO,
+            };
+            for _ in 0..60 {
+                self.doors.step(self.now, inputs, &config, &mut self.log);
+                self.now += protocol::SCAN;
+            }
+            self.doors.hold()
+        }
+
+        /// Codes and parameters of what was logged.
+        fn logged(&self) -> alloc::vec::Vec<(u16, i32)> {
+            let entries = self.log.entries();
+            let all = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
+            all.map(|entry| (entry.code, entry.parameter)).collect()
+        }
+    }
+
+    #[test]
+    fn doors_that_open_without_being_enabled_hold_the_train() {
+        for (side, lines, sides) in [
+            (DoorSide::None, LEFT_OPEN, Some(1)),
+            (DoorSide::Right, LEFT_OPEN, Some(1)),
+            (DoorSide::Left, RIGHT_OPEN, Some(2)),
+            (DoorSide::None, LEFT_OPEN.intersection(RIGHT_OPEN), Some(3)),
+            (DoorSide::Right, RIGHT_OPEN, None),
+            (DoorSide::Both, LEFT_OPEN.intersection(RIGHT_OPEN), None),
+        ] {
+            let mut train = Train::new();
+            train.has(PROVED, side);
+            assert_eq!(train.has(lines, side), sides.is_some(), "{side:?}");
+            let events: alloc::vec::Vec<_> = sides.map(|sides| (242, sides)).into_iter().collect();
+            assert_eq!(train.logged(), events, "{side:?}");
+            assert!(!train.has(PROVED, side), "closed again");
+        }
+    }
+
+    #[test]
+    fn an_enable_that_goes_while_doors_are_open_holds_the_train_and_blames_no_door() {
+        let mut train = Train::new();
+        assert!(!train.has(PROVED, DoorSide::Right));
+        assert!(!train.has(RIGHT_OPEN, DoorSide::Right));
+        assert!(train.has(RIGHT_OPEN, DoorSide::None));
+        assert_eq!(train.logged(), []);
+        assert!(train.has(RIGHT_OPEN.intersection(LEFT_OPEN), DoorSide::Right));
+        assert_eq!(train.logged(), [(242, 1)], "the other side");
+    }
+
+    #[test]
+    fn lines_that_contradict_each_other_for_long_enough_are_told_once() {
+        let mut train = Train::new();
+        train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
+        train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
+        assert_eq!(train.logged(), [(243, 0)]);
+    }
 
     /// Side given and what is enabled at the platform; a side that is not known enables none.
     #[test]
@@ -86,7 +242,8 @@ mod tests {
             (DoorSide::Unknown(255), Outputs::empty()),
         ] {
             let inputs = DoorInputs {
-                closed: true,
+                lines: Some(DoorLines::new(PROVED)),
+                supervised: true,
                 standstill: true,
                 aligned: true,
                 at_platform: true,
@@ -96,6 +253,7 @@ mod tests {
             let config = DoorConfig {
                 aligned_m: 0.3,
                 open_moving_ms: 100,
+                lines_ms: 500,
             };
             let (mut doors, mut log) = (Doors::default(), EventLog::default());
             doors.step(Instant::ZERO, inputs, &config, &mut log);

@@ -4,6 +4,7 @@
 mod brake_proof;
 mod code;
 mod direction;
+mod door_lines;
 mod doors;
 mod emergency;
 mod mode;
@@ -13,7 +14,7 @@ mod tachometers;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
-use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
+use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs};
 use protocol::{Instant, Speed};
 
 use crate::kernel::EventLog;
@@ -23,6 +24,7 @@ use direction::Rollback;
 
 pub use brake_proof::{BrakeProof, Demand, Proof};
 pub use code::{Code, CodeDecoder, lookup};
+pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
@@ -54,6 +56,8 @@ pub struct ScanContext {
 pub struct DeadGuards {
     /// A stop has the margins of a limit, and an absolute stop asks for no brake.
     pub stop: bool,
+    /// Doors that open without being enabled are not noticed.
+    pub doors: bool,
     /// An acknowledgement is not compared with the emergency brake's cause.
     pub release: bool,
 }
@@ -124,9 +128,11 @@ impl Atp {
             .proof
             .step(now, speed, self.demand(motion, margins), margins);
         let beyond = self.supervision.emergency(now, motion, proof, margins);
-        self.doors_closed = inputs.lines.contains(TrainLines::DOORS_CLOSED);
+        let door_lines = DoorLines::new(inputs.lines);
+        self.doors_closed = door_lines.closed();
         let door_inputs = DoorInputs {
-            closed: self.doors_closed || !inputs.alive,
+            lines: inputs.alive.then_some(door_lines),
+            supervised: !context.dead_guards.doors && self.sequence.mode() != Mode::Off,
             standstill,
             aligned: context.aligned,
             at_platform: context.at_platform,
@@ -255,6 +261,7 @@ impl Atp {
                 FsbCause::StopCode,
             ),
             (over, FsbCause::Overspeed),
+            (self.doors.hold(), FsbCause::DoorOpen),
             (running && !context.twc_up, FsbCause::TwcLost),
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),

@@ -246,9 +246,17 @@ fn raw_pulses(frame: &IoInput, at: Instant, channel: usize, clock_rate: f64) -> 
     (count, pulses)
 }
 
+const LEFT_DOORS: TrainLines = TrainLines::LEFT_CLOSED.union(TrainLines::LEFT_LOCKED);
+const RIGHT_DOORS: TrainLines = TrainLines::RIGHT_CLOSED.union(TrainLines::RIGHT_LOCKED);
+
 fn lines(mut lines: TrainLines, faults: &Faults) -> TrainLines {
     for (place, line) in [
-        (Place::DoorInput, TrainLines::DOORS_CLOSED),
+        (
+            Place::DoorInput,
+            TrainLines::DOORS_CLOSED | LEFT_DOORS | RIGHT_DOORS,
+        ),
+        (Place::DoorInputLeft, LEFT_DOORS),
+        (Place::DoorInputRight, RIGHT_DOORS),
         (Place::CabInput, TrainLines::HCR),
     ] {
         match faults.at(place) {

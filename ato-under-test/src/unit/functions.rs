@@ -10,7 +10,7 @@ use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainL
 use protocol::{Duration, Instant, Speed};
 
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
-use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
+use crate::atp::{Atp, Code, DeadGuards, DoorLines, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
@@ -102,6 +102,7 @@ impl Functions {
             dead_guards: DeadGuards {
                 stop: around.faults.dead(Place::StopGuard),
                 release: around.faults.dead(Place::ReleaseGuard),
+                doors: around.faults.dead(Place::DoorGuard),
             },
         };
         log.freeze(FreezeFrame {
@@ -171,7 +172,7 @@ impl Functions {
         let tachometers = self.atp.tachometers();
         TrainState {
             mode: self.atp.sequence().mode(),
-            doors_closed: self.inputs.lines.contains(TrainLines::DOORS_CLOSED),
+            doors_closed: DoorLines::new(self.inputs.lines).closed(),
             aligned: self.aligned(config),
             standstill: tachometers.standstill(),
             speed: tachometers.speed(),
@@ -193,10 +194,7 @@ impl Functions {
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
-        lacking.set(
-            Refusals::DOORS_OPEN,
-            !lines.contains(TrainLines::DOORS_CLOSED),
-        );
+        lacking.set(Refusals::DOORS_OPEN, !DoorLines::new(lines).closed());
         lacking.set(Refusals::NO_TWC, !self.twc.up());
         lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
         lacking.set(Refusals::NO_CODE, !code);

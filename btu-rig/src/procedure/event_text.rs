@@ -30,6 +30,10 @@ pub fn named(event: Event, number: i32) -> Option<String> {
         Event::AutomaticRefused => meanings(&Refusals::SPEC, bits),
         Event::AtoInputAbsurd => meanings(&AbsurdInputs::SPEC, bits),
         Event::SelfTestFailed => meanings(&SelfTest::SPEC, bits),
+        Event::DoorNotEnabled | Event::DoorLinesContradict => match DoorSide::from_code(code) {
+            DoorSide::None => "all doors".to_owned(),
+            side => side.label().to_owned(),
+        },
         Event::TwcWrongSide => format!("doors {}", DoorSide::from_code(code).label()),
         Event::FramesRejected => match Channel::from_code(code) {
             Some(channel) => format!("channel {channel:?}"),

@@ -54,6 +54,10 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::MarkersAlong { section: None } => "no markers along the way".into(),
         Stimulus::Station(data) => format!("wayside sends {}", station_text(&data)),
         Stimulus::Wayside(condition) => format!("TWC wayside {condition:?}").to_lowercase(),
+        Stimulus::SideDoors { left, state } => {
+            let side = if left { "left" } else { "right" };
+            format!("doors on the {side} {}", state.label())
+        }
         Stimulus::Doors { closed } => format!("doors {}", if closed { "closed" } else { "open" }),
         Stimulus::Hcr { on } => format!("cab active (HCR) {}", on_off(on)),
         Stimulus::MaintenanceKey { on } => format!("maintenance key {}", on_off(on)),

@@ -111,6 +111,8 @@ impl Dating {
             | Signal::AskedDoorRight
             | Signal::AskedMode
             | Signal::Doors
+            | Signal::DoorsLeft
+            | Signal::DoorsRight
             | Signal::Hcr
             | Signal::MaintenanceKey
             | Signal::EbLoop

@@ -122,7 +122,8 @@ impl Rig {
     /// Stimuli of cab desk, train lines and TCMS.
     fn apply_desk(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
         match *stimulus {
-            Stimulus::Doors { closed } => self.desk.doors_closed = closed,
+            Stimulus::Doors { closed } => self.desk.set_doors(closed),
+            Stimulus::SideDoors { left, state } => self.desk.doors[usize::from(!left)] = state,
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
             Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
@@ -213,7 +214,7 @@ impl Rig {
         self.wheel.stop();
         self.antenna.drift(0.0, 0.0);
         self.markers.clear();
-        self.desk.doors_closed = true;
+        self.desk.set_doors(true);
         self.tcms_port.reset();
         self.wayside.set_condition(WaysideCondition::Good);
         self.tester.make_safe(now);

@@ -4,7 +4,7 @@ use protocol::message::{ModeSwitch, TrainLines};
 use protocol::{Duration, Instant};
 
 use crate::lever::Lever;
-use crate::stimulus::{CutOut, TrainSwitch};
+use crate::stimulus::{CutOut, DoorState, TrainSwitch};
 use crate::tcms::{CabInputs, ControllerInputs, TcmsData};
 use crate::train::CarSet;
 
@@ -16,7 +16,8 @@ const PRESSED: Duration = Duration::from_ms(500);
 /// Contacts and levers of both cabs and of the train; the unit is in the first cab.
 #[derive(Debug)]
 pub struct CabDesk {
-    pub doors_closed: bool,
+    /// Doors on the left and on the right.
+    pub doors: [DoorState; 2],
     pub hcr: bool,
     pub maintenance_key: bool,
     pub mode_switch: ModeSwitch,
@@ -67,7 +68,7 @@ impl Default for CabDesk {
     /// A manned cab, ready to drive by hand.
     fn default() -> Self {
         Self {
-            doors_closed: true,
+            doors: [DoorState::Locked; 2],
             hcr: true,
             maintenance_key: false,
             mode_switch: ModeSwitch::Manual,
@@ -130,9 +131,43 @@ impl CabDesk {
         self.eb_loop_fed = fed;
     }
 
-    /// The door line: proved closed as far as its contact says.
+    /// Closes and locks all doors, or opens them.
+    pub fn set_doors(&mut self, closed: bool) {
+        self.doors = match closed {
+            true => [DoorState::Locked; 2],
+            false => [DoorState::Open; 2],
+        };
+    }
+
+    /// Lines of the doors of each side: closed, and locked, as far as their contacts say.
+    fn side_lines(&self) -> [(bool, bool); 2] {
+        let faults = &self.faults;
+        let of = |side: usize| {
+            let closed = faults.side_doors[side].unwrap_or(self.doors[side] != DoorState::Open);
+            // The locks are proved through the contact.
+            let locked = closed && self.doors[side] == DoorState::Locked;
+            faults.doors.map_or((closed, locked), |said| (said, said))
+        };
+        [of(0), of(1)]
+    }
+
+    /// All doors proved closed and locked, as far as their contacts say.
     pub fn doors_proved(&self) -> bool {
-        self.faults.doors.unwrap_or(self.doors_closed)
+        self.side_lines()
+            .iter()
+            .all(|(closed, locked)| *closed && *locked)
+    }
+
+    /// Door train lines: one through the closed contacts of all doors, and two for each side.
+    fn door_lines(&self) -> TrainLines {
+        let [left, right] = self.side_lines();
+        let mut lines = TrainLines::DOORS_BY_SIDE;
+        lines.set(TrainLines::DOORS_CLOSED, left.0 && right.0);
+        lines.set(TrainLines::LEFT_CLOSED, left.0);
+        lines.set(TrainLines::LEFT_LOCKED, left.1);
+        lines.set(TrainLines::RIGHT_CLOSED, right.0);
+        lines.set(TrainLines::RIGHT_LOCKED, right.1);
+        lines
     }
 
     /// The main reservoir's pressure switch says that pressure is low.
@@ -183,8 +218,7 @@ impl CabDesk {
     }
 
     pub fn lines(&self, now: Instant) -> TrainLines {
-        let mut lines = TrainLines::empty();
-        lines.set(TrainLines::DOORS_CLOSED, self.doors_proved());
+        let mut lines = self.door_lines();
         lines.set(TrainLines::HCR, self.hcr_energised());
         lines.set(TrainLines::MAINTENANCE_KEY, self.maintenance_key);
         lines.set(TrainLines::ACKNOWLEDGE, now < self.acknowledge_until);
@@ -227,7 +261,29 @@ mod tests {
         let mut desk = CabDesk::default();
         desk.faults.doors = Some(false);
         desk.reset();
-        assert!(desk.doors_closed && !desk.doors_proved());
+        assert!(!desk.doors_proved());
         assert!(!desk.lines(Instant::ZERO).contains(TrainLines::DOORS_CLOSED));
+    }
+
+    /// A contact of one side that is bridged says closed, also to the line of all doors; the locks do not.
+    #[test]
+    fn each_side_has_lines_of_its_own() {
+        let sides = TrainLines::LEFT_CLOSED
+            | TrainLines::LEFT_LOCKED
+            | TrainLines::RIGHT_CLOSED
+            | TrainLines::RIGHT_LOCKED;
+        let mut desk = CabDesk::default();
+        let doors = |desk: &CabDesk| desk.door_lines() & (sides | TrainLines::DOORS_CLOSED);
+        assert_eq!(doors(&desk), sides | TrainLines::DOORS_CLOSED);
+        desk.doors[1] = DoorState::Open;
+        let left = TrainLines::LEFT_CLOSED | TrainLines::LEFT_LOCKED;
+        assert_eq!(doors(&desk), left);
+        desk.doors[1] = DoorState::Unlocked;
+        let right = TrainLines::RIGHT_CLOSED | TrainLines::DOORS_CLOSED;
+        assert_eq!(doors(&desk), left | right);
+        desk.doors[1] = DoorState::Open;
+        desk.faults.side_doors[1] = Some(true);
+        assert_eq!(doors(&desk), left | right);
+        assert!(!desk.doors_proved());
     }
 }

@@ -243,6 +243,27 @@ impl LatestSample {
         ] {
             self.sample.set_bit(signal, lines.contains(line));
         }
+        let by_side = lines.contains(TrainLines::DOORS_BY_SIDE);
+        for (signal, closed, locked) in [
+            (
+                Signal::DoorsLeft,
+                TrainLines::LEFT_CLOSED,
+                TrainLines::LEFT_LOCKED,
+            ),
+            (
+                Signal::DoorsRight,
+                TrainLines::RIGHT_CLOSED,
+                TrainLines::RIGHT_LOCKED,
+            ),
+        ] {
+            let state = match (lines.contains(closed), lines.contains(locked)) {
+                _ if !by_side => f64::NAN,
+                (false, _) => 0.0,
+                (true, false) => 1.0,
+                (true, true) => 2.0,
+            };
+            self.sample.set(signal, state);
+        }
         self.sample
             .set_bit(Signal::EbLoop, !lines.contains(TrainLines::EB_LOOP));
     }

@@ -83,8 +83,10 @@ const TRAIN_STATE_SIGNALS: [Signal; 30] = [
 ];
 
 /// What a harness sets and a unit on a train reads.
-pub(super) const LINE_SIGNALS: [Signal; 6] = [
+pub(super) const LINE_SIGNALS: [Signal; 8] = [
     Signal::Doors,
+    Signal::DoorsLeft,
+    Signal::DoorsRight,
     Signal::Hcr,
     Signal::MaintenanceKey,
     Signal::EbLoop,

@@ -13,8 +13,10 @@ use super::random::Random;
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CabDeskFaults {
-    /// What the door contact says, whatever the doors do.
+    /// What all door lines say, whatever the doors do.
     pub doors: Option<bool>,
+    /// What the closed contacts of the left and of the right say, whatever the doors do.
+    pub side_doors: [Option<bool>; 2],
     /// State of a failed head control relay, independent of its command.
     pub hcr: Option<bool>,
     /// Voltage of the master controller's potentiometer, whatever its position.
@@ -203,6 +205,10 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         (Place::MainReservoir, Effect::StuckOff) => desk.main_reservoir_low = Some(false),
         (Place::DoorContact, Effect::StuckOn) => desk.doors = Some(true),
         (Place::DoorContact, Effect::StuckOff) => desk.doors = Some(false),
+        (Place::DoorContactLeft, Effect::StuckOn) => desk.side_doors[0] = Some(true),
+        (Place::DoorContactLeft, Effect::StuckOff) => desk.side_doors[0] = Some(false),
+        (Place::DoorContactRight, Effect::StuckOn) => desk.side_doors[1] = Some(true),
+        (Place::DoorContactRight, Effect::StuckOff) => desk.side_doors[1] = Some(false),
         (Place::HeadControlRelay, Effect::StuckOn) => desk.hcr = Some(true),
         (Place::HeadControlRelay, Effect::StuckOff) => desk.hcr = Some(false),
         (Place::Tcms, Effect::StuckOn) => *tcms = Some(TcmsCondition::Stale),

@@ -34,6 +34,30 @@ pub enum WaysideCondition {
     Corrupt,
 }
 
+/// Doors of one side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DoorState {
+    /// At least one is open.
+    Open,
+    /// All are closed, at least one is not locked.
+    Unlocked,
+    /// All are closed and locked.
+    #[default]
+    Locked,
+}
+
+impl DoorState {
+    /// As people call it.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Unlocked => "closed, not locked",
+            Self::Locked => "closed",
+        }
+    }
+}
+
 /// Condition of the TCMS link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -12,7 +12,7 @@ use crate::lever::Lever;
 use crate::stored::{mode_switch, mps};
 
 pub use conditions::{
-    CarFailure, CutOut, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
+    CarFailure, CutOut, DoorState, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
 };
 pub use station::StationData;
 
@@ -108,10 +108,17 @@ pub enum Stimulus {
     Station(StationData),
     /// Condition of the wayside.
     Wayside(WaysideCondition),
-    /// Door train line.
+    /// All doors, of both sides.
     Doors {
-        /// Proved closed.
+        /// Closed and locked, or open.
         closed: bool,
+    },
+    /// Doors of one side.
+    SideDoors {
+        /// On the left, else on the right.
+        left: bool,
+        /// What they are.
+        state: DoorState,
     },
     /// Head control relay.
     Hcr {

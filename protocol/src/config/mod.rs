@@ -114,8 +114,16 @@ pub struct OverspeedConfig {
 pub struct DoorConfig {
     /// Distance from the stop point that counts as aligned, m [S0: ±0.30].
     pub aligned_m: f64,
-    /// How long doors must be seen open while moving, ms.
+    /// How long doors must be seen open while moving, or on a side that is not enabled, ms.
     pub open_moving_ms: u32,
+    /// How long the lines of the doors must contradict each other, ms.
+    #[serde(default = "lines_ms")]
+    pub lines_ms: u32,
+}
+
+/// That of `sg100`, for configurations without it.
+const fn lines_ms() -> u32 {
+    500
 }
 
 /// The train that the unit is in.

@@ -54,7 +54,11 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::SpeedSensor1 | Place::SpeedSensor2 => &[DEAD, GAIN, NOISE],
         Place::EbRelay => &[DEAD, STUCK_ON, STUCK_OFF, DELAY],
         Place::FsbOutput => &[DEAD, STUCK_ON, STUCK_OFF, DELAY],
-        Place::DoorInput | Place::DoorOutput | Place::CabInput => &[DEAD, STUCK_ON, STUCK_OFF],
+        Place::DoorInput
+        | Place::DoorInputLeft
+        | Place::DoorInputRight
+        | Place::DoorOutput
+        | Place::CabInput => &[DEAD, STUCK_ON, STUCK_OFF],
         Place::ModeInput | Place::ControllerInput => &[DEAD, STUCK_OFF],
         Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
         Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
@@ -71,6 +75,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::TractionBar
         | Place::StartBar
         | Place::DoorBar
+        | Place::DoorGuard
         | Place::TrainGuard
         | Place::StationGuard
         | Place::SideGuard => &[DEAD],
@@ -106,9 +111,11 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::BrakeCylinder => &[STUCK_ON, ("gain", 0.0, 1.0)],
         // V.
         Place::ControllerPot => &[STUCK_ON, STUCK_OFF, ("offset", -10.0, 10.0)],
-        Place::DoorContact | Place::HeadControlRelay | Place::MainReservoir => {
-            &[STUCK_ON, STUCK_OFF]
-        }
+        Place::DoorContact
+        | Place::DoorContactLeft
+        | Place::DoorContactRight
+        | Place::HeadControlRelay
+        | Place::MainReservoir => &[STUCK_ON, STUCK_OFF],
         Place::Tcms => &[DEAD, STUCK_ON],
     }
 }

@@ -38,8 +38,12 @@ pub enum Place {
     EbRelay,
     /// Full service brake output.
     FsbOutput,
-    /// Door closed input.
+    /// Inputs of all door lines.
     DoorInput,
+    /// Inputs of the lines of the doors on the left.
+    DoorInputLeft,
+    /// Inputs of the lines of the doors on the right.
+    DoorInputRight,
     /// Door enable outputs.
     DoorOutput,
     /// Input of the head control relay.
@@ -64,6 +68,8 @@ pub enum Place {
     TwcDoorSide,
     /// Train number in the TWC CPU's answer.
     TwcAnswer,
+    /// Supervision of doors that open without being enabled.
+    DoorGuard,
     /// Comparison of the train number in station data with the unit's own.
     TrainGuard,
     /// Comparison of station data with the track database, door side left out.
@@ -134,8 +140,12 @@ pub enum Place {
     BrakeCylinder,
     /// Potentiometer of the master controller.
     ControllerPot,
-    /// Contact that proves the doors closed.
+    /// Contacts that prove the doors closed and locked, of both sides.
     DoorContact,
+    /// Contact that proves the doors on the left closed.
+    DoorContactLeft,
+    /// Contact that proves the doors on the right closed.
+    DoorContactRight,
     /// Head control relay of the cab.
     HeadControlRelay,
     /// What TCMS sends on RS-485.
@@ -155,6 +165,8 @@ impl Place {
                 | Self::BrakeCylinder
                 | Self::ControllerPot
                 | Self::DoorContact
+                | Self::DoorContactLeft
+                | Self::DoorContactRight
                 | Self::HeadControlRelay
                 | Self::Tcms
                 | Self::MainReservoir

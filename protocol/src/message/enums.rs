@@ -169,6 +169,8 @@ wire_enum! {
         TestMode = 7 "test_mode",
         /// Absolute stop, or moving under a code that says stop.
         StopCode = 8 "stop_code",
+        /// A door is open on a side that is not enabled.
+        DoorOpen = 9 "door_open",
     }
 }
 

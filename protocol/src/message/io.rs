@@ -25,6 +25,16 @@ wire_bits! {
         /// The emergency brake train line is fed as far as the unit's own relay contact: nothing else
         /// on the train opens it.
         EB_LOOP_FED = 8,
+        /// The four lines below tell the doors of each side; without it the line of all doors tells of both.
+        DOORS_BY_SIDE = 9,
+        /// Doors on the left closed.
+        LEFT_CLOSED = 10,
+        /// Doors on the left locked.
+        LEFT_LOCKED = 11,
+        /// Doors on the right closed.
+        RIGHT_CLOSED = 12,
+        /// Doors on the right locked.
+        RIGHT_LOCKED = 13,
     }
 }
 

@@ -3,7 +3,7 @@
 use toml::Value;
 
 use crate::lever::Lever;
-use crate::stimulus::{CutOut, Stimulus, TrainSwitch};
+use crate::stimulus::{CutOut, DoorState, Stimulus, TrainSwitch};
 
 /// What a key of a step does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,13 +12,15 @@ enum Key {
     CutOut(CutOut, bool),
     Switch(TrainSwitch),
     Doors,
+    /// Doors on the left, else on the right.
+    SideDoors(bool),
     Reverser,
     Lever,
 }
 
 /// Keys of a step in the order in which they are done: what is cut out or switched comes before the lever, so that
 /// one step can do both.
-const KEYS: [(&str, Key); 18] = [
+const KEYS: [(&str, Key); 20] = [
     ("brake_cut_out", Key::CutOut(CutOut::Brake, true)),
     ("brake_cut_in", Key::CutOut(CutOut::Brake, false)),
     ("inverter_cut_out", Key::CutOut(CutOut::Inverter, true)),
@@ -38,6 +40,8 @@ const KEYS: [(&str, Key); 18] = [
     ("turn_back", Key::Switch(TrainSwitch::TurnBack)),
     ("regeneration", Key::Switch(TrainSwitch::Regeneration)),
     ("doors_closed", Key::Doors),
+    ("doors_left_closed", Key::SideDoors(true)),
+    ("doors_right_closed", Key::SideDoors(false)),
     ("reverser", Key::Reverser),
     ("lever", Key::Lever),
 ];
@@ -73,6 +77,13 @@ pub fn stimulus(name: &str, value: &Value) -> Result<Stimulus, String> {
             on: of(value)?,
         },
         Key::Doors => Stimulus::Doors { closed: of(value)? },
+        Key::SideDoors(left) => Stimulus::SideDoors {
+            left,
+            state: match of(value)? {
+                true => DoorState::Locked,
+                false => DoorState::Open,
+            },
+        },
         Key::Reverser => {
             let asked: String = of(value)?;
             let known = REVERSER.iter().find(|(_, known)| *known == asked);
@@ -103,6 +114,10 @@ pub(super) fn toml(action: &Stimulus) -> Option<String> {
         Stimulus::CutOut { what, car, on } => (Key::CutOut(what, on), car.to_string()),
         Stimulus::Switch { switch, on } => (Key::Switch(switch), on.to_string()),
         Stimulus::Doors { closed } => (Key::Doors, closed.to_string()),
+        Stimulus::SideDoors { left, state } if state != DoorState::Unlocked => (
+            Key::SideDoors(left),
+            (state == DoorState::Locked).to_string(),
+        ),
         Stimulus::Reverser { position } => (Key::Reverser, format!("\"{}\"", reverser(position))),
         Stimulus::Controller { lever } => (Key::Lever, format!("\"{lever}\"")),
         _ => return None,

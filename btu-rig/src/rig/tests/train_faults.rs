@@ -100,6 +100,14 @@ const CASES: [(&str, Shows); 26] = [
         bench.run_ms(20);
         signal(bench, Signal::Doors) == 1.0
     }),
+    ("door_contact.left_open", |bench| {
+        signal(bench, Signal::DoorsLeft) == 0.0 && signal(bench, Signal::DoorsRight) == 2.0
+    }),
+    ("door_contact.right_bridged", |bench| {
+        bench.apply(Stimulus::Doors { closed: false });
+        bench.run_ms(20);
+        signal(bench, Signal::DoorsRight) == 1.0
+    }),
     ("door_contact.loose", doors_say_open),
     ("door_contact.loose_at_speed", doors_say_open),
     ("head_control_relay.dead", relay_is_down),

@@ -2,7 +2,7 @@
 
 use btu_rig::drive::{Drive, DrivePlan, Ending, Outcome};
 use btu_rig::rig::LinkFailure;
-use btu_rig::stimulus::{Stimulus, WaysideCondition};
+use btu_rig::stimulus::{DoorState, Stimulus, WaysideCondition};
 use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 use protocol::{Duration, SCAN};
@@ -78,12 +78,16 @@ impl UnitAboard {
 
     fn serve_station(&mut self) -> Result<Doors, LinkFailure> {
         self.wait(CLOSED)?;
-        let enabled = [Signal::DoorEnableLeft, Signal::DoorEnableRight];
         let sample = self.rig().sample();
-        if !enabled.iter().any(|side| sample.get(*side) == Some(1.0)) {
+        let on = |signal| sample.get(signal) == Some(1.0);
+        let enabled = [on(Signal::DoorEnableLeft), on(Signal::DoorEnableRight)];
+        if enabled == [false; 2] {
             return Ok(Doors::NotEnabled);
         }
-        must(self.apply(&Stimulus::Doors { closed: false }));
+        for (left, _) in [true, false].into_iter().zip(enabled).filter(|(_, on)| *on) {
+            let state = DoorState::Open;
+            must(self.apply(&Stimulus::SideDoors { left, state }));
+        }
         self.wait(OPEN)?;
         must(self.apply(&Stimulus::Doors { closed: true }));
         self.wait(CLOSED)?;

@@ -61,6 +61,7 @@ fn in_cab(stimulus: &Stimulus) -> bool {
             | Stimulus::Controller { .. }
             | Stimulus::Reverser { .. }
             | Stimulus::Doors { .. }
+            | Stimulus::SideDoors { .. }
             | Stimulus::Switch { .. }
             | Stimulus::CutOut { .. }
             | Stimulus::Acknowledge
@@ -215,6 +216,7 @@ mod tests {
             | Stimulus::AtoEnable { .. }
             | Stimulus::Load { .. } => Needs::Harness,
             Stimulus::Doors { .. }
+            | Stimulus::SideDoors { .. }
             | Stimulus::Hcr { .. }
             | Stimulus::MaintenanceKey { .. }
             | Stimulus::ModeSwitch(_)

@@ -4,7 +4,11 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
+<<<<<<< HEAD
 const PATH: [&str; 105] = [
+=======
+const PATH: [&str; 104] = [
+>>>>>>> 5757279 (Tell the doors of each side apart, and hold a train whose doors open unasked)
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",
@@ -19,6 +23,8 @@ const PATH: [&str; 105] = [
     "wayside_running_mode",
     "departure",
     "doors",
+    "doors_left",
+    "doors_right",
     "hcr",
     "maintenance_key",
     "mode_switch",

@@ -37,6 +37,9 @@ wordings! {
         doors: "Doors", "출입문";
         doors_open: "open", "열림";
         doors_closed: "closed", "닫힘";
+        doors_unlocked: "closed, not locked", "닫힘, 미쇄정";
+        doors_left: "Doors left", "좌측 출입문";
+        doors_right: "Doors right", "우측 출입문";
         enable_left: "Doors enabled left", "좌측 출입문 허용";
         enable_right: "Doors enabled right", "우측 출입문 허용";
         enabled: "enabled", "허용";
@@ -258,6 +261,7 @@ wordings! {
         fsb_ato: "ATO failed", "ATO 고장";
         fsb_not_permitted: "not permitted", "허가 없음";
         fsb_stop_code: "stop code", "정지신호";
+        fsb_door: "door open, not enabled", "허용되지 않은 출입문 열림";
         test_mode: "test mode", "정비 시험 모드";
         differs: "differs", "불일치";
         same: "same", "일치";

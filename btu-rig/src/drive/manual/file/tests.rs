@@ -56,7 +56,7 @@ fn every_action_comes_back_from_its_own_words() {
     let switched: Vec<_> = names()
         .filter_map(|name| stimulus(name, &false.into()).ok())
         .collect();
-    assert_eq!(switched.len(), 12, "11 switches, and the doors");
+    assert_eq!(switched.len(), 14, "11 switches, and the doors");
     let levers = Lever::ALL.map(|lever| Stimulus::Controller { lever });
     let reverser = [1, 0, -1].map(|position| Stimulus::Reverser { position });
     let cut = |what, on| Stimulus::CutOut { what, car: 3, on };

@@ -6,12 +6,22 @@ use crate::lever::Lever;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::verb::{Verb, needs, takes};
-use crate::stimulus::{Stimulus, TcmsCondition};
+use crate::procedure::loader::verb::{Param, Verb, needs, takes};
+use crate::stimulus::{DoorState, Stimulus, TcmsCondition};
+
+/// Sides of a train.
+const SIDES: &[&str] = &["left", "right"];
+/// One of them.
+const SIDE: &[Param] = &[takes("side", ParamType::Choice(SIDES))];
 
 pub(super) static VERBS: &[Verb] = &[
-    stimulus!("door.close", &[], |_| Stimulus::Doors { closed: true }),
-    stimulus!("door.open", &[], |_| Stimulus::Doors { closed: false }),
+    stimulus!("door.close", SIDE, |args| doors(args, DoorState::Locked)),
+    stimulus!("door.open", SIDE, |args| doors(args, DoorState::Open)),
+    stimulus!(
+        "door.unlock",
+        &[needs("side", ParamType::Choice(SIDES))],
+        |args| doors(args, DoorState::Unlocked)
+    ),
     switch!("cab.active", |on| Stimulus::Hcr { on }),
     switch!("cab.key", |on| Stimulus::MaintenanceKey { on }),
     stimulus!(
@@ -71,6 +81,19 @@ pub(super) static VERBS: &[Verb] = &[
         }
     ),
 ];
+
+/// Doors of one side or, without one, all.
+fn doors(args: &Args<'_>, state: DoorState) -> Stimulus {
+    match args.text("side") {
+        Some(side) => Stimulus::SideDoors {
+            left: side == "left",
+            state,
+        },
+        None => Stimulus::Doors {
+            closed: state == DoorState::Locked,
+        },
+    }
+}
 
 fn controller(args: &Args<'_>) -> Result<Stimulus, String> {
     let notch = args.number("notch")?;

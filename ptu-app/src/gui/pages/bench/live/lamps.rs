@@ -57,12 +57,26 @@ pub fn lamps(ui: &mut Ui, size: Vec2, seen: &BenchSnapshot, words: &Bench, palet
     }
 }
 
-fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 8] {
+fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 9] {
     let lamp = |name, says, signal, lit_at: bool, colour| Lamp {
         name,
         says,
         lit: lit(seen.on(signal), lit_at),
         colour,
+    };
+    // Lit unless closed and locked.
+    let side_doors = |name, signal| {
+        let state = seen.value(signal);
+        let open = match state {
+            Some(state) if state == 1.0 => words.doors_unlocked,
+            _ => words.doors_open,
+        };
+        Lamp {
+            name,
+            says: [open, words.doors_closed],
+            lit: lit(state.map(|state| state == 2.0), false),
+            colour: palette.warn,
+        }
     };
     let brake = [words.applied, words.released];
     let on_off = [words.on, words.off];
@@ -74,13 +88,8 @@ fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 8] {
         lamp(words.overspeed_alarm, on_off, Signal::Alarm, true, bad),
         lamp(words.power_cut, on_off, Signal::PowerCut, true, warn),
         lamp(words.holding_brake, brake, Signal::HoldingBrake, true, warn),
-        lamp(
-            words.doors,
-            [words.doors_open, words.doors_closed],
-            Signal::Doors,
-            false,
-            warn,
-        ),
+        side_doors(words.doors_left, Signal::DoorsLeft),
+        side_doors(words.doors_right, Signal::DoorsRight),
         lamp(
             words.enable_left,
             enabled,

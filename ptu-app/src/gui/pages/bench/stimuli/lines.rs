@@ -1,6 +1,6 @@
 //! Train lines, switches and push buttons of the cab.
 
-use btu_rig::stimulus::{Stimulus, TrainSwitch};
+use btu_rig::stimulus::{DoorState, Stimulus, TrainSwitch};
 use eframe::egui::Ui;
 use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
@@ -34,6 +34,22 @@ pub fn show(ui: &mut Ui, hand: &mut StimulusPanel<'_>) {
             hand.choice(ui, words.doors, text, in_force, stimulus);
         }
     });
+    for (left, name, signal) in [
+        (true, words.doors_left, Signal::DoorsLeft),
+        (false, words.doors_right, Signal::DoorsRight),
+    ] {
+        row(ui, name, |ui, _| {
+            for (state, text, number) in [
+                (DoorState::Locked, words.doors_closed, 2.0),
+                (DoorState::Unlocked, words.doors_unlocked, 1.0),
+                (DoorState::Open, words.doors_open, 0.0),
+            ] {
+                let in_force = hand.seen.is(signal, number);
+                let stimulus = Stimulus::SideDoors { left, state };
+                hand.choice(ui, name, text, in_force, stimulus);
+            }
+        });
+    }
     row(ui, words.hcr, |ui, _| {
         let state = hand.seen.on(Signal::Hcr);
         hand.switch(ui, words.hcr, state, |on| Stimulus::Hcr { on });
