@@ -59,7 +59,7 @@ fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
 /// Whether a fault shows now.
 type Shows = fn(&mut Bench<FakeUnit>) -> bool;
 
-const CASES: [(&str, Shows); 26] = [
+const CASES: [(&str, Shows); 28] = [
     ("inverter.dead", |bench| inverter_silent(bench, 2)),
     ("inverter.regeneration_lost", |bench| {
         let [_, released] = braked_and_released(bench);
@@ -100,6 +100,8 @@ const CASES: [(&str, Shows); 26] = [
         bench.run_ms(20);
         signal(bench, Signal::Doors) == 1.0
     }),
+    ("door_contact.loose", doors_say_open),
+    ("door_contact.loose_at_speed", doors_say_open),
     ("door_contact.left_open", |bench| {
         signal(bench, Signal::DoorsLeft) == 0.0 && signal(bench, Signal::DoorsRight) == 2.0
     }),
@@ -108,8 +110,6 @@ const CASES: [(&str, Shows); 26] = [
         bench.run_ms(20);
         signal(bench, Signal::DoorsRight) == 1.0
     }),
-    ("door_contact.loose", doors_say_open),
-    ("door_contact.loose_at_speed", doors_say_open),
     ("head_control_relay.dead", relay_is_down),
     ("head_control_relay.stuck", |bench| {
         bench.apply(Stimulus::Hcr { on: false });
