@@ -4,11 +4,7 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
-<<<<<<< HEAD
-const PATH: [&str; 105] = [
-=======
-const PATH: [&str; 104] = [
->>>>>>> 5757279 (Tell the doors of each side apart, and hold a train whose doors open unasked)
+const PATH: [&str; 107] = [
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",

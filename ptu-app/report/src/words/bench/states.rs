@@ -20,14 +20,10 @@ impl Bench {
             | Signal::AskedFsb
             | Signal::TcmsBraking
             | Signal::TcmsLineOpen => vec![self.released, self.applied],
-<<<<<<< HEAD
             Signal::Doors | Signal::TcmsDoors => vec![self.doors_open, self.doors_closed],
-=======
-            Signal::Doors => vec![self.doors_open, self.doors_closed],
             Signal::DoorsLeft | Signal::DoorsRight => {
                 vec![self.doors_open, self.doors_unlocked, self.doors_closed]
             }
->>>>>>> 5757279 (Tell the doors of each side apart, and hold a train whose doors open unasked)
             Signal::Marker | Signal::MarkerCoil => vec![self.none, "PSM1", "PSM2", "PSM3", "PSM4"],
             Signal::Wayside => vec![self.silent, self.good, self.wayside_corrupt],
             Signal::Tacho1 | Signal::Tacho2 => {
