@@ -9,6 +9,8 @@ use protocol::{Duration, Instant};
 
 /// Motion above this is no standstill, km/h: standstill tolerance and what wheels and windows make of it.
 const MOVES_KMH: f64 = 1.08 + 0.4;
+/// Wheels slower than this stand, km/h: a pulse every 27 mm tells no more within half a second.
+const STANDS_KMH: f64 = 0.25;
 /// What a measured speed may be off, km/h.
 const SPEED_OFF_KMH: f64 = 0.6;
 /// Time for which a code that is no longer there may still be in force, and the desk's order on its way: hold time of
@@ -241,7 +243,7 @@ impl Monitor {
         let against_m = -f64::from(seen.reverser) * seen.speed_mps * 0.01;
         self.against_m = (self.against_m + against_m).max(0.0);
         // A brake that was released at standstill begins anew.
-        if seen.kmh() < 0.1 || seen.on(Signal::EbLoop) {
+        if seen.kmh() < STANDS_KMH || seen.on(Signal::EbLoop) {
             self.against_m = 0.0;
         }
         self.against_m > ROLLED_BACK_M
