@@ -224,7 +224,6 @@ impl RunArguments {
             scatter_file: self.scatter.clone().flatten(),
             realtime: self.realtime,
             slower: self.slower,
-            ..BenchChoice::default()
         }
         .setup(directory)
     }
@@ -288,12 +287,10 @@ impl RunArguments {
     ) -> Result<Exit, Failure> {
         self.reports.check()?;
         let store = self.database.open_file()?;
-        if self.adaptive {
-            if self.repeat > 1 || self.jobs > 1 {
-                return Err(Failure::usage(
-                    "--adaptive does one step after the other, each once; leave --repeat and --jobs out",
-                ));
-            }
+        if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
+            return Err(Failure::usage(
+                "--adaptive does one step after the other, each once; leave --repeat and --jobs out",
+            ));
         }
         let stop = Stop::default();
         stop.listen();
