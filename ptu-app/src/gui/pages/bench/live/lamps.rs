@@ -68,7 +68,7 @@ fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 9] {
     let side_doors = |name, signal| {
         let state = seen.value(signal);
         let open = match state {
-            Some(state) if state == 1.0 => words.doors_unlocked,
+            Some(1.0) => words.doors_unlocked,
             _ => words.doors_open,
         };
         Lamp {
