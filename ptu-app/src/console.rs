@@ -1,5 +1,6 @@
 //! The console during a run: progress, and the table of verdicts at its end.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, SyncSender};
@@ -163,6 +164,23 @@ impl Listener for Console {
     }
 }
 
+/// Why steps were skipped, each reason once.
+fn skipped(run: &RunDetail) -> String {
+    let mut reasons = BTreeMap::<&str, usize>::new();
+    let skipped = run.steps.iter();
+    for step in skipped.filter(|step| step.verdict == fault_db::Verdict::Skipped) {
+        *reasons.entry(&step.message).or_default() += 1;
+    }
+    if reasons.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&["SKIPPED STEPS", "WHY"]);
+    for (reason, steps) in reasons {
+        table.row([steps.to_string(), reason.to_owned()]);
+    }
+    format!("\n\n{}", table.render())
+}
+
 /// Procedures with their verdicts, what did not pass, and the faults found.
 pub fn verdict_table(run: &RunDetail) -> String {
     let mut text = match run.steps[..] {
@@ -188,6 +206,7 @@ pub fn verdict_table(run: &RunDetail) -> String {
         }
         text.push_str(&format!("\n\n{}", table.render()));
     }
+    text.push_str(&skipped(run));
     if !run.faults.is_empty() {
         let mut table = Table::new(&["FAULT", "CODE", "PART", "SEVERITY", "SEEN", "TRACE"]);
         for fault in &run.faults {

@@ -140,6 +140,7 @@ impl BenchChoice {
             )),
             false => None,
         };
+        let of_train = Some(self.train_no.trim().to_owned()).filter(|train| !train.is_empty());
         Ok(BenchSetup {
             harness: self.harness,
             config,
@@ -149,8 +150,12 @@ impl BenchChoice {
             seed: self.seed,
             scatter,
             expected: ExpectedIdentity {
-                records: fleet::unit_records(directory)?,
-                train: Some(self.train_no.trim().to_owned()).filter(|train| !train.is_empty()),
+                // The embedded unit is of no train, unless one is named: it is made with any configuration and line.
+                records: match of_train.is_some() || endpoint != Endpoint::Sim {
+                    true => fleet::unit_records(directory)?,
+                    false => Arc::new([]),
+                },
+                train: of_train,
                 // The embedded unit is given its number.
                 serial: serial.clone().filter(|_| endpoint != Endpoint::Sim),
                 software: self.software,

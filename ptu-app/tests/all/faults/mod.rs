@@ -39,16 +39,10 @@ const THROUGH_THE_PROGRAM: [&str; 6] = [
 ];
 
 /// Modes that diagnosis takes for another part's at the default seed, and why.
-const NOT_DIAGNOSED: &[(&str, &str)] = &[
-    (
-        "atp_receiver.drops_out",
-        "code lost in spells is code lost in spells, in the antenna or behind it",
-    ),
-    (
-        "twc_cpu.hangs",
-        "frames lost in spells, which a modem that fades loses, too",
-    ),
-];
+const NOT_DIAGNOSED: &[(&str, &str)] = &[(
+    "io_board.door_flickers",
+    "a door line that opens for moments, at its contact or at the input",
+)];
 
 /// Parts of the train around the unit.
 const TRAIN_PARTS: [&str; 8] = [
@@ -88,6 +82,10 @@ const TRAIN_SUSPECTED: &[(&str, &str)] = &[
     (
         "rs485_link.*_errors",
         "a link that is lost already is not lost when TCMS falls silent",
+    ),
+    (
+        "fsb_output.slow",
+        "a full service brake that is released late is still there when TCMS should release its own",
     ),
     (
         "atp_cpu.clock_fast",
