@@ -117,13 +117,11 @@ impl Exchange {
                 .is_some_and(|c| matches!(c.request, Request::Arm { .. }))
     }
 
-    /// The end of the session is asked for.
+    /// The end of the session is asked for, and nothing that may fail comes before it.
     pub fn disarming(&self) -> bool {
         let current = self.current.as_ref().map(|current| &current.request);
-        current
-            .into_iter()
-            .chain(&self.queue)
-            .any(|r| matches!(r, Request::Disarm))
+        let next = current.or(self.queue.front());
+        matches!(next, Some(Request::Disarm))
     }
 
     /// Why the unit refused or ended arming, as it said last; none once it is armed.

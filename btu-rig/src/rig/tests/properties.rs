@@ -151,3 +151,19 @@ proptest! {
         }
     }
 }
+
+/// A self-test that never ends, and the session's end waiting behind it: making safe does not wait for either.
+#[test]
+fn a_disarm_behind_a_self_test_that_hangs_is_not_lost() {
+    let mut bench = Bench::new(rig(1), FakeUnit::default());
+    bench.run_ms(500);
+    for stimulus in [Stimulus::PtuArm, Stimulus::PtuSelfTest, Stimulus::PtuDisarm] {
+        let now = bench.now();
+        bench.rig_mut().apply(now, &stimulus).unwrap();
+        bench.run_ms(300);
+    }
+    let now = bench.now();
+    bench.rig_mut().make_safe(now);
+    bench.run_ms(10_000);
+    assert!(bench.rig().safe());
+}
