@@ -14,8 +14,7 @@ const SEEDS: [&str; 10] = [
 #[test]
 fn good_units_that_differ_pass_every_step() {
     for seed in SEEDS {
-        let of_train = ["--scatter", "--jobs", "2", "--train-no", "301"];
-        let (said, report) = Place::new().run(&[&of_train[..], &["--seed", seed]].concat());
+        let (said, report) = Place::new().run(&["--scatter", "--seed", seed, "--jobs", "2"]);
         let failed: Vec<_> = list(&report["steps"])
             .iter()
             .filter(|step| step["verdict"] != "passed")

@@ -16,7 +16,7 @@ fn whole_suite() -> &'static (Place, Value) {
     static SUITE: OnceLock<(Place, Value)> = OnceLock::new();
     SUITE.get_or_init(|| {
         let place = Place::new();
-        let (said, report) = place.run(&["--report", "report.junit.xml", "--train-no", "301"]);
+        let (said, report) = place.run(&["--report", "report.junit.xml"]);
         said.exits(0);
         (place, report)
     })

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::rig::{ExpectedIdentity, Harness, check_places};
+use btu_rig::rig::{ExpectedIdentity, Harness, UnitRecord, check_places};
 use protocol::message::Identity;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -140,7 +140,14 @@ impl BenchChoice {
             )),
             false => None,
         };
+        let mut records = fleet::unit_records(directory)?;
         let of_train = Some(self.train_no.trim().to_owned()).filter(|train| !train.is_empty());
+        if endpoint == Endpoint::Sim && of_train.is_none() {
+            // The embedded unit is made with any configuration and line: a record of others is none of it.
+            let made =
+                |record: &&UnitRecord| record.config.1 == config.crc && record.tdb_crc == line.crc;
+            records = records.iter().filter(made).cloned().collect();
+        }
         Ok(BenchSetup {
             harness: self.harness,
             config,
@@ -150,11 +157,7 @@ impl BenchChoice {
             seed: self.seed,
             scatter,
             expected: ExpectedIdentity {
-                // The embedded unit is of no train, unless one is named: it is made with any configuration and line.
-                records: match of_train.is_some() || endpoint != Endpoint::Sim {
-                    true => fleet::unit_records(directory)?,
-                    false => Arc::new([]),
-                },
+                records,
                 train: of_train,
                 // The embedded unit is given its number.
                 serial: serial.clone().filter(|_| endpoint != Endpoint::Sim),

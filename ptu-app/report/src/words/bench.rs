@@ -213,6 +213,8 @@ wordings! {
         item_atp_receiver: "ATP receiver", "ATP 수신부";
         item_tra: "TRA", "TRA";
         item_twc_modem: "TWC modem loop-back", "TWC 모뎀 루프백";
+        item_twc_cpu: "TWC CPU", "TWC CPU";
+        item_tcms_link: "link to TCMS", "TCMS 통신 링크";
         item_test_board: "TEST board", "TEST 보드";
         unit_bytes: "bytes", "바이트";
         unit_errors: "errors", "오류";

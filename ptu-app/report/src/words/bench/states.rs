@@ -192,6 +192,8 @@ impl Bench {
                 self.item_tra,
                 self.item_twc_modem,
                 self.item_test_board,
+                self.item_twc_cpu,
+                self.item_tcms_link,
             ],
             _ => Vec::new(),
         }
