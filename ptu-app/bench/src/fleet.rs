@@ -66,6 +66,21 @@ pub fn unit_records(directory: &ScriptsDirectory) -> Result<Arc<[UnitRecord]>, F
     Ok(records.into())
 }
 
+/// Those that an embedded unit of this configuration and line may be of, by their checksums: it is made with any, and a
+/// record of others is none of it.
+///
+/// # Errors
+/// As [`unit_records`].
+pub fn records_of_embedded(
+    directory: &ScriptsDirectory,
+    config_crc: u32,
+    line_crc: u32,
+) -> Result<Arc<[UnitRecord]>, Failure> {
+    let records = unit_records(directory)?;
+    let fits = |record: &&UnitRecord| record.config.1 == config_crc && record.tdb_crc == line_crc;
+    Ok(records.iter().filter(fits).cloned().collect())
+}
+
 /// Checksums of the files named so far.
 #[derive(Default)]
 struct Files {

@@ -17,6 +17,7 @@ use crate::data::{ScriptsDirectory, sha256};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::Failure;
+use crate::fleet;
 use crate::link::Endpoint;
 
 /// A data file a bench was made of.
@@ -158,6 +159,10 @@ impl BenchContents {
         ] {
             same(what, made, found)?;
         }
+        let expected = ExpectedIdentity {
+            records: fleet::records_of_embedded(directory, config.crc, line.crc)?,
+            ..ExpectedIdentity::default()
+        };
         Ok(BenchSetup {
             endpoint: Endpoint::Sim,
             harness: match self.connection() {
@@ -171,7 +176,7 @@ impl BenchContents {
             seed: self.seed,
             scatter: self.scatter.map(Arc::new),
             serial: Some(self.serial.clone()),
-            expected: ExpectedIdentity::default(),
+            expected,
             realtime: false,
             slower: 1,
             run_control: None,

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::rig::{ExpectedIdentity, Harness, UnitRecord, check_places};
+use btu_rig::rig::{ExpectedIdentity, Harness, check_places};
 use protocol::message::Identity;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -140,14 +140,11 @@ impl BenchChoice {
             )),
             false => None,
         };
-        let mut records = fleet::unit_records(directory)?;
         let of_train = Some(self.train_no.trim().to_owned()).filter(|train| !train.is_empty());
-        if endpoint == Endpoint::Sim && of_train.is_none() {
-            // The embedded unit is made with any configuration and line: a record of others is none of it.
-            let made =
-                |record: &&UnitRecord| record.config.1 == config.crc && record.tdb_crc == line.crc;
-            records = records.iter().filter(made).cloned().collect();
-        }
+        let records = match endpoint == Endpoint::Sim && of_train.is_none() {
+            true => fleet::records_of_embedded(directory, config.crc, line.crc)?,
+            false => fleet::unit_records(directory)?,
+        };
         Ok(BenchSetup {
             harness: self.harness,
             config,
