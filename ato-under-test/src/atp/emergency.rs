@@ -5,7 +5,7 @@
 
 use protocol::Instant;
 use protocol::event::Event;
-use protocol::message::{EbCause, TrainLines};
+use protocol::message::EbCause;
 
 use super::Proof;
 use crate::kernel::EventLog;
@@ -22,7 +22,8 @@ pub struct BrakeInputs {
     /// Unit started, cab active, mode chosen, inputs alive.
     pub may_release: bool,
     pub standstill: bool,
-    pub lines: TrainLines,
+    pub doors_closed: bool,
+    pub acknowledge: bool,
     /// An acknowledgement is not compared with the cause: an injected fault.
     pub release_guard_dead: bool,
 }
@@ -43,9 +44,7 @@ impl EmergencyBrake {
     }
 
     pub fn step(&mut self, now: Instant, inputs: BrakeInputs, log: &mut EventLog) {
-        let acknowledged = self
-            .acknowledge
-            .rises(inputs.lines.contains(TrainLines::ACKNOWLEDGE));
+        let acknowledged = self.acknowledge.rises(inputs.acknowledge);
         if inputs.cause != EbCause::None {
             self.apply(now, &inputs, log);
         } else if !inputs.may_release && self.cause == EbCause::None {
@@ -72,8 +71,7 @@ impl EmergencyBrake {
 
     /// What keeps the brake applied whoever acknowledges it; [`EbCause::None`] = the train moves.
     fn holds(&self, inputs: &BrakeInputs) -> Option<EbCause> {
-        let closed = inputs.lines.contains(TrainLines::DOORS_CLOSED);
-        let open = self.cause == EbCause::DoorOpen && !closed;
+        let open = self.cause == EbCause::DoorOpen && !inputs.doors_closed;
         [
             (inputs.cause != EbCause::None, inputs.cause),
             (!inputs.may_release, EbCause::NotReleased),

@@ -14,7 +14,7 @@ mod tachometers;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
-use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs};
+use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, Speed};
 
 use crate::kernel::EventLog;
@@ -140,9 +140,7 @@ impl Atp {
             speed,
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
-        let moved_m = inputs
-            .pulses
-            .map(|pulses| pulses.way_m(config.metres_per_pulse()));
+        let moved_m = self.tachometers.ways_m();
         let still = self.tachometers.still();
         let allowed_m = config.tacho.rollback_m;
         let rollback = self
@@ -161,7 +159,8 @@ impl Atp {
             proof,
             may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
             standstill,
-            lines: inputs.lines,
+            doors_closed: self.doors_closed,
+            acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             release_guard_dead: context.dead_guards.release,
         };
         self.brake.step(now, brake_inputs, log);
@@ -317,6 +316,11 @@ impl Atp {
 
     pub fn decoder(&self) -> &CodeDecoder {
         &self.decoder
+    }
+
+    /// All doors were proved closed in the last scan, and by side closed and locked.
+    pub fn doors_closed(&self) -> bool {
+        self.doors_closed
     }
 
     pub fn tachometers(&self) -> &Tachometers {

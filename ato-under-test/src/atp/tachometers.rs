@@ -34,7 +34,8 @@ pub struct Tachometers {
     crept_m: [f64; 2],
     /// The greater change of speed that no adhesion explains, m/s².
     loose_mps2: Option<f64>,
-    moved_m: f64,
+    /// Way by each channel in this scan, m, backward negative.
+    ways_m: [f64; 2],
     distance_channel: usize,
 }
 
@@ -63,13 +64,15 @@ impl Tachometers {
             still: false,
             crept_m: [0.0; 2],
             loose_mps2: None,
-            moved_m: 0.0,
+            ways_m: [0.0; 2],
             distance_channel: 0,
         }
     }
 
     pub fn step(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
         self.loose_mps2 = None;
+        let metres_per_pulse = config.metres_per_pulse();
+        self.ways_m = inputs.pulses.map(|pulses| pulses.way_m(metres_per_pulse));
         for i in 0..2 {
             if self.from_board[i] != inputs.test_speed[i] {
                 self.from_board[i] = inputs.test_speed[i];
@@ -86,16 +89,17 @@ impl Tachometers {
             self.noise[i].step(now, impossible, jump, event, log);
         }
         self.compare(now, inputs, config, log);
-        self.measure_distance(inputs, config);
+        // By channel 1, by channel 2 when only that turns.
+        let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
+        self.distance_channel = usize::from(first_dead);
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
         self.standstill = self.slow.update(now, slow, span);
         let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
         self.still = self.silent.update(now, silent, span);
-        let pulses = self.crept_m.iter_mut().zip(&inputs.pulses);
-        for (crept_m, pulses) in pulses {
+        for (crept_m, way_m) in self.crept_m.iter_mut().zip(self.ways_m) {
             *crept_m = match slow && !self.still {
-                true => *crept_m + pulses.way_m(config.metres_per_pulse()),
+                true => *crept_m + way_m,
                 false => 0.0,
             };
         }
@@ -131,14 +135,6 @@ impl Tachometers {
             }
         }
         self.faulty = faulty;
-    }
-
-    /// Distance by channel 1, by channel 2 when only that turns.
-    fn measure_distance(&mut self, inputs: &Inputs, config: &UnitConfig) {
-        let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
-        self.distance_channel = usize::from(first_dead);
-        let pulses = &inputs.pulses[self.distance_channel];
-        self.moved_m = pulses.way_m(config.metres_per_pulse());
     }
 
     /// The safe speed: the greater of the two.
@@ -183,7 +179,12 @@ impl Tachometers {
 
     /// Distance run in this scan, m, backward negative.
     pub fn moved_m(&self) -> f64 {
-        self.moved_m
+        self.ways_m[self.distance_channel]
+    }
+
+    /// Way by each channel in this scan, m, backward negative.
+    pub fn ways_m(&self) -> [f64; 2] {
+        self.ways_m
     }
 }
 

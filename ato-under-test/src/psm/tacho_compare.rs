@@ -13,7 +13,6 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::EventLog;
-use crate::signals::Pulses;
 use crate::timer::Edge;
 
 /// Speed of both wheels from which on they are compared [default].
@@ -32,7 +31,8 @@ const MARKERS: usize = 4;
 /// How both wheels turn in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct WheelMotion {
-    pub pulses: [Pulses; 2],
+    /// Way by each in this scan, m, backward negative.
+    pub ways_m: [f64; 2],
     pub speeds: [Speed; 2],
     /// The greater change of speed of both wheels that no adhesion explains, m/s²; `None` = they roll.
     pub loose_mps2: Option<f64>,
@@ -54,9 +54,9 @@ struct Count {
     loosened: u32,
 }
 
-#[derive(Clone, Debug)]
+/// Nothing is compared at first.
+#[derive(Clone, Debug, Default)]
 pub struct TachoCompare {
-    metres_per_pulse: f64,
     total: Count,
     /// Where the window began.
     window: Option<Count>,
@@ -70,21 +70,6 @@ pub struct TachoCompare {
 }
 
 impl TachoCompare {
-    /// Nothing compared yet.
-    pub fn new(metres_per_pulse: f64) -> Self {
-        Self {
-            metres_per_pulse,
-            total: Count::default(),
-            window: None,
-            last_share: None,
-            differs: false,
-            loose: Edge::default(),
-            loose_at: None,
-            markers: [None; MARKERS],
-            named: [false; 2],
-        }
-    }
-
     /// One scan.
     pub fn step(
         &mut self,
@@ -93,8 +78,8 @@ impl TachoCompare {
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
-        for (way_m, pulses) in self.total.way_m.iter_mut().zip(&motion.pulses) {
-            *way_m += pulses.way_m(self.metres_per_pulse);
+        for (way_m, moved_m) in self.total.way_m.iter_mut().zip(motion.ways_m) {
+            *way_m += moved_m;
         }
         let fast = motion.speeds.iter().all(|speed| *speed >= COMPARED_FROM);
         if motion.loose_mps2.is_some() {

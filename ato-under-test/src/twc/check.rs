@@ -54,11 +54,8 @@ fn goes_to(data: &TwcWayside, line: &Line, section: &Section) -> bool {
     if departs(data, section) {
         return data.next_station == section.to_station;
     }
-    let onward = line
-        .sections
-        .iter()
-        .find(|onward| onward.from_station == section.to_station);
-    onward.is_none_or(|onward| data.next_station == onward.to_station)
+    let after = line.after(section);
+    after.is_none_or(|after| data.next_station == after.to_station)
 }
 
 /// Doors may open only where a platform is: that of the section's end, and at its departure also that of the station
@@ -66,10 +63,7 @@ fn goes_to(data: &TwcWayside, line: &Line, section: &Section) -> bool {
 fn has_platform(data: &TwcWayside, line: &Line, section: &Section) -> bool {
     let platform = |section: &Section| DoorSide::from_label(&section.door_side);
     let arrived = departs(data, section)
-        .then(|| {
-            let mut sections = line.sections.iter();
-            sections.find(|before| before.to_station == section.from_station)
-        })
+        .then(|| line.before(section))
         .flatten()
         .and_then(platform);
     [platform(section), arrived]

@@ -75,18 +75,29 @@ impl Unit {
         &mut self,
         now: Instant,
         sender: StationSender,
-        mut data: TwcWayside,
+        data: TwcWayside,
         out: &mut Vec<u8>,
     ) {
         if self.loses(Place::TwcAntenna) || self.loses(Place::FskReceiver) {
             return;
         }
+        match self.hand_on(now, data) {
+            Some((due, data)) if due > now => self.late_stations.push(due, (sender, data)),
+            Some((_, data)) => self.handle_station(now, sender, data, out),
+            None => {}
+        }
+    }
+
+    /// What the TWC CPU hands on of station data, and when; `None` = nothing.
+    pub(super) fn hand_on(
+        &self,
+        now: Instant,
+        mut data: TwcWayside,
+    ) -> Option<(Instant, TwcWayside)> {
+        let mut due = now;
         match self.faults.at(Place::TwcCpu) {
-            Some(Effect::Dead) => return,
-            Some(Effect::Delay { ms }) => {
-                let due = now + Duration::from_ms(u64::from(ms));
-                return self.late_stations.push(due, (sender, data));
-            }
+            Some(Effect::Dead) => return None,
+            Some(Effect::Delay { ms }) => due += Duration::from_ms(u64::from(ms)),
             Some(Effect::Offset { by }) => {
                 data.station = data.station.wrapping_add_signed(by as i16);
             }
@@ -98,7 +109,7 @@ impl Unit {
             let side = data.door_side.code().wrapping_add_signed(by as i8);
             data.door_side = DoorSide::from_code(side);
         }
-        self.handle_station(now, sender, data, out);
+        Some((due, data))
     }
 
     /// Takes station data and answers them. While the TEST modem sends, the loop is not heard; what is left of

@@ -10,7 +10,7 @@ use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainL
 use protocol::{Duration, Instant, Speed};
 
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
-use crate::atp::{Atp, Code, DeadGuards, DoorLines, ModeInputs, ScanContext};
+use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
@@ -57,7 +57,7 @@ impl Functions {
             twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
             locator: Locator::new(config),
             debounce: Debounce::default(),
-            tacho_compare: TachoCompare::new(config.metres_per_pulse()),
+            tacho_compare: TachoCompare::default(),
             ato: Ato::new(config),
             ato_outputs: AtoOutputs::default(),
             effort_output: EffortOutput::default(),
@@ -145,7 +145,7 @@ impl Functions {
     ) {
         let tachometers = self.atp.tachometers();
         let motion = WheelMotion {
-            pulses: self.inputs.pulses,
+            ways_m: tachometers.ways_m(),
             speeds: [0, 1].map(|channel| tachometers.channel(channel)),
             loose_mps2: tachometers.loose_mps2(),
         };
@@ -172,7 +172,7 @@ impl Functions {
         let tachometers = self.atp.tachometers();
         TrainState {
             mode: self.atp.sequence().mode(),
-            doors_closed: DoorLines::new(self.inputs.lines).closed(),
+            doors_closed: self.atp.doors_closed(),
             aligned: self.aligned(config),
             standstill: tachometers.standstill(),
             speed: tachometers.speed(),
@@ -194,7 +194,7 @@ impl Functions {
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
-        lacking.set(Refusals::DOORS_OPEN, !DoorLines::new(lines).closed());
+        lacking.set(Refusals::DOORS_OPEN, !self.atp.doors_closed());
         lacking.set(Refusals::NO_TWC, !self.twc.up());
         lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
         lacking.set(Refusals::NO_CODE, !code);

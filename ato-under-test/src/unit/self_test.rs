@@ -1,9 +1,9 @@
 //! The unit's side of the self-test: what each part answers is put together and passed to KRN.
 
-use protocol::Instant;
 use protocol::event::Event;
 use protocol::injection::Place;
-use protocol::message::TrainLines;
+use protocol::message::{DoorSide, TrainLines, TwcWayside};
+use protocol::{CYCLE, Instant};
 
 use super::Unit;
 use crate::atp::{Code, lookup};
@@ -34,7 +34,7 @@ impl Unit {
             tra_answers: inputs.tra_answers,
             line_energised: inputs.lines.contains(TrainLines::EB_LOOP),
             modem_hears: self.self_tester.tests() && self.loop_back(),
-            twc_cpu_hands_on: self.faults.at(Place::TwcCpu).is_none(),
+            twc_cpu_hands_on: self.self_tester.tests() && self.hands_on_test_data(now),
             tcms_link_hears: self.self_tester.tests() && self.tcms_loop_back(),
             board_answers: self.board.answers(),
             bad_cells: self.faults.at(Place::Memory).map_or(0, |_| BAD_CELLS),
@@ -65,6 +65,16 @@ impl Unit {
     fn loop_back(&mut self) -> bool {
         let sent = !self.faults.loses(Place::FskTransmitter);
         sent && !self.faults.loses(Place::FskReceiver)
+    }
+
+    /// The test data of the TWC CPU, handed on unchanged before the next ones come.
+    fn hands_on_test_data(&self, now: Instant) -> bool {
+        let data = TwcWayside {
+            door_side: DoorSide::Left,
+            ..TwcWayside::default()
+        };
+        let handed_on = self.hand_on(now, data);
+        handed_on.is_some_and(|(due, heard)| heard == data && due.since(now) < CYCLE)
     }
 
     /// The test frame of the RS-485 link, which its receiver hears on the two wires that its transmitter drives.

@@ -123,13 +123,11 @@ impl DrivePlan {
             None if !found.speed_codes.is_empty() => Codes::Along,
             code => Codes::Fixed(fixed_code(config, section, code.unwrap_or(DEFAULT_CODE))?),
         };
-        let onward = line
-            .sections
-            .iter()
-            .find(|s| s.from_station == found.to_station);
         Ok(Self {
             section: found.clone(),
-            onward_station: onward.map_or(found.to_station, |s| s.to_station),
+            onward_station: line
+                .after(found)
+                .map_or(found.to_station, |after| after.to_station),
             codes,
             below_limit_kmh: config.ato.below_limit_kmh + config.ato.normal_lowering_kmh,
             train,

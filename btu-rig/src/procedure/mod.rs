@@ -22,6 +22,7 @@ pub mod plan;
 pub mod report;
 pub mod runner;
 mod step_run;
+mod step_verdict;
 mod stimulus_text;
 mod unit_clock;
 pub mod worst_case;
@@ -149,6 +150,16 @@ impl UnitEvent {
     /// The car, items or reason that its parameter names; `None` for a measured one or none.
     pub fn named(&self) -> Option<String> {
         event_text::named(Event::from_code(self.code)?, self.parameter)
+    }
+
+    /// Who logged what, as the beginning of a sentence.
+    pub(crate) fn as_logged(&self) -> String {
+        let event = Event::from_code(self.code);
+        let name = event.map_or("unknown", |event| event.definition().name);
+        let named = self
+            .named()
+            .map_or(String::new(), |named| format!(", {named}"));
+        format!("{} logged {name} ({}{named})", self.source.who(), self.code)
     }
 }
 

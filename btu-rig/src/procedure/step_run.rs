@@ -6,11 +6,12 @@ use protocol::{CYCLE, Duration, Instant, LruId};
 
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
 use super::event_set::EventSet;
-use super::evidence::{Evidence, LogState, counted};
+use super::evidence::{Evidence, LogState};
 use super::expectation_run::ExpectationRun;
 use super::measure_run::MeasurementRun;
 use super::plan::{Action, Step, What};
 use super::report::{Measurement, RunEvent};
+use super::step_verdict::{message, verdict};
 use super::{Driver, UnitEvent, Verdict};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
@@ -104,7 +105,7 @@ impl StepRun {
         self.named_part = self.named_part.take().or_else(part);
         self.hold(Problem::Failed(format!(
             "{}, which no step provoked",
-            logged(entry)
+            entry.as_logged()
         )));
     }
 
@@ -363,64 +364,4 @@ impl StepRun {
         let open = (self.expectations.iter().zip(&step.expectations)).find(|(w, e)| w.is_open(e));
         open.map_or(String::new(), |(_, e)| format!(" waiting for: {e}"))
     }
-}
-
-/// What an entry of a log says, as the beginning of a sentence.
-pub(super) fn logged(entry: &UnitEvent) -> String {
-    let event = Event::from_code(entry.code);
-    let name = event.map_or("unknown", |e| e.definition().name);
-    let named = entry
-        .named()
-        .map_or(String::new(), |named| format!(", {named}"));
-    format!(
-        "{} logged {name} ({}{named})",
-        entry.source.who(),
-        entry.code
-    )
-}
-
-fn verdict(problems: &[(Problem, u32)], restarted: bool, aborted: bool) -> Verdict {
-    let any = |wanted: fn(&Problem) -> bool| problems.iter().any(|(problem, _)| wanted(problem));
-    let refused = any(|p| matches!(p, Problem::Refused(_)));
-    if aborted {
-        Verdict::Aborted
-    } else if any(|p| matches!(p, Problem::Bench(_))) || refused && !restarted {
-        Verdict::Error
-    } else if refused || any(Problem::is_failure) {
-        Verdict::Failed
-    } else if any(|p| matches!(p, Problem::NoData(_))) {
-        Verdict::Error
-    } else {
-        Verdict::Passed
-    }
-}
-
-fn message(problems: &[(Problem, u32)], step: &Step, aborted: bool) -> String {
-    if problems.is_empty() && !aborted {
-        return step.note.clone().unwrap_or_default();
-    }
-    let mut texts: Vec<(String, u32)> = Vec::new();
-    texts.extend(aborted.then(|| ("stopped by the operator".to_owned(), 1)));
-    // Measurements wait for the same thing more often than not: it is said once.
-    let mut without_value: Vec<(&str, &str, usize)> = Vec::new();
-    for (problem, times) in problems {
-        match problem.message().split_once(": ") {
-            Some((name, reason)) if reason.starts_with("no value") => {
-                match without_value.iter_mut().find(|known| known.1 == reason) {
-                    Some(known) => known.2 += 1,
-                    None => without_value.push((name, reason, 0)),
-                }
-            }
-            _ => texts.push((problem.message().to_owned(), *times)),
-        }
-    }
-    texts.extend(
-        without_value
-            .into_iter()
-            .map(|(name, reason, more)| match more {
-                0 => (format!("{name}: {reason}"), 1),
-                more => (format!("{name} and {more} more: {reason}"), 1),
-            }),
-    );
-    counted(texts.iter().map(|(text, times)| (text.as_str(), *times)))
 }

@@ -1,5 +1,6 @@
 //! How the unit is reached, and what can be run there.
 
+use super::identity::version;
 use super::{Harness, HarnessWatch, LatestSample, Rig, told_signals};
 use crate::procedure::Procedure;
 use crate::procedure::plan::Connection;
@@ -43,8 +44,7 @@ impl Rig {
             }
         });
         let software = self.identity().map_or(String::new(), |identity| {
-            let [major, minor, patch] = identity.software;
-            format!(", software {major}.{minor}.{patch},")
+            format!(", software {},", version(identity.software))
         });
         (!names.is_empty())
             .then(|| format!("this unit{software} does not tell {}", names.join(", ")))

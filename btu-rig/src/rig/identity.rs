@@ -152,7 +152,7 @@ impl Compared {
     }
 }
 
-fn version([major, minor, patch]: [u8; 3]) -> String {
+pub(super) fn version([major, minor, patch]: [u8; 3]) -> String {
     format!("{major}.{minor}.{patch}")
 }
 

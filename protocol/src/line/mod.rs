@@ -109,4 +109,16 @@ impl Line {
     pub fn section(&self, number: u16) -> Option<&Section> {
         self.sections.iter().find(|s| s.section == number)
     }
+
+    /// The section that begins at the arrival station of `section`; `None` at the line's end.
+    pub fn after(&self, section: &Section) -> Option<&Section> {
+        let mut sections = self.sections.iter();
+        sections.find(|after| after.from_station == section.to_station)
+    }
+
+    /// The section that ends at the departure station of `section`; `None` at the line's begin.
+    pub fn before(&self, section: &Section) -> Option<&Section> {
+        let mut sections = self.sections.iter();
+        sections.find(|before| before.to_station == section.from_station)
+    }
 }

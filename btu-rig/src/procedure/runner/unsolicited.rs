@@ -10,7 +10,6 @@ use crate::procedure::Verdict;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::plan::Step;
 use crate::procedure::report::RunEvent;
-use crate::procedure::step_run::logged;
 
 /// Events after which the emergency brake is applied.
 const BRAKING_EVENTS: [Event; 15] = [
@@ -62,7 +61,7 @@ impl Runner {
             });
             if !asked && self.evidence.explains(known, entry.parameter) {
                 if let Some(step) = live.as_mut() {
-                    step.hold_against_line(&logged(entry));
+                    step.hold_against_line(&entry.as_logged());
                 }
             } else if !asked {
                 self.verdict = self.verdict.and(Verdict::Failed);

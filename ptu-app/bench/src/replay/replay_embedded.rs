@@ -1,7 +1,6 @@
 //! Repeats recorded stimuli on a freshly built embedded unit.
 
 use btu_rig::recorded::StimulusPlayer;
-use btu_rig::recorder::BEFORE;
 use btu_rig::rig::UnitLink;
 use fault_db::TraceData;
 use protocol::{CYCLE, Instant};
@@ -9,6 +8,7 @@ use protocol::{CYCLE, Instant};
 use super::{Original, Rule};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
+use crate::run::bench_setup::SWITCHED_OFF;
 use crate::run::{BenchSetup, RecordedStimuli, Session};
 use crate::run::{READY_WITHIN, settled};
 use crate::stop::Stop;
@@ -48,7 +48,7 @@ pub(super) fn on_embedded(
         return play(original, &mut session, 0, Rule::exact());
     }
     // The unit on the port had been running for who knows how long.
-    let (ready, _) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    let (ready, _) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
     if !ready {
         return Err(Failure::bench("the embedded unit does not become ready"));
     }

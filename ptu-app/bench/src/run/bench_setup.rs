@@ -6,14 +6,13 @@ use std::sync::Arc;
 use ato_under_test::Setup;
 use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
 use btu_rig::procedure::plan::Connection;
-use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{Bench, ExpectedIdentity, Harness, LinkFailure, Rig, UnitLink};
 use btu_rig::train::TrainData;
-use protocol::Instant;
 use protocol::config::UnitConfig;
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::message::Identity;
+use protocol::{Duration, Instant};
 
 use super::connect_port::ReadyUnit;
 use super::fault_watch::FaultSeen;
@@ -27,6 +26,10 @@ use crate::stop::Stop;
 
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
+
+/// Time an embedded unit is without power before a procedure, so that the signals before show in a trace of its
+/// power-up.
+pub(crate) const SWITCHED_OFF: Duration = Duration::from_ms(1_000);
 
 /// The content from which benches are built.
 #[derive(Clone)]
@@ -168,7 +171,7 @@ impl BenchSetup {
         Some(scatter.draw(self.seed, self.train.full_load_kg()))
     }
 
-    /// A bench with a fresh embedded unit, powered up after enough quiet time to show in traces.
+    /// A bench with a fresh embedded unit, powered up after [`SWITCHED_OFF`].
     pub(crate) fn sim_session(&self, procedure: &str, stop: &Stop) -> Session<Delayed<SimUnit>> {
         self.sim_session_by(procedure, stop, |link| link)
     }
@@ -182,7 +185,7 @@ impl BenchSetup {
     ) -> Session<L> {
         let seed = seed_for(self.seed, procedure);
         let timing = self.drawn().map(|drawn| drawn.timing).unwrap_or_default();
-        let power_at = Instant::ZERO + BEFORE + timing.power_up;
+        let power_at = Instant::ZERO + SWITCHED_OFF + timing.power_up;
         let alone = self.harness == Harness::None;
         let unit = match alone {
             false => SimUnit::OnBench(Box::new(self.unit(seed, power_at))),

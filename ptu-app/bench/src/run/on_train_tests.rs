@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use btu_rig::procedure::{Measurement, Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{Bench, Harness, LinkFailure, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use protocol::frame::Decoder;
@@ -12,6 +11,7 @@ use protocol::message::{Channel, Message, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 
+use super::bench_setup::SWITCHED_OFF;
 use super::session::Session;
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
@@ -88,7 +88,7 @@ impl UnitLink for Line {
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkFailure> {
-        let since_ms = now.since(Instant::ZERO + BEFORE).as_ms();
+        let since_ms = now.since(Instant::ZERO + SWITCHED_OFF).as_ms();
         let begins = since_ms == AT_MS;
         let done = match self.happens {
             Happens::Moves if begins => self.train.push(Speed::from_kmh(5.0)),
@@ -152,7 +152,7 @@ impl Laptop {
 
     /// A session on a train whose unit has started; that there is no harness is found out.
     fn on_train(&self, happens: Happens) -> Session<Line> {
-        let power_at = Instant::ZERO + BEFORE;
+        let power_at = Instant::ZERO + SWITCHED_OFF;
         let line = Line {
             train: self.setup.aboard(7, power_at),
             happens,
@@ -164,7 +164,7 @@ impl Laptop {
         rig.set_harness(self.setup.harness);
         let bench = Bench::new(rig, line);
         let mut session = Session::new(bench, Pace::Virtual, Stop::default(), true);
-        let (ready, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+        let (ready, faults) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
         assert!(ready && faults.is_empty(), "{:?}", session.link_error());
         session
     }
@@ -234,7 +234,7 @@ fn the_suite_of_a_laptop_passes_on_a_good_train_within_the_bytes_of_its_line() {
         }
     }
     assert!(timed > 0, "times are measured");
-    let seconds = session.now().since(Instant::ZERO + BEFORE).as_secs();
+    let seconds = session.now().since(Instant::ZERO + SWITCHED_OFF).as_secs();
     let line = session.bench().link();
     assert!(line.safe, "braked and barred all the time");
     for (name, traffic, least) in [("to", &line.to_unit, 0.0), ("from", &line.from_unit, 0.05)] {

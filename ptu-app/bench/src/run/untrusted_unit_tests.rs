@@ -2,13 +2,13 @@
 //! harms what passes.
 
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::recorder::BEFORE;
 use btu_rig::rig::{LinkFailure, Random, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
 use protocol::{Duration, Instant};
 use std::sync::Arc;
 
+use super::bench_setup::SWITCHED_OFF;
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
 use super::{BenchSetup, SessionEvent, Task};
@@ -16,7 +16,7 @@ use crate::stop::Stop;
 use crate::test_support::{procedures, setup};
 
 /// When what is wrong begins: the first procedure is under way.
-const FROM: Duration = Duration::from_ms(13_500);
+const FROM: Duration = Duration::from_ms(SWITCHED_OFF.as_ms() + 3_500);
 
 /// What is wrong between bench and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -145,7 +145,7 @@ impl FaultyBench {
                 decoder: Decoder::new(),
                 left_out: 0,
             });
-        let (ready, found) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+        let (ready, found) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
         assert!(ready, "the unit is good so far");
         let mut came_to = ProcedureEnd {
             verdict: Verdict::Skipped,

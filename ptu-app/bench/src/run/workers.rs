@@ -5,11 +5,10 @@ use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::thread::Scope;
 
-use btu_rig::recorder::BEFORE;
 use btu_rig::rig::UnitLink;
 use protocol::Instant;
 
-use super::bench_setup::{BenchSetup, Connected};
+use super::bench_setup::{BenchSetup, Connected, SWITCHED_OFF};
 use super::event::SessionEvent;
 use super::fault_watch::FaultSeen;
 use super::first_failure::FirstFailure;
@@ -131,7 +130,7 @@ fn run_on_fresh(
     go_on: &dyn Fn() -> bool,
 ) {
     let mut session = setup.sim_session(&task.procedure.id, stop);
-    let (_, faults) = session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    let (_, faults) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
     run_task(&mut session, task, faults, Instant::ZERO, sink, go_on);
 }
 

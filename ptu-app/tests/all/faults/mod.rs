@@ -18,8 +18,8 @@ use runs::{FaultRun, TestBench, run_program};
 
 /// Trace rows are this far apart.
 const PERIOD_MS: f64 = 50.0;
-/// One row less than what is recorded before a trigger: what fails with power-up has no row at 0 s.
-const BEFORE_S: f64 = 10.0 - PERIOD_MS / 1000.0;
+/// Recorded before a trigger, or from before the power-up on.
+const BEFORE_S: f64 = 10.0;
 const AFTER_S: f64 = 5.0;
 /// Suites run side by side.
 const WORKERS: usize = 2;
@@ -326,7 +326,7 @@ fn check_traces(run: &FaultRun) -> Vec<String> {
     problems.extend(without.map(|fault| format!("a fault without a trace: {fault}")));
     for trace in &run.traces {
         let id = &trace.id;
-        if trace.before_s < BEFORE_S {
+        if trace.before_s < BEFORE_S && !trace.from_power_up {
             problems.push(format!(
                 "trace {id}: {} s before the trigger",
                 trace.before_s
@@ -339,7 +339,9 @@ fn check_traces(run: &FaultRun) -> Vec<String> {
             problems.push(format!("trace {id}: not all signals every {PERIOD_MS} ms"));
         }
     }
-    let whole = |trace: &runs::Window| trace.before_s >= BEFORE_S && trace.after_s >= AFTER_S;
+    let whole = |trace: &runs::Window| {
+        (trace.before_s >= BEFORE_S || trace.from_power_up) && trace.after_s >= AFTER_S
+    };
     if !run.traces.iter().any(whole) {
         problems.push("no trace with its whole window".into());
     }

@@ -31,6 +31,8 @@ pub struct FaultRun {
 pub struct Window {
     pub id: String,
     pub before_s: f64,
+    /// The unit had no power yet at its first row: nothing was heard.
+    pub from_power_up: bool,
     pub after_s: f64,
     pub partial: bool,
     pub period_ms: f64,
@@ -137,6 +139,9 @@ impl Window {
         Self {
             id,
             before_s: seconds(trigger),
+            from_power_up: channels
+                .clone()
+                .any(|(channel, column)| channel.name == "speed" && column[0].is_nan()),
             after_s: seconds(rows - 1 - trigger),
             partial: trace.partial,
             period_ms: trace.period_us as f64 / 1e3,
@@ -155,6 +160,9 @@ impl Window {
         Self {
             id: id.to_owned(),
             before_s: trigger * period_ms / 1e3,
+            from_power_up: channels
+                .clone()
+                .any(|channel| channel["name"] == "speed" && channel["samples"][0].is_null()),
             after_s: (rows - 1.0 - trigger) * period_ms / 1e3,
             partial: trace["partial"] == true,
             period_ms,

@@ -1,6 +1,6 @@
 //! The TWC wayside and station data.
 
-use protocol::line::Section;
+use protocol::line::{Line, Section};
 use protocol::message::{DoorSide, RunningMode};
 
 use crate::procedure::loader::args::Args;
@@ -62,7 +62,7 @@ pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, Stri
         None => line.sections.first(),
     };
     let section = section.ok_or("the line has no section")?;
-    let mut data = defaults(section, place, &line.sections);
+    let mut data = defaults(section, place, line);
     let number = |name: &str, field: &mut u16| -> Result<(), String> {
         if args.get(name).is_some() {
             *field = u16::try_from(args.int(name)?).map_err(|e| e.to_string())?;
@@ -90,12 +90,12 @@ pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, Stri
     Ok(data)
 }
 
-fn defaults(section: &Section, place: Place, all: &[Section]) -> StationData {
+fn defaults(section: &Section, place: Place, line: &Line) -> StationData {
     match place {
         Place::Departure => StationData::at_departure(section),
         Place::Arrival => {
-            let onward = all.iter().find(|s| s.from_station == section.to_station);
-            let next = onward.map_or(section.to_station, |s| s.to_station);
+            let after = line.after(section);
+            let next = after.map_or(section.to_station, |s| s.to_station);
             StationData::at_arrival(section, next)
         }
     }

@@ -10,6 +10,7 @@ use protocol::message::{EbCause, IoOutput, LogEnd, LogEntry, Message, Mode, Stat
 use super::*;
 use crate::link::Delayed;
 use crate::run::Session;
+use crate::run::bench_setup::{SWITCHED_OFF, SimUnit};
 use crate::test_support::setup;
 
 /// An entry made standing.
@@ -29,10 +30,10 @@ pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
 }
 
 /// A bench with an embedded unit, these faults injected.
-pub fn bench(faults: &[&str]) -> Session<Delayed<crate::run::bench_setup::SimUnit>> {
+pub fn bench(faults: &[&str]) -> Session<Delayed<SimUnit>> {
     let setup = setup(faults);
     let mut session = setup.sim_session("field", &Stop::default());
-    session.judge_bring_up(Duration::from_ms(20_000), |_| false);
+    session.judge_bring_up(SWITCHED_OFF + Duration::from_ms(10_000), |_| false);
     session
 }
 

@@ -292,10 +292,7 @@ impl<'a> Minute<'a> {
         let mut station = match self.chance(0.5) {
             true => StationData::at_departure(&self.section),
             false => {
-                let after = line
-                    .sections
-                    .iter()
-                    .find(|next| next.from_station == self.section.to_station);
+                let after = line.after(&self.section);
                 StationData::at_arrival(&self.section, after.map_or(0, |next| next.to_station))
             }
         };

@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 
 use self::minute::{Find, Minute};
 use self::monitor::Hazard;
-use crate::data::ScriptsDirectory;
-use crate::run::BenchChoice;
+use crate::pool;
+use crate::stop::Stop;
+use crate::test_support::{scripts, setup};
 
 const PROTECTION: &str = include_str!("../../../../../docs/protection.md");
 
@@ -44,33 +45,16 @@ fn explained(find: &Find) -> bool {
 
 /// Plays the minutes of these seeds on all processors, with faults drawn from the modes that this glob names.
 fn search(seeds: std::ops::Range<u64>, modes: &str) -> Vec<(u64, Find)> {
-    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-    let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-    let mut catalogue = directory.faults().expect("fault modes").faults;
+    let mut catalogue = scripts().faults().expect("fault modes").faults;
     let modes = glob::Pattern::new(modes).expect("a glob");
     catalogue.retain(|mode| modes.matches(&mode.id));
-    let setup = BenchChoice::default().setup(&directory).expect("a bench");
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut finds: Vec<_> = std::thread::scope(|scope| {
-        let part = |worker| {
-            let (setup, catalogue) = (&setup, &catalogue);
-            let seeds = seeds.clone().skip(worker).step_by(workers);
-            move || {
-                let finds = seeds.filter_map(|seed| {
-                    let find = Minute::new(setup, catalogue, seed).play()?;
-                    Some((seed, find))
-                });
-                finds.collect::<Vec<_>>()
-            }
-        };
-        let threads: Vec<_> = (0..workers).map(|n| scope.spawn(part(n))).collect();
-        let finds = threads
-            .into_iter()
-            .flat_map(|thread| thread.join().expect("a worker"));
-        finds.collect()
-    });
-    finds.sort_by_key(|(seed, _)| *seed);
-    finds
+    let setup = setup(&[]);
+    let seed = |number: usize| seeds.start + number as u64;
+    let play = |number| Minute::new(&setup, &catalogue, seed(number)).play();
+    let count = (seeds.end - seeds.start) as usize;
+    let finds = pool::run(count, pool::cores(), &Stop::default(), &mut |_| {}, play);
+    let found = |(number, find): (usize, Option<Find>)| Some((seed(number), find?));
+    finds.into_iter().filter_map(found).collect()
 }
 
 /// Tells what was found; no hazard without a fault that explains it.

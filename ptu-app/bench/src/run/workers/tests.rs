@@ -64,7 +64,7 @@ fn loaded(directory: &ScriptsDirectory, setup: &BenchSetup) -> Vec<Arc<Procedure
 fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize)>) {
     let stop = Stop::default();
     let mut session = setup.sim_session("all in a row", &stop);
-    session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
     let mut before = String::from("nothing");
     let mut not_passed = Vec::new();
     for (place, (procedure, repeat)) in row.enumerate() {
@@ -154,11 +154,11 @@ fn a_fault_between_two_procedures_is_recorded() {
     }];
     let stop = Stop::default();
     let mut session = setup.sim_session("between", &stop);
-    session.judge_bring_up(BEFORE + READY_WITHIN, settled());
+    session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
     session.idle(Duration::from_ms(1_000), |_, _, _| {}, |_| false);
     assert!(between_procedures(&mut session).is_empty());
     // Not taken by anybody, as while a window runs out.
-    while session.now() < Instant::ZERO + BEFORE + Duration::from_ms(21_000) {
+    while session.now() < Instant::ZERO + SWITCHED_OFF + Duration::from_ms(21_000) {
         session.bench().tick().expect("bench");
     }
     let found = between_procedures(&mut session);
