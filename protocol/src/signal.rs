@@ -114,7 +114,7 @@ signals! {
     WaysideStation "wayside_station" "" UNITY, 0 ..= 65535, Rig, "Station number the wayside sends";
     WaysideLoop "wayside_loop" "" UNITY, 0 ..= 65535, Rig, "Loop number the wayside sends";
     WaysideDoorSide "wayside_door_side" "" Kind::Enum(DoorSide::LABELS), 0 ..= 3, Rig, "Door side the wayside sends";
-    WaysideMode "wayside_running_mode" "" Kind::Enum(RunningMode::LABELS), 0 ..= 1, Rig, "Running mode the wayside sends";
+    WaysideMode "wayside_running_mode" "" Kind::Enum(RunningMode::LABELS), 0 ..= 2, Rig, "Running mode the wayside sends";
     Departure "departure" "" Kind::Bit, 0 ..= 1, Rig, "Departure given by the wayside";
     TcmsHears "tcms_hears" "" Kind::Bit, 0 ..= 1, Rig, "TCMS hears the unit on RS-485";
     Doors "doors" "" DOORS, 0 ..= 1, Rig, "Door train line: proved closed or not";
@@ -163,6 +163,9 @@ signals! {
     HoldingBrake "holding_brake" "" SWITCHED, 0 ..= 1, Unit, "Holding brake request";
     DoorEnableLeft "door_enable_left" "" Kind::Bit, 0 ..= 1, Unit, "Doors enabled on the left";
     DoorEnableRight "door_enable_right" "" Kind::Bit, 0 ..= 1, Unit, "Doors enabled on the right";
+    DoorOrderLeft "door_order_left" "" Kind::Bit, 0 ..= 1, Unit, "Doors on the left ordered to open";
+    DoorOrderRight "door_order_right" "" Kind::Bit, 0 ..= 1, Unit, "Doors on the right ordered to open";
+    DoorOrderClose "door_order_close" "" Kind::Bit, 0 ..= 1, Unit, "All doors ordered to close";
     CodeValid "code_valid" "" Kind::Bit, 0 ..= 1, Unit, "A valid speed code is received";
     Standstill "standstill" "" Kind::Bit, 0 ..= 1, Unit, "Standstill detected";
     Healthy "healthy" "" Kind::Bit, 0 ..= 1, Unit, "Unit healthy contact";
@@ -219,6 +222,7 @@ signals! {
     AskedAlarm "asked_alarm" "" Kind::Bit, 0 ..= 1, Unit, "Overspeed alarm as the functions under test ask for it";
     AskedDoorLeft "asked_door_left" "" Kind::Bit, 0 ..= 1, Unit, "Doors on the left enabled as the functions under test ask for it";
     AskedDoorRight "asked_door_right" "" Kind::Bit, 0 ..= 1, Unit, "Doors on the right enabled as the functions under test ask for it";
+    AskedDoorClose "asked_door_close" "" Kind::Bit, 0 ..= 1, Unit, "All doors ordered to close as the functions under test ask for it";
     AskedPower "asked_power" "" Kind::Bit, 0 ..= 1, Unit, "Powering as the functions under test ask for it";
     AskedEffort "asked_effort" "" UNITY, -1024 ..= 1023, Unit, "Effort that the functions under test ask for";
     AskedMode "asked_mode" "" Kind::Enum(Mode::LABELS), 0 ..= 5, Unit, "Operating mode of the functions under test";

@@ -19,13 +19,15 @@ pub struct CruiseInputs {
 pub fn cruise(inputs: CruiseInputs, config: &AtoConfig) -> Speed {
     let lowering = match inputs.running_mode {
         RunningMode::Recovery => 0.0,
-        RunningMode::Normal | RunningMode::Unknown(_) => config.normal_lowering_kmh,
+        _ => config.normal_lowering_kmh,
     };
     let below = Speed::from_kmh(config.below_limit_kmh + lowering);
     let allowed = (inputs.limit - below).max(Speed::ZERO);
-    inputs
-        .fixed_speed
-        .map_or(allowed, |fixed| allowed.min(fixed))
+    let slow = (inputs.running_mode == RunningMode::Slow).then_some(config.slow_kmh);
+    [slow.map(Speed::from_kmh), inputs.fixed_speed]
+        .into_iter()
+        .flatten()
+        .fold(allowed, Speed::min)
 }
 
 #[cfg(test)]
@@ -33,17 +35,21 @@ mod tests {
     use super::super::tests::config;
     use super::*;
 
-    /// Limit, order, running mode and the speed to run at, km/h; lowering 5 and 3 km/h.
+    /// Limit, order, running mode and the speed to run at, km/h; lowering 5 and 3 km/h, slow at 25.
     #[test]
     fn the_most_restrictive_counts() {
-        use RunningMode::{Normal, Recovery, Unknown};
+        use RunningMode::{Normal, Recovery, Slow, Unknown};
         let mut config = config();
         config.below_limit_kmh = 5.0;
         config.normal_lowering_kmh = 3.0;
+        config.slow_kmh = 25.0;
         for (limit, fixed, running_mode, expected) in [
             (65.0, None, Recovery, 60.0),
             (65.0, None, Normal, 57.0),
-            (65.0, None, Unknown(2), 57.0),
+            (65.0, None, Unknown(3), 57.0),
+            (65.0, None, Slow, 25.0),
+            (65.0, Some(20.0), Slow, 20.0),
+            (25.0, None, Slow, 17.0),
             (65.0, Some(40.0), Recovery, 40.0),
             (45.0, Some(60.0), Recovery, 40.0),
             (0.0, Some(60.0), Recovery, 0.0),

@@ -247,7 +247,8 @@ impl Ato {
         };
         let speed_ends = ahead.speed_mps <= ENDING_MPS;
         let goes = demand.force_n > STARTING_MPS2 * mass_kg;
-        let rests = self.state == AtoState::Run && !goes;
+        // A departure under a speed of 0 holds the train until there is one to run at.
+        let rests = !goes && (self.state == AtoState::Run || cruise == Speed::ZERO);
         // A demand that is no number stays one, so that REG brakes.
         let past_it = to_stop_m.is_some_and(|distance| distance < -config.watch.overrun_m);
         let force_n = if past_it { least } else { demand.force_n };

@@ -5,6 +5,7 @@ mod brake_proof;
 mod code;
 mod direction;
 mod door_lines;
+mod door_order;
 mod doors;
 mod emergency;
 mod mode;
@@ -21,6 +22,7 @@ use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::timer::Edge;
 use direction::Rollback;
+use door_order::{DoorOrders, enabled_sides};
 
 pub use brake_proof::{BrakeProof, Demand, Proof};
 pub use code::{Code, CodeDecoder, lookup};
@@ -44,6 +46,8 @@ pub struct ScanContext {
     /// On the arrival station's loop with valid station data.
     pub at_platform: bool,
     pub door_side: DoorSide,
+    /// Sides on which ATO orders doors to open.
+    pub door_order: DoorSide,
     pub twc_up: bool,
     pub tcms_up: bool,
     pub ato_ready: bool,
@@ -70,6 +74,7 @@ pub struct Atp {
     supervision: OverspeedSupervision,
     proof: BrakeProof,
     doors: Doors,
+    door_orders: DoorOrders,
     rollback: Rollback,
     brake: EmergencyBrake,
     sequence: ModeSequence,
@@ -79,6 +84,7 @@ pub struct Atp {
     inputs_lost: Edge,
     broken: Edge,
     doors_closed: bool,
+    doors_open: DoorSide,
 }
 
 impl Atp {
@@ -90,6 +96,7 @@ impl Atp {
             supervision: OverspeedSupervision::new(),
             proof: BrakeProof::new(),
             doors: Doors::default(),
+            door_orders: DoorOrders::default(),
             rollback: Rollback::default(),
             brake: EmergencyBrake::new(),
             sequence: ModeSequence::default(),
@@ -99,6 +106,7 @@ impl Atp {
             inputs_lost: Edge::default(),
             broken: Edge::default(),
             doors_closed: false,
+            doors_open: DoorSide::None,
         }
     }
 
@@ -130,6 +138,7 @@ impl Atp {
         let beyond = self.supervision.emergency(now, motion, proof, margins);
         let door_lines = DoorLines::new(inputs.lines);
         self.doors_closed = door_lines.closed();
+        self.doors_open = door_lines.open();
         let door_inputs = DoorInputs {
             lines: inputs.alive.then_some(door_lines),
             supervised: !context.dead_guards.doors && self.sequence.mode() != Mode::Off,
@@ -140,6 +149,8 @@ impl Atp {
             speed,
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
+        self.door_orders
+            .step(now, context.door_order, self.doors.enable(), log);
         let moved_m = self.tachometers.ways_m();
         let still = self.tachometers.still();
         let allowed_m = config.tacho.rollback_m;
@@ -289,7 +300,7 @@ impl Atp {
 
     /// What the output contacts should do.
     pub fn outputs(&self, healthy: bool) -> Outputs {
-        let mut outputs = self.doors.enable();
+        let mut outputs = self.doors.enable() | self.door_orders.passed();
         let code_valid = matches!(self.decoder.code(), Code::Known(_));
         outputs.set(Outputs::EB_RELAY, !self.brake.applied());
         outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
@@ -323,6 +334,11 @@ impl Atp {
         self.doors_closed
     }
 
+    /// Sides on which doors were not proved closed and locked in the last scan.
+    pub fn doors_open(&self) -> DoorSide {
+        self.doors_open
+    }
+
     pub fn tachometers(&self) -> &Tachometers {
         &self.tachometers
     }
@@ -337,6 +353,11 @@ impl Atp {
 
     pub fn limit(&self) -> Speed {
         self.limit
+    }
+
+    /// Sides on which doors are enabled.
+    pub fn enabled(&self) -> DoorSide {
+        enabled_sides(self.doors.enable())
     }
 
     /// Why the full service brake is requested.

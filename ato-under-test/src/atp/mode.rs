@@ -5,7 +5,7 @@
 //! not released), the service brake stops the train first: there may be no driver. Then there is no
 //! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
 //! train then waits for a departure that is given anew, or for the start button: the one that was still
-//! given began the run that failed.
+//! given began the run that failed. It departs once its doors have been served, too.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -15,7 +15,7 @@ use crate::kernel::EventLog;
 use crate::timer::Edge;
 
 /// Refusals that do not hinder Automatic, only Automatic Run.
-const RUN_ONLY: Refusals = Refusals::NO_DEPARTURE;
+const RUN_ONLY: Refusals = Refusals::NO_DEPARTURE.union(Refusals::DOOR_SEQUENCE);
 /// Refusals that end Automatic Run once it has begun.
 const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::MODE_SWITCH)
@@ -64,6 +64,7 @@ impl ModeSequence {
         let mut inputs = inputs;
         inputs.lacking.insert(self.failed);
         let departing = inputs.departure
+            && !inputs.lacking.contains(Refusals::DOOR_SEQUENCE)
             && (pressed || inputs.switch == ModeSwitch::Driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);

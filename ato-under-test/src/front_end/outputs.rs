@@ -31,11 +31,22 @@ impl OutputStage {
             let on = contact.follow(now, wanted.contains(output), faults.at(place));
             contacts.set(output, on);
         }
-        let doors = Outputs::DOOR_ENABLE_LEFT | Outputs::DOOR_ENABLE_RIGHT;
-        match faults.at(Place::DoorOutput) {
-            Some(Effect::Dead | Effect::StuckOff) => contacts.remove(doors),
-            Some(Effect::StuckOn) => contacts.insert(doors),
-            _ => {}
+        for (place, outputs) in [
+            (
+                Place::DoorOutput,
+                Outputs::DOOR_ENABLE_LEFT | Outputs::DOOR_ENABLE_RIGHT,
+            ),
+            (
+                Place::DoorOpenOutput,
+                Outputs::OPEN_LEFT | Outputs::OPEN_RIGHT,
+            ),
+            (Place::DoorCloseOutput, Outputs::CLOSE_DOORS),
+        ] {
+            match faults.at(place) {
+                Some(Effect::Dead | Effect::StuckOff) => contacts.remove(outputs),
+                Some(Effect::StuckOn) => contacts.insert(outputs),
+                _ => {}
+            }
         }
         contacts
     }

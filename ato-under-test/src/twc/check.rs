@@ -170,7 +170,7 @@ mod tests {
             ),
             (
                 TwcWayside {
-                    running_mode: RunningMode::Unknown(2),
+                    running_mode: RunningMode::Unknown(3),
                     ..good
                 },
                 Event::TwcWrongMode,

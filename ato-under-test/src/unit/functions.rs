@@ -5,13 +5,16 @@
 
 use protocol::config::{TachoConfig, UnitConfig};
 use protocol::event::Event;
-use protocol::injection::Place;
-use protocol::message::{AtoFailure, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
+use protocol::injection::{Effect, Place};
+use protocol::message::{
+    AtoFailure, DoorSide, Mode, ModeSwitch, Refusals, RunningMode, SelfTest, TrainLines,
+};
 use protocol::{Duration, Instant, Speed};
 
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
 use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
+use crate::driverless::{DeadOrders, Station, StationInputs};
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
@@ -42,6 +45,8 @@ pub struct Functions {
     tacho_compare: TachoCompare,
     pub ato: Ato,
     pub ato_outputs: AtoOutputs,
+    /// Doors of a driverless train.
+    pub station: Station,
     effort_output: EffortOutput,
     /// Cycles ATO's processor has run, wrapping.
     ato_cycles: u8,
@@ -60,6 +65,7 @@ impl Functions {
             tacho_compare: TachoCompare::default(),
             ato: Ato::new(config),
             ato_outputs: AtoOutputs::default(),
+            station: Station::default(),
             effort_output: EffortOutput::default(),
             ato_cycles: 0,
             ato_watchdog: Watchdog::default(),
@@ -79,6 +85,7 @@ impl Functions {
             let standstill = self.atp.tachometers().standstill();
             self.locator.locate(data, &around.setup.line, standstill);
         }
+        self.serve_station(now, around, log);
         let mode_inputs = self.mode_inputs(around);
         self.atp.cycle(now, mode_inputs, log);
         self.operate(now, around, log);
@@ -96,6 +103,7 @@ impl Functions {
                 .data()
                 .map(|data| data.door_side)
                 .unwrap_or_default(),
+            door_order: self.door_order(around.faults),
             twc_up: self.twc.up(),
             tcms_up: around.tcms.alive(),
             ato_ready: self.ato_outputs.ready,
@@ -179,12 +187,60 @@ impl Functions {
         }
     }
 
+    /// Doors of a driverless train. A processor that has stopped leaves its orders as they were.
+    fn serve_station(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
+        if around.faults.dead(Place::AtoCpu) {
+            return;
+        }
+        let active = self.inputs.alive && self.inputs.lines.contains(TrainLines::HCR);
+        let driverless = self.inputs.mode_switch == ModeSwitch::Driverless;
+        let inputs = StationInputs {
+            driverless: driverless && active && around.self_tester.finished(),
+            standstill: self.atp.tachometers().standstill(),
+            running: self.atp.sequence().mode() == Mode::AutomaticRun,
+            enabled: self.atp.enabled(),
+            open: self.atp.doors_open(),
+            closed: self.atp.doors_closed(),
+            departure: self.departure(around),
+            acknowledge: self.inputs.lines.contains(TrainLines::ACKNOWLEDGE),
+            dead: DeadOrders {
+                closing: around.faults.dead(Place::DoorClosing),
+                reopening: around.faults.dead(Place::DoorReopening),
+            },
+        };
+        let config = &around.setup.config.driverless;
+        self.station.step(now, &inputs, config, log);
+    }
+
+    /// Sides on which ATO orders doors to open.
+    fn door_order(&self, faults: &Faults) -> DoorSide {
+        match (self.station.opens(), faults.at(Place::DoorOrder)) {
+            (DoorSide::None, _) | (_, None) => self.station.opens(),
+            (side, Some(Effect::Offset { by })) => {
+                let code = libm::round(f64::from(side.code()) + by) as u8;
+                DoorSide::from_code(code)
+            }
+            (side, Some(_)) => side,
+        }
+    }
+
+    /// The wayside has given departure.
+    fn departure(&self, around: &Surroundings<'_>) -> bool {
+        let given = self.twc.data().is_some_and(|data| data.departure == 1);
+        !around.barred && self.twc.valid() && given
+    }
+
+    /// ATO holds the train, driving or at a station.
+    pub fn ato_holds(&self) -> bool {
+        self.ato_outputs.holding_brake || self.station.waits()
+    }
+
     /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
             && self.atp.tachometers().standstill()
             && self.inputs.controller == 0;
-        self.ato_outputs.holding_brake || left_alone
+        self.ato_holds() || left_alone
     }
 
     fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {
@@ -194,7 +250,9 @@ impl Functions {
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
-        lacking.set(Refusals::DOORS_OPEN, !self.atp.doors_closed());
+        let unproved = around.faults.dead(Place::DepartureGuard);
+        lacking.set(Refusals::DOORS_OPEN, !unproved && !self.atp.doors_closed());
+        lacking.set(Refusals::DOOR_SEQUENCE, !unproved && self.station.waits());
         lacking.set(Refusals::NO_TWC, !self.twc.up());
         lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
         lacking.set(Refusals::NO_CODE, !code);
@@ -220,9 +278,8 @@ impl Functions {
                 ModeSwitch::Off
             },
             lacking,
-            departure: !around.barred
-                && self.twc.valid()
-                && self.twc.data().is_some_and(|data| data.departure == 1),
+            // At its stop point it has nowhere to run: data of the next section are still to come.
+            departure: self.departure(around) && !self.aligned(&around.setup.config),
             start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
@@ -239,7 +296,12 @@ impl Functions {
             fixed_speed: data
                 .filter(|data| data.fixed_speed_kmh != u8::MAX)
                 .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),
-            running_mode: data.map(|data| data.running_mode).unwrap_or_default(),
+            running_mode: match data.map(|data| data.running_mode) {
+                Some(RunningMode::Slow) if around.faults.dead(Place::SlowRunning) => {
+                    RunningMode::Normal
+                }
+                ordered => ordered.unwrap_or_default(),
+            },
             section: self.locator.section(),
             position_m: self.locator.position_m(),
             ahead_m: self.locator.ahead_m(),
@@ -275,6 +337,7 @@ impl Functions {
     fn watch_processor(&mut self, config: &UnitConfig) {
         if self.ato_watchdog.step(self.ato_cycles) {
             self.ato = Ato::new(config);
+            self.station = Station::default();
             self.ato_outputs = AtoOutputs {
                 failure: AtoFailure::Processor,
                 ..AtoOutputs::default()

@@ -81,6 +81,9 @@ impl Unit {
             self.self_tester.vital_passed() && functions.inputs.alive && self.relay_watch.sound();
         let mut outputs = functions.atp.outputs(healthy);
         outputs.set(Outputs::HOLDING_BRAKE, functions.holds());
+        // ATP lets an order to open go a scan after it was taken back: never both.
+        let opens = outputs.intersects(Outputs::OPEN_LEFT | Outputs::OPEN_RIGHT);
+        outputs.set(Outputs::CLOSE_DOORS, functions.station.closes() && !opens);
         outputs
     }
 }

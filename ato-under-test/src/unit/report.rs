@@ -146,7 +146,7 @@ pub fn to_tcms(unit: &Unit, now: Instant) -> Message {
     let mut bits = AtcToTcmsBits::empty();
     bits.set(AtcToTcmsBits::POWER, effort > 0);
     bits.set(AtcToTcmsBits::BRAKE, effort < 0);
-    bits.set(AtcToTcmsBits::HOLDING_BRAKE, ato.holding_brake);
+    bits.set(AtcToTcmsBits::HOLDING_BRAKE, train.ato_holds());
     bits.set(AtcToTcmsBits::ATO_READY, ato.ready);
     bits.set(
         AtcToTcmsBits::ATO_FAILED,

@@ -30,7 +30,11 @@ pub fn named(event: Event, number: i32) -> Option<String> {
         Event::AutomaticRefused => meanings(&Refusals::SPEC, bits),
         Event::AtoInputAbsurd => meanings(&AbsurdInputs::SPEC, bits),
         Event::SelfTestFailed => meanings(&SelfTest::SPEC, bits),
-        Event::DoorNotEnabled | Event::DoorLinesContradict => match DoorSide::from_code(code) {
+        Event::DoorNotEnabled
+        | Event::DoorLinesContradict
+        | Event::DoorObstructed
+        | Event::DoorOrderRefused
+        | Event::DoorsStayClosed => match DoorSide::from_code(code) {
             DoorSide::None => "all doors".to_owned(),
             side => side.label().to_owned(),
         },

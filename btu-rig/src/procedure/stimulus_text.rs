@@ -59,6 +59,11 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
             format!("doors on the {side} {}", state.label())
         }
         Stimulus::Doors { closed } => format!("doors {}", if closed { "closed" } else { "open" }),
+        Stimulus::DoorsFollow { on } => format!("doors follow the unit: {}", on_off(on)),
+        Stimulus::DoorObstacle { left, times } => {
+            let side = if left { "left" } else { "right" };
+            format!("obstacle in the doors on the {side} for {times} closings")
+        }
         Stimulus::Hcr { on } => format!("cab active (HCR) {}", on_off(on)),
         Stimulus::MaintenanceKey { on } => format!("maintenance key {}", on_off(on)),
         Stimulus::ModeSwitch(mode) => format!("mode switch to {}", mode.label()),

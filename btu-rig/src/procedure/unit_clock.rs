@@ -92,6 +92,9 @@ impl Dating {
             | Signal::HoldingBrake
             | Signal::DoorEnableLeft
             | Signal::DoorEnableRight
+            | Signal::DoorOrderLeft
+            | Signal::DoorOrderRight
+            | Signal::DoorOrderClose
             | Signal::CodeValid
             | Signal::Standstill
             | Signal::Healthy
@@ -109,6 +112,7 @@ impl Dating {
             | Signal::AskedAlarm
             | Signal::AskedDoorLeft
             | Signal::AskedDoorRight
+            | Signal::AskedDoorClose
             | Signal::AskedMode
             | Signal::Doors
             | Signal::DoorsLeft

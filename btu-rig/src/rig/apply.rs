@@ -11,7 +11,7 @@ use crate::train::{EquipmentFaults, TrainData};
 use super::antenna::MAX_RATE_HZ;
 use super::ranges::{U16_MAX, in_range, positive};
 use super::request::Request;
-use super::{Rig, Track, test_signals};
+use super::{DoorGear, Rig, Track, test_signals};
 
 /// Fastest wheel, km/h: the catalogue's range.
 const MAX_SPEED_KMH: f64 = 200.0;
@@ -122,8 +122,16 @@ impl Rig {
     /// Stimuli of cab desk, train lines and TCMS.
     fn apply_desk(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
         match *stimulus {
-            Stimulus::Doors { closed } => self.desk.set_doors(closed),
-            Stimulus::SideDoors { left, state } => self.desk.doors[usize::from(!left)] = state,
+            Stimulus::Doors { closed } => {
+                self.desk.set_doors(closed);
+                self.door_gear.follow(false, self.desk.doors);
+            }
+            Stimulus::SideDoors { left, state } => {
+                self.desk.doors[usize::from(!left)] = state;
+                self.door_gear.follow(false, self.desk.doors);
+            }
+            Stimulus::DoorsFollow { on } => self.door_gear.follow(on, self.desk.doors),
+            Stimulus::DoorObstacle { left, times } => self.door_gear.obstruct(left, times),
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
             Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
@@ -215,6 +223,7 @@ impl Rig {
         self.antenna.drift(0.0, 0.0);
         self.markers.clear();
         self.desk.set_doors(true);
+        self.door_gear = DoorGear::default();
         self.tcms_port.reset();
         self.wayside.set_condition(WaysideCondition::Good);
         self.tester.make_safe(now);

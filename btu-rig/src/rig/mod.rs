@@ -13,6 +13,7 @@ mod apply;
 mod bench;
 mod cab_desk;
 mod connection;
+mod door_gear;
 mod exchange;
 mod harness;
 mod identity;
@@ -75,6 +76,7 @@ pub use unit_clock::TimeOfDay;
 
 use antenna::Antenna;
 use cab_desk::CabDesk;
+use door_gear::DoorGear;
 use harness::HarnessWatch;
 use identity::IdentityCheck;
 use line_watch::LineWatch;
@@ -140,6 +142,7 @@ pub struct Rig {
     /// What a procedure makes wrong with the train's equipment.
     made: EquipmentFaults,
     desk: CabDesk,
+    door_gear: DoorGear,
     tester: Tester,
     /// Slowing down to a standstill, after which the rest is made quiescent.
     making_safe: bool,
@@ -209,6 +212,7 @@ impl Rig {
             wayside,
             train_number: config.train.number,
             desk: CabDesk::default(),
+            door_gear: DoorGear::default(),
             tester: Tester::new(session),
             making_safe: false,
             quiescent: false,
@@ -254,6 +258,11 @@ impl Rig {
             // of it.
             self.tcms.unlatch();
         }
+        self.door_gear.step(
+            self.latest.outputs(),
+            self.train_data.doors(),
+            &mut self.desk.doors,
+        );
         let orders = self.orders_of_tcms();
         self.roll(orders);
         self.follow_codes();

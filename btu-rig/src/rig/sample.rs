@@ -64,6 +64,9 @@ impl LatestSample {
             (Signal::HoldingBrake, Outputs::HOLDING_BRAKE),
             (Signal::DoorEnableLeft, Outputs::DOOR_ENABLE_LEFT),
             (Signal::DoorEnableRight, Outputs::DOOR_ENABLE_RIGHT),
+            (Signal::DoorOrderLeft, Outputs::OPEN_LEFT),
+            (Signal::DoorOrderRight, Outputs::OPEN_RIGHT),
+            (Signal::DoorOrderClose, Outputs::CLOSE_DOORS),
             (Signal::CodeValid, Outputs::CODE_VALID),
             (Signal::Standstill, Outputs::STANDSTILL),
             (Signal::Healthy, Outputs::HEALTHY),
@@ -151,6 +154,7 @@ impl LatestSample {
             (Signal::AskedAlarm, asked(Outputs::ALARM)),
             (Signal::AskedDoorLeft, asked(Outputs::DOOR_ENABLE_LEFT)),
             (Signal::AskedDoorRight, asked(Outputs::DOOR_ENABLE_RIGHT)),
+            (Signal::AskedDoorClose, asked(Outputs::CLOSE_DOORS)),
             (Signal::AskedPower, state.asked_effort > 0),
             (
                 Signal::TcmsBraking,

@@ -30,7 +30,7 @@ pub(super) const CARRIED: [(Source, &[Signal]); 5] = [
     (Source::TrainState, &TRAIN_STATE_SIGNALS),
 ];
 
-const IO_SIGNALS: [Signal; 14] = [
+const IO_SIGNALS: [Signal; 17] = [
     Signal::Eb,
     Signal::Fsb,
     Signal::PowerCut,
@@ -38,6 +38,9 @@ const IO_SIGNALS: [Signal; 14] = [
     Signal::HoldingBrake,
     Signal::DoorEnableLeft,
     Signal::DoorEnableRight,
+    Signal::DoorOrderLeft,
+    Signal::DoorOrderRight,
+    Signal::DoorOrderClose,
     Signal::CodeValid,
     Signal::Standstill,
     Signal::Healthy,
@@ -49,7 +52,7 @@ const IO_SIGNALS: [Signal; 14] = [
 
 /// What only the unit itself can tell. Without a harness it tells [`IO_SIGNALS`], what it sends to TCMS and
 /// [`LINE_SIGNALS`] with them.
-const TRAIN_STATE_SIGNALS: [Signal; 30] = [
+const TRAIN_STATE_SIGNALS: [Signal; 31] = [
     Signal::TestPulses,
     Signal::TestMarkers,
     Signal::TestAnswers,
@@ -61,6 +64,7 @@ const TRAIN_STATE_SIGNALS: [Signal; 30] = [
     Signal::AskedAlarm,
     Signal::AskedDoorLeft,
     Signal::AskedDoorRight,
+    Signal::AskedDoorClose,
     Signal::AskedPower,
     Signal::AskedEffort,
     Signal::AskedMode,

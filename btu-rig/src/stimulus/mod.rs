@@ -120,6 +120,18 @@ pub enum Stimulus {
         /// What they are.
         state: DoorState,
     },
+    /// The doors follow the unit's contacts, until a hand moves one.
+    DoorsFollow {
+        /// Follow, or stay as they are.
+        on: bool,
+    },
+    /// Something stands between the doors of a side, which stop there when they close.
+    DoorObstacle {
+        /// On the left, else on the right.
+        left: bool,
+        /// Closings that it stops; 0 = it is gone.
+        times: u8,
+    },
     /// Head control relay.
     Hcr {
         /// Energised.

@@ -4,7 +4,7 @@ use protocol::check_ranges;
 use protocol::config::{ConfigError, within};
 
 use super::MAX_CARS;
-use super::data::{CarData, CarsData, IdealData, Role};
+use super::data::{CarData, CarsData, DoorData, IdealData, Role};
 
 /// Longest dead time or time constant, s.
 pub(super) const MAX_TIME_S: f64 = 5.0;
@@ -21,6 +21,7 @@ pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
         holding_share: 0.0, 1.0;
         parking_share: 0.0, 1.0;
     }
+    check_doors(&data.doors)?;
     let base_kmh = data.base_speed_kmh.unwrap_or(40.0);
     within("base_speed_kmh", base_kmh, 1.0, 200.0)?;
     data.tcms.check()
@@ -28,6 +29,7 @@ pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
 
 pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
     ranges(data)?;
+    check_doors(&data.doors)?;
     let electric = &data.electric_brake;
     if electric.fade_to_kmh >= electric.fade_from_kmh
         || electric.fade_from_kmh > electric.full_to_kmh
@@ -56,6 +58,14 @@ pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
     check_pairs(data)?;
     check_air(data)?;
     data.tcms.check()
+}
+
+fn check_doors(data: &DoorData) -> Result<(), ConfigError> {
+    check_ranges! { data, "doors.";
+        opening_s: 0.1, 60.0;
+        closing_s: 0.1, 60.0;
+    }
+    Ok(())
 }
 
 fn check_car(number: usize, car: &CarData) -> Result<(), ConfigError> {

@@ -26,8 +26,8 @@ use crate::conditions::{Conditions, Disturbance};
 pub(crate) use actuator::Actuators;
 pub use car_set::CarSet;
 pub use data::{
-    AirBrake, CarData, CarsData, ElectricBrake, EmergencyBrake, IdealData, Resistance, Role,
-    Traction, TrainData, Wheels,
+    AirBrake, CarData, CarsData, DoorData, ElectricBrake, EmergencyBrake, IdealData, Resistance,
+    Role, Traction, TrainData, Wheels,
 };
 pub use equipment::{Equipment, EquipmentFaults};
 pub use piece::Piece;

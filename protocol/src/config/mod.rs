@@ -12,12 +12,14 @@ use thiserror::Error;
 use crate::check_ranges;
 
 mod ato;
+mod driverless;
 mod way;
 
 pub use ato::{
     AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit,
     ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
 };
+pub use driverless::DriverlessConfig;
 pub use way::{MarkerConfig, TachoConfig};
 
 /// Why a configuration or line file is refused.
@@ -212,6 +214,9 @@ pub struct UnitConfig {
     pub test_board: TestBoardConfig,
     /// Automatic operation.
     pub ato: AtoConfig,
+    /// Driverless operation.
+    #[serde(default)]
+    pub driverless: DriverlessConfig,
     /// Start after power-up.
     pub start: StartConfig,
 }
@@ -302,6 +307,11 @@ impl UnitConfig {
             test_board.rate_tolerance_hz: 0.01, 5.0;
             test_board.level_tolerance: 0.001, 0.5;
             test_board.speed_tolerance: 0.001, 0.2;
+            driverless.dwell_min_ms: 0.0, 600000.0;
+            driverless.open_ms: 500.0, 60000.0;
+            driverless.close_ms: 500.0, 60000.0;
+            driverless.reopen_ms: 100.0, 60000.0;
+            driverless.close_tries: 1.0, 20.0;
             link.io_timeout_ms: 50.0, 900.0;
             link.tester_timeout_ms: 200.0, 1000.0;
         }

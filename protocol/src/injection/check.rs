@@ -58,6 +58,8 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::DoorInputLeft
         | Place::DoorInputRight
         | Place::DoorOutput
+        | Place::DoorOpenOutput
+        | Place::DoorCloseOutput
         | Place::CabInput => &[DEAD, STUCK_ON, STUCK_OFF],
         Place::ModeInput | Place::ControllerInput => &[DEAD, STUCK_OFF],
         Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
@@ -76,10 +78,14 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::StartBar
         | Place::DoorBar
         | Place::DoorGuard
+        | Place::DoorClosing
+        | Place::DoorReopening
+        | Place::DepartureGuard
+        | Place::SlowRunning
         | Place::TrainGuard
         | Place::StationGuard
         | Place::SideGuard => &[DEAD],
-        Place::TwcDoorSide => &[("offset", -3.0, 3.0)],
+        Place::TwcDoorSide | Place::DoorOrder => &[("offset", -3.0, 3.0)],
         Place::TwcAnswer => &[STUCK_ON],
         Place::TestCode => &[("gain", 0.0, 10.0)],
         // Hz.

@@ -46,6 +46,10 @@ pub enum Place {
     DoorInputRight,
     /// Door enable outputs.
     DoorOutput,
+    /// Contacts that order doors to open.
+    DoorOpenOutput,
+    /// Contact that orders doors to close.
+    DoorCloseOutput,
     /// Input of the head control relay.
     CabInput,
     /// Input of the mode switch.
@@ -70,6 +74,16 @@ pub enum Place {
     TwcAnswer,
     /// Supervision of doors that open without being enabled.
     DoorGuard,
+    /// Side of ATO's order to open doors.
+    DoorOrder,
+    /// ATO's order to close doors.
+    DoorClosing,
+    /// Opening again of doors that do not close.
+    DoorReopening,
+    /// Doors proved closed as a condition of departure.
+    DepartureGuard,
+    /// Slow running that the wayside orders.
+    SlowRunning,
     /// Comparison of the train number in station data with the unit's own.
     TrainGuard,
     /// Comparison of station data with the track database, door side left out.

@@ -103,6 +103,8 @@ wire_enum! {
         Normal = 0 "normal",
         /// Recovery running, making up time.
         Recovery = 1 "recovery",
+        /// Slow running.
+        Slow = 2 "slow",
     }
 }
 
@@ -275,5 +277,7 @@ wire_bits! {
         SELF_TEST = 12,
         /// The wayside has not given departure, or the start button was not pressed.
         NO_DEPARTURE = 13,
+        /// Driverless, the doors at this station have still to open, stand open or do not close.
+        DOOR_SEQUENCE = 14,
     }
 }

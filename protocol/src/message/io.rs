@@ -61,6 +61,12 @@ wire_bits! {
         STANDSTILL = 8,
         /// Unit healthy.
         HEALTHY = 9,
+        /// Doors on the left ordered to open, in series with their enable.
+        OPEN_LEFT = 10,
+        /// Doors on the right ordered to open, in series with their enable.
+        OPEN_RIGHT = 11,
+        /// All doors ordered to close.
+        CLOSE_DOORS = 12,
     }
 }
 

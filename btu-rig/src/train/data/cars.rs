@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{TrainData, built_in};
+use super::{DoorData, TrainData, built_in};
 use crate::tcms::TcmsData;
 use crate::train::actuator::Times;
 use crate::train::car_set::CarSet;
@@ -29,6 +29,9 @@ pub struct CarsData {
     pub resistance: Resistance,
     /// Slip, slide and the protection against it.
     pub wheels: Wheels,
+    /// Its doors.
+    #[serde(default)]
+    pub doors: DoorData,
     /// Times and thresholds of its TCMS.
     pub tcms: TcmsData,
     /// The cars from the head.

@@ -2,6 +2,7 @@
 //! cars.
 
 mod cars;
+mod doors;
 
 use protocol::config::ConfigError;
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ use crate::tcms::TcmsData;
 pub use cars::{
     AirBrake, CarData, CarsData, ElectricBrake, EmergencyBrake, Resistance, Role, Traction, Wheels,
 };
+pub use doors::DoorData;
 
 /// Data of a train, checked when it comes from a file.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -53,6 +55,9 @@ pub struct IdealData {
     pub parking_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
+    /// Its doors.
+    #[serde(default)]
+    pub doors: DoorData,
     /// Times and thresholds of its TCMS.
     pub tcms: TcmsData,
 }
@@ -115,6 +120,14 @@ impl TrainData {
         match self {
             Self::Ideal(data) => data.full_load_kg,
             Self::Cars(data) => data.cars.iter().map(|car| car.full_load_kg).sum(),
+        }
+    }
+
+    /// Its doors.
+    pub fn doors(&self) -> &DoorData {
+        match self {
+            Self::Ideal(data) => &data.doors,
+            Self::Cars(data) => &data.doors,
         }
     }
 

@@ -108,6 +108,9 @@ pub struct AtoConfig {
     pub below_limit_kmh: f64,
     /// Further lowering in normal running mode, km/h [S0 §3.1.1]; both together are 5 in S2 §3.3.
     pub normal_lowering_kmh: f64,
+    /// Target in slow running at most, km/h.
+    #[serde(default = "slow_kmh")]
+    pub slow_kmh: f64,
     /// Distance before the stop point at which a train that stands has arrived, m.
     pub arrived_m: f64,
     /// Acceleration that ATO asks for at most, km/h/s [S0 §4: 3.0].
@@ -132,6 +135,11 @@ pub struct AtoConfig {
     pub pss: PssConfig,
     /// Limits of monitoring.
     pub watch: AtoWatchConfig,
+}
+
+/// That of `sg100`, for configurations without it.
+const fn slow_kmh() -> f64 {
+    25.0
 }
 
 impl AtoConfig {

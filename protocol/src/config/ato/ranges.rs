@@ -9,6 +9,7 @@ impl AtoConfig {
         check_ranges! { self, "ato.";
             below_limit_kmh: 0.0, 20.0;
             normal_lowering_kmh: 0.0, 20.0;
+            slow_kmh: 1.0, 45.0;
             arrived_m: 0.1, 5.0;
             accel_kmh_per_s: 1.0, 5.0;
             decel_kmh_per_s: 2.0, 5.0;

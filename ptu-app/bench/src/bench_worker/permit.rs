@@ -61,6 +61,7 @@ fn in_cab(stimulus: &Stimulus) -> bool {
             | Stimulus::Controller { .. }
             | Stimulus::Reverser { .. }
             | Stimulus::Doors { .. }
+            | Stimulus::DoorObstacle { .. }
             | Stimulus::SideDoors { .. }
             | Stimulus::Switch { .. }
             | Stimulus::CutOut { .. }
@@ -212,11 +213,13 @@ mod tests {
             | Stimulus::ControllerContacts { .. }
             | Stimulus::Failure { .. }
             | Stimulus::Gradient { .. }
+            | Stimulus::DoorsFollow { .. }
             | Stimulus::Tcms(_)
             | Stimulus::AtoEnable { .. }
             | Stimulus::Load { .. } => Needs::Harness,
             Stimulus::Doors { .. }
             | Stimulus::SideDoors { .. }
+            | Stimulus::DoorObstacle { .. }
             | Stimulus::Hcr { .. }
             | Stimulus::MaintenanceKey { .. }
             | Stimulus::ModeSwitch(_)

@@ -4,7 +4,7 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
-const PATH: [&str; 107] = [
+const PATH: [&str; 111] = [
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",
@@ -82,6 +82,9 @@ const PATH: [&str; 107] = [
     "holding_brake",
     "door_enable_left",
     "door_enable_right",
+    "door_order_left",
+    "door_order_right",
+    "door_order_close",
     "asked_mode",
     "asked_effort",
     "asked_power",
@@ -91,6 +94,7 @@ const PATH: [&str; 107] = [
     "asked_eb",
     "asked_door_left",
     "asked_door_right",
+    "asked_door_close",
     "train_mode",
     "twc_answer_station",
     "twc_answer_train",

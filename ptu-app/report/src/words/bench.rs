@@ -42,6 +42,8 @@ wordings! {
         doors_right: "Doors right", "우측 출입문";
         enable_left: "Doors enabled left", "좌측 출입문 허용";
         enable_right: "Doors enabled right", "우측 출입문 허용";
+        doors_ordered_open: "ordered to open", "열림 지령";
+        doors_order_close: "Doors ordered to close", "출입문 닫힘 지령";
         enabled: "enabled", "허용";
         not_enabled: "not enabled", "불허";
 
@@ -283,6 +285,7 @@ wordings! {
         side_both: "both", "양측";
         running_normal: "normal", "정상";
         running_recovery: "recovery", "회복";
+        running_slow: "slow", "서행";
         wayside_corrupt: "corrupt", "손상 전문";
         tacho_dead: "dead", "무신호";
         tacho_noisy: "noisy", "잡음";
@@ -312,6 +315,7 @@ wordings! {
         refused_tra: "TRA", "TRA";
         refused_self_test: "Self-test", "자체시험";
         refused_departure: "no departure or start", "출발 지시·버튼 없음";
+        refused_doors: "door sequence at the station", "정차 출입문 취급 중";
     }
 }
 

@@ -22,6 +22,18 @@ pub(super) static VERBS: &[Verb] = &[
         &[needs("side", ParamType::Choice(SIDES))],
         |args| doors(args, DoorState::Unlocked)
     ),
+    switch!("door.automatic", |on| Stimulus::DoorsFollow { on }),
+    stimulus!(
+        "door.obstacle",
+        &[
+            needs("side", ParamType::Choice(SIDES)),
+            needs("times", ParamType::Int(0, 255))
+        ],
+        |args| Stimulus::DoorObstacle {
+            left: args.text("side") == Some("left"),
+            times: u8::try_from(args.int("times")?).map_err(|e| e.to_string())?,
+        }
+    ),
     switch!("cab.active", |on| Stimulus::Hcr { on }),
     switch!("cab.key", |on| Stimulus::MaintenanceKey { on }),
     stimulus!(

@@ -221,6 +221,7 @@ impl<'a> Minute<'a> {
                 let lever = self.one_of(&Lever::ALL);
                 self.apply(Stimulus::Controller { lever });
             }
+            8 if self.chance(0.3) => self.apply(Stimulus::DoorsFollow { on: true }),
             8 => {
                 let closed = self.chance(0.6);
                 self.apply(Stimulus::Doors { closed });
@@ -310,7 +311,7 @@ impl<'a> Minute<'a> {
             station = StationData::at_departure(section);
         }
         if self.chance(0.2) {
-            station.running_mode = RunningMode::Recovery;
+            station.running_mode = self.one_of(&[RunningMode::Recovery, RunningMode::Slow]);
         }
         self.station = station;
         self.apply(Stimulus::Station(station));

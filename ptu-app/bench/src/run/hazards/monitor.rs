@@ -44,6 +44,8 @@ pub enum Hazard {
     EnabledWrongSide,
     /// Doors enabled away from the stop point.
     EnabledElsewhere,
+    /// Doors ordered to open on a side that is not enabled.
+    OrderedUnenabled,
     /// Power under the emergency brake.
     PowerUnderBrake,
     /// Way against the reverser.
@@ -61,6 +63,7 @@ impl Hazard {
             Self::EnabledMoving => "enabled_moving",
             Self::EnabledWrongSide => "enabled_wrong_side",
             Self::EnabledElsewhere => "enabled_elsewhere",
+            Self::OrderedUnenabled => "ordered_unenabled",
             Self::PowerUnderBrake => "power_under_brake",
             Self::RolledBack => "rolled_back",
         }
@@ -154,7 +157,7 @@ impl Monitor {
         found
     }
 
-    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 9] {
+    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 10] {
         let limit_kmh = self.most_permitted_kmh(seen);
         let (eb, fsb) = (seen.on(Signal::EbLoop), seen.on(Signal::Fsb));
         let (left, right) = (
@@ -200,6 +203,12 @@ impl Monitor {
             (
                 Hazard::EnabledElsewhere,
                 (left || right) && elsewhere,
+                ms(0),
+            ),
+            (
+                Hazard::OrderedUnenabled,
+                seen.on(Signal::DoorOrderLeft) && !left
+                    || seen.on(Signal::DoorOrderRight) && !right,
                 ms(0),
             ),
             (

@@ -37,7 +37,11 @@ impl Bench {
             Signal::WaysideDoorSide => {
                 vec![self.none, self.side_left, self.side_right, self.side_both]
             }
-            Signal::WaysideMode => vec![self.running_normal, self.running_recovery],
+            Signal::WaysideMode => vec![
+                self.running_normal,
+                self.running_recovery,
+                self.running_slow,
+            ],
             Signal::AtoState => {
                 vec![
                     self.ato_inspection,
@@ -182,6 +186,7 @@ impl Bench {
                 self.refused_tra,
                 self.refused_self_test,
                 self.refused_departure,
+                self.refused_doors,
             ],
             Signal::SelfTest => vec![
                 self.item_memory,
@@ -223,7 +228,7 @@ mod tests {
                 (Signal::PowerCutCauses, PowerCuts::ALL.len()),
                 (Signal::EbSources, EbSources::ALL.len()),
                 (Signal::Lamps, Lamps::ALL.len()),
-                (Signal::Refusals, 14),
+                (Signal::Refusals, 15),
                 (Signal::SelfTest, SelfTest::SPEC.entries.len()),
             ] {
                 assert_eq!(words.bits(signal).len(), count, "{signal:?}");

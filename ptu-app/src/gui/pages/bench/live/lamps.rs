@@ -57,7 +57,7 @@ pub fn lamps(ui: &mut Ui, size: Vec2, seen: &BenchSnapshot, words: &Bench, palet
     }
 }
 
-fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 9] {
+fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 10] {
     let lamp = |name, says, signal, lit_at: bool, colour| Lamp {
         name,
         says,
@@ -80,7 +80,13 @@ fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 9] {
     };
     let brake = [words.applied, words.released];
     let on_off = [words.on, words.off];
-    let enabled = [words.enabled, words.not_enabled];
+    let enabled = |order| {
+        let says = match seen.on(order) {
+            Some(true) => words.doors_ordered_open,
+            _ => words.enabled,
+        };
+        [says, words.not_enabled]
+    };
     let (bad, warn) = (palette.armed, palette.warn);
     [
         lamp(words.eb, brake, Signal::Eb, true, bad),
@@ -92,17 +98,24 @@ fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 9] {
         side_doors(words.doors_right, Signal::DoorsRight),
         lamp(
             words.enable_left,
-            enabled,
+            enabled(Signal::DoorOrderLeft),
             Signal::DoorEnableLeft,
             true,
             palette.good,
         ),
         lamp(
             words.enable_right,
-            enabled,
+            enabled(Signal::DoorOrderRight),
             Signal::DoorEnableRight,
             true,
             palette.good,
+        ),
+        lamp(
+            words.doors_order_close,
+            on_off,
+            Signal::DoorOrderClose,
+            true,
+            warn,
         ),
     ]
 }

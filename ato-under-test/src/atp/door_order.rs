@@ -1,0 +1,112 @@
+//! What ATP lets through of ATO's orders to open doors: its contact for a side lies in series with the enable of
+//! that side, so that no order opens a door where none may be open.
+
+use protocol::event::Event;
+use protocol::message::{DoorSide, Outputs};
+use protocol::{Duration, Instant};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, OnDelay};
+
+/// Time that ATO has to take an order back when the enable goes: it acts once a cycle.
+const FOLLOWS: Duration = Duration::from_ms(200);
+
+#[derive(Clone, Debug, Default)]
+pub struct DoorOrders {
+    passed: Outputs,
+    beyond: OnDelay,
+    reported: Edge,
+}
+
+impl DoorOrders {
+    /// One scan, with the sides ordered to open and the enables of this scan.
+    pub fn step(&mut self, now: Instant, ordered: DoorSide, enable: Outputs, log: &mut EventLog) {
+        let enabled = enabled_sides(enable).code();
+        // Codes of sides are sets of bits.
+        let refused = ordered.code() & !enabled;
+        self.passed = match DoorSide::from_code(ordered.code() & enabled) {
+            DoorSide::Left => Outputs::OPEN_LEFT,
+            DoorSide::Right => Outputs::OPEN_RIGHT,
+            DoorSide::Both => Outputs::OPEN_LEFT | Outputs::OPEN_RIGHT,
+            DoorSide::None | DoorSide::Unknown(_) => Outputs::empty(),
+        };
+        let lasts = self.beyond.update(now, refused != 0, FOLLOWS);
+        if self.reported.rises(lasts) {
+            log.push(now, Event::DoorOrderRefused, i32::from(refused));
+        }
+    }
+
+    /// The contacts that order doors to open.
+    pub fn passed(&self) -> Outputs {
+        self.passed
+    }
+}
+
+/// Sides of these enables.
+pub fn enabled_sides(enable: Outputs) -> DoorSide {
+    match (
+        enable.contains(Outputs::DOOR_ENABLE_LEFT),
+        enable.contains(Outputs::DOOR_ENABLE_RIGHT),
+    ) {
+        (false, false) => DoorSide::None,
+        (true, false) => DoorSide::Left,
+        (false, true) => DoorSide::Right,
+        (true, true) => DoorSide::Both,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDES: [DoorSide; 4] = [
+        DoorSide::None,
+        DoorSide::Left,
+        DoorSide::Right,
+        DoorSide::Both,
+    ];
+
+    fn enables(side: DoorSide) -> Outputs {
+        let mut enable = Outputs::empty();
+        enable.set(Outputs::DOOR_ENABLE_LEFT, side.code() & 1 != 0);
+        enable.set(Outputs::DOOR_ENABLE_RIGHT, side.code() & 2 != 0);
+        enable
+    }
+
+    /// Every order against every enable: what passes, and what is told after the time to follow.
+    #[test]
+    fn an_order_passes_on_enabled_sides_alone() {
+        for ordered in SIDES {
+            for enabled in SIDES {
+                let (mut orders, mut log) = (DoorOrders::default(), EventLog::default());
+                for ms in (0..=200).step_by(10) {
+                    let now = Instant::from_ms(ms);
+                    orders.step(now, ordered, enables(enabled), &mut log);
+                    let passed = orders.passed();
+                    let both = ordered.code() & enabled.code();
+                    assert_eq!(passed.contains(Outputs::OPEN_LEFT), both & 1 != 0);
+                    assert_eq!(passed.contains(Outputs::OPEN_RIGHT), both & 2 != 0);
+                }
+                let beyond = ordered.code() & !enabled.code();
+                let entries = log.entries();
+                let told = entries
+                    .at_or_after(0)
+                    .map(|entry| (entry.code, entry.parameter));
+                let expected = (beyond != 0).then_some((245, i32::from(beyond)));
+                assert_eq!(told, expected, "{ordered:?} {enabled:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_order_that_is_taken_back_in_time_is_no_event() {
+        let (mut orders, mut log) = (DoorOrders::default(), EventLog::default());
+        for ms in (0..200).step_by(10) {
+            let now = Instant::from_ms(ms);
+            orders.step(now, DoorSide::Left, Outputs::empty(), &mut log);
+        }
+        let now = Instant::from_ms(200);
+        orders.step(now, DoorSide::None, Outputs::empty(), &mut log);
+        assert_eq!(log.next_index(), 0);
+    }
+}
