@@ -5,6 +5,7 @@ mod ato_inputs;
 mod automatic_operation;
 mod brake_release;
 mod common;
+mod driverless;
 mod journey;
 mod maintenance;
 mod maintenance_port;

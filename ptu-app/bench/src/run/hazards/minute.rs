@@ -159,6 +159,8 @@ impl<'a> Minute<'a> {
             Stimulus::Hcr { on: true },
             Stimulus::Reverser { position: 1 },
             Stimulus::Doors { closed: true },
+            // Until the driver moves them.
+            Stimulus::DoorsFollow { on: true },
             Stimulus::Controller {
                 lever: Lever::Neutral,
             },
@@ -221,7 +223,6 @@ impl<'a> Minute<'a> {
                 let lever = self.one_of(&Lever::ALL);
                 self.apply(Stimulus::Controller { lever });
             }
-            8 if self.chance(0.3) => self.apply(Stimulus::DoorsFollow { on: true }),
             8 => {
                 let closed = self.chance(0.6);
                 self.apply(Stimulus::Doors { closed });
@@ -311,7 +312,10 @@ impl<'a> Minute<'a> {
             station = StationData::at_departure(section);
         }
         if self.chance(0.2) {
-            station.running_mode = self.one_of(&[RunningMode::Recovery, RunningMode::Slow]);
+            station.running_mode = match station.departure {
+                true => RunningMode::Slow,
+                false => RunningMode::Recovery,
+            };
         }
         self.station = station;
         self.apply(Stimulus::Station(station));
