@@ -141,6 +141,11 @@ events! {
     WheelDiameter = 305 "wheel_diameter" Major "-" "Way by wheels and way between markers differ" "차륜 직경 오차" "difference, 0.01 %";
     PositionUnsure = 306 "position_unsure" Minor "marker_antenna" "No marker where one must be: position unsure" "위치 불확실" "PSM that did not come";
     TraBounces = 307 "tra_bounces" Minor "tra" "The same marker again after its debounce time: TRA bounces" "TRA 접점 떨림" "after its first edge, ms";
+    JogBegun = 310 "jog_begun" Info "-" "ATO jogs to the stop point" "정위치 인칭 시작" "way to go, cm; backward negative";
+    JogFailed = 311 "jog_failed" Major "-" "Not aligned: too far to jog, or no try left" "인칭 실패: 정위치 불일치" "distance short of the stop point, cm; past it negative";
+    JogOverspeed = 312 "jog_overspeed" Major "-" "Faster than a jog may be: full service brake" "인칭 과속: 상용전제동" "speed, cm/s";
+    JogWrongWay = 313 "jog_wrong_way" Critical "-" "Moving forward while ATO jogs backward: emergency brake" "인칭 방향 불일치: 비상제동" "distance, cm";
+    JogRefused = 314 "jog_refused" Minor "-" "ATP does not let ATO jog backward: powering cut" "후진 인칭 불허" "overrun as ATP knows it, cm; 0 = none, or not known";
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";

@@ -6,7 +6,7 @@
 //! | inspection | stop | every check passes and the train stands |
 //! | stop | start | ATP has set Automatic Run and the train is not at the stop point |
 //! | start | run | the train moves |
-//! | run | stop | it stands at the stop point |
+//! | start, run | stop | it stands at the stop point, or as near to it as jogging could bring it |
 //! | start, run | stop | ATP has ended Automatic Run |
 
 use protocol::message::{AtoFailure, AtoState};
@@ -32,7 +32,7 @@ pub struct ArtInputs {
     pub run: bool,
     /// Standing still.
     pub standstill: bool,
-    /// At the stop point.
+    /// At the stop point, or the run has ended away from it.
     pub arrived: bool,
 }
 
@@ -43,7 +43,7 @@ pub fn next(state: AtoState, inputs: ArtInputs) -> AtoState {
         AtoState::Start | AtoState::Run if !inputs.run => AtoState::Stop,
         AtoState::Stop if inputs.run && !inputs.arrived => AtoState::Start,
         AtoState::Start if !inputs.standstill => AtoState::Run,
-        AtoState::Run if inputs.standstill && inputs.arrived => AtoState::Stop,
+        AtoState::Start | AtoState::Run if inputs.standstill && inputs.arrived => AtoState::Stop,
         AtoState::Unknown(_) => AtoState::Inspection,
         state => state,
     }
@@ -77,6 +77,7 @@ mod tests {
             (Stop, at(true, true, true, false), Start),
             (Stop, at(false, true, true, false), Inspection),
             (Start, at(true, true, true, false), Start),
+            (Start, at(true, true, true, true), Stop),
             (Start, at(true, true, false, false), Run),
             (Start, at(true, false, true, false), Stop),
             (Start, at(false, true, true, false), Inspection),

@@ -14,14 +14,17 @@ const PLACES: u32 = 8;
 /// Parts of the approach at whose ends it is looked at.
 const APPROACH_PLACES: u32 = 10;
 
-/// Force that keeps the speed with the head at `position_m`, N; `weight_kg` is the mass that weighs.
+/// Force that keeps the speed with the head at `position_m`, N, in the direction of travel; `weight_kg` is the mass
+/// that weighs.
 pub fn holding_force_n(
     section: Option<&Section>,
     position_m: f64,
+    backward: bool,
     weight_kg: f64,
     train: &AtoTrainConfig,
 ) -> f64 {
-    let track_kgf_t = section.map_or(0.0, |section| under(section, position_m, train));
+    let uphill = if backward { -1.0 } else { 1.0 };
+    let track_kgf_t = section.map_or(0.0, |section| under(section, position_m, uphill, train));
     (track_kgf_t + train.rolling_kgf_t) * KGF_PER_T * weight_kg
 }
 
@@ -31,24 +34,24 @@ pub fn approach_n_per_kg(section: &Section, train: &AtoTrainConfig) -> f64 {
     let distance_m = (section.stop_m - psm2).max(0.0);
     let least = (0..=APPROACH_PLACES)
         .map(|i| psm2 + distance_m * f64::from(i) / f64::from(APPROACH_PLACES))
-        .map(|position_m| under(section, position_m, train))
+        .map(|position_m| under(section, position_m, 1.0, train))
         .fold(f64::INFINITY, f64::min);
     (least + train.rolling_kgf_t) * KGF_PER_T
 }
 
-/// Mean resistance of the track under the train with its head at `position_m`, kgf/t.
-fn under(section: &Section, position_m: f64, train: &AtoTrainConfig) -> f64 {
+/// Mean resistance of the track under the train with its head at `position_m`, kgf/t, a gradient times `uphill`.
+fn under(section: &Section, position_m: f64, uphill: f64, train: &AtoTrainConfig) -> f64 {
     let sum: f64 = (0..PLACES)
         .map(|i| {
             let back_m = train.length_m * (f64::from(i) + 0.5) / f64::from(PLACES);
-            at(section, position_m - back_m, train)
+            at(section, position_m - back_m, uphill, train)
         })
         .sum();
     sum / f64::from(PLACES)
 }
 
 /// Resistance of the track at one place, kgf/t; 1 ‰ is 1 kgf/t.
-fn at(section: &Section, position_m: f64, train: &AtoTrainConfig) -> f64 {
+fn at(section: &Section, position_m: f64, uphill: f64, train: &AtoTrainConfig) -> f64 {
     let gradient = section.gradients.iter().rev();
     let permille = gradient
         .skip_while(|g| g.at_m > position_m)
@@ -62,5 +65,5 @@ fn at(section: &Section, position_m: f64, train: &AtoTrainConfig) -> f64 {
     let curve = radius_m
         .filter(|&r| r > 0.0)
         .map_or(0.0, |r| train.curve_kgf_m_t / r);
-    permille.unwrap_or(0.0) + curve
+    uphill * permille.unwrap_or(0.0) + curve
 }

@@ -9,6 +9,7 @@ mod art;
 pub mod controller;
 mod cruise;
 mod feed_forward;
+mod jog;
 mod monitor;
 mod observer;
 mod profile;
@@ -23,11 +24,13 @@ use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
 use controller::{ControllerInput, SpeedController, controller};
 use cruise::CruiseInputs;
+use jog::{Jog, JogInputs};
 use monitor::{Monitor, MonitorInputs};
 use observer::{Observer, SpeedMeasurement};
 use reg::{Bounds, GrantedEffort, Regulator};
 
 pub use art::{ArtInputs, Checks};
+pub use jog::JogOutcome;
 pub use monitor::{Findings, TrainReport};
 
 /// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
@@ -61,6 +64,10 @@ pub struct AtoInputs<'a> {
     pub ahead_m: f64,
     /// Distance from the stop point that counts as aligned, m.
     pub aligned_m: f64,
+    /// The section's last marker was seen.
+    pub last_marker: bool,
+    /// An injected fault: ATO does not jog.
+    pub jog_dead: bool,
     /// Measured speed.
     pub speed: Speed,
     /// Standstill as ATP means it, below 0.3 m/s.
@@ -86,6 +93,10 @@ pub struct AtoOutputs {
     pub effort: i16,
     /// The holding brake is requested of TCMS.
     pub holding_brake: bool,
+    /// Direction of the jog that is on: backward; `None` = no jog.
+    pub jogs_backward: Option<bool>,
+    /// What came of jogging in this cycle.
+    pub jog: JogOutcome,
     /// Distance run in this cycle that sliding wheels did not tell, m.
     pub slid_m: f64,
     /// Why it cannot drive.
@@ -104,6 +115,7 @@ pub struct Ato {
     /// Section and least force on its approach, N/kg.
     approach: Option<(u16, f64)>,
     controller: Box<dyn SpeedController>,
+    jog: Jog,
     regulator: Regulator,
     granted: GrantedEffort,
     feed_forward_n: f64,
@@ -124,6 +136,7 @@ impl Ato {
             observer: Observer::new(&config.observer, measurement),
             approach: None,
             controller: controller(config),
+            jog: Jog::default(),
             regulator: Regulator::default(),
             granted: GrantedEffort::default(),
             feed_forward_n: 0.0,
@@ -136,7 +149,6 @@ impl Ato {
         let to_stop_m = inputs
             .section
             .map(|s| s.stop_m - inputs.position_m - inputs.ahead_m);
-        let arrived = to_stop_m.is_some_and(|distance| distance < config.arrived_m);
         let cruise = cruise::cruise(
             CruiseInputs {
                 limit: inputs.limit,
@@ -146,9 +158,26 @@ impl Ato {
             config,
         );
         let stands = inputs.standstill && inputs.speed <= STOPPED && !self.observer.sliding();
+        let may_go = cruise > Speed::ZERO && !inputs.power_cut;
+        let drives = art::drives(self.state);
+        let jog_inputs = JogInputs {
+            drives,
+            stands,
+            may_go,
+            to_stop_m,
+            aligned_m: inputs.aligned_m,
+            last_marker: inputs.last_marker,
+            dead: inputs.jog_dead,
+        };
+        let jog = self.jog.step(&jog_inputs, &config.jog);
+        let at_stop = |distance_m: f64| libm::fabs(distance_m) <= inputs.aligned_m;
+        let arrived = match drives {
+            true => jog.ended,
+            false => to_stop_m.is_some_and(at_stop),
+        };
         let monitored = MonitorInputs {
             state: self.state,
-            may_go: cruise > Speed::ZERO && !inputs.power_cut && !inputs.train.overrides,
+            may_go: may_go && !inputs.train.overrides,
             asked_mps2: self.net_mps2(&inputs, config),
             stands,
             arrived,
@@ -173,6 +202,7 @@ impl Ato {
             ready: self.state != AtoState::Inspection,
             failure: self.failure,
             findings,
+            jog,
             ..outputs
         }
     }
@@ -215,6 +245,10 @@ impl Ato {
         let train = &config.train;
         let weight_kg = train.empty_kg + inputs.load_kg;
         let mass_kg = weight_kg + train.rotating_kg;
+        if self.jog.begins() {
+            // What was asked for until now was for the other direction, or to hold the train.
+            self.observer.reset();
+        }
         let granted_n = self.net_n();
         let ahead = self
             .observer
@@ -223,18 +257,38 @@ impl Ato {
             .section
             .map_or([0.0; 4], |s| s.markers_m.map(|at| s.stop_m - at));
         let brake_mps2 = self.brake_mps2(inputs, weight_kg / mass_kg, config);
-        let demand = self.controller.step(&ControllerInput {
-            cruise_mps: cruise.mps(),
-            speed_mps: ahead.speed_mps,
-            accel_mps2: ahead.accel_mps2,
-            to_stop_m: to_stop_m.map(|distance| distance - ahead.moved_m),
-            markers_to_stop_m,
-            mass_kg,
-            brake_mps2,
-            granted_n,
-        });
-        self.feed_forward_n =
-            feed_forward::holding_force_n(inputs.section, inputs.position_m, weight_kg, train);
+        let jogs = self.jog.acts();
+        let backward = self.jog.backward();
+        let demand = if jogs {
+            self.controller.reset();
+            let to_stop_m = to_stop_m.unwrap_or_default();
+            let left_m = if backward { -to_stop_m } else { to_stop_m };
+            self.jog.demand(
+                left_m - ahead.moved_m,
+                ahead.speed_mps,
+                mass_kg,
+                train.jerk_mps3,
+                &config.jog,
+            )
+        } else {
+            self.controller.step(&ControllerInput {
+                cruise_mps: cruise.mps(),
+                speed_mps: ahead.speed_mps,
+                accel_mps2: ahead.accel_mps2,
+                to_stop_m: to_stop_m.map(|distance| distance - ahead.moved_m),
+                markers_to_stop_m,
+                mass_kg,
+                brake_mps2,
+                granted_n,
+            })
+        };
+        self.feed_forward_n = feed_forward::holding_force_n(
+            inputs.section,
+            inputs.position_m,
+            backward,
+            weight_kg,
+            train,
+        );
         let most = match to_stop_m {
             Some(distance) if distance < markers_to_stop_m[1] => config.gently_mps2,
             _ => config.accel_kmh_per_s / 3.6,
@@ -246,23 +300,25 @@ impl Ato {
             power_cut: inputs.power_cut,
         };
         let speed_ends = ahead.speed_mps <= ENDING_MPS;
-        let goes = demand.force_n > STARTING_MPS2 * mass_kg;
+        let starts_mps2 = self.jog.least_mps2();
+        let goes = demand.force_n > STARTING_MPS2 * mass_kg || starts_mps2.is_some();
         // A departure under a speed of 0 holds the train until there is one to run at.
-        let rests = !goes && (self.state == AtoState::Run || cruise == Speed::ZERO);
+        let rests = !goes && (self.state == AtoState::Run || jogs || cruise == Speed::ZERO);
         // A demand that is no number stays one, so that REG brakes.
-        let past_it = to_stop_m.is_some_and(|distance| distance < -config.watch.overrun_m);
+        let past_it = !jogs && to_stop_m.is_some_and(|distance| distance < -config.watch.overrun_m);
         let force_n = if past_it { least } else { demand.force_n };
         let asked_n = force_n.clamp(least, most) + self.feed_forward_n;
         // When this effort acts the train will stand: what held it on a climb until then must be a brake.
         let standing_n = -(libm::fabs(self.feed_forward_n) + RESTING_MPS2 * mass_kg);
-        let asked_n = if rests && speed_ends {
-            asked_n.min(standing_n)
-        } else {
-            asked_n
+        let asked_n = match starts_mps2 {
+            Some(least_mps2) => asked_n.max(least_mps2 * mass_kg),
+            None if rests && speed_ends => asked_n.min(standing_n),
+            None => asked_n,
         };
         self.granted = self.regulator.step(asked_n, bounds, config);
         AtoOutputs {
             holding_brake: rests && inputs.standstill && inputs.speed <= STOPPED,
+            jogs_backward: self.jog.direction(),
             target: Speed::from_mps(demand.target_mps),
             slid_m: ahead.slid_m,
             effort: self.granted.effort,
@@ -303,9 +359,14 @@ impl Ato {
         }
     }
 
-    /// Stands at the stop point after a run.
+    /// Stands after a run, at the stop point or as near to it as it came.
     pub fn arrived(&self) -> bool {
         self.state == AtoState::Stop
+    }
+
+    /// Stands after a run away from the stop point, and jogging has given up.
+    pub fn gave_up(&self) -> bool {
+        self.jog.gave_up()
     }
 
     /// Operating state.

@@ -58,7 +58,7 @@ pub struct MonitorInputs {
     pub may_go: bool,
     /// The wheels stand.
     pub stands: bool,
-    /// As near to the stop point as ATO can bring the train.
+    /// As near to the stop point as ATO could bring the train.
     pub arrived: bool,
 }
 
@@ -220,7 +220,7 @@ impl Monitor {
         let to_stop_m = section.stop_m - inputs.position_m;
         let past_m = -to_stop_m;
         let ended = on.stands && on.arrived || self.stands_s > STANDS_S;
-        let overrun = past_m > config.watch.overrun_m && (ended || past_m > FAR_PAST_M);
+        let overrun = past_m > config.watch.overrun_m && (on.stands || past_m > FAR_PAST_M);
         let short = to_stop_m > inputs.aligned_m && ended;
         let first = !self.stop_reported;
         self.stop_reported |= ended || overrun;
@@ -306,6 +306,8 @@ mod tests {
             position_m: 100.0,
             ahead_m: 0.0,
             aligned_m: 0.3,
+            last_marker: false,
+            jog_dead: false,
             speed: Speed::from_mps(10.0),
             standstill: false,
             power_cut: false,

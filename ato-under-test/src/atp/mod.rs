@@ -8,6 +8,7 @@ mod door_lines;
 mod door_order;
 mod doors;
 mod emergency;
+mod jog_guard;
 mod mode;
 mod overspeed;
 mod speedometer;
@@ -23,6 +24,7 @@ use crate::signals::Inputs;
 use crate::timer::Edge;
 use direction::Rollback;
 use door_order::{DoorOrders, enabled_sides};
+use jog_guard::{JogGuard, JogInputs};
 
 pub use brake_proof::{BrakeProof, Demand, Proof};
 pub use code::{Code, CodeDecoder, lookup};
@@ -51,6 +53,10 @@ pub struct ScanContext {
     pub twc_up: bool,
     pub tcms_up: bool,
     pub ato_ready: bool,
+    /// Direction in which ATO jogs: backward or not; `None` = it does not.
+    pub jogs_backward: Option<bool>,
+    /// Distance past the stop point, m, where the section's last marker proves it.
+    pub overrun_m: Option<f64>,
     /// Guards that an injected fault has put out of action.
     pub dead_guards: DeadGuards,
 }
@@ -64,6 +70,8 @@ pub struct DeadGuards {
     pub doors: bool,
     /// An acknowledgement is not compared with the emergency brake's cause.
     pub release: bool,
+    /// ATO jogs as fast and as far as it likes.
+    pub jog: bool,
 }
 
 /// State of the protection functions from scan to scan.
@@ -76,6 +84,7 @@ pub struct Atp {
     doors: Doors,
     door_orders: DoorOrders,
     rollback: Rollback,
+    jog: JogGuard,
     brake: EmergencyBrake,
     sequence: ModeSequence,
     limit: Speed,
@@ -98,6 +107,7 @@ impl Atp {
             doors: Doors::default(),
             door_orders: DoorOrders::default(),
             rollback: Rollback::default(),
+            jog: JogGuard::default(),
             brake: EmergencyBrake::new(),
             sequence: ModeSequence::default(),
             limit: Speed::ZERO,
@@ -153,12 +163,24 @@ impl Atp {
             .step(now, context.door_order, self.doors.enable(), log);
         let moved_m = self.tachometers.ways_m();
         let still = self.tachometers.still();
-        let allowed_m = config.tacho.rollback_m;
+        let jog_inputs = JogInputs {
+            backward: context.jogs_backward,
+            permitted: self.may_jog_backward(inputs.lines),
+            overrun_m: context.overrun_m,
+            moved_m,
+            speed,
+            standstill,
+            still,
+            dead: context.dead_guards.jog,
+        };
+        let wrong_way = self.jog.step(now, jog_inputs, config, log);
+        let allowed_m = config.tacho.rollback_m + self.jog.back_m();
         let rollback = self
             .rollback
             .step(now, moved_m, inputs.lines, still, allowed_m, log);
         let found = [
             (rollback, EbCause::Rollback),
+            (wrong_way, EbCause::Jog),
             (door_open, EbCause::DoorOpen),
             (beyond, EbCause::Overspeed),
             (proof.ineffective, EbCause::ServiceBrakeIneffective),
@@ -181,6 +203,13 @@ impl Atp {
     fn by_code(&self) -> bool {
         let mode = self.sequence.mode();
         matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun)
+    }
+
+    /// A train that has run past its stop point may be jogged back.
+    fn may_jog_backward(&self, lines: TrainLines) -> bool {
+        let ahead = lines.contains(TrainLines::FORWARD) && !lines.contains(TrainLines::BACKWARD);
+        let run = self.sequence.mode() == Mode::AutomaticRun;
+        run && ahead && self.doors_closed && self.limit > Speed::ZERO
     }
 
     /// Whether the service brake that is asked for has a train to slow.
@@ -272,6 +301,7 @@ impl Atp {
             ),
             (over, FsbCause::Overspeed),
             (self.doors.hold(), FsbCause::DoorOpen),
+            (self.jog.brakes(), FsbCause::Jog),
             (running && !context.twc_up, FsbCause::TwcLost),
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),
@@ -312,12 +342,13 @@ impl Atp {
         outputs
     }
 
-    /// No powering while braking, with doors open or against a stop.
+    /// No powering while braking, with doors open, against a stop or for a jog that is not permitted.
     pub fn power_cut(&self) -> bool {
         self.brake.applied()
             || self.fsb_cause != FsbCause::None
             || !self.doors_closed
             || self.limit == Speed::ZERO
+            || self.jog.refuses()
     }
 
     /// Cab at automatic or driverless.

@@ -5,7 +5,8 @@
 //! not released), the service brake stops the train first: there may be no driver. Then there is no
 //! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
 //! train then waits for a departure that is given anew, or for the start button: the one that was still
-//! given began the run that failed. It departs once its doors have been served, too.
+//! given began the run that failed. So it does after a run that ended away from its stop point. It departs once its
+//! doors have been served, too.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -40,8 +41,10 @@ pub struct ModeInputs {
     pub departure: bool,
     pub start: bool,
     pub acknowledge: bool,
-    /// The train has reached the stop point and stands.
+    /// The train stands at the end of its run.
     pub arrived: bool,
+    /// It stands away from the stop point, and ATO has given that up.
+    pub gave_up: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -103,6 +106,7 @@ impl ModeSequence {
         if left || acknowledged && !runs {
             self.failed = Refusals::empty();
         }
+        self.departs_anew |= runs && inputs.gave_up;
         self.departs_anew &= !departs;
     }
 
@@ -168,6 +172,7 @@ mod tests {
         start: false,
         acknowledge: false,
         arrived: false,
+        gave_up: false,
     };
 
     #[test]

@@ -253,10 +253,15 @@ impl Locator {
 
     /// Stopped within `tolerance_m` of the stop point, the last marker having been seen.
     pub fn aligned(&self, tolerance_m: f64) -> bool {
-        self.fix.marker == MARKERS
+        self.passed_last_marker()
             && self
                 .to_stop_m()
                 .is_some_and(|distance| libm::fabs(distance) <= tolerance_m)
+    }
+
+    /// The section's last marker was seen: the stop point is known by it.
+    pub fn passed_last_marker(&self) -> bool {
+        self.fix.marker == MARKERS
     }
 
     /// Distance to the stop point, m.

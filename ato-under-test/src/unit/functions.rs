@@ -11,7 +11,7 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant, Speed};
 
-use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, TrainReport};
+use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, JogOutcome, TrainReport};
 use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::driverless::{DeadOrders, Station, StationInputs};
@@ -111,7 +111,15 @@ impl Functions {
                 stop: around.faults.dead(Place::StopGuard),
                 release: around.faults.dead(Place::ReleaseGuard),
                 doors: around.faults.dead(Place::DoorGuard),
+                jog: around.faults.dead(Place::JogGuard),
             },
+            jogs_backward: self.ato_outputs.jogs_backward,
+            // Behind its last marker alone; wheels may be wrong by more than an overrun.
+            overrun_m: self
+                .locator
+                .to_stop_m()
+                .filter(|_| self.locator.passed_last_marker())
+                .map(|to_stop_m| -to_stop_m),
         };
         log.freeze(FreezeFrame {
             speed: self.atp.tachometers().speed(),
@@ -283,6 +291,7 @@ impl Functions {
             start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
+            gave_up: self.ato.gave_up(),
         }
     }
 
@@ -306,6 +315,8 @@ impl Functions {
             position_m: self.locator.position_m(),
             ahead_m: self.locator.ahead_m(),
             aligned_m: around.setup.config.doors.aligned_m,
+            last_marker: self.locator.passed_last_marker(),
+            jog_dead: around.faults.dead(Place::Jog),
             speed: self.wheel_speed(),
             standstill: tachometers.standstill(),
             power_cut: self.atp.power_cut() || around.tcms.cuts_power(),
@@ -321,6 +332,7 @@ impl Functions {
         if around.faults.dead(Place::AtoCpu) {
             // A processor that has stopped leaves its outputs as they were and reports no new event.
             self.ato_outputs.findings = Findings::default();
+            self.ato_outputs.jog = JogOutcome::default();
             self.ato_outputs.slid_m = 0.0;
         } else {
             self.ato_outputs = self.ato.step(inputs, &around.setup.config.ato);
@@ -408,6 +420,8 @@ impl Functions {
             (Event::TrainWithholds, found.withheld_mps),
             (Event::StopOverrun, found.overrun_m),
             (Event::StopShort, found.short_m),
+            (Event::JogBegun, outputs.jog.begun_m),
+            (Event::JogFailed, outputs.jog.failed_m),
         ];
         for (event, value) in findings {
             if let Some(value) = value {

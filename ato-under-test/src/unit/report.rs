@@ -152,6 +152,7 @@ pub fn to_tcms(unit: &Unit, now: Instant) -> Message {
         AtcToTcmsBits::ATO_FAILED,
         unit.self_tester.finished() && !ato.ready,
     );
+    bits.set(AtcToTcmsBits::BACKWARD, ato.jogs_backward == Some(true));
     AtcToTcms {
         bits,
         mode,

@@ -126,6 +126,8 @@ fn step(ato: &mut Ato, drawn: &Drawn, config: &AtoConfig) -> AtoOutputs {
         position_m: drawn.position_m,
         ahead_m: drawn.ahead_m,
         aligned_m: 0.3,
+        last_marker: true,
+        jog_dead: false,
         speed: Speed::from_mps(drawn.speed_mps),
         standstill: drawn.standstill,
         power_cut: drawn.power_cut,

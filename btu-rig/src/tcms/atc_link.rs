@@ -15,6 +15,8 @@ pub struct AtoOrder {
     /// Value (DRXTEBE), −1024..1023.
     pub value: i16,
     pub holding: bool,
+    /// Powering is to drive the train backward.
+    pub backward: bool,
     /// The unit drives, or is about to: Automatic or Automatic Run, as last heard.
     pub automatic: bool,
     /// ATO has failed, or the unit is silent.
@@ -76,6 +78,7 @@ impl AtcLink {
             power: runs.is_some() && bits.contains(AtcToTcmsBits::POWER),
             brake: runs.is_some() && bits.contains(AtcToTcmsBits::BRAKE),
             value: runs.map_or(0, |(_, frame)| frame.effort),
+            backward: runs.is_some() && bits.contains(AtcToTcmsBits::BACKWARD),
             holding: bits.contains(AtcToTcmsBits::HOLDING_BRAKE),
             automatic: matches!(mode, Mode::Automatic | Mode::AutomaticRun),
             failed: self.silent || bits.contains(AtcToTcmsBits::ATO_FAILED),

@@ -23,6 +23,8 @@ use super::report::{Report, Scan};
 use super::timer::OnDelay;
 use super::view::{TcmsEvent, TcmsView};
 
+/// Speed below which the train stands and its direction may change, m/s [default].
+const STANDS_MPS: f64 = 0.1;
 /// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
 const LONGEST_STEP_S: f64 = 0.05;
 
@@ -40,6 +42,8 @@ pub struct Tcms {
     holding: HoldingBrake,
     dead_man: OnDelay,
     dead_man_acts: bool,
+    /// ATO's direction: backward. It changes at standstill.
+    backward: bool,
     /// Something else than brakes found not released orders the full service brake.
     full_service_otherwise: bool,
     /// When it was stepped last.
@@ -80,6 +84,7 @@ impl Tcms {
             holding: HoldingBrake::new(&data),
             dead_man: OnDelay::default(),
             dead_man_acts: false,
+            backward: false,
             full_service_otherwise: false,
             stepped: None,
             view: TcmsView::default(),
@@ -158,7 +163,8 @@ impl Tcms {
             },
         );
         let volts = cab.map_or(0.0, |cab| cab.controller.volts);
-        let power_cut = !power_cuts.is_empty();
+        let turned = self.turn(&scan, speed_mps);
+        let power_cut = !power_cuts.is_empty() || !turned;
         let driving = self.drive(&scan, volts, power_cut, &line);
         let share = share(&driving, &brake);
         let demands = self.share_out(
@@ -186,7 +192,8 @@ impl Tcms {
             speed_mps,
             demands,
             given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
-            backward: cab.is_some_and(|cab| cab.reverser < 0),
+            backward: cab.is_some_and(|cab| cab.reverser < 0)
+                || self.backward && !inputs.forward_only,
         };
         self.log(&scan);
         self.tell(&scan, share, load_kg)
@@ -284,6 +291,15 @@ impl Tcms {
                 turn_back: scan.inputs.turn_back,
             },
         )
+    }
+
+    /// Takes ATO's direction of travel while the train stands; whether it goes as ATO orders it.
+    fn turn(&mut self, scan: &ScanContext<'_>, speed_mps: f64) -> bool {
+        let ordered = scan.mode.by_ato() && scan.order.backward;
+        if speed_mps < STANDS_MPS {
+            self.backward = ordered;
+        }
+        self.backward == ordered
     }
 
     /// The driving-control module, and the mask of the emergency brake behind it.

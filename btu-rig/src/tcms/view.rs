@@ -37,7 +37,7 @@ pub struct TcmsView {
     pub demands: Demands,
     /// Effort the train gives, −1024..1023, for the unit.
     pub given: i16,
-    /// The reverser that counts points backward.
+    /// Powering drives the train backward: by the reverser that counts, or by ATO.
     pub backward: bool,
 }
 

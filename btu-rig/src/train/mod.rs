@@ -67,7 +67,7 @@ pub struct TrainInputs {
     pub brakes_cut_out: CarSet,
     /// Cars whose inverter is cut out.
     pub inverters_cut_out: CarSet,
-    /// The reverser points backward.
+    /// Traction pulls backward.
     pub backward: bool,
     /// Passengers, kg.
     pub load_kg: f64,

@@ -16,7 +16,7 @@ mod driverless;
 mod way;
 
 pub use ato::{
-    AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit,
+    AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit, JogConfig,
     ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
 };
 pub use driverless::DriverlessConfig;
@@ -108,6 +108,14 @@ pub struct OverspeedConfig {
     pub yard_kmh: f64,
     /// Limit in emergency mode, km/h.
     pub emergency_kmh: f64,
+    /// Speed above which a jog to the stop point is braked, km/h.
+    #[serde(default = "jog_kmh")]
+    pub jog_kmh: f64,
+}
+
+/// That of `sg100`, for configurations without it.
+const fn jog_kmh() -> f64 {
+    5.0
 }
 
 /// Supervision of the doors.
@@ -295,6 +303,7 @@ impl UnitConfig {
             overspeed.eb_margin_kmh: 0.0, 30.0;
             overspeed.yard_kmh: 5.0, 45.0;
             overspeed.emergency_kmh: 5.0, 45.0;
+            overspeed.jog_kmh: 2.0, 5.0;
             doors.aligned_m: 0.05, 2.0;
             marker.window_m: 0.1, 50.0;
             marker.start_window_m: 0.1, 50.0;

@@ -67,6 +67,9 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::StopGuard
         | Place::ReleaseGuard
         | Place::MarkerDebounce
+        | Place::JogGuard
+        | Place::Jog
+        | Place::TcmsDirection
         | Place::ArmStandstill
         | Place::ArmBrakes
         | Place::MotionGuard

@@ -112,6 +112,10 @@ pub enum Place {
     ReleaseGuard,
     /// Debouncing of marker pulses.
     MarkerDebounce,
+    /// Supervision of ATO's jogging: speed, way and direction.
+    JogGuard,
+    /// ATO's jogging to a stop point that was missed.
+    Jog,
     /// Standstill as a condition of arming.
     ArmStandstill,
     /// Applied brakes as a condition of arming, and of staying armed.
@@ -164,6 +168,8 @@ pub enum Place {
     HeadControlRelay,
     /// What TCMS sends on RS-485.
     Tcms,
+    /// Direction of travel as TCMS gives it to the inverters.
+    TcmsDirection,
     /// Pressure switch of the main reservoir.
     MainReservoir,
 }
@@ -183,6 +189,7 @@ impl Place {
                 | Self::DoorContactRight
                 | Self::HeadControlRelay
                 | Self::Tcms
+                | Self::TcmsDirection
                 | Self::MainReservoir
         )
     }

@@ -147,6 +147,8 @@ wire_enum! {
         Internal = 9 "internal",
         /// While armed for maintenance: real motion, a changed input, or no proof that the train brakes.
         TestMode = 10 "test_mode",
+        /// Moving forward while ATO jogs backward.
+        Jog = 11 "jog",
     }
 }
 
@@ -173,6 +175,8 @@ wire_enum! {
         StopCode = 8 "stop_code",
         /// A door is open on a side that is not enabled.
         DoorOpen = 9 "door_open",
+        /// Faster than a jog may be.
+        Jog = 10 "jog",
     }
 }
 

@@ -43,6 +43,8 @@ wire_bits! {
         ATO_READY = 3,
         /// ATO has failed.
         ATO_FAILED = 4,
+        /// Powering drives the train backward: a jog back to the stop point.
+        BACKWARD = 5,
     }
 }
 

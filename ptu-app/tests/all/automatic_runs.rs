@@ -76,7 +76,7 @@ fn a_setting_that_is_none_is_refused() {
     for (setting, words) in [
         ("ato.controler=pi", "no key \"ato.controler\""),
         ("ato.controller=pid", "pid"),
-        ("ato.arrived_m=99", "ato.arrived_m = 99"),
+        ("ato.gently_mps2=99", "ato.gently_mps2 = 99"),
         ("ato.controller", "KEY=VALUE"),
     ] {
         place

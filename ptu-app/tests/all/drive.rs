@@ -233,7 +233,7 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
             &["--set", "ato.servo.polse=1"],
             &["no key \"ato.servo.polse\"", "\"ato.servo.poles\""],
         ),
-        (&["--set", "ato.arrived_m=90"], &["ato.arrived_m", "90"]),
+        (&["--set", "ato.gently_mps2=90"], &["ato.gently_mps2", "90"]),
         (
             &["--set", "ato.controller=pss", "--compare", "servo,pi"],
             &["--set ato.controller=pss", "--compare"],

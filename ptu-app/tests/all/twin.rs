@@ -89,7 +89,7 @@ fn the_twin_of_a_good_unit_is_its_trace_bit_by_bit() {
             "--seed",
             "9",
             "--set",
-            "ato.arrived_m=0.4",
+            "ato.gently_mps2=0.4",
             "--serial-no",
             "X-9",
         ],

@@ -22,8 +22,6 @@ use super::plausibility::PlausibilityCheck;
 use super::{ControllerInput, Demand, Gains, SpeedController, place};
 use crate::ato::profile::{FinalStop, FinalStopLimits, MarkerApproach, SCurve, Setpoint};
 
-/// Cycles at rest too far from the stop point after which the profile restarts.
-const REST_CYCLES: u32 = 20;
 /// Speed by which an order must be below the station stop's profile to rule instead, m/s.
 const ORDER_MPS: f64 = 0.05;
 
@@ -48,7 +46,6 @@ pub struct Servo {
     rates: FinalStopLimits,
     /// A cruising speed below the station stop's profile, led to by eq. (1).
     order: Option<SCurve>,
-    rest_cycles: u32,
     plausibility: PlausibilityCheck,
     phase: Phase,
     reference: Setpoint,
@@ -69,10 +66,8 @@ impl Servo {
                 jerk_mps3: config.train.jerk_mps3,
                 most_mps2: config.decel_kmh_per_s / 3.6,
                 rest_mps2: config.servo.rest_mps2,
-                creep: (config.servo.creep_mps2, config.servo.creep_mps),
             },
             order: None,
-            rest_cycles: 0,
             plausibility: PlausibilityCheck::new(config),
             phase: Phase::Cruise(SCurve::hold(0.0)),
             reference: Setpoint::default(),
@@ -99,14 +94,7 @@ impl Servo {
                     (self.config.position_gain_per_s * (from_psm4 - distance_m)).clamp(-most, most);
                 self.reference = reference;
             }
-            Phase::FinalStop(last) => {
-                let rests = self.reference.speed_mps <= 0.0 && input.speed_mps <= 0.0;
-                self.rest_cycles = if rests { self.rest_cycles + 1 } else { 0 };
-                if self.rest_cycles > REST_CYCLES && input.cruise_mps > 0.0 {
-                    last.creep();
-                }
-                self.reference = last.step(dt, to_stop);
-            }
+            Phase::FinalStop(last) => self.reference = last.step(dt, to_stop),
         }
         match self.ordered(before, input, dt) {
             Some(order) => {
@@ -255,7 +243,6 @@ impl SpeedController for Servo {
         self.integrals = [0.0; 3];
         self.error_mps = 0.0;
         self.asked_mps2 = 0.0;
-        self.rest_cycles = 0;
         self.order = None;
     }
 }

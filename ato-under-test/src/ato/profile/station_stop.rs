@@ -84,7 +84,6 @@ fn share(x: f64) -> (f64, f64, f64) {
 pub struct FinalStop {
     setpoint: Setpoint,
     rates: FinalStopLimits,
-    creeping: bool,
 }
 
 /// Distance to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
@@ -98,8 +97,6 @@ pub struct FinalStopLimits {
     pub most_mps2: f64,
     /// Rate at which the last of the speed is taken away at least, m/s².
     pub rest_mps2: f64,
-    /// How a train moves up that came to rest too early, m/s² and m/s.
-    pub creep: (f64, f64),
 }
 
 impl FinalStop {
@@ -107,7 +104,6 @@ impl FinalStop {
         Self {
             setpoint: from,
             rates,
-            creeping: false,
         }
     }
 
@@ -117,21 +113,10 @@ impl FinalStop {
         speed_mps * rate / jerk_mps3 / 2.0
     }
 
-    /// Restarts from rest.
-    pub fn creep(&mut self) {
-        self.setpoint = Setpoint::default();
-        self.creeping = true;
-    }
-
     /// Moves on by `dt_s` with `to_stop_m` left.
     pub fn step(&mut self, dt_s: f64, to_stop_m: f64) -> Setpoint {
         let speed = self.setpoint.speed_mps;
-        let most =
-            libm::sqrt(2.0 * self.rates.creep.0 * to_stop_m.max(0.0)).min(self.rates.creep.1);
-        self.creeping &= speed < most;
-        let wanted = if self.creeping {
-            self.rates.creep.0
-        } else if to_stop_m > HOLD_M {
+        let wanted = if to_stop_m > HOLD_M {
             -(speed * speed / (2.0 * to_stop_m)).min(self.rates.most_mps2)
         } else {
             self.setpoint.accel_mps2.min(-self.rates.rest_mps2)
@@ -196,7 +181,6 @@ mod tests {
                 jerk_mps3: 0.8,
                 most_mps2: 3.5 / 3.6,
                 rest_mps2: 0.25,
-                creep: (0.25, 0.5),
             };
             let mut last = FinalStop::new(from, rates);
             let (mut distance, mut peak) = (begins, 0.0f64);

@@ -6,7 +6,7 @@ use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::line::Line;
 use protocol::link::{End, Link};
-use protocol::message::{AtcToTcms, AtcToTcmsBits, ModeSwitch};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
 use protocol::{Instant, SCAN};
 
 use super::bench::{Bench, order};
@@ -124,4 +124,39 @@ fn the_rig_counts_what_its_link_refuses() {
     }
     assert!(rig.counters().rejected_total() >= 15);
     assert_eq!(told, 1);
+}
+
+/// In automatic run powering drives backward when ATO says so. A direction is taken at standstill, and until then
+/// there is no power.
+#[test]
+fn ato_turns_the_direction_at_standstill_in_automatic_run_alone() {
+    const BACK: AtcToTcmsBits = P.union(AtcToTcmsBits::BACKWARD);
+    let mut bench = Bench::automatic(P, 600);
+    assert!(!bench.run(500).backward && bench.powers());
+    bench.order = Some(order(BACK, 600));
+    assert!(bench.run(200).backward && bench.powers());
+    bench.speed_kmh(2.0);
+    bench.order = Some(order(P, 600));
+    assert!(bench.run(200).backward && !bench.powers(), "moving");
+    bench.order = Some(order(B, -600));
+    assert!(bench.run(500).demand < 0.0, "braked whichever way it goes");
+    bench.speed_kmh(0.0);
+    bench.order = Some(order(P, 600));
+    assert!(!bench.run(1_000).backward && bench.powers());
+
+    bench.order = Some(order(BACK, 600));
+    bench.inputs.forward_only = true;
+    assert!(!bench.run(200).backward && bench.powers());
+    bench.inputs.forward_only = false;
+    assert!(bench.run(200).backward);
+    bench.order = Some(AtcToTcms {
+        mode: Mode::Automatic,
+        ..order(BACK, 600)
+    });
+    assert!(!bench.run(200).backward, "no run");
+    bench.order = Some(order(BACK, 600));
+    bench.inputs.cabs[0].mode_switch = ModeSwitch::Manual;
+    assert!(!bench.run(200).backward, "by hand the reverser counts");
+    bench.inputs.cabs[0].reverser = -1;
+    assert!(bench.run(200).backward);
 }

@@ -34,10 +34,6 @@ pub struct ServoConfig {
     pub left_behind_mps: f64,
     /// Rate at which the last of the speed is taken away at least, m/s².
     pub rest_mps2: f64,
-    /// How a train moves up that came to rest too early: acceleration, m/s².
-    pub creep_mps2: f64,
-    /// The same: greatest speed, m/s.
-    pub creep_mps: f64,
 }
 
 /// How far the observer trusts a measured speed.

@@ -98,6 +98,32 @@ pub struct AtoWatchConfig {
     pub wheel_error: f64,
 }
 
+/// How ATO inches to a stop point that it has missed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JogConfig {
+    /// Greatest distance from the stop point from which it jogs, m; 0 = not at all.
+    pub max_m: f64,
+    /// Tries after a stop.
+    pub tries: u8,
+    /// Speed it jogs at, km/h.
+    pub kmh: f64,
+    /// Acceleration and deceleration, m/s².
+    pub accel_mps2: f64,
+}
+
+impl Default for JogConfig {
+    /// That of `sg100`, for configurations without it.
+    fn default() -> Self {
+        Self {
+            max_m: 5.0,
+            tries: 3,
+            kmh: 2.5,
+            accel_mps2: 0.25,
+        }
+    }
+}
+
 /// Parameters of automatic operation: limits of the run, the train, each speed controller.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -111,8 +137,6 @@ pub struct AtoConfig {
     /// Target in slow running at most, km/h.
     #[serde(default = "slow_kmh")]
     pub slow_kmh: f64,
-    /// Distance before the stop point at which a train that stands has arrived, m.
-    pub arrived_m: f64,
     /// Acceleration that ATO asks for at most, km/h/s [S0 §4: 3.0].
     pub accel_kmh_per_s: f64,
     /// Deceleration that ATO asks for at most, km/h/s [S0 §4: 3.5].
@@ -133,6 +157,9 @@ pub struct AtoConfig {
     pub fuzzy: FuzzyConfig,
     /// Station stop by distance, also of `pi` and `fuzzy`.
     pub pss: PssConfig,
+    /// How a stop point that was missed is reached.
+    #[serde(default)]
+    pub jog: JogConfig,
     /// Limits of monitoring.
     pub watch: AtoWatchConfig,
 }

@@ -10,7 +10,6 @@ impl AtoConfig {
             below_limit_kmh: 0.0, 20.0;
             normal_lowering_kmh: 0.0, 20.0;
             slow_kmh: 1.0, 45.0;
-            arrived_m: 0.1, 5.0;
             accel_kmh_per_s: 1.0, 5.0;
             decel_kmh_per_s: 2.0, 5.0;
             train.empty_kg: 1e3, 1e7;
@@ -40,8 +39,6 @@ impl AtoConfig {
             servo.brake_share: 0.3, 1.0;
             servo.left_behind_mps: 0.1, 5.0;
             servo.rest_mps2: 0.05, 1.0;
-            servo.creep_mps2: 0.05, 1.0;
-            servo.creep_mps: 0.1, 1.5;
             gently_mps2: 0.05, 1.0;
             observer.pole_per_s: 0.1, 10.0;
             observer.against_mps: 0.01, 5.0;
@@ -68,6 +65,10 @@ impl AtoConfig {
             pss.full_effort_error_kmh: 0.1, 50.0;
             pss.integral_per_s: 0.0, 5.0;
             pss.integral_above_kmh: 0.0, 20.0;
+            jog.max_m: 0.0, 20.0;
+            jog.tries: 1.0, 3.0;
+            jog.kmh: 0.5, 4.0;
+            jog.accel_mps2: 0.05, 0.5;
             watch.following_kmh: 0.5, 50.0;
             watch.overrun_m: 0.1, 20.0;
             watch.wheel_error: 0.001, 0.2;

@@ -80,7 +80,7 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, String> {
         let (key, value) = text
             .split_once('=')
-            .ok_or("a setting is KEY=VALUE, as ato.arrived_m=0.4")?;
+            .ok_or("a setting is KEY=VALUE, as ato.gently_mps2=0.4")?;
         Ok(Self::new(key.trim(), value.trim()))
     }
 }

@@ -20,6 +20,8 @@ mod fault_watch;
 mod first_failure;
 #[cfg(test)]
 mod hazards;
+#[cfg(test)]
+mod jogging_tests;
 pub mod loading;
 mod observe;
 #[cfg(test)]

@@ -260,12 +260,14 @@ wordings! {
         eb_inputs: "inputs lost", "입력 두절";
         eb_self_test: "self-test failed", "자체시험 실패";
         eb_internal: "broken invariant", "내부 논리 오류";
+        eb_jog: "moved forward while jogging backward", "후진 인칭 중 전진";
         fsb_twc: "TWC lost", "TWC 두절";
         fsb_tcms: "TCMS lost", "TCMS 두절";
         fsb_ato: "ATO failed", "ATO 고장";
         fsb_not_permitted: "not permitted", "허가 없음";
         fsb_stop_code: "stop code", "정지신호";
         fsb_door: "door open, not enabled", "허용되지 않은 출입문 열림";
+        fsb_jog: "jogging too fast", "인칭 과속";
         test_mode: "test mode", "정비 시험 모드";
         differs: "differs", "불일치";
         same: "same", "일치";

@@ -24,6 +24,10 @@ const SLOWS_MPS2: f64 = 0.3;
 const NO_POWER_N: f64 = 10_000.0;
 /// Place that the unit may take for the stop point's, m: its tolerance, and what its position may be off.
 const AT_STOP_POINT_M: f64 = 0.3 + 0.9;
+/// Speed of a jog, km/h.
+const JOG_KMH: f64 = 5.0;
+/// Overrun after which a train may be jogged back, m: the table's, and what its position may be off.
+const JOGS_FROM_M: f64 = 5.3 + 0.9;
 /// Way against the reverser, m: tolerance, and one pulse window at the speed of a train that rolls.
 const ROLLED_BACK_M: f64 = 0.5 + 0.5;
 
@@ -48,8 +52,10 @@ pub enum Hazard {
     OrderedUnenabled,
     /// Power under the emergency brake.
     PowerUnderBrake,
-    /// Way against the reverser.
+    /// Way against the reverser, but for a jog back to the stop point.
     RolledBack,
+    /// A jog that is fast, and no brake.
+    JogTooFast,
 }
 
 impl Hazard {
@@ -66,6 +72,7 @@ impl Hazard {
             Self::OrderedUnenabled => "ordered_unenabled",
             Self::PowerUnderBrake => "power_under_brake",
             Self::RolledBack => "rolled_back",
+            Self::JogTooFast => "jog_too_fast",
         }
     }
 }
@@ -216,7 +223,16 @@ impl Monitor {
                 eb && seen.traction_n > NO_POWER_N,
                 ms(500),
             ),
-            (Hazard::RolledBack, self.rolled_back(seen) && !eb, ms(0)),
+            (
+                Hazard::RolledBack,
+                self.rolled_back(seen, fsb) && !eb,
+                ms(0),
+            ),
+            (
+                Hazard::JogTooFast,
+                jogs_back(seen) && kmh > JOG_KMH + SPEED_OFF_KMH && !eb && !fsb,
+                ms(300),
+            ),
         ]
     }
 
@@ -248,8 +264,11 @@ impl Monitor {
         limits.fold(0.0, f64::max)
     }
 
-    fn rolled_back(&mut self, seen: Observed<'_>) -> bool {
-        let against_m = -f64::from(seen.reverser) * seen.speed_mps * 0.01;
+    /// A jog back does not count, nor does what its brake takes to stop the train.
+    fn rolled_back(&mut self, seen: Observed<'_>, fsb: bool) -> bool {
+        let jogs = jogs_back(seen) && (seen.kmh() <= JOG_KMH + SPEED_OFF_KMH || fsb);
+        let way_m = -f64::from(seen.reverser) * seen.speed_mps * 0.01;
+        let against_m = if jogs { 0.0 } else { way_m };
         self.against_m = (self.against_m + against_m).max(0.0);
         // A brake that was released at standstill begins anew.
         if seen.kmh() < STANDS_KMH || seen.on(Signal::EbLoop) {
@@ -257,4 +276,12 @@ impl Monitor {
         }
         self.against_m > ROLLED_BACK_M
     }
+}
+
+/// The train may be jogging back: mode switch at automatic or driverless, past the stop point, doors closed.
+fn jogs_back(seen: Observed<'_>) -> bool {
+    let switch = matches!(seen.value(Signal::ModeSwitch) as u8, 3 | 4);
+    let past = |to_stop_m: f64| (-JOGS_FROM_M..AT_STOP_POINT_M).contains(&to_stop_m);
+    let backward = seen.reverser == 1 && seen.speed_mps < 0.0;
+    switch && backward && seen.on(Signal::Doors) && seen.to_stop_m.is_some_and(past)
 }

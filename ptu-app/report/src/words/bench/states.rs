@@ -86,6 +86,7 @@ impl Bench {
                 self.eb_self_test,
                 self.eb_internal,
                 self.test_mode,
+                self.eb_jog,
             ],
             Signal::FsbCause => vec![
                 self.none,
@@ -98,6 +99,7 @@ impl Bench {
                 self.test_mode,
                 self.fsb_stop_code,
                 self.fsb_door,
+                self.fsb_jog,
             ],
             Signal::IdentitySerial
             | Signal::IdentitySoftware

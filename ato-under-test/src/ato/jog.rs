@@ -1,0 +1,458 @@
+//! Jogging: a train that stands away from its stop point inches there, forward after a short stop and backward
+//! after an overrun.
+//!
+//! A try begins and ends at standstill. The direction is told to TCMS while the train is still held, then the
+//! train goes at `kmh` at most and brakes to the stop point. It is over when the train is aligned; when the
+//! tries are used up, or the stop point is too far to jog to, the train stays where it stands, and the wayside
+//! or the driver decides. Whatever controller drives the run, this law jogs: speed by the distance left, with
+//! a proportional correction.
+
+use protocol::CYCLE;
+use protocol::config::JogConfig;
+
+use super::controller::Demand;
+use super::profile::Setpoint;
+
+/// Cycles at rest before a try: the brakes have settled, and the tachometers have been silent.
+const REST_CYCLES: u32 = 20;
+/// Cycles from the direction's order until the train is powered: TCMS has it, and ATP has permitted it.
+const TURN_CYCLES: u32 = 16;
+/// Cycles after which a train that was powered and has not moved ends its try.
+const PATIENCE_CYCLES: u32 = 120;
+/// Cycles after which a try is braked to its end: the train has had time for the longest way twice [default].
+const LONGEST_CYCLES: u32 = 500;
+/// Acceleration that is asked for at least until the train moves, m/s²: the holding brake goes by motor current (S4).
+const START_MPS2: f64 = 0.15;
+/// Speed that is asked for until then, m/s.
+const START_MPS: f64 = 0.15;
+/// Correction by speed error, 1/s.
+const GAIN_PER_S: f64 = 1.5;
+/// Distance to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
+const HOLD_M: f64 = 0.05;
+
+/// What jogging looks at in a cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct JogInputs {
+    /// ATO drives.
+    pub drives: bool,
+    /// The wheels stand.
+    pub stands: bool,
+    /// Neither limit nor order nor brake keeps the train standing.
+    pub may_go: bool,
+    /// Distance to the stop point, m, negative past it; `None` = not known.
+    pub to_stop_m: Option<f64>,
+    /// Distance from it that counts as aligned, m.
+    pub aligned_m: f64,
+    /// The section's last marker was seen: an overrun is one by more than wheels.
+    pub last_marker: bool,
+    /// An injected fault: it does not jog.
+    pub dead: bool,
+}
+
+/// What came of a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JogOutcome {
+    /// The run is over: aligned, or given up.
+    pub ended: bool,
+    /// A try begins: way to go, m, backward negative.
+    pub begun_m: Option<f64>,
+    /// Given up: distance to the stop point, m.
+    pub failed_m: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Phase {
+    /// The run's own controller drives.
+    #[default]
+    Idle,
+    /// Held before a try, for so many cycles.
+    Rests(u32),
+    /// Held, the direction ordered, for so many cycles.
+    Turns(u32),
+    /// Powered for so many cycles; whether the train has moved.
+    Goes(u32, bool),
+}
+
+/// Jogging of one stop.
+#[derive(Clone, Debug, Default)]
+pub struct Jog {
+    phase: Phase,
+    tries: u8,
+    backward: bool,
+    gave_up: bool,
+    may_go: bool,
+    brakes: bool,
+    setpoint: Setpoint,
+}
+
+impl Jog {
+    /// One cycle.
+    pub fn step(&mut self, inputs: &JogInputs, config: &JogConfig) -> JogOutcome {
+        let Some(to_stop_m) = inputs.to_stop_m.filter(|m| inputs.drives && m.is_finite()) else {
+            *self = Self::default();
+            return JogOutcome::default();
+        };
+        self.may_go = inputs.may_go;
+        if let Phase::Goes(cycles, moved) = self.phase {
+            let moved = moved || !inputs.stands;
+            self.brakes |= cycles > LONGEST_CYCLES;
+            let over = inputs.stands && (moved || cycles > PATIENCE_CYCLES);
+            self.phase = match over {
+                true => Phase::Rests(0),
+                false => Phase::Goes(cycles + 1, moved),
+            };
+            return JogOutcome::default();
+        }
+        if !inputs.stands {
+            // Pushed while it was held: the rest begins anew.
+            if self.phase != Phase::Idle {
+                self.phase = Phase::Rests(0);
+            }
+            return JogOutcome::default();
+        }
+        self.stand(to_stop_m, inputs, config)
+    }
+
+    /// A cycle of a train that stands, and is not powered.
+    fn stand(&mut self, to_stop_m: f64, inputs: &JogInputs, config: &JogConfig) -> JogOutcome {
+        let distance_m = libm::fabs(to_stop_m);
+        if distance_m <= inputs.aligned_m {
+            self.phase = Phase::Idle;
+            return JogOutcome {
+                ended: true,
+                ..JogOutcome::default()
+            };
+        }
+        let short = to_stop_m > 0.0;
+        let near = distance_m <= config.max_m && !inputs.dead;
+        if short && distance_m > config.max_m {
+            // An ordinary run leads there.
+            self.phase = Phase::Idle;
+            return JogOutcome::default();
+        }
+        let rested = matches!(self.phase, Phase::Rests(cycles) if cycles >= REST_CYCLES);
+        let spent = rested && self.tries >= config.tries;
+        // Past it by wheels alone: where the stop point is nobody knows, and the missing marker is told.
+        let unproved = !short && !inputs.last_marker;
+        if !near || spent || unproved {
+            self.phase = Phase::Rests(0);
+            self.gave_up = true;
+            return JogOutcome {
+                ended: true,
+                failed_m: (!unproved).then_some(to_stop_m),
+                begun_m: None,
+            };
+        }
+        self.phase = match self.phase {
+            Phase::Rests(cycles) if cycles < REST_CYCLES => Phase::Rests(cycles + 1),
+            Phase::Rests(_) if inputs.may_go => {
+                self.backward = !short;
+                Phase::Turns(0)
+            }
+            Phase::Turns(_) if self.backward == short => Phase::Rests(0),
+            Phase::Turns(cycles) if cycles < TURN_CYCLES => Phase::Turns(cycles + 1),
+            // Refused: a try all the same, so that it ends.
+            Phase::Turns(_) if !inputs.may_go => {
+                self.tries += 1;
+                Phase::Rests(0)
+            }
+            Phase::Turns(_) => {
+                self.tries += 1;
+                self.brakes = false;
+                self.setpoint = Setpoint::default();
+                self.phase = Phase::Goes(0, false);
+                return JogOutcome {
+                    begun_m: Some(to_stop_m),
+                    ..JogOutcome::default()
+                };
+            }
+            Phase::Rests(cycles) => Phase::Rests(cycles),
+            Phase::Idle | Phase::Goes(..) => Phase::Rests(0),
+        };
+        JogOutcome::default()
+    }
+
+    /// It has the train, and the run's controller has not.
+    pub fn acts(&self) -> bool {
+        self.phase != Phase::Idle
+    }
+
+    /// The direction it orders, from before the train is powered until it stands again: backward or not.
+    pub fn direction(&self) -> Option<bool> {
+        matches!(self.phase, Phase::Turns(_) | Phase::Goes(..)).then_some(self.backward)
+    }
+
+    /// It orders backward.
+    pub fn backward(&self) -> bool {
+        self.direction() == Some(true)
+    }
+
+    /// A try has begun in this cycle.
+    pub fn begins(&self) -> bool {
+        self.phase == Phase::Goes(0, false)
+    }
+
+    /// It has given the stop point up.
+    pub fn gave_up(&self) -> bool {
+        self.gave_up
+    }
+
+    /// Acceleration that is asked for at least, whatever the track costs, m/s².
+    pub fn least_mps2(&self) -> Option<f64> {
+        (matches!(self.phase, Phase::Goes(_, false)) && self.may_go).then_some(START_MPS2)
+    }
+
+    /// What is asked for with `left_m` to go at `speed_mps`, both in the direction of the jog.
+    pub fn demand(
+        &mut self,
+        left_m: f64,
+        speed_mps: f64,
+        mass_kg: f64,
+        jerk_mps3: f64,
+        config: &JogConfig,
+    ) -> Demand {
+        if !matches!(self.phase, Phase::Goes(..)) {
+            self.setpoint = Setpoint::default();
+            return Demand {
+                target_mps: 0.0,
+                force_n: -config.accel_mps2 * mass_kg,
+            };
+        }
+        if matches!(self.phase, Phase::Goes(_, false)) && self.may_go {
+            // The holding brake lets go late: a setpoint that ran ahead would be at its end before the train moves.
+            self.setpoint = Setpoint {
+                speed_mps: START_MPS,
+                accel_mps2: config.accel_mps2,
+            };
+        } else {
+            self.advance(left_m, jerk_mps3, config);
+        }
+        let Setpoint {
+            speed_mps: target_mps,
+            accel_mps2,
+        } = self.setpoint;
+        let ends = self.brakes && target_mps <= 0.0;
+        let asked_mps2 = match ends {
+            true => -config.accel_mps2 - GAIN_PER_S * speed_mps,
+            false => accel_mps2 + GAIN_PER_S * (target_mps - speed_mps),
+        };
+        Demand {
+            target_mps,
+            force_n: asked_mps2 * mass_kg,
+        }
+    }
+
+    /// Moves the setpoint on by a cycle.
+    fn advance(&mut self, left_m: f64, jerk_mps3: f64, config: &JogConfig) {
+        let dt = CYCLE.as_secs();
+        let Setpoint {
+            speed_mps,
+            accel_mps2,
+        } = self.setpoint;
+        let rate = config.accel_mps2;
+        // The rate is built up at the jerk limit, for the length of half of it the speed stays as it is.
+        let turns_s = (accel_mps2.max(0.0) + rate) / jerk_mps3;
+        let braking_m = speed_mps * speed_mps / (2.0 * rate) + speed_mps * turns_s / 2.0;
+        self.brakes |= !self.may_go || left_m <= braking_m;
+        let wanted = if !self.brakes {
+            let most_mps = config.kmh / 3.6;
+            // As much as is gone at the jerk limit when the speed is there.
+            let rises = libm::sqrt(2.0 * jerk_mps3 * (most_mps - speed_mps).max(0.0));
+            rate.min(rises)
+        } else if left_m > HOLD_M {
+            // Not above twice the rate: beyond it nothing is gained in the last decimetre.
+            -(speed_mps * speed_mps / (2.0 * left_m)).clamp(0.5 * rate, 2.0 * rate)
+        } else {
+            accel_mps2.min(-rate)
+        };
+        let step = jerk_mps3 * dt;
+        let accel_mps2 = accel_mps2 + (wanted - accel_mps2).clamp(-step, step);
+        self.setpoint = Setpoint {
+            speed_mps: (speed_mps + accel_mps2 * dt).max(0.0),
+            accel_mps2,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ato::tests::config;
+    use crate::random::Random;
+
+    const MASS_KG: f64 = 300e3;
+
+    /// A train whose effort follows with a lag, brakes that give more or less, and a gradient nobody knows of.
+    struct Train {
+        jog: Jog,
+        config: JogConfig,
+        to_stop_m: f64,
+        speed_mps: f64,
+        accel_mps2: f64,
+        gain: f64,
+        downhill_mps2: f64,
+        may_go: bool,
+        stood_s: f64,
+        tries: u32,
+        fastest_mps: f64,
+    }
+
+    impl Train {
+        fn new(to_stop_m: f64) -> Self {
+            Self {
+                jog: Jog::default(),
+                config: config().jog,
+                to_stop_m,
+                speed_mps: 0.0,
+                accel_mps2: 0.0,
+                gain: 1.0,
+                downhill_mps2: 0.0,
+                may_go: true,
+                stood_s: 1.0,
+                tries: 0,
+                fastest_mps: 0.0,
+            }
+        }
+
+        fn cycle(&mut self) -> JogOutcome {
+            let dt = CYCLE.as_secs();
+            let outcome = self.jog.step(
+                &JogInputs {
+                    drives: true,
+                    stands: self.stood_s >= 0.5,
+                    may_go: self.may_go,
+                    to_stop_m: Some(self.to_stop_m),
+                    aligned_m: 0.3,
+                    last_marker: true,
+                    dead: false,
+                },
+                &self.config,
+            );
+            self.tries += u32::from(outcome.begun_m.is_some());
+            let toward = if self.jog.backward() { -1.0 } else { 1.0 };
+            let left_m = toward * self.to_stop_m - 0.3 * self.speed_mps;
+            let demand = self
+                .jog
+                .demand(left_m, self.speed_mps, MASS_KG, 0.8, &self.config);
+            let asked = self.gain * demand.force_n / MASS_KG;
+            let asked = asked.max(self.jog.least_mps2().unwrap_or(f64::MIN));
+            let goes = self.may_go && self.jog.direction().is_some();
+            // As ATO does, which holds a train that is about to stand.
+            let held = !goes || asked < 0.0 && self.speed_mps < 0.05;
+            let asked = if held { -0.9 } else { asked.clamp(-0.9, 0.3) };
+            self.accel_mps2 += (asked - self.accel_mps2) * dt / 0.3;
+            let moves = self.speed_mps > 0.0 || self.accel_mps2 > 0.0;
+            let hill_mps2 = if moves { self.downhill_mps2 } else { 0.0 };
+            self.speed_mps = (self.speed_mps + (self.accel_mps2 + hill_mps2) * dt).max(0.0);
+            self.to_stop_m -= toward * self.speed_mps * dt;
+            self.fastest_mps = self.fastest_mps.max(self.speed_mps);
+            self.stood_s = if self.speed_mps > 0.0 {
+                0.0
+            } else {
+                self.stood_s + dt
+            };
+            outcome
+        }
+
+        /// Until it is over; within a minute and a half, or never.
+        fn run(&mut self) -> JogOutcome {
+            let mut cycles = (0..1_800).map(|_| self.cycle());
+            let outcome = cycles.find(|outcome| outcome.ended);
+            outcome.expect("it ends")
+        }
+    }
+
+    #[test]
+    fn a_missed_stop_point_is_reached_from_either_side() {
+        for from_m in [0.35, 1.0, 4.9, -0.35, -1.0, -4.9] {
+            let mut train = Train::new(from_m);
+            let outcome = train.run();
+            assert_eq!(outcome.failed_m, None, "{from_m}");
+            assert!(
+                train.to_stop_m.abs() <= 0.3,
+                "{from_m}: {}",
+                train.to_stop_m
+            );
+            assert_eq!(train.tries, 1, "{from_m}");
+            assert!(!train.jog.gave_up());
+        }
+    }
+
+    /// Whatever the train makes of it: three tries at most, never above 5 km/h, and an end.
+    #[test]
+    fn it_always_ends_and_is_never_fast() {
+        let mut random = Random::new(1);
+        for case in 0..2_000 {
+            let mut train = Train::new(10.0 * (random.unit() - 0.5));
+            train.gain = 0.3 + 2.0 * random.unit();
+            train.downhill_mps2 = 0.2 * (random.unit() - 0.5);
+            let interrupted = random.chance(0.3);
+            let mut ended = None;
+            for cycle in 0..4_000 {
+                train.may_go = cycle > 3_000 || !interrupted || random.chance(0.97);
+                let outcome = train.cycle();
+                if outcome.ended {
+                    ended = Some(outcome);
+                    break;
+                }
+            }
+            let outcome = ended.unwrap_or_else(|| panic!("{case}: no end, {:?}", train.jog));
+            let aligned = train.to_stop_m.abs() <= 0.3;
+            assert!(aligned || outcome.failed_m.is_some(), "{case}");
+            assert!(train.tries <= 3, "{case}: {}", train.tries);
+            assert!(
+                train.fastest_mps < 5.0 / 3.6,
+                "{case}: {}",
+                train.fastest_mps
+            );
+        }
+    }
+
+    #[test]
+    fn it_waits_until_the_train_may_go() {
+        let mut train = Train::new(1.0);
+        train.may_go = false;
+        for _ in 0..1_000 {
+            assert_eq!(train.cycle(), JogOutcome::default());
+        }
+        assert_eq!(train.to_stop_m, 1.0);
+        train.may_go = true;
+        assert_eq!(train.run().failed_m, None);
+    }
+
+    #[test]
+    fn what_it_cannot_reach_it_gives_up_at_once() {
+        let near = JogInputs {
+            drives: true,
+            stands: true,
+            may_go: true,
+            to_stop_m: Some(-1.0),
+            aligned_m: 0.3,
+            last_marker: true,
+            dead: false,
+        };
+        let far = JogInputs {
+            to_stop_m: Some(-5.1),
+            ..near
+        };
+        let unproved = JogInputs {
+            last_marker: false,
+            ..near
+        };
+        let dead = JogInputs { dead: true, ..near };
+        for (inputs, failed_m) in [(far, Some(-5.1)), (unproved, None), (dead, Some(-1.0))] {
+            let mut jog = Jog::default();
+            let outcome = jog.step(&inputs, &config().jog);
+            assert_eq!(outcome.failed_m, failed_m, "{inputs:?}");
+            assert!(outcome.ended && jog.gave_up());
+        }
+        // Before the stop point an ordinary run leads on.
+        let short = JogInputs {
+            to_stop_m: Some(5.1),
+            ..near
+        };
+        let mut jog = Jog::default();
+        assert_eq!(jog.step(&short, &config().jog), JogOutcome::default());
+        assert!(!jog.acts());
+    }
+}
