@@ -55,7 +55,6 @@ fn scan(bencher: Bencher<'_, '_>, name: &str) {
         load_kg: 80_000.0,
         equipment: Some(&equipment),
         speed_mps: 0.0,
-        forward_only: false,
         frames_refused: 0,
     };
     bencher

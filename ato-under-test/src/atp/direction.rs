@@ -16,13 +16,14 @@ pub struct Rollback {
 }
 
 impl Rollback {
-    /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the wheels stand still.
+    /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the way is
+    /// counted anew: the wheels stand still.
     pub fn step(
         &mut self,
         now: Instant,
         moved_m: [f64; 2],
         lines: TrainLines,
-        still: bool,
+        anew: bool,
         allowed_m: f64,
         log: &mut EventLog,
     ) -> bool {
@@ -34,7 +35,7 @@ impl Rollback {
             _ => 0.0,
         };
         for (against_m, moved_m) in self.against_m.iter_mut().zip(moved_m) {
-            *against_m = match still {
+            *against_m = match anew {
                 true => 0.0,
                 false => (*against_m + sign * moved_m).max(0.0),
             };

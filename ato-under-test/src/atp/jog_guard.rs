@@ -42,6 +42,8 @@ pub struct JogGuard {
     /// Way backward that is permitted beside the tolerance of rollback, m.
     back_m: Option<f64>,
     not_asked: OnDelay,
+    /// The permission has ended in this scan.
+    ended: bool,
     /// Way forward since the wheels stood, by each tachometer, m.
     forward_m: [f64; 2],
     too_fast: OnDelay,
@@ -61,14 +63,18 @@ impl JogGuard {
         config: &UnitConfig,
         log: &mut EventLog,
     ) -> bool {
+        let before = self.back_m.is_some();
         if inputs.dead {
+            let back_m = (inputs.backward == Some(true)).then_some(f64::INFINITY);
             *self = Self {
-                back_m: (inputs.backward == Some(true)).then_some(f64::INFINITY),
+                back_m,
+                ended: before && back_m.is_none(),
                 ..Self::default()
             };
             return false;
         }
         self.permit(now, inputs, config, log);
+        self.ended = before && self.back_m.is_none();
         self.limit_speed(now, inputs, config, log);
         let backward = inputs.backward == Some(true);
         for (forward_m, moved_m) in self.forward_m.iter_mut().zip(inputs.moved_m) {
@@ -132,6 +138,11 @@ impl JogGuard {
     /// Way backward that is permitted beside the tolerance of rollback, m.
     pub fn back_m(&self) -> f64 {
         self.back_m.unwrap_or_default()
+    }
+
+    /// The permission has ended in this scan: what was run by it is no roll back.
+    pub fn ended(&self) -> bool {
+        self.ended
     }
 
     /// The service brake is asked for.
@@ -268,8 +279,13 @@ mod tests {
         };
         train.run(900, none);
         assert_eq!(train.guard.back_m(), 1.0);
-        train.run(200, none);
-        assert_eq!(train.guard.back_m(), 0.0);
+        assert!(!train.guard.ended());
+        while train.guard.back_m() > 0.0 {
+            train.run(10, none);
+        }
+        assert!(train.guard.ended());
+        train.run(10, none);
+        assert!(!train.guard.ended());
     }
 
     #[test]

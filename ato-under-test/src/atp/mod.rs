@@ -175,9 +175,11 @@ impl Atp {
         };
         let wrong_way = self.jog.step(now, jog_inputs, config, log);
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
+        // Way that was permitted is no roll back when the permission has gone.
+        let anew = still || self.jog.ended();
         let rollback = self
             .rollback
-            .step(now, moved_m, inputs.lines, still, allowed_m, log);
+            .step(now, moved_m, inputs.lines, anew, allowed_m, log);
         let found = [
             (rollback, EbCause::Rollback),
             (wrong_way, EbCause::Jog),

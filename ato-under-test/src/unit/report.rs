@@ -1,6 +1,7 @@
 //! Messages in which the unit reports its identity and state to the tester and TCMS.
 
 use protocol::Instant;
+use protocol::injection::{Effect, Place};
 use protocol::message::{
     AtcToTcms, AtcToTcmsBits, EbCause, Identity, Message, Outputs, Status, StatusBits, TrainState,
 };
@@ -152,7 +153,11 @@ pub fn to_tcms(unit: &Unit, now: Instant) -> Message {
         AtcToTcmsBits::ATO_FAILED,
         unit.self_tester.finished() && !ato.ready,
     );
-    bits.set(AtcToTcmsBits::BACKWARD, ato.jogs_backward == Some(true));
+    let lost = unit.faults.at(Place::Jog) == Some(Effect::StuckOff);
+    bits.set(
+        AtcToTcmsBits::BACKWARD,
+        ato.jogs_backward == Some(true) && !lost,
+    );
     AtcToTcms {
         bits,
         mode,

@@ -72,7 +72,6 @@ impl Rig {
             load_kg: self.tcms_port.load_kg,
             equipment: equipment.as_ref(),
             speed_mps: self.wheel.velocity_mps().abs(),
-            forward_only: self.faults.forward_only,
             frames_refused: u32::try_from(refused).unwrap_or(u32::MAX),
         };
         let mut orders = self.tcms.step(self.now, &inputs);

@@ -41,8 +41,6 @@ pub struct TrainFaults {
     pub desk: CabDeskFaults,
     /// What becomes of TCMS's frames, if anything.
     pub tcms: Option<TcmsCondition>,
-    /// TCMS does not take ATO's direction.
-    pub forward_only: bool,
 }
 
 /// Fault modes that are on the train, and how much of each acts.
@@ -184,7 +182,6 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         equipment,
         desk,
         tcms,
-        forward_only,
     } = faults;
     match (mode.place, effect) {
         (Place::Inverter, Effect::Dead) => on(&mut equipment.inverters_dead),
@@ -214,7 +211,6 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         (Place::DoorContactRight, Effect::StuckOff) => desk.side_doors[1] = Some(false),
         (Place::HeadControlRelay, Effect::StuckOn) => desk.hcr = Some(true),
         (Place::HeadControlRelay, Effect::StuckOff) => desk.hcr = Some(false),
-        (Place::TcmsDirection, Effect::Dead) => *forward_only = true,
         (Place::Tcms, Effect::StuckOn) => *tcms = Some(TcmsCondition::Stale),
         (Place::Tcms, Effect::Dead) => *tcms = Some(TcmsCondition::Silent),
         _ => {}

@@ -56,8 +56,6 @@ pub struct TcmsInputs<'a> {
     pub equipment: Option<&'a Equipment>,
     /// Speed of the wheels while generators turn them, m/s, a size.
     pub speed_mps: f64,
-    /// The inverters get no order to turn backward but from the reverser.
-    pub forward_only: bool,
     /// Frames of the unit that were refused so far.
     pub frames_refused: u32,
 }

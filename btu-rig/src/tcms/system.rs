@@ -192,8 +192,7 @@ impl Tcms {
             speed_mps,
             demands,
             given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
-            backward: cab.is_some_and(|cab| cab.reverser < 0)
-                || self.backward && !inputs.forward_only,
+            backward: cab.is_some_and(|cab| cab.reverser < 0) || self.backward,
         };
         self.log(&scan);
         self.tell(&scan, share, load_kg)

@@ -68,8 +68,6 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::ReleaseGuard
         | Place::MarkerDebounce
         | Place::JogGuard
-        | Place::Jog
-        | Place::TcmsDirection
         | Place::ArmStandstill
         | Place::ArmBrakes
         | Place::MotionGuard
@@ -90,6 +88,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::SideGuard => &[DEAD],
         Place::TwcDoorSide | Place::DoorOrder => &[("offset", -3.0, 3.0)],
         Place::TwcAnswer => &[STUCK_ON],
+        Place::Jog => &[DEAD, STUCK_OFF],
         Place::TestCode => &[("gain", 0.0, 10.0)],
         // Hz.
         Place::TestCarrier => &[("offset", -1000.0, 1000.0)],

@@ -114,7 +114,7 @@ pub enum Place {
     MarkerDebounce,
     /// Supervision of ATO's jogging: speed, way and direction.
     JogGuard,
-    /// ATO's jogging to a stop point that was missed.
+    /// ATO's jogging to a stop point that was missed, and the direction it orders.
     Jog,
     /// Standstill as a condition of arming.
     ArmStandstill,
@@ -168,8 +168,6 @@ pub enum Place {
     HeadControlRelay,
     /// What TCMS sends on RS-485.
     Tcms,
-    /// Direction of travel as TCMS gives it to the inverters.
-    TcmsDirection,
     /// Pressure switch of the main reservoir.
     MainReservoir,
 }
@@ -189,7 +187,6 @@ impl Place {
                 | Self::DoorContactRight
                 | Self::HeadControlRelay
                 | Self::Tcms
-                | Self::TcmsDirection
                 | Self::MainReservoir
         )
     }

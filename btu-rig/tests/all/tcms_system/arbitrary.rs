@@ -136,7 +136,6 @@ fn inputs() -> BoxedStrategy<TcmsInputs<'static>> {
                     load_kg: load,
                     equipment: None,
                     speed_mps: speed,
-                    forward_only: false,
                     frames_refused: refused,
                 }
             },

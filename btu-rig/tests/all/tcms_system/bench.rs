@@ -74,7 +74,6 @@ impl Bench {
                 load_kg: 0.0,
                 equipment: None,
                 speed_mps: 0.0,
-                forward_only: false,
                 frames_refused: 0,
             },
             equipment: Equipment::default(),

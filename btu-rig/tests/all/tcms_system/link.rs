@@ -145,9 +145,6 @@ fn ato_turns_the_direction_at_standstill_in_automatic_run_alone() {
     assert!(!bench.run(1_000).backward && bench.powers());
 
     bench.order = Some(order(BACK, 600));
-    bench.inputs.forward_only = true;
-    assert!(!bench.run(200).backward && bench.powers());
-    bench.inputs.forward_only = false;
     assert!(bench.run(200).backward);
     bench.order = Some(AtcToTcms {
         mode: Mode::Automatic,
