@@ -164,7 +164,7 @@ impl Monitor {
         found
     }
 
-    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 10] {
+    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 11] {
         let limit_kmh = self.most_permitted_kmh(seen);
         let (eb, fsb) = (seen.on(Signal::EbLoop), seen.on(Signal::Fsb));
         let (left, right) = (
