@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
+use crate::left_out::{left_out_json, left_out_text};
 use ptu_bench::campaign::{Figures, Outcome, Redundancy, Share, Shortfall};
 
 /// The connection of a laptop alone, as a dictionary names it.
@@ -28,15 +29,15 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "ambiguous": figures.ambiguous,
         "runs": outcome.runs,
         "shares": {
-            "detected": figures.detected.iter().map(|(kind, s)| ((*kind).to_owned(), share(*s))).collect::<serde_json::Map<_, _>>(),
-            "unsafe_detected": share(figures.unsafe_detected),
-            "reachable_detected": share(figures.reachable_detected),
-            "detected_isolated_1": share(figures.detected_isolated),
-            "isolated_1": share(figures.isolated[0]),
-            "isolated_2": share(figures.isolated[1]),
-            "isolated_3": share(figures.isolated[2]),
-            "wrong": share(figures.wrong),
-            "adaptive_right": share(figures.adaptive_right),
+            "detected": figures.detected.iter().map(|(kind, s)| ((*kind).to_owned(), share_json(*s))).collect::<serde_json::Map<_, _>>(),
+            "unsafe_detected": share_json(figures.unsafe_detected),
+            "reachable_detected": share_json(figures.reachable_detected),
+            "detected_isolated_1": share_json(figures.detected_isolated),
+            "isolated_1": share_json(figures.isolated[0]),
+            "isolated_2": share_json(figures.isolated[1]),
+            "isolated_3": share_json(figures.isolated[2]),
+            "wrong": share_json(figures.wrong),
+            "adaptive_right": share_json(figures.adaptive_right),
         },
         "not_isolated": figures.not_isolated.iter().map(shortfall).collect::<Vec<_>>(),
         "missed": figures.undetected.iter().map(shortfall).collect::<Vec<_>>(),
@@ -50,6 +51,7 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "connection": outcome.dictionary.basis.connection,
         "need_bench": need_bench(outcome),
         "basis_sha256": outcome.dictionary.basis.sha256,
+        "left_out": outcome.left_out.as_ref().map(left_out_json),
     })
 }
 
@@ -70,7 +72,7 @@ fn texts(checks: &[diagnosis::CheckName]) -> Vec<String> {
     checks.iter().map(ToString::to_string).collect()
 }
 
-fn share(share: Share) -> Value {
+pub(crate) fn share_json(share: Share) -> Value {
     json!({ "of": share.of, "all": share.all, "share": share.value() })
 }
 
@@ -173,6 +175,9 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         steps.redundant.len(),
         steps.never_failed.len()
     );
+    if let Some(left_out) = &outcome.left_out {
+        text += &left_out_text(left_out);
+    }
     text.trim_end().to_owned()
 }
 

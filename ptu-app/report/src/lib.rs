@@ -14,6 +14,7 @@ pub mod drive;
 pub mod fonts;
 mod json;
 mod junit;
+mod left_out;
 pub mod limits;
 pub mod plot;
 pub mod record;

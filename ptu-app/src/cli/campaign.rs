@@ -29,6 +29,7 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 ///   ptu campaign --faults 'eb_relay.*' --seeds 2
 ///   ptu campaign --held-out 2 --good 1000    the figures of docs/figures.md
 ///   ptu campaign --harness none              what a laptop alone on a train can find
+///   ptu campaign --leave-out-modes 5         what it is worth for faults it does not know
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CampaignArguments {
@@ -47,6 +48,10 @@ pub struct CampaignArguments {
     /// Good units, to assess it
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     good: u32,
+    /// Diagnose each mode, too, by a dictionary without one in so many modes of each part, and by one without the
+    /// part
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=20))]
+    leave_out_modes: Option<u32>,
     /// Embedded units to test side by side [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: Option<u32>,
@@ -77,6 +82,7 @@ impl CampaignArguments {
             seeds: self.seeds,
             held_out: self.held_out,
             good: self.good,
+            leave_out: self.leave_out_modes,
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
         };
         let modes = campaign::chosen(&suite, &asked)?;

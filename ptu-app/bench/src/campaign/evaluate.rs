@@ -2,11 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{Diagnosis, Dictionary, Effort, Finding, Model, Settings, fixed_order, replayed};
+use diagnosis::{
+    Diagnosis, Dictionary, Effort, Finding, Model, PartProbability, Settings, fixed_order, replayed,
+};
 
 use protocol::LruId;
 
-use super::samples::{Purpose, Sample};
+use super::samples::Sample;
 use super::suite::SuiteRun;
 use crate::drive::monte_carlo::percentile;
 use crate::pool;
@@ -48,6 +50,8 @@ pub struct Assessment {
     pub adaptive: Effort,
     /// Part the adaptive run finds.
     pub adaptive_part: Option<LruId>,
+    /// All parts, the likeliest first.
+    pub ranked: Vec<PartProbability>,
 }
 
 impl Assessment {
@@ -55,35 +59,42 @@ impl Assessment {
     pub fn isolated(&self, parts: usize) -> bool {
         self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
     }
+
+    /// Place of the right part among all.
+    pub fn rank(&self) -> Option<usize> {
+        self.ranked.iter().position(|part| part.lru == self.lru)
+    }
+
+    /// What diagnosis says, without the next check.
+    pub fn answer(&self) -> &str {
+        self.conclusion.split(';').next().unwrap_or_default()
+    }
 }
 
-/// Diagnoses all held-out runs with a fault; and tells what good runs did not pass.
+/// Diagnoses these runs with a fault.
 pub fn assess(
     dictionary: &Dictionary,
     settings: &Settings,
-    samples: &[Sample],
-    runs: &[SuiteRun],
+    faulty: &[(&Sample, &SuiteRun)],
     jobs: usize,
-) -> (Vec<Assessment>, Vec<Vec<String>>) {
-    let held_out = samples
-        .iter()
-        .zip(runs)
-        .filter(|(s, _)| s.purpose == Purpose::Assessment);
-    let (faulty, good): (Vec<_>, Vec<_>) = held_out.partition(|(sample, _)| sample.fault.is_some());
+) -> Vec<Assessment> {
     let model = Model::new(dictionary, settings, &BTreeMap::new());
     let one = |i: usize| {
         let (sample, run) = faulty[i];
         assess_one(&model, sample, run)
     };
     let assessed = pool::run(faulty.len(), jobs, &Stop::default(), &mut |_| {}, one);
-    let assessed = assessed
-        .into_iter()
-        .filter_map(|(_, assessment)| assessment);
-    let good = good.into_iter().map(|(_, run)| match run.passed {
+    let assessed = assessed.into_iter();
+    assessed.filter_map(|(_, assessment)| assessment).collect()
+}
+
+/// What each good run did not pass.
+pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
+    let good = good.iter().map(|(_, run)| match run.passed {
         true => Vec::new(),
         false => run.not_passed.clone(),
     });
-    (assessed.collect(), good.collect())
+    good.collect()
 }
 
 fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
@@ -116,6 +127,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
             .flatten(),
         finding: diagnosis.finding,
         conclusion: diagnosis.conclusion,
+        ranked: diagnosis.lrus,
     })
 }
 
@@ -129,7 +141,7 @@ pub struct Share {
 }
 
 impl Share {
-    fn over<'a>(
+    pub(super) fn over<'a>(
         runs: impl Iterator<Item = &'a Assessment>,
         has: impl Fn(&Assessment) -> bool,
     ) -> Self {
@@ -264,12 +276,7 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     for run in runs.iter().filter(|run| !has(run)) {
         let what = match run.finding {
             Finding::Found | Finding::TwoFound | Finding::CannotTell => joined(&run.parts),
-            _ => run
-                .conclusion
-                .split(';')
-                .next()
-                .unwrap_or_default()
-                .to_owned(),
+            _ => run.answer().to_owned(),
         };
         *taken_for.entry(what).or_default() += 1;
     }

@@ -7,6 +7,7 @@
 //! ```
 
 mod evaluate;
+mod left_out;
 mod redundant;
 mod samples;
 mod suite;
@@ -18,6 +19,8 @@ use glob::Pattern;
 use protocol::injection::FaultMode;
 
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
+use left_out::Evidence;
+pub use left_out::{LeftOut, UnseenFigures};
 pub use redundant::{Redundancy, redundancy};
 pub use samples::{Purpose, Sample, samples};
 pub use suite::{Suite, SuiteRun};
@@ -39,6 +42,8 @@ pub struct Request {
     pub held_out: u32,
     /// Runs of good units to assess it.
     pub good: u32,
+    /// One in so many modes of each part is left out at a time, to see what the others are worth for it.
+    pub leave_out: Option<u32>,
     /// Embedded units to test side by side.
     pub jobs: usize,
 }
@@ -51,6 +56,8 @@ pub struct Outcome {
     pub assessments: Vec<Assessment>,
     /// Good runs, and what did not pass in those that did not.
     pub good: Vec<Vec<String>>,
+    /// What it is worth for faults that it does not know, if that was asked for.
+    pub left_out: Option<LeftOut>,
     /// Suite runs made.
     pub runs: usize,
 }
@@ -98,29 +105,38 @@ pub fn run(
         return Ok(None);
     }
     let runs: Vec<SuiteRun> = runs.into_iter().map(|(_, run)| run).collect();
-    let made_of = basis(directory, suite.connection())?;
-    let outcome = conclude(
-        made_of, suite, &modes, settings, &samples, &runs, asked.jobs,
-    );
-    Ok(Some(outcome))
+    let evidence = Evidence {
+        basis: &basis(directory, suite.connection())?,
+        suite,
+        modes: &modes,
+        settings,
+        samples: &samples,
+        runs: &runs,
+        jobs: asked.jobs,
+    };
+    Ok(Some(conclude(&evidence, asked.leave_out)))
 }
 
 /// Makes the dictionary of the runs that are for it, and assesses it by the others.
-pub fn conclude(
-    made_of: Basis,
-    suite: &Suite,
-    modes: &[&FaultMode],
-    settings: &Settings,
-    samples: &[Sample],
-    runs: &[SuiteRun],
-    jobs: usize,
-) -> Outcome {
-    let dictionary = dictionary(made_of, suite, modes, samples, runs);
-    let (assessments, good) = evaluate::assess(&dictionary, settings, samples, runs, jobs);
+fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
+    let Evidence {
+        basis,
+        suite,
+        modes,
+        settings,
+        samples,
+        runs,
+        jobs,
+    } = *evidence;
+    let dictionary = dictionary(basis.clone(), suite, modes, samples, runs);
+    let held_out = samples.iter().zip(runs);
+    let held_out = held_out.filter(|(sample, _)| sample.purpose == Purpose::Assessment);
+    let (faulty, good): (Vec<_>, Vec<_>) = held_out.partition(|(sample, _)| sample.fault.is_some());
     Outcome {
+        assessments: evaluate::assess(&dictionary, settings, &faulty, jobs),
+        good: evaluate::not_passed(&good),
+        left_out: leave_out.map(|folds| LeftOut::of(evidence, folds.max(2) as usize)),
         dictionary,
-        assessments,
-        good,
         runs: samples.len(),
     }
 }

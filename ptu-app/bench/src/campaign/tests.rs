@@ -1,9 +1,10 @@
 //! What the suite finds, without a dictionary.
 
 use btu_rig::procedure::plan::Connection;
+use diagnosis::{Basis, Settings};
 use protocol::injection::FaultMode;
 
-use super::{Purpose, Request, Sample, Suite, SuiteRun, samples};
+use super::{Evidence, Purpose, Request, Sample, Suite, SuiteRun, conclude, samples};
 use crate::pool;
 use crate::stop::Stop;
 use crate::test_support::scripts;
@@ -27,6 +28,7 @@ fn a_laptop_alone_finds_nine_in_ten_of_what_is_within_its_reach() {
         seeds: 0,
         held_out: 1,
         good: 0,
+        leave_out: None,
         jobs: 2,
     };
     let samples = samples(&reachable, &asked);
@@ -62,4 +64,48 @@ fn a_supply_that_dips_when_warm_fails_the_suite_and_is_no_error_of_the_bench() {
         let errors: Vec<_> = errors.collect();
         assert!(errors.is_empty(), "seed {}: {errors:?}", sample.seed);
     }
+}
+
+/// Goal: each mode is diagnosed once by a dictionary that has other modes of its part and not this one, and once by one
+/// that has none of its part. Method: two parts with few modes, one seed.
+#[test]
+fn what_is_left_out_is_diagnosed_by_a_dictionary_that_does_not_know_it() {
+    let suite = Suite::load(&scripts(), Connection::Ptu).unwrap();
+    let parts = ["door_contact", "tra"].map(|part| format!("{part}."));
+    let of_parts = |mode: &&FaultMode| parts.iter().any(|part| mode.id.starts_with(part));
+    let modes: Vec<_> = suite.catalogue.faults.iter().filter(of_parts).collect();
+    let asked = Request {
+        faults: None,
+        seeds: 1,
+        held_out: 1,
+        good: 0,
+        leave_out: Some(2),
+        jobs: 2,
+    };
+    let samples = samples(&modes, &asked);
+    let runs = runs(&suite, &samples);
+    let detected = runs.iter().zip(&samples).filter(|(run, sample)| {
+        sample.purpose == Purpose::Assessment && sample.fault.is_some() && !run.passed
+    });
+    let detected = detected.count();
+    let evidence = Evidence {
+        basis: &Basis::default(),
+        suite: &suite,
+        modes: &modes,
+        settings: &Settings::default(),
+        samples: &samples,
+        runs: &runs,
+        jobs: 2,
+    };
+    let left_out = conclude(&evidence, asked.leave_out).left_out.unwrap();
+    assert!(detected > 4);
+    for figures in [&left_out.modes, &left_out.parts] {
+        assert_eq!(figures.first.all, detected);
+        let classes: usize = figures.reliability.iter().map(|class| class.all).sum();
+        assert_eq!(classes, detected);
+    }
+    assert_eq!(
+        left_out.parts.first.of, 0,
+        "no part without a mode is named"
+    );
 }

@@ -1,0 +1,195 @@
+//! What a dictionary is worth for faults that it does not know.
+//!
+//! The same runs make dictionaries without some of the fault modes, and without a whole part at a time; the held-out
+//! runs of what was left out are diagnosed with them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use diagnosis::{Basis, Finding, Settings};
+use protocol::LruId;
+use protocol::injection::FaultMode;
+
+use super::dictionary;
+use super::evaluate::{Assessment, Share, assess};
+use super::samples::{Purpose, Sample};
+use super::suite::{Suite, SuiteRun};
+
+/// Classes of probability of the reliability curve.
+const CLASSES: usize = 10;
+
+/// The figures of both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// Dictionaries without a share of the modes, that keep another mode of each of their parts.
+    pub modes: UnseenFigures,
+    /// Dictionaries without any mode of one part.
+    pub parts: UnseenFigures,
+}
+
+/// Figures over all detected runs of what was left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UnseenFigures {
+    /// The right part is the likeliest.
+    pub first: Share,
+    /// It is among the first two.
+    pub first_two: Share,
+    /// It is named for certain, and nothing else.
+    pub found: Share,
+    /// Another part is named for certain.
+    pub wrong: Share,
+    /// Something is wrong that the dictionary does not know.
+    pub unknown: Share,
+    /// By the probability of the likeliest part, 0–10 % to 90–100 %: how often it is the right one.
+    pub reliability: [Share; CLASSES],
+    /// Brier score: mean over the runs of the squared errors of all parts' probabilities, 0 = all certain and right.
+    pub brier: f64,
+    /// Part that failed, part taken for it, and in how many runs.
+    pub confused: Vec<(LruId, LruId, usize)>,
+    /// Modes whose part was not named and another was, with the answer.
+    pub wrong_answers: Vec<(String, String)>,
+}
+
+/// All that a campaign's runs say about it.
+pub(super) struct Evidence<'a> {
+    pub basis: &'a Basis,
+    pub suite: &'a Suite,
+    pub modes: &'a [&'a FaultMode],
+    pub settings: &'a Settings,
+    pub samples: &'a [Sample],
+    pub runs: &'a [SuiteRun],
+    pub jobs: usize,
+}
+
+impl LeftOut {
+    /// Leaves out one in `folds` of each part's modes at a time, then one part at a time.
+    pub(super) fn of(evidence: &Evidence<'_>, folds: usize) -> Self {
+        let numbered = numbered(evidence.modes);
+        let fold = |turn: usize| -> BTreeSet<&str> {
+            let of_turn = numbered
+                .iter()
+                .filter(|mode| mode.others > 0 && mode.number % folds == turn);
+            of_turn.map(|mode| mode.id).collect()
+        };
+        let parts: BTreeSet<&LruId> = evidence.modes.iter().map(|mode| &mode.lru).collect();
+        let whole = |part: &LruId| -> BTreeSet<&str> {
+            let of_part = evidence.modes.iter().filter(|mode| mode.lru == *part);
+            of_part.map(|mode| mode.id.as_str()).collect()
+        };
+        Self {
+            modes: UnseenFigures::over((0..folds).map(fold), evidence),
+            parts: UnseenFigures::over(parts.into_iter().map(whole), evidence),
+        }
+    }
+}
+
+struct Numbered<'a> {
+    id: &'a str,
+    /// Its place among the modes of its part.
+    number: usize,
+    /// Other modes of the part.
+    others: usize,
+}
+
+fn numbered<'a>(modes: &[&'a FaultMode]) -> Vec<Numbered<'a>> {
+    let mut counts: BTreeMap<&LruId, usize> = BTreeMap::new();
+    let numbers: Vec<_> = modes
+        .iter()
+        .map(|mode| {
+            let count = counts.entry(&mode.lru).or_default();
+            *count += 1;
+            *count - 1
+        })
+        .collect();
+    let named = modes.iter().zip(numbers);
+    let named = named.map(|(mode, number)| Numbered {
+        id: &mode.id,
+        number,
+        others: counts[&mode.lru] - 1,
+    });
+    named.collect()
+}
+
+impl UnseenFigures {
+    fn over<'a>(
+        left_out: impl Iterator<Item = BTreeSet<&'a str>>,
+        evidence: &Evidence<'_>,
+    ) -> Self {
+        let assessed = left_out.flat_map(|left_out| assess_without(&left_out, evidence));
+        Self::of(&assessed.filter(|run| run.detected).collect::<Vec<_>>())
+    }
+
+    fn of(runs: &[Assessment]) -> Self {
+        let share = |has: &dyn Fn(&Assessment) -> bool| Share::over(runs.iter(), has);
+        let certain = |run: &Assessment| matches!(run.finding, Finding::Found | Finding::TwoFound);
+        let right = |run: &Assessment| run.parts == [run.lru.clone()];
+        let class = |run: &Assessment| {
+            let top = run.ranked.first().map_or(0.0, |part| part.probability);
+            ((top * CLASSES as f64) as usize).min(CLASSES - 1)
+        };
+        let squared = runs.iter().map(|run| {
+            let errors = run.ranked.iter().map(|part| {
+                let true_ = f64::from(u8::from(part.lru == run.lru));
+                (part.probability - true_).powi(2)
+            });
+            errors.sum::<f64>()
+        });
+        let wrong = |run: &&Assessment| certain(run) && !right(run);
+        Self {
+            first: share(&|run| run.rank() == Some(0)),
+            first_two: share(&|run| run.rank().is_some_and(|rank| rank < 2)),
+            found: share(&|run| certain(run) && right(run)),
+            wrong: share(&|run| wrong(&run)),
+            unknown: share(&|run| run.finding == Finding::UnknownFault),
+            reliability: std::array::from_fn(|of| {
+                let in_class = runs.iter().filter(|run| class(run) == of);
+                Share::over(in_class, |run| run.rank() == Some(0))
+            }),
+            brier: squared.sum::<f64>() / runs.len().max(1) as f64,
+            confused: confused(runs),
+            wrong_answers: runs
+                .iter()
+                .filter(wrong)
+                .map(|run| (run.fault.clone(), run.answer().to_owned()))
+                .collect(),
+        }
+    }
+}
+
+/// Diagnoses the held-out runs of these modes with a dictionary that does not know them.
+fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Assessment> {
+    let is_left_out = |mode: &str| left_out.contains(mode);
+    let known: Vec<_> = evidence
+        .modes
+        .iter()
+        .copied()
+        .filter(|mode| !is_left_out(&mode.id))
+        .collect();
+    let Evidence {
+        suite,
+        settings,
+        samples,
+        runs,
+        jobs,
+        ..
+    } = *evidence;
+    let dictionary = dictionary(evidence.basis.clone(), suite, &known, samples, runs);
+    let of_these = samples.iter().zip(runs).filter(|(sample, _)| {
+        sample.purpose == Purpose::Assessment && sample.mode().is_some_and(is_left_out)
+    });
+    assess(&dictionary, settings, &of_these.collect::<Vec<_>>(), jobs)
+}
+
+fn confused(runs: &[Assessment]) -> Vec<(LruId, LruId, usize)> {
+    let mut counts: BTreeMap<(&LruId, &LruId), usize> = BTreeMap::new();
+    for run in runs {
+        if let Some(taken) = run.ranked.first().filter(|part| part.lru != run.lru) {
+            *counts.entry((&run.lru, &taken.lru)).or_default() += 1;
+        }
+    }
+    let mut counts: Vec<_> = counts
+        .into_iter()
+        .map(|((part, taken), runs)| (part.clone(), taken.clone(), runs))
+        .collect();
+    counts.sort_by_key(|(.., runs)| std::cmp::Reverse(*runs));
+    counts
+}

@@ -1,0 +1,83 @@
+//! What a dictionary is worth for faults that it does not know, as text and as JSON.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use ptu_bench::campaign::{LeftOut, Share, UnseenFigures};
+
+use crate::campaign::share_json;
+
+/// Pairs of parts, and answers, that are listed.
+const MOST_LISTED: usize = 20;
+
+/// Both, by what was left out.
+pub fn left_out_json(left_out: &LeftOut) -> Value {
+    json!({ "modes": figures_json(&left_out.modes), "parts": figures_json(&left_out.parts) })
+}
+
+fn figures_json(figures: &UnseenFigures) -> Value {
+    json!({
+        "first": share_json(figures.first),
+        "first_two": share_json(figures.first_two),
+        "found": share_json(figures.found),
+        "wrong": share_json(figures.wrong),
+        "unknown": share_json(figures.unknown),
+        "reliability": figures.reliability.map(share_json),
+        "brier": figures.brier,
+        "confused": figures.confused.iter().map(|(part, taken, runs)| {
+            json!({ "lru": part, "taken_for": taken, "runs": runs })
+        }).collect::<Vec<_>>(),
+        "wrong_answers": figures.wrong_answers.iter().map(|(fault, answer)| {
+            json!({ "fault": fault, "answer": answer })
+        }).collect::<Vec<_>>(),
+    })
+}
+
+/// For people.
+pub fn left_out_text(left_out: &LeftOut) -> String {
+    let mut text = String::new();
+    for (what, figures) in [
+        (
+            "fault modes that the dictionary does not know, of parts it knows",
+            &left_out.modes,
+        ),
+        ("parts that the dictionary does not know", &left_out.parts),
+    ] {
+        let _ = writeln!(text, "\n{what}: {} runs detected", figures.first.all);
+        figures_text(&mut text, figures);
+    }
+    text
+}
+
+fn figures_text(text: &mut String, figures: &UnseenFigures) {
+    for (what, Share { of, all }) in [
+        ("right part first", figures.first),
+        ("among the first two", figures.first_two),
+        ("named for certain, the right one", figures.found),
+        ("named for certain, a wrong one", figures.wrong),
+        ("\"no fault mode explains this\"", figures.unknown),
+    ] {
+        let percent = 100.0 * of as f64 / all.max(1) as f64;
+        let _ = writeln!(text, "  {what:34} {percent:>6.1} %  ({of} of {all})");
+    }
+    let curve = figures.reliability.iter().enumerate();
+    let curve = curve.filter(|(_, share)| share.all > 0);
+    let curve: Vec<_> = curve
+        .map(|(class, Share { of, all })| {
+            format!("{}-{} %: {of} of {all}", 10 * class, 10 * class + 10)
+        })
+        .collect();
+    let _ = writeln!(
+        text,
+        "  probability of the first part, and how often it is right: {}",
+        curve.join(", ")
+    );
+    let _ = writeln!(text, "  Brier score {:.3}", figures.brier);
+    for (part, taken, runs) in figures.confused.iter().take(MOST_LISTED) {
+        let _ = writeln!(text, "  {part} taken for {taken} in {runs}");
+    }
+    for (fault, answer) in figures.wrong_answers.iter().take(MOST_LISTED) {
+        let _ = writeln!(text, "  {fault}: {answer}");
+    }
+}
