@@ -6,7 +6,7 @@
 //! * `com`: links, input image, maintenance session;
 //! * `atp`: speed code, speed, overspeed supervision, brakes, doors, direction, modes;
 //! * `twc`, `psm`, [`ato`]: wayside data, markers and TRA, automatic operation;
-//! * `driverless`: what ATO does in place of people;
+//! * `driverless`: what ATO does in place of people: doors, turn-back, put-away and wake-up;
 //! * [`flash`]: event log and run record over power-ups;
 //! * `test_board`: test signals of an armed tester;
 //! * `front_end`: antennas, sensors and relays, where injected faults act.

@@ -41,4 +41,5 @@ by_code! {
     mode_switch: ModeSwitch,
     running_mode: RunningMode,
     door_side: DoorSide,
+    train_order: TrainOrder,
 }

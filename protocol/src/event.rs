@@ -153,6 +153,16 @@ events! {
     TwcWrongSide = 404 "twc_wrong_side" Major "twc_cpu" "Station data refused: door side contradicts the track database" "출입문 방향 불일치" "door side";
     TwcWrongMode = 406 "twc_wrong_running_mode" Minor "twc_cpu" "Station data refused: no such running mode" "운행 모드 오류" "running mode";
     TwcOtherTrain = 409 "twc_other_train" Minor "twc_cpu" "Station data for another train, not acted on" "다른 열차의 역 정보 수신" "train number";
+    TwcWrongDestination = 410 "twc_wrong_destination" Minor "twc_cpu" "Orders refused: the destination is no station of the route" "행선지 불일치" "destination";
+    TwcWrongLength = 411 "twc_wrong_length" Minor "twc_cpu" "Orders refused: section length contradicts the track database" "구간 길이 불일치" "length, 0.1 m";
+    TwcWrongOrder = 412 "twc_wrong_order" Minor "twc_cpu" "Orders refused: no such order" "지령 오류" "order";
+    OrderRefused = 413 "order_refused" Minor "-" "Order refused: the train is not in the state for it" "지령 수행 불가" "what is lacking as bits, `OrderLacks`";
+    TrainNumberSet = 414 "train_number_set" Info "-" "Train number keyed in at the cab" "열차번호 입력" "train number";
+    TrainNumberRefused = 415 "train_number_refused" Minor "-" "Train number keyed in under way: not taken" "주행 중 열차번호 입력 불허" "train number";
+    ChangeOfCabs = 416 "change_of_cabs" Info "-" "Change of cabs at a turn-back" "회차 운전실 교체" "1 = handed over, 2 = taken over";
+    CabsNotChanged = 417 "cabs_not_changed" Major "tcms" "Turn-back: the cabs were not changed in time, the train stays held" "운전실 교체 실패" "time waited, ms";
+    PutAway = 418 "put_away" Info "-" "Train put away" "열차 유치" "";
+    WokenUp = 419 "woken_up" Info "-" "Train woken up, self-test done" "열차 기동" "failed items as bits";
     TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "1 = frames come, their alive counter stands";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason, `AtoFailure`";

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::message::{
-    ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, RunningMode,
+    ArmRefusal, AtoState, DoorSide, EbCause, FsbCause, Mode, ModeSwitch, NumberState, OrderState,
+    RunningMode, TrainOrder,
 };
 
 /// What a signal's number means.
@@ -242,6 +243,15 @@ signals! {
     TcmsDoors "tcms_doors" "" DOORS, 0 ..= 1, Unit, "Door train line as TCMS tells the unit";
     TcmsHcr "tcms_hcr" "" Kind::Bit, 0 ..= 1, Unit, "Head control relay of the unit's cab as TCMS tells the unit";
     TwcSent "twc_sent" "" UNITY, 0 ..= 65535, Unit, "TWC answers the unit sent into the loop";
+    WaysideOrder "wayside_order" "" Kind::Enum(TrainOrder::LABELS), 0 ..= 3, Rig, "Order the wayside gives beside running";
+    OrdersAnswered "orders_answered" "" Kind::Bit, 0 ..= 1, Rig, "The unit reports to orders of the wayside; an older one does not know them";
+    OwnTrain "own_train" "" UNITY, 0 ..= 65535, Unit, "The unit's own train number as it reports to the wayside's orders";
+    NumberState "number_state" "" Kind::Enum(NumberState::LABELS), 0 ..= 2, Unit, "Where that number is from";
+    Destination "destination" "" UNITY, 0 ..= 65535, Unit, "Destination in force; 0 = none";
+    OrderState "order_state" "" Kind::Enum(OrderState::LABELS), 0 ..= 7, Unit, "How far the last order is carried out";
+    TwcHeard "twc_heard" "" UNITY, 0 ..= 65535, Unit, "TWC frames for this train as the unit counts them";
+    TwcRefused "twc_refused" "" UNITY, 0 ..= 65535, Unit, "TWC frames the unit refused because they contradict the track database";
+    TwcOthers "twc_others" "" UNITY, 0 ..= 65535, Unit, "TWC frames for other trains as the unit counts them";
 }
 
 impl Signal {
@@ -263,6 +273,9 @@ impl Signal {
             | Self::TwcReceived
             | Self::TwcAnswers
             | Self::TwcSent
+            | Self::TwcHeard
+            | Self::TwcRefused
+            | Self::TwcOthers
             | Self::TestPulses
             | Self::TestAnswers => Some(65_536.0),
             _ => None,

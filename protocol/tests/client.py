@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
 """Arms an on-board ATC unit over a pseudo terminal, feeds a speed code into its test coil and
-checks the limit; if asked, drives it into overspeed and releases the emergency brake that follows.
+checks the limit; if asked, drives it into overspeed and releases the emergency brake that follows, or
+gives it orders as the wayside does and keys in a train number at its cab.
 Written from WIRE.md alone, to show that the text is enough."""
 import argparse, collections, contextlib, os, random, re, select, struct, sys, time, tty, zlib
 
-UNIT, PTU, IO, TCMS = 0x20, 1, 2, 3
-PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40}                             # channel: address
+UNIT, PTU, IO, TCMS, TWC = 0x20, 1, 2, 3, 4
+PARTNER = {PTU: 0x10, IO: 0x30, TCMS: 0x40, TWC: 0x50}                             # channel: address
 DOORS_CLOSED, HCR, MAINTENANCE_KEY, ACKNOWLEDGE, EB_LOOP, FORWARD = 0x01, 0x02, 0x04, 0x08, 0x20, 0x40
 EB_LOOP_FED = 0x100
 SERVICE_BRAKED, EMERGENCY_BRAKED = 0x44, 0x08     # FULL_SERVICE_BRAKE with SERVICE_BRAKE_APPLIED; EMERGENCY_BRAKE_APPLIED
 EB_RELAY, FSB, ALARM, CODE_VALID, STANDSTILL = 0x001, 0x002, 0x008, 0x080, 0x100
 ARMED, UP, MANUAL = 0x001, 0x180, 2                                     # UP: STARTED and INPUTS_OK
 EB_OVERSPEED, FSB_OVERSPEED = 2, 1
+NO_ORDER, TURN_BACK, IDLE, KEYED, CONFIRMED = 0, 1, 0, 1, 2
 ANSWERS = dict(enumerate("accepted not_armed out_of_range board_failed".split()))
 REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up brakes_released "
                           "train_moved code_changed mode_changed".split()))
@@ -24,15 +26,17 @@ FROM_UNIT = {                               # the fields that are used here; x =
     (PTU, 0xA0): ("LogEntry", ">IH4xi10x", "index code parameter"),
     (PTU, 0xA1): ("LogEnd", ">II", "next_index oldest_index"),
     (IO, 0x81): ("IoOutput", ">HH4x", "outputs limit_cms"),
-    (TCMS, 0x81): ("AtcToTcms", ">9x", "")}
+    (TCMS, 0x81): ("AtcToTcms", ">9x", ""),
+    (TWC, 0x82): ("TwcReport", ">HHBHBHHH",
+                  "answered_seq train_number number_state destination order_state received refused others")}
 
 class Client:
     def __init__(self, path, lines):
         self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         tty.setraw(self.fd)
         self.lines, self.session = lines, 0                             # session 0 only listens
-        self.next_seq, self.due = {PTU: 0, IO: 0, TCMS: 0}, {PTU: 0.0, IO: 0.0, TCMS: 0.0}
-        self.alive = 0
+        self.next_seq, self.due = dict.fromkeys(PARTNER, 0), dict.fromkeys(PARTNER, 0.0)
+        self.alive, self.orders, self.keyed = 0, None, None             # orders: train number and order
         self.log = []                       # entries as they came
         self.last, self.heard = {}, {}      # channel: (sequence, time); name: its newest message
         self.bytes, self.refused = b"", 0   # bytes since the last flag; number of frames
@@ -52,6 +56,8 @@ class Client:
         if now >= self.due[IO]:             # nothing in the antenna, no pulse, no marker
             self.due[IO] = now + 0.020
             released = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & EB_RELAY
+            if self.keyed is not None:
+                self.send(IO, "BH", 0x02, self.keyed)
             self.send(IO, "B7H3B2HBb", 0x01, 0, 0, 0, 0, 0xFFFF, 0, 0xFFFF, 0, 0, 0, 0xFFFF,
                       self.lines | (EB_LOOP if released else 0), MANUAL, 0)
         if now >= self.due[TCMS]:           # the train brakes as the unit asks, and says so
@@ -60,6 +66,9 @@ class Client:
             contacts = self.heard["IoOutput"].outputs if "IoOutput" in self.heard else 0
             brakes = (SERVICE_BRAKED if contacts & FSB else 0) | (0 if contacts & EB_RELAY else EMERGENCY_BRAKED)
             self.send(TCMS, "BHHBh", 0x01, brakes, 0, self.alive, 0)
+        if self.orders and now >= self.due[TWC]:
+            self.due[TWC] = now + 0.250
+            self.send(TWC, "BHHIHB", 0x02, self.orders[0], 0, 0, 0, self.orders[1])
         if now >= self.due[PTU]:
             self.due[PTU] = now + 0.400
             self.send(PTU, "BI", 0x05, self.session)
@@ -156,7 +165,29 @@ def overspeed(client, session, speed):
         sys.exit("failed: events 210, 211, 212 with its excess, 216 (refused under way) and 214 were expected")
     client.stimulate("TestRelease", "BIH", 0x14, session, 0x000F)
 
-def run(client, carrier, rate, level, limit, speed):
+def order(client):
+    """Is the wayside: orders what the train is not in the state for, and renames it at the cab."""
+    begin = client.wait("Status", "Status").events
+    client.orders = 0, NO_ORDER
+    own = client.wait("an answer to orders", "TwcReport").train_number
+    client.wait("orders for another train passed over", "TwcReport", lambda report: report.others)
+    client.orders = own, TURN_BACK
+    client.wait("orders taken", "TwcReport", lambda report: report.received)
+    client.log.clear()
+    client.ask("LogEnd", "BI", 0x20, begin)
+    codes = [entry.code for entry in client.log]
+    state = client.heard["TwcReport"].order_state
+    print(f"train {own}: turn-back away from a destination refused; state {state}, events {codes}")
+    if state != IDLE or not {409, 413} <= set(codes):
+        sys.exit("failed: state 0, and events 409 (another train) and 413 (order refused) were expected")
+    client.orders, client.keyed = (own, NO_ORDER), own + 1
+    client.wait("number keyed in", "TwcReport",
+                lambda report: (report.train_number, report.number_state) == (own + 1, KEYED))
+    client.orders, client.keyed = (own + 1, NO_ORDER), None
+    client.wait("number confirmed", "TwcReport", lambda report: report.number_state == CONFIRMED)
+    print(f"train {own + 1} keyed in at the cab and confirmed")
+
+def run(client, carrier, rate, level, limit, speed, orders):
     quiet = time.monotonic() + 1.1          # after 1 s of silence every channel begins anew
     while time.monotonic() < quiet:
         client.receive()
@@ -165,6 +196,8 @@ def run(client, carrier, rate, level, limit, speed):
     _, unit = client.ask("Identity", "B", 0x01)
     print(f"start-up is done: unit {unit.serial.decode('ascii', 'replace').strip(chr(0))}, "
           f"software {'.'.join(map(str, unit.software))}, failed self-tests 0x{unit.self_test:04x}")
+    if orders:
+        return order(client)
     client.session = session = random.randrange(1, 1 << 32)
     _, asked = client.ask("ArmChallenge", "BI", 0x02, session)
     client.ask("ArmState", "BII", 0x03, session, asked.challenge ^ 0xFFFFFFFF ^ session)
@@ -190,10 +223,11 @@ if __name__ == "__main__":
                         metavar=("HZ", "CHZ", "MV", "CM/S"), help="carrier, rate, level, expected limit")
     parser.add_argument("--overspeed", type=int, default=0, metavar="CM/S",
                         help="a speed beyond the emergency margin")
+    parser.add_argument("--orders", action="store_true", help="gives orders in place of test signals")
     parser.add_argument("--no-key", dest="key", action="store_const", const=0, default=MAINTENANCE_KEY)
     options = parser.parse_args()
     try:
         run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | EB_LOOP_FED | options.key), *options.code,
-            options.overspeed)
+            options.overspeed, options.orders)
     except (OSError, struct.error) as error:
         sys.exit(f"failed: {error}")

@@ -112,9 +112,17 @@ VALUES = {
         "speed_cms": 1201,
     },
     "TwcWayside": STATION,
+    "CabEntries": {"train_number": 8052},
+    "TwcOrders": {
+        "train_number": 8051, "section": 61, "section_length_dm": 8500, "destination": 824, "order": "turn_back",
+    },
     "TwcTrain": {
         "answered_seq": 772, "station": 812, "train_number": 8051, "mode": "automatic",
         "bits": "DOORS_CLOSED|STATION_VALID", "speed_cms": 33,
+    },
+    "TwcReport": {
+        "answered_seq": 773, "train_number": 8051, "number_state": "confirmed", "destination": 824,
+        "order_state": "turning_back", "received": 4711, "refused": 3, "others": 12,
     },
 }
 

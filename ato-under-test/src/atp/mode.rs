@@ -16,7 +16,9 @@ use crate::kernel::EventLog;
 use crate::timer::Edge;
 
 /// Refusals that do not hinder Automatic, only Automatic Run.
-const RUN_ONLY: Refusals = Refusals::NO_DEPARTURE.union(Refusals::DOOR_SEQUENCE);
+const RUN_ONLY: Refusals = Refusals::NO_DEPARTURE
+    .union(Refusals::DOOR_SEQUENCE)
+    .union(Refusals::ORDERED);
 /// Refusals that end Automatic Run once it has begun.
 const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::MODE_SWITCH)
@@ -67,7 +69,7 @@ impl ModeSequence {
         let mut inputs = inputs;
         inputs.lacking.insert(self.failed);
         let departing = inputs.departure
-            && !inputs.lacking.contains(Refusals::DOOR_SEQUENCE)
+            && !inputs.lacking.intersects(Refusals::DOOR_SEQUENCE | Refusals::ORDERED)
             && (pressed || inputs.switch == ModeSwitch::Driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);

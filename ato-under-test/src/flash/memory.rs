@@ -8,6 +8,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use protocol::Instant;
+use protocol::event::Event;
 use protocol::message::{
     Channel, Layout, LogEntry, Message, RunRow, SetClock, StoreKind, StoredClock, StoredEnd,
     StoredEntry, StoredRow,
@@ -194,6 +195,21 @@ impl Memory {
             *next += 1;
         }
         false
+    }
+
+    /// The last of these events that is stored, of the entries looked at in a cycle.
+    pub fn last_of(&self, events: &[Event]) -> Option<Event> {
+        let ring = self.ring(StoreKind::Events)?;
+        let oldest = ring.oldest().max(ring.next().saturating_sub(LOOKED_AT));
+        (oldest..ring.next()).rev().find_map(|sequence| {
+            let Ok(Slot::Entry(stored)) = ring.read(&*self.device, sequence) else {
+                return None;
+            };
+            let Some(Message::StoredEntry(entry)) = message(&stored) else {
+                return None;
+            };
+            Event::from_code(entry.code).filter(|event| events.contains(event))
+        })
     }
 
     /// Where a store begins and ends.

@@ -1,7 +1,9 @@
 //! TWC: station and train data through the loop [S2 §2.1]. Data for another train are not acted on, data that
-//! contradict the track database are refused (`check`).
+//! contradict the track database are refused (`check`). Orders of the wayside are checked alike (`orders`).
 
 mod check;
+mod number;
+mod orders;
 
 use protocol::event::Event;
 use protocol::injection::Place;
@@ -12,6 +14,9 @@ use protocol::{Duration, Instant, Speed};
 use crate::front_end::Faults;
 use crate::kernel::EventLog;
 use check::contradiction;
+use orders::Ordered;
+
+pub use number::OwnNumber;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrainState {
@@ -54,6 +59,9 @@ pub struct Twc {
     /// The last frame was not refused.
     valid: bool,
     refusal_reported: Option<(Event, i32)>,
+    ordered: Option<Ordered>,
+    /// Why the last orders were refused, if they were.
+    orders_refusal: Option<(Event, i32)>,
     /// Train that data were for last, and when.
     other_train: Option<(u16, Instant)>,
     received: u16,
@@ -72,6 +80,8 @@ impl Twc {
             data: None,
             valid: false,
             refusal_reported: None,
+            ordered: None,
+            orders_refusal: None,
             other_train: None,
             received: 0,
             others: 0,
@@ -90,9 +100,7 @@ impl Twc {
         faults: &Faults,
         log: &mut EventLog,
     ) {
-        let others = own != 0 && data.train_number != own;
-        if others && !faults.dead(Place::TrainGuard) {
-            self.pass_over(now, data.train_number, log);
+        if self.passes_over(now, data.train_number, own, faults, log) {
             return;
         }
         self.received = self.received.wrapping_add(1);
@@ -117,8 +125,18 @@ impl Twc {
         self.refusal_reported = refusal;
     }
 
-    /// Data for another train: logged once for as long as they come.
-    fn pass_over(&mut self, now: Instant, number: u16, log: &mut EventLog) {
+    /// Whether a frame is for another train. Such are counted, and logged once for as long as they come.
+    fn passes_over(
+        &mut self,
+        now: Instant,
+        number: u16,
+        own: TrainNumber,
+        faults: &Faults,
+        log: &mut EventLog,
+    ) -> bool {
+        if own == 0 || number == own || faults.dead(Place::TrainGuard) {
+            return false;
+        }
         self.others = self.others.wrapping_add(1);
         let goes_on = self
             .other_train
@@ -127,6 +145,7 @@ impl Twc {
         if !goes_on {
             log.push(now, Event::TwcOtherTrain, i32::from(number));
         }
+        true
     }
 
     pub fn step(&mut self, now: Instant, log: &mut EventLog) {
@@ -195,7 +214,7 @@ impl Twc {
         self.answers
     }
 
-    /// Frames accepted since power-up, wrapping.
+    /// Frames for this train since power-up, wrapping.
     pub fn received(&self) -> u16 {
         self.received
     }

@@ -7,13 +7,15 @@ use protocol::event::{COUNTER_STANDS, Event};
 use protocol::injection::Place;
 use protocol::message::Mode;
 
+use super::frames::FromWayside;
 use super::{Unit, report};
 use crate::twc::StationSender;
 
 impl Unit {
     pub(super) fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {
         if let Some((seq, data)) = self.board.modem_mut().take(now) {
-            self.take_station(now, StationSender::TestModem(seq), data, out);
+            let heard = FromWayside::Station(StationSender::TestModem(seq), data);
+            self.hear_wayside(now, heard, out);
         }
         self.tra
             .step(now, self.functions.inputs.tra_answers, &mut self.log);

@@ -6,13 +6,21 @@ use alloc::vec::Vec;
 
 use protocol::injection::{Effect, Place};
 use protocol::link::Received;
-use protocol::message::{Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcWayside};
+use protocol::message::{Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcOrders, TwcWayside};
 use protocol::{Duration, Instant};
 
 use super::{Unit, report};
 use crate::com::ArmConditions;
 use crate::setup::Setup;
 use crate::twc::StationSender;
+
+/// What came through the TWC antenna.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum FromWayside {
+    Station(StationSender, TwcWayside),
+    /// With the sequence number of their frame.
+    Orders(u16, TwcOrders),
+}
 
 /// Bits that a damaged frame has wrong, in one byte.
 const DAMAGE: u8 = 0x12;
@@ -29,8 +37,13 @@ impl Unit {
             match message {
                 Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
                 Message::TcmsToAtc(frame) => self.on_tcms(now, frame),
+                Message::CabEntries(entries) => self.take_entries(now, entries),
                 Message::TwcWayside(data) => {
-                    self.take_station(now, StationSender::Loop(header.seq), data, out);
+                    let sender = StationSender::Loop(header.seq);
+                    self.hear_wayside(now, FromWayside::Station(sender, data), out);
+                }
+                Message::TwcOrders(orders) => {
+                    self.hear_wayside(now, FromWayside::Orders(header.seq, orders), out);
                 }
                 Message::Identify(_) => {
                     let identity = report::identity(self, now);
@@ -46,8 +59,8 @@ impl Unit {
                 _ => {}
             }
         }
-        while let Some((sender, data)) = self.late_stations.pop(now) {
-            self.handle_station(now, sender, data, out);
+        while let Some(heard) = self.late.pop(now) {
+            self.handle_wayside(now, heard, out);
         }
         let conditions = self.arm_conditions();
         let notice = self
@@ -70,21 +83,30 @@ impl Unit {
         }
     }
 
-    /// Station data on their way through antenna, receiver and TWC CPU.
-    pub(super) fn take_station(
-        &mut self,
-        now: Instant,
-        sender: StationSender,
-        data: TwcWayside,
-        out: &mut Vec<u8>,
-    ) {
+    /// Data of the wayside on their way through antenna, receiver and TWC CPU.
+    pub(super) fn hear_wayside(&mut self, now: Instant, heard: FromWayside, out: &mut Vec<u8>) {
         if self.loses(Place::TwcAntenna) || self.loses(Place::FskReceiver) {
             return;
         }
-        match self.hand_on(now, data) {
-            Some((due, data)) if due > now => self.late_stations.push(due, (sender, data)),
-            Some((_, data)) => self.handle_station(now, sender, data, out),
+        let handed_on = match heard {
+            FromWayside::Station(sender, data) => self
+                .hand_on(now, data)
+                .map(|(due, data)| (due, FromWayside::Station(sender, data))),
+            FromWayside::Orders(..) => self
+                .hand_on(now, TwcWayside::default())
+                .map(|(due, _)| (due, heard)),
+        };
+        match handed_on {
+            Some((due, heard)) if due > now => self.late.push(due, heard),
+            Some((_, heard)) => self.handle_wayside(now, heard, out),
             None => {}
+        }
+    }
+
+    fn handle_wayside(&mut self, now: Instant, heard: FromWayside, out: &mut Vec<u8>) {
+        match heard {
+            FromWayside::Station(sender, data) => self.handle_station(now, sender, data, out),
+            FromWayside::Orders(seq, orders) => self.handle_orders(now, seq, &orders, out),
         }
     }
 
@@ -125,7 +147,10 @@ impl Unit {
             return;
         }
         let Setup { line, config, .. } = &self.setup;
-        let own = config.train.number;
+        let own = self.number.own();
+        if !sender.is_test() {
+            self.number.hear(data.train_number);
+        }
         let faults = &self.faults;
         let before = self.log.next_index();
         if let Some(mode) = &mut self.test_mode {

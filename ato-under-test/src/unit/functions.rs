@@ -14,7 +14,7 @@ use protocol::{Duration, Instant, Speed};
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, JogOutcome, TrainReport};
 use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
-use crate::driverless::{DeadOrders, Station, StationInputs};
+use crate::driverless::{Cabs, DeadOrders, Stabling, Station, StationInputs};
 use crate::front_end::{EffortOutput, Faults};
 use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
@@ -48,6 +48,8 @@ pub struct Functions {
     /// Doors of a driverless train.
     pub station: Station,
     effort_output: EffortOutput,
+    pub cabs: Cabs,
+    pub stabling: Stabling,
     /// Cycles ATO's processor has run, wrapping.
     ato_cycles: u8,
     ato_watchdog: Watchdog,
@@ -67,6 +69,8 @@ impl Functions {
             ato_outputs: AtoOutputs::default(),
             station: Station::default(),
             effort_output: EffortOutput::default(),
+            cabs: Cabs::default(),
+            stabling: Stabling::default(),
             ato_cycles: 0,
             ato_watchdog: Watchdog::default(),
         }
@@ -86,6 +90,7 @@ impl Functions {
             self.locator.locate(data, &around.setup.line, standstill);
         }
         self.serve_station(now, around, log);
+        self.carry_out(now, around, log);
         let mode_inputs = self.mode_inputs(around);
         self.atp.cycle(now, mode_inputs, log);
         self.operate(now, around, log);
@@ -178,7 +183,7 @@ impl Functions {
     }
 
     /// On the arrival station's loop, with valid station data.
-    fn at_platform(&self) -> bool {
+    pub(super) fn at_platform(&self) -> bool {
         let on_loop = self.twc.data().zip(self.locator.section());
         self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
     }
@@ -248,7 +253,7 @@ impl Functions {
         let left_alone = self.atp.sequence().failed()
             && self.atp.tachometers().standstill()
             && self.inputs.controller == 0;
-        self.ato_holds() || left_alone
+        self.ato_holds() || left_alone || self.cabs.holds()
     }
 
     fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {
@@ -277,9 +282,13 @@ impl Functions {
         // The TEST board takes no part in running.
         let failed = around.self_tester.failed().difference(SelfTest::TEST_BOARD);
         lacking.set(Refusals::SELF_TEST, !failed.is_empty());
+        lacking.set(Refusals::ORDERED, self.ordered_to_stay());
+        let dead = |place| around.faults.dead(place);
+        let asleep = self.stabling.asleep() && !dead(Place::PutAwayBrake);
+        let given_up = self.cabs.handed_over() && dead(Place::HandOverBrake);
         ModeInputs {
-            ready: around.self_tester.finished() && self.inputs.alive,
-            cab_active: lines.contains(TrainLines::HCR),
+            ready: around.self_tester.finished() && self.inputs.alive && !asleep,
+            cab_active: lines.contains(TrainLines::HCR) || given_up,
             switch: if self.inputs.alive {
                 switch
             } else {
@@ -355,6 +364,12 @@ impl Functions {
                 ..AtoOutputs::default()
             };
         }
+    }
+
+    /// ATO begins with its inspection, as at power-up.
+    pub fn inspect_ato(&mut self, config: &UnitConfig) {
+        self.ato = Ato::new(config);
+        self.ato_outputs = AtoOutputs::default();
     }
 
     /// Speed ATO goes by: of the wheel that markers calibrate; ATP keeps its own, safe speed.

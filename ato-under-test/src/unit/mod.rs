@@ -1,10 +1,11 @@
 //! The whole unit and its 10 ms scan, [`Unit::step`]: frames in, inputs, self-test, ATP, position, every
-//! fifth scan the 50 ms cycle (`cycle`), outputs. `frames` handles the links, `report` builds what the
-//! unit says of itself.
+//! fifth scan the 50 ms cycle (`cycle`), outputs. `frames` handles the links, `orders` what the wayside orders beside
+//! running, `report` builds what the unit says of itself.
 
 mod cycle;
 mod frames;
 mod functions;
+mod orders;
 mod outputs;
 mod report;
 mod self_test;
@@ -16,10 +17,11 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::injection::Place;
-use protocol::message::{EbCause, IoOutput, Message, Outputs, TwcWayside};
+use protocol::message::{EbCause, IoOutput, Message, Outputs};
 use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
+use crate::driverless::Stabling;
 use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
     DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
@@ -29,7 +31,8 @@ use crate::kernel::{EventLog, RunRecord, SelfTester};
 use crate::psm::Tra;
 use crate::setup::Setup;
 use crate::test_board::TestBoard;
-use crate::twc::StationSender;
+use crate::twc::OwnNumber;
+use frames::FromWayside;
 use functions::{Functions, Surroundings};
 use test_mode::TestMode;
 use train_state::StateReport;
@@ -58,8 +61,10 @@ pub struct Unit {
     memory: Memory,
     faults: Faults,
     power: PowerAndClock,
-    /// Station data that a slow TWC CPU has not handed on yet.
-    late_stations: DelayQueue<(StationSender, TwcWayside)>,
+    /// What a slow TWC CPU has not handed on yet.
+    late: DelayQueue<FromWayside>,
+    /// Number of the unit's own train.
+    number: OwnNumber,
     front_end: FrontEnd,
     output_stage: OutputStage,
     relay_watch: RelayWatch,
@@ -97,23 +102,28 @@ impl Unit {
         let ms = |ms: u32| Duration::from_ms(u64::from(ms));
         let mut log = EventLog::default();
         log.push(Instant::ZERO, Event::PowerUp, 0);
+        let memory = Memory::power_up(flash);
+        let mut functions = Functions::new(config);
+        let last = memory.last_of(&[Event::PutAway, Event::WokenUp]);
+        functions.stabling = Stabling::at_power_up(last == Some(Event::PutAway));
         Self {
             ports: Ports::new(),
             log,
             maintenance: Maintenance::new(ms(link.tester_timeout_ms), setup.seed),
             board: TestBoard::new(config.metres_per_pulse()),
             self_tester: SelfTester::new(Instant::ZERO, ms(config.start.self_test_ms)),
-            functions: Functions::new(config),
+            functions,
             test_mode: None,
             scanned: ScannedInputs::default(),
             tra: Tra::new(ms(config.marker.tra_test_ms)),
             tcms: TcmsLink::new(ms(link.tcms_timeout_ms), config.ato.train.empty_kg),
             run_record: RunRecord::default(),
-            memory: Memory::power_up(flash),
+            memory,
             image: IoImage::new(ms(link.io_timeout_ms)),
             faults,
             power: PowerAndClock::default(),
-            late_stations: DelayQueue::default(),
+            late: DelayQueue::default(),
+            number: OwnNumber::new(config.train.number),
             front_end: FrontEnd::new(config.metres_per_pulse()),
             output_stage: OutputStage::default(),
             relay_watch: RelayWatch::new(ms(config.overspeed.eb_feedback_ms)),

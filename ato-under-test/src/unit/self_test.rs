@@ -3,11 +3,11 @@
 use protocol::event::Event;
 use protocol::injection::Place;
 use protocol::message::{DoorSide, TrainLines, TwcWayside};
-use protocol::{CYCLE, Instant};
+use protocol::{CYCLE, Duration, Instant};
 
 use super::Unit;
 use crate::atp::{Code, lookup};
-use crate::kernel::SelfTestInputs;
+use crate::kernel::{SelfTestInputs, SelfTester};
 use crate::signals::AntennaSignal;
 
 /// Level of the self-test's code over the least that the receiver must decode [default].
@@ -17,6 +17,11 @@ const BAD_CELLS: usize = 4;
 
 impl Unit {
     pub(super) fn test_self(&mut self, now: Instant) {
+        if self.functions.stabling.takes_test() && !self.faults.dead(Place::WakeUpTest) {
+            let span = u64::from(self.setup.config.start.self_test_ms);
+            self.self_tester = SelfTester::new(now, Duration::from_ms(span));
+            self.functions.inspect_ato(&self.setup.config);
+        }
         if !self.maintenance.armed() {
             self.self_tester.cancel();
         } else if let Some(request) = self.maintenance.take_self_test() {

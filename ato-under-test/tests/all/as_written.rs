@@ -3,14 +3,14 @@
 
 use std::path::Path;
 
-use crate::common::Bench;
+use crate::common::{Bench, config};
 use ato_under_test::{LOG_CAPACITY, RUN_ROWS};
 use ato_under_test::{Setup, Unit};
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
     IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status, StatusBits,
-    StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines,
+    StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines, TwcOrders,
 };
 use protocol::{CYCLE, Duration, Instant, SCAN};
 
@@ -324,6 +324,10 @@ fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
                     refuses_to_arm(rule.set(ArmRequest { session: SESSION }, value));
                     continue;
                 }
+                "the orders are refused" => {
+                    refuses_orders(rule.set(TwcOrders::default(), value), &name);
+                    continue;
+                }
                 "not answered" => {
                     let request = ReadStored::default();
                     answers_nothing_to(rule.set(request, value));
@@ -365,6 +369,24 @@ fn refuses_station(act: Act, name: &str) {
         !bench.status.bits.contains(StatusBits::STATION_VALID),
         "{name}"
     );
+}
+
+#[track_caller]
+fn refuses_orders(orders: Message, name: &str) {
+    let Message::TwcOrders(orders) = orders else {
+        panic!("{orders:?}")
+    };
+    let train_number = config().train.number;
+    let mut bench = Bench::new(&[]);
+    bench.send(TwcOrders {
+        train_number,
+        ..orders
+    });
+    bench.run(0.1);
+    let [Message::TwcReport(report)] = bench.answers[..] else {
+        panic!("{:?}", bench.answers)
+    };
+    assert_eq!(report.refused, 1, "{name}");
 }
 
 #[track_caller]

@@ -9,6 +9,7 @@ mod driverless;
 mod journey;
 mod maintenance;
 mod maintenance_port;
+mod orders;
 mod plant;
 mod protection;
 mod robustness;

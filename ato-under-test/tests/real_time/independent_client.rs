@@ -84,3 +84,15 @@ fn without_the_maintenance_key_it_is_refused() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("key_off"), "{said}");
 }
+
+/// Goal: the text says how a wayside gives orders, and how a number is keyed in. Method: a client that knows nothing
+/// else is wayside and cab.
+#[test]
+fn it_gives_orders_and_renames_the_train() {
+    let (_unit, port) = serve();
+    let output = client(&[&port, "--orders"]);
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("keyed in at the cab and confirmed"), "{said}");
+}

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::describe::number;
-use crate::stimulus::{CutOut, StationData, Stimulus, TachoCondition};
+use crate::stimulus::{CutOut, OrderData, StationData, Stimulus, TachoCondition};
 
 impl fmt::Display for Stimulus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -53,6 +53,9 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
         }
         Stimulus::MarkersAlong { section: None } => "no markers along the way".into(),
         Stimulus::Station(data) => format!("wayside sends {}", station_text(&data)),
+        Stimulus::Orders(Some(orders)) => format!("wayside orders {}", order_text(&orders)),
+        Stimulus::Orders(None) => "wayside gives no orders".into(),
+        Stimulus::TrainNumber { number } => format!("train number {number} keyed in"),
         Stimulus::Wayside(condition) => format!("TWC wayside {condition:?}").to_lowercase(),
         Stimulus::SideDoors { left, state } => {
             let side = if left { "left" } else { "right" };
@@ -138,14 +141,34 @@ fn tacho_text(condition: TachoCondition) -> String {
     }
 }
 
+fn order_text(orders: &OrderData) -> String {
+    let length = match orders.section {
+        0 => String::new(),
+        section => format!(
+            ", section {section} is {} m long",
+            number(f64::from(orders.length_dm) / 10.0)
+        ),
+    };
+    format!(
+        "{}, destination {}{length}, {}",
+        orders.order.label(),
+        orders.destination,
+        train_text(orders.train_number)
+    )
+}
+
+fn train_text(number: u16) -> String {
+    match number {
+        0 => "this train".to_owned(),
+        other => format!("train {other}"),
+    }
+}
+
 fn station_text(data: &StationData) -> String {
     let speed = data
         .fixed_speed_kmh
         .map_or(String::new(), |v| format!(", fixed speed {v} km/h"));
-    let train = match data.train_number {
-        0 => "this train".to_owned(),
-        other => format!("train {other}"),
-    };
+    let train = train_text(data.train_number);
     format!(
         "section {}, station {}, next {}, loop {}, {}, doors {}, departure {}, {train}{speed}",
         data.section,

@@ -113,6 +113,7 @@ impl Rig {
             }
             Stimulus::MarkersAlong { section } => self.lay_section(section)?,
             Stimulus::Station(data) => self.wayside.set_data(data),
+            Stimulus::Orders(orders) => self.wayside.orders.set(orders),
             Stimulus::Wayside(condition) => self.wayside.set_condition(condition),
             _ => return self.apply_desk(now, stimulus),
         }
@@ -134,6 +135,7 @@ impl Rig {
             Stimulus::DoorObstacle { left, times } => self.door_gear.obstruct(left, times),
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
+            Stimulus::TrainNumber { number } => self.desk.key_in(now, number),
             Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
             Stimulus::Controller { lever } => self.desk.lever = lever,
             Stimulus::ControllerVolts { volts } => {
@@ -254,7 +256,7 @@ impl Rig {
         self.antenna.off();
         self.codes_along = false;
         self.track = None;
-        self.desk.reset();
+        self.desk.reset(self.now);
         self.wayside.reset(&self.line.sections[0]);
         let distance_m = self.wheel.axle().distance_m;
         for tacho in &mut self.tachos {

@@ -1,6 +1,6 @@
 //! Cab desks and train lines: what drivers, doors and the brake loop give TCMS and the unit.
 
-use protocol::message::{ModeSwitch, TrainLines};
+use protocol::message::{CabEntries, ModeSwitch, TrainLines};
 use protocol::{Duration, Instant};
 
 use crate::lever::Lever;
@@ -12,6 +12,9 @@ use super::train_faults::CabDeskFaults;
 
 /// How long a button stays pressed.
 const PRESSED: Duration = Duration::from_ms(500);
+/// How often what is keyed in is sent, and how many times: few enough that a unit that does not know them logs nothing.
+const ENTRY_PERIOD: Duration = Duration::from_ms(50);
+const ENTRY_FRAMES: u8 = 6;
 
 /// Contacts and levers of both cabs and of the train; the unit is in the first cab.
 #[derive(Debug)]
@@ -37,6 +40,15 @@ pub struct CabDesk {
     start_until: Instant,
     eb_loop: bool,
     eb_loop_fed: bool,
+    entry: Entry,
+}
+
+/// Train number that was keyed in last, and what of it is still to be sent.
+#[derive(Clone, Copy, Debug, Default)]
+struct Entry {
+    number: u16,
+    frames: u8,
+    due: Instant,
 }
 
 /// Switches that are on.
@@ -84,17 +96,23 @@ impl Default for CabDesk {
             start_until: Instant::ZERO,
             eb_loop: false,
             eb_loop_fed: false,
+            entry: Entry::default(),
         }
     }
 }
 
 impl CabDesk {
-    /// Everything back to where [`Self::default`] has it; loop and faults are the train's and stay.
-    pub fn reset(&mut self) {
+    /// Everything back to where [`Self::default`] has it; loop and faults are the train's and stay. Another train number
+    /// than the configured one is taken back.
+    pub fn reset(&mut self, now: Instant) {
+        if self.entry.number != 0 {
+            self.key_in(now, 0);
+        }
         *self = Self {
             eb_loop: self.eb_loop,
             eb_loop_fed: self.eb_loop_fed,
             faults: self.faults,
+            entry: self.entry,
             ..Self::default()
         };
     }
@@ -105,6 +123,26 @@ impl CabDesk {
 
     pub fn press_start(&mut self, now: Instant) {
         self.start_until = now + PRESSED;
+    }
+
+    /// Keys a train number in.
+    pub fn key_in(&mut self, now: Instant, number: u16) {
+        self.entry = Entry {
+            number,
+            frames: ENTRY_FRAMES,
+            due: now,
+        };
+    }
+
+    /// What is keyed in, when it is due to be sent.
+    pub fn entry_due(&mut self, now: Instant) -> Option<CabEntries> {
+        if self.entry.frames == 0 || now < self.entry.due {
+            return None;
+        }
+        self.entry.frames -= 1;
+        self.entry.due = now + ENTRY_PERIOD;
+        let train_number = self.entry.number;
+        Some(CabEntries { train_number })
     }
 
     /// Turns a switch of the train.
@@ -260,7 +298,7 @@ mod tests {
     fn a_broken_contact_outlives_a_reset() {
         let mut desk = CabDesk::default();
         desk.faults.doors = Some(false);
-        desk.reset();
+        desk.reset(Instant::ZERO);
         assert!(!desk.doors_proved());
         assert!(!desk.lines(Instant::ZERO).contains(TrainLines::DOORS_CLOSED));
     }

@@ -24,6 +24,7 @@ mod log_reader;
 mod log_session;
 mod markers;
 mod motion;
+mod order_sender;
 pub(crate) mod random;
 mod ranges;
 mod request;
@@ -286,6 +287,9 @@ impl Rig {
 
     /// Frames of I/O rack, TCMS and wayside that are due.
     fn play_train(&mut self, now: Instant, out: &mut Vec<u8>) {
+        if let Some(entries) = self.desk.entry_due(now) {
+            self.link.send(now, &entries.into(), out);
+        }
         self.link.send(now, &self.io_input(now).into(), out);
         let seen = TrainSeen {
             braking: self.braking,
@@ -312,8 +316,11 @@ impl Rig {
                 .note_frame(received.header.channel, self.link.counters());
             let harness = self.harness.is_there();
             match &received.message {
-                Message::IoOutput(_) | Message::AtcToTcms(_) | Message::TwcTrain(_) if !harness => {
-                }
+                Message::IoOutput(_)
+                | Message::AtcToTcms(_)
+                | Message::TwcTrain(_)
+                | Message::TwcReport(_)
+                    if !harness => {}
                 Message::IoOutput(io) => self.latest.on_io(now, io),
                 Message::AtcToTcms(command) => {
                     if !self.tcms_port.silent() {
@@ -324,6 +331,10 @@ impl Rig {
                 Message::TwcTrain(answer) => {
                     self.wayside.on_answer();
                     self.latest.on_twc(now, answer, self.wayside.answers());
+                }
+                Message::TwcReport(report) => {
+                    self.wayside.orders.on_report();
+                    self.latest.on_report(now, report);
                 }
                 Message::Taken(taken) => self.watch.note_taken(*taken),
                 Message::TrainState(state) => {

@@ -36,12 +36,19 @@ impl Rig {
             (Signal::WaysideLoop, f64::from(data.loop_id)),
             (Signal::WaysideDoorSide, f64::from(data.door_side.code())),
             (Signal::WaysideMode, f64::from(data.running_mode.code())),
+            (
+                Signal::WaysideOrder,
+                f64::from(self.wayside.orders.order().code()),
+            ),
             (Signal::Departure, f64::from(u8::from(data.departure))),
             (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
             (Signal::Controller, f64::from(self.desk.lever.wire())),
             (Signal::TwcAnswers, f64::from(self.wayside.answers())),
         ] {
             sample.set(signal, value);
+        }
+        if let Some(answered) = self.wayside.orders.answered() {
+            sample.set_bit(Signal::OrdersAnswered, answered);
         }
         match &self.track {
             Some(track) => {

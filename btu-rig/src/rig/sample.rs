@@ -2,7 +2,7 @@
 
 use protocol::message::{
     AtcToTcms, AtcToTcmsBits, IoOutput, Outputs, Status, StatusBits, TcmsToAtcBits, TrainLines,
-    TrainState, TwcTrain,
+    TrainState, TwcReport, TwcTrain,
 };
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant, Speed};
@@ -238,6 +238,22 @@ impl LatestSample {
             .set(Signal::TwcAnswerTrain, f64::from(answer.train_number));
     }
 
+    /// Takes the train's report to the wayside's orders.
+    pub fn on_report(&mut self, now: Instant, report: &TwcReport) {
+        self.heard[Source::Report as usize] = Some(now);
+        for (signal, value) in [
+            (Signal::OwnTrain, report.train_number),
+            (Signal::NumberState, u16::from(report.number_state.code())),
+            (Signal::Destination, report.destination),
+            (Signal::OrderState, u16::from(report.order_state.code())),
+            (Signal::TwcHeard, report.received),
+            (Signal::TwcRefused, report.refused),
+            (Signal::TwcOthers, report.others),
+        ] {
+            self.sample.set(signal, f64::from(value));
+        }
+    }
+
     /// Takes the train lines as sent.
     pub fn note_lines(&mut self, lines: TrainLines) {
         for (signal, line) in [
@@ -292,6 +308,7 @@ mod tests {
         latest.on_tcms(Instant::ZERO, &AtcToTcms::default());
         latest.on_status(Instant::ZERO, &Status::default());
         latest.on_twc(Instant::ZERO, &TwcTrain::default(), 1);
+        latest.on_report(Instant::ZERO, &TwcReport::default());
         latest.on_train_state(Instant::ZERO, &TrainState::default(), true);
         let known = |latest: &LatestSample| {
             let all = Signal::ALL.iter().copied();

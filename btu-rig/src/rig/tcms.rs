@@ -6,7 +6,7 @@ use protocol::{CYCLE, Duration, SCAN, Speed};
 
 use crate::procedure::{EventSource, UnitEvent};
 use crate::stimulus::TrainSwitch;
-use crate::tcms::{TcmsEvent, TcmsInputs, TcmsView};
+use crate::tcms::{CabOrder, TcmsEvent, TcmsInputs, TcmsView};
 use crate::train::{CarSet, TrainData, TrainInputs};
 
 use super::Rig;
@@ -77,7 +77,15 @@ impl Rig {
         let mut orders = self.tcms.step(self.now, &inputs);
         orders.regeneration_refused = !on(TrainSwitch::Regeneration);
         self.log_tcms();
-        let line = self.tcms.view().line;
+        let view = self.tcms.view();
+        // Making safe has given the train back to the unit's cab.
+        let changes = !self.quiescent && !self.faults.cabs_stay;
+        match view.cab_order.filter(|_| changes) {
+            Some(CabOrder::GiveUp) => self.desk.hcr = false,
+            Some(CabOrder::TakeUp) => self.desk.switch(TrainSwitch::OtherCab, true),
+            None => {}
+        }
+        let line = view.line;
         self.desk.set_loop(line.energised, line.fed);
         orders
     }

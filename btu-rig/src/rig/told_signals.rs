@@ -11,12 +11,13 @@ pub(super) enum Source {
     Tcms,
     Status,
     Twc,
+    Report,
     TrainState,
 }
 
 /// Signals each kind of frame carries, forgotten with it. Mode and target come by two ways, so
 /// that they stay known when one of them fails.
-pub(super) const CARRIED: [(Source, &[Signal]); 5] = [
+pub(super) const CARRIED: [(Source, &[Signal]); 6] = [
     (Source::Io, &IO_SIGNALS),
     (
         Source::Tcms,
@@ -27,7 +28,18 @@ pub(super) const CARRIED: [(Source, &[Signal]); 5] = [
         Source::Twc,
         &[Signal::TwcAnswerStation, Signal::TwcAnswerTrain],
     ),
+    (Source::Report, &REPORT_SIGNALS),
     (Source::TrainState, &TRAIN_STATE_SIGNALS),
+];
+
+const REPORT_SIGNALS: [Signal; 7] = [
+    Signal::OwnTrain,
+    Signal::NumberState,
+    Signal::Destination,
+    Signal::OrderState,
+    Signal::TwcHeard,
+    Signal::TwcRefused,
+    Signal::TwcOthers,
 ];
 
 const IO_SIGNALS: [Signal; 17] = [

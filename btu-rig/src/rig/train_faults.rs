@@ -41,6 +41,8 @@ pub struct TrainFaults {
     pub desk: CabDeskFaults,
     /// What becomes of TCMS's frames, if anything.
     pub tcms: Option<TcmsCondition>,
+    /// TCMS does not change the cabs.
+    pub cabs_stay: bool,
 }
 
 /// Fault modes that are on the train, and how much of each acts.
@@ -182,6 +184,7 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         equipment,
         desk,
         tcms,
+        cabs_stay,
     } = faults;
     match (mode.place, effect) {
         (Place::Inverter, Effect::Dead) => on(&mut equipment.inverters_dead),
@@ -213,6 +216,7 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         (Place::HeadControlRelay, Effect::StuckOff) => desk.hcr = Some(false),
         (Place::Tcms, Effect::StuckOn) => *tcms = Some(TcmsCondition::Stale),
         (Place::Tcms, Effect::Dead) => *tcms = Some(TcmsCondition::Silent),
+        (Place::TcmsCabs, Effect::Dead) => *cabs_stay = true,
         _ => {}
     }
 }

@@ -2,11 +2,12 @@
 
 use protocol::line::Section;
 use protocol::link::Link;
-use protocol::message::TwcWayside;
+use protocol::message::{Message, TwcWayside};
 use protocol::{Duration, Instant};
 
 use crate::stimulus::{StationData, WaysideCondition};
 
+use super::order_sender::OrderSender;
 use super::random::Random;
 
 /// Period of the wayside's frames.
@@ -21,6 +22,7 @@ const NO_FIXED_SPEED: u8 = 255;
 pub struct Wayside {
     condition: WaysideCondition,
     data: StationData,
+    pub orders: OrderSender,
     next_due: Instant,
     random: Random,
     frame: Vec<u8>,
@@ -33,6 +35,7 @@ impl Wayside {
         Self {
             condition: WaysideCondition::Good,
             data: StationData::at_departure(section),
+            orders: OrderSender::default(),
             next_due: Instant::ZERO,
             random,
             frame: Vec::new(),
@@ -40,10 +43,11 @@ impl Wayside {
         }
     }
 
-    /// Good again, at a section's departure station; due times and counts go on.
+    /// Good again, at a section's departure station, without orders; due times and counts go on.
     pub fn reset(&mut self, section: &Section) {
         self.condition = WaysideCondition::Good;
         self.data = StationData::at_departure(section);
+        self.orders.set(None);
     }
 
     pub fn set_data(&mut self, data: StationData) {
@@ -62,24 +66,29 @@ impl Wayside {
         self.condition
     }
 
-    /// Sends the frame that is due, if any, to the train of this number.
+    /// Sends the frames that are due, if any, to the train of this number.
     pub fn step(&mut self, now: Instant, train: u16, link: &mut Link, out: &mut Vec<u8>) {
         if now < self.next_due {
             return;
         }
         self.next_due = now + PERIOD;
-        let message = wire_data(&self.data, train).into();
-        match self.condition {
-            WaysideCondition::Silent => {}
-            WaysideCondition::Good => {
-                link.send(now, &message, out);
-            }
-            WaysideCondition::Corrupt => {
-                self.frame.clear();
-                link.send(now, &message, &mut self.frame);
-                self.corrupt();
-                out.extend_from_slice(&self.frame);
-            }
+        if self.condition == WaysideCondition::Silent {
+            return;
+        }
+        self.send(now, &wire_data(&self.data, train).into(), link, out);
+        if let Some(orders) = self.orders.due(train) {
+            self.send(now, &orders.into(), link, out);
+        }
+    }
+
+    fn send(&mut self, now: Instant, message: &Message, link: &mut Link, out: &mut Vec<u8>) {
+        if self.condition == WaysideCondition::Corrupt {
+            self.frame.clear();
+            link.send(now, message, &mut self.frame);
+            self.corrupt();
+            out.extend_from_slice(&self.frame);
+        } else {
+            link.send(now, message, out);
         }
     }
 

@@ -2,6 +2,7 @@
 //! out.
 
 mod conditions;
+mod orders;
 mod station;
 
 use protocol::Speed;
@@ -14,6 +15,7 @@ use crate::stored::{mode_switch, mps};
 pub use conditions::{
     CarFailure, CutOut, DoorState, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
 };
+pub use orders::OrderData;
 pub use station::StationData;
 
 /// Steepest gradient that can be added to the track's, ‰.
@@ -106,6 +108,8 @@ pub enum Stimulus {
     },
     /// Station data the wayside sends.
     Station(StationData),
+    /// Orders that the wayside sends beside them; `None` = none.
+    Orders(Option<OrderData>),
     /// Condition of the wayside.
     Wayside(WaysideCondition),
     /// All doors, of both sides.
@@ -141,6 +145,11 @@ pub enum Stimulus {
     MaintenanceKey {
         /// On.
         on: bool,
+    },
+    /// Train number keyed in at the cab.
+    TrainNumber {
+        /// 0 = as the unit is configured.
+        number: u16,
     },
     /// Mode switch.
     ModeSwitch(#[serde(with = "mode_switch")] ModeSwitch),

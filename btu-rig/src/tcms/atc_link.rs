@@ -21,6 +21,10 @@ pub struct AtoOrder {
     pub automatic: bool,
     /// ATO has failed, or the unit is silent.
     pub failed: bool,
+    /// The unit asks for the change of cabs.
+    pub change_of_cabs: bool,
+    /// The unit says that the train is put away.
+    pub put_away: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -82,6 +86,8 @@ impl AtcLink {
             holding: bits.contains(AtcToTcmsBits::HOLDING_BRAKE),
             automatic: matches!(mode, Mode::Automatic | Mode::AutomaticRun),
             failed: self.silent || bits.contains(AtcToTcmsBits::ATO_FAILED),
+            change_of_cabs: bits.contains(AtcToTcmsBits::CHANGE_OF_CABS),
+            put_away: bits.contains(AtcToTcmsBits::PUT_AWAY),
         }
     }
 

@@ -42,6 +42,14 @@ pub struct TcmsData {
     /// Speed by which an inverter's axles may differ from the others' before they count as slipping
     /// or sliding, km/h (S3).
     pub slip_kmh: f64,
+    /// Time between giving a cab up and taking the other at a turn-back, s.
+    #[serde(default = "cab_change_s")]
+    pub cab_change_s: f64,
+}
+
+/// That of `line6`, for files without it.
+const fn cab_change_s() -> f64 {
+    1.0
 }
 
 impl TcmsData {
@@ -100,7 +108,8 @@ impl TcmsData {
         )?;
         time("tcms.not_following_after_s", self.not_following_after_s)?;
         time("tcms.silent_after_s", self.silent_after_s)?;
-        within("tcms.slip_kmh", self.slip_kmh, 0.1, 50.0)
+        within("tcms.slip_kmh", self.slip_kmh, 0.1, 50.0)?;
+        time("tcms.cab_change_s", self.cab_change_s)
     }
 }
 
@@ -153,6 +162,7 @@ mod tests {
             ("not_following_after_s", "61.0"),
             ("silent_after_s", "-1.0"),
             ("slip_kmh", "0.0"),
+            ("cab_change_s", "61.0"),
         ] {
             let error = TrainData::from_toml(&with(key, value)).unwrap_err();
             let named = error.to_string().contains(&format!("tcms.{key}"));

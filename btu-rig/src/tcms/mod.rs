@@ -2,8 +2,8 @@
 //! have it. Sans-IO: stepped once a scan with what cabs, train lines, the unit and the train's equipment
 //! give it.
 //!
-//! A scan, in this order (`system`): the cab that counts (`inputs`), orders of ATO (`atc_link`), the
-//! `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`equipment_monitor`,
+//! A scan, in this order (`system`): the cab that counts (`inputs`), orders of the unit (`atc_link`), the change of
+//! cabs (`cab_change`), the `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`equipment_monitor`,
 //! `not_released`), the full service brake (`full_service_brake`), the holding brake
 //! (`holding_brake`), what cuts powering (`causes`), the value (`driving_control`, `controller`), the
 //! effort of each car (`effort`: `powering`, `braking`, `consist`), and what is reported (`view`,
@@ -11,6 +11,7 @@
 
 mod atc_link;
 mod braking;
+mod cab_change;
 mod cause_bits;
 mod causes;
 mod consist;
@@ -33,6 +34,7 @@ mod system;
 mod timer;
 mod view;
 
+pub use cab_change::CabOrder;
 pub use cause_bits::{EbSources, Lamps, PowerCuts};
 pub use consist::Consist;
 pub use controller::{ControllerInputs, FULL_BRAKE, FULL_POWER};

@@ -6,6 +6,7 @@ use protocol::{Duration, Instant};
 use crate::train::{CarSet, MAX_CARS, TrainData, TrainInputs};
 
 use super::atc_link::{AtcLink, AtoOrder};
+use super::cab_change::CabChange;
 use super::causes::{Findings, lamps, power_cuts};
 use super::consist::Consist;
 use super::controller::{FULL_BRAKE, FULL_POWER};
@@ -23,7 +24,7 @@ use super::report::{Report, Scan};
 use super::timer::OnDelay;
 use super::view::{TcmsEvent, TcmsView};
 
-/// Speed below which the train stands and its direction may change, m/s [default].
+/// Speed below which the train stands: its direction may change, and its cabs, m/s [default].
 const STANDS_MPS: f64 = 0.1;
 /// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
 const LONGEST_STEP_S: f64 = 0.05;
@@ -40,6 +41,7 @@ pub struct Tcms {
     holding_share: f64,
     monitor: EquipmentMonitor,
     holding: HoldingBrake,
+    cab_change: CabChange,
     dead_man: OnDelay,
     dead_man_acts: bool,
     /// ATO's direction: backward. It changes at standstill.
@@ -82,6 +84,7 @@ impl Tcms {
             holding_share,
             monitor: EquipmentMonitor::new(&data, full_service_n),
             holding: HoldingBrake::new(&data),
+            cab_change: CabChange::new(&data),
             dead_man: OnDelay::default(),
             dead_man_acts: false,
             backward: false,
@@ -109,9 +112,10 @@ impl Tcms {
         self.unlatch();
     }
 
-    /// Nothing latched: the holding brake is on for as long as it is asked for.
+    /// Nothing latched: the holding brake is on for as long as it is asked for, and no change of cabs goes on.
     pub fn unlatch(&mut self) {
         self.holding.reset();
+        self.cab_change.leave();
     }
 
     /// Takes a frame of the unit.
@@ -136,8 +140,14 @@ impl Tcms {
 
     /// One scan; returns the demands on the train.
     pub fn step(&mut self, now: Instant, inputs: &TcmsInputs<'_>) -> TrainInputs {
-        let cab = inputs.active_cab();
         let order = self.atc.step(now);
+        // Driverless turn-back and put-away brake like the switches of the same name [S4].
+        let inputs = &TcmsInputs {
+            turn_back: inputs.turn_back || order.change_of_cabs,
+            parking_brake: inputs.parking_brake || order.put_away,
+            ..*inputs
+        };
+        let cab = inputs.active_cab();
         let scan = ScanContext {
             now,
             inputs,
@@ -193,6 +203,9 @@ impl Tcms {
             demands,
             given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
             backward: cab.is_some_and(|cab| cab.reverser < 0) || self.backward,
+            cab_order: self
+                .cab_change
+                .step(now, order.change_of_cabs, speed_mps < STANDS_MPS),
         };
         self.log(&scan);
         self.tell(&scan, share, load_kg)

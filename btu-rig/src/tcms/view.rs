@@ -2,6 +2,7 @@
 
 use protocol::event::Event;
 
+use super::cab_change::CabOrder;
 use super::cause_bits::{Lamps, PowerCuts};
 use super::driving_control::DrivingOutputs;
 use super::effort::Demands;
@@ -39,6 +40,8 @@ pub struct TcmsView {
     pub given: i16,
     /// Powering drives the train backward: by the reverser that counts, or by ATO.
     pub backward: bool,
+    /// What becomes of a head control relay in this scan.
+    pub cab_order: Option<CabOrder>,
 }
 
 /// An event TCMS logs.

@@ -144,6 +144,29 @@ pub struct TrainConfig {
     pub number: u16,
 }
 
+/// Orders of the wayside, and what is keyed in at the cab.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OrdersConfig {
+    /// Difference between the section length in orders and in the track database, m.
+    pub length_tolerance_m: f64,
+    /// Time within which the cabs must be changed at a turn-back, ms.
+    pub cab_change_ms: u32,
+    /// Frames in a row with the same train number that make it keyed in.
+    pub entry_frames: u8,
+}
+
+/// The values of `sg100`, for configurations without this table.
+impl Default for OrdersConfig {
+    fn default() -> Self {
+        Self {
+            length_tolerance_m: 1.0,
+            cab_change_ms: 3000,
+            entry_frames: 3,
+        }
+    }
+}
+
 /// Silence that each channel is allowed, and frames rejected on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -213,6 +236,9 @@ pub struct UnitConfig {
     /// The train that the unit is in.
     #[serde(default)]
     pub train: TrainConfig,
+    /// Orders of the wayside, and what is keyed in at the cab.
+    #[serde(default)]
+    pub orders: OrdersConfig,
     /// Time-outs of the channels.
     pub link: LinkConfig,
     /// Supervision of markers and TRA.
@@ -321,6 +347,9 @@ impl UnitConfig {
             driverless.close_ms: 500.0, 60000.0;
             driverless.reopen_ms: 100.0, 60000.0;
             driverless.close_tries: 1.0, 20.0;
+            orders.length_tolerance_m: 0.1, 50.0;
+            orders.cab_change_ms: 500.0, 60000.0;
+            orders.entry_frames: 1.0, 20.0;
             link.io_timeout_ms: 50.0, 900.0;
             link.tester_timeout_ms: 200.0, 1000.0;
         }

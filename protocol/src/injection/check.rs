@@ -84,6 +84,12 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::DepartureGuard
         | Place::SlowRunning
         | Place::TrainGuard
+        | Place::OrderGuard
+        | Place::CabEntries
+        | Place::HandOverBrake
+        | Place::PutAwayBrake
+        | Place::WakeUpTest
+        | Place::TcmsCabs
         | Place::StationGuard
         | Place::SideGuard => &[DEAD],
         Place::TwcDoorSide | Place::DoorOrder => &[("offset", -3.0, 3.0)],

@@ -86,6 +86,16 @@ pub enum Place {
     SlowRunning,
     /// Comparison of the train number in station data with the unit's own.
     TrainGuard,
+    /// Comparison of orders' destination and section length with the track database.
+    OrderGuard,
+    /// Train number keyed in at the cab, as the TWC CPU takes it.
+    CabEntries,
+    /// Emergency brake of a cab that is given up at a turn-back.
+    HandOverBrake,
+    /// Emergency brake of a train that is put away.
+    PutAwayBrake,
+    /// Self-test of a train that wakes up.
+    WakeUpTest,
     /// Comparison of station data with the track database, door side left out.
     StationGuard,
     /// Comparison of the door side in station data with the track database.
@@ -168,6 +178,8 @@ pub enum Place {
     HeadControlRelay,
     /// What TCMS sends on RS-485.
     Tcms,
+    /// Change of cabs by TCMS.
+    TcmsCabs,
     /// Pressure switch of the main reservoir.
     MainReservoir,
 }
@@ -187,6 +199,7 @@ impl Place {
                 | Self::DoorContactRight
                 | Self::HeadControlRelay
                 | Self::Tcms
+                | Self::TcmsCabs
                 | Self::MainReservoir
         )
     }

@@ -109,6 +109,78 @@ wire_enum! {
 }
 
 wire_enum! {
+    /// What the wayside orders a train to do beside running [S0, S4].
+    TrainOrder {
+        /// Nothing.
+        None = 0 "none",
+        /// Turn back: hand the train over to the other cab.
+        TurnBack = 1 "turn_back",
+        /// Be put away.
+        PutAway = 2 "put_away",
+        /// Wake up.
+        WakeUp = 3 "wake_up",
+    }
+}
+
+wire_enum! {
+    /// How far a train has carried out its last order.
+    OrderState {
+        /// None is under way.
+        Idle = 0 "idle",
+        /// TCMS is asked for the change of cabs, the train is held.
+        TurningBack = 1 "turning_back",
+        /// The other cab has the train.
+        HandedOver = 2 "handed_over",
+        /// This cab has the train from the other one, and waits for station data.
+        TakingOver = 3 "taking_over",
+        /// Put away: the emergency brake is applied, and only waking up is waited for.
+        PutAway = 4 "put_away",
+        /// Waking up: the unit tests itself.
+        Waking = 5 "waking",
+        /// Ready for a departure.
+        Ready = 6 "ready",
+        /// Not carried out; the train stays held.
+        Failed = 7 "failed",
+    }
+}
+
+wire_enum! {
+    /// Where the unit's train number is from.
+    NumberState {
+        /// From the unit configuration.
+        Configured = 0 "configured",
+        /// Keyed in at the cab; the wayside has not used it yet.
+        Keyed = 1 "keyed",
+        /// Keyed in at the cab, and the wayside has sent data for it.
+        Confirmed = 2 "confirmed",
+    }
+}
+
+wire_bits! {
+    /// Why an order is not carried out: the parameter of event `order_refused`.
+    OrderLacks {
+        /// The train moves.
+        STANDSTILL = 0,
+        /// Doors are not proved closed and locked.
+        DOORS_CLOSED = 1,
+        /// The train is not aligned at its destination, with station data of it.
+        AT_DESTINATION = 2,
+        /// The mode switch is not at driverless.
+        DRIVERLESS = 3,
+        /// An automatic run is under way.
+        RUN_ENDED = 4,
+        /// A tester is armed.
+        DISARMED = 5,
+        /// Another order is being carried out.
+        FREE = 6,
+        /// The train is not put away.
+        PUT_AWAY = 7,
+        /// The head control relay of this cab is not energised.
+        CAB_ACTIVE = 8,
+    }
+}
+
+wire_enum! {
     /// Side of the platform.
     DoorSide {
         /// No doors may open.
@@ -283,5 +355,7 @@ wire_bits! {
         NO_DEPARTURE = 13,
         /// Driverless, the doors at this station have still to open, stand open or do not close.
         DOOR_SEQUENCE = 14,
+        /// An order of the wayside holds the train: turn-back, put-away or wake-up.
+        ORDERED = 15,
     }
 }

@@ -105,6 +105,14 @@ layout! {
 }
 
 layout! {
+    /// What the driver keys in at the cab, I/O rack → unit; sent while it is keyed in.
+    CabEntries, Io, 0x02 {
+        /// Train number; 0 = that of the unit configuration.
+        train_number: u16,
+    }
+}
+
+layout! {
     /// Outputs of the unit after a scan, unit → I/O rack.
     IoOutput, Io, 0x81 {
         /// Output contacts.

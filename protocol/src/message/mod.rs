@@ -18,9 +18,10 @@ use alloc::vec::Vec;
 
 pub use enums::{
     AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause,
-    MeasureUnit, Mode, ModeSwitch, Refusals, RunningMode, StoreKind,
+    MeasureUnit, Mode, ModeSwitch, NumberState, OrderLacks, OrderState, Refusals, RunningMode,
+    StoreKind, TrainOrder,
 };
-pub use io::{IoInput, IoOutput, Outputs, TrainLines};
+pub use io::{CabEntries, IoInput, IoOutput, Outputs, TrainLines};
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
 };
@@ -34,7 +35,7 @@ pub use stored::{ReadStored, SetClock, StoredClock, StoredEnd, StoredEntry, Stor
 pub use tcms::{AtcToTcms, AtcToTcmsBits, TcmsToAtc, TcmsToAtcBits};
 pub use test_board::{TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc};
 pub use train_state::{Subscribe, TrainState};
-pub use twc::{TwcTrain, TwcTrainBits, TwcWayside};
+pub use twc::{TwcOrders, TwcReport, TwcTrain, TwcTrainBits, TwcWayside};
 
 /// The four channels of the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -225,11 +226,14 @@ messages!(
     StoredEnd,
     Taken,
     IoInput,
+    CabEntries,
     IoOutput,
     TcmsToAtc,
     AtcToTcms,
     TwcWayside,
+    TwcOrders,
     TwcTrain,
+    TwcReport,
 );
 
 /// Every enumeration that is a field's type.
@@ -237,6 +241,9 @@ pub const ENUMS: &[WordSpec] = &[
     Mode::SPEC,
     ModeSwitch::SPEC,
     RunningMode::SPEC,
+    TrainOrder::SPEC,
+    OrderState::SPEC,
+    NumberState::SPEC,
     DoorSide::SPEC,
     EbCause::SPEC,
     FsbCause::SPEC,
@@ -260,4 +267,5 @@ pub const BIT_SETS: &[WordSpec] = &[
     AtcToTcmsBits::SPEC,
     TwcTrainBits::SPEC,
     AbsurdInputs::SPEC,
+    OrderLacks::SPEC,
 ];

@@ -45,6 +45,10 @@ wire_bits! {
         ATO_FAILED = 4,
         /// Powering drives the train backward: a jog back to the stop point.
         BACKWARD = 5,
+        /// Change of cabs asked for: this cab gives the train up, the other takes it [S4].
+        CHANGE_OF_CABS = 6,
+        /// The train is put away.
+        PUT_AWAY = 7,
     }
 }
 

@@ -1,6 +1,6 @@
 //! TWC channel: station and train data through the loop.
 
-use super::enums::{DoorSide, Mode, RunningMode};
+use super::enums::{DoorSide, Mode, NumberState, OrderState, RunningMode, TrainOrder};
 use super::layout::{layout, wire_bits};
 
 wire_bits! {
@@ -58,5 +58,43 @@ layout! {
         bits: TwcTrainBits,
         /// Measured speed, cm/s.
         speed_cms: u16,
+    }
+}
+
+layout! {
+    /// Orders for a train, wayside → unit. A wayside that knows them sends them beside `TwcWayside`.
+    TwcOrders, Twc, 0x02 {
+        /// Train number.
+        train_number: u16,
+        /// Section that the length below is of, by its number in the track database; 0 = none is told.
+        section: u16,
+        /// Length of that section, 0.1 m.
+        section_length_dm: u32,
+        /// Station at which the train's run ends; 0 = none.
+        destination: u16,
+        /// What the train is to do beside running.
+        order: TrainOrder,
+    }
+}
+
+layout! {
+    /// What the train made of its orders, in answer to each accepted `TwcOrders`, unit → wayside.
+    TwcReport, Twc, 0x82 {
+        /// Sequence number of the frame answered.
+        answered_seq: u16,
+        /// The unit's own train number; 0 = none.
+        train_number: u16,
+        /// Where that number is from.
+        number_state: NumberState,
+        /// Destination in force; 0 = none.
+        destination: u16,
+        /// How far the last order is carried out.
+        order_state: OrderState,
+        /// TWC frames for this train since power-up, refused ones among them, wrapping.
+        received: u16,
+        /// Of those, frames that contradict the track database, wrapping.
+        refused: u16,
+        /// TWC frames for other trains since power-up, wrapping.
+        others: u16,
     }
 }

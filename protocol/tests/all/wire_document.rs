@@ -261,10 +261,16 @@ const fn person(address: Address) -> &'static str {
 }
 
 /// What is sent regularly: message, ms between two, and when.
-const REGULAR: [(&str, usize, &str); 10] = [
+const REGULAR: [(&str, usize, &str); 13] = [
     ("IoInput", 10, "always"),
     ("TcmsToAtc", 50, "always"),
+    ("CabEntries", 50, "while a number is keyed in at the cab"),
     ("TwcWayside", 250, "over a loop"),
+    (
+        "TwcOrders",
+        250,
+        "over a loop, by a wayside that gives orders",
+    ),
     ("KeepAlive", 500, "while a tester is at work; at the latest"),
     (
         "Subscribe",
@@ -274,6 +280,7 @@ const REGULAR: [(&str, usize, &str); 10] = [
     ("IoOutput", 10, "always"),
     ("AtcToTcms", 50, "always"),
     ("TwcTrain", 250, "in answer to each `TwcWayside`"),
+    ("TwcReport", 250, "in answer to each `TwcOrders`"),
     ("Status", 50, "while a tester was heard within 1 s"),
     (
         "TrainState",

@@ -138,6 +138,8 @@ mod tests {
             Stimulus::MarkerMoved { psm: 1, by_m: None },
             Stimulus::MarkersAlong { section: None },
             Stimulus::Station(station),
+            Stimulus::Orders(None),
+            Stimulus::TrainNumber { number: 0 },
             Stimulus::Wayside(WaysideCondition::Silent),
             Stimulus::Doors { closed: false },
             Stimulus::Hcr { on: false },
@@ -208,6 +210,8 @@ mod tests {
             | Stimulus::MarkerMoved { .. }
             | Stimulus::MarkersAlong { .. }
             | Stimulus::Station(_)
+            | Stimulus::Orders(_)
+            | Stimulus::TrainNumber { .. }
             | Stimulus::Wayside(_)
             | Stimulus::ControllerVolts { .. }
             | Stimulus::ControllerContacts { .. }

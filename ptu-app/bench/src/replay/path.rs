@@ -4,7 +4,7 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
-const PATH: [&str; 111] = [
+const PATH: [&str; 119] = [
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",
@@ -17,6 +17,7 @@ const PATH: [&str; 111] = [
     "wayside_loop",
     "wayside_door_side",
     "wayside_running_mode",
+    "wayside_order",
     "departure",
     "doors",
     "doors_left",
@@ -103,6 +104,13 @@ const PATH: [&str; 111] = [
     "test_answers",
     "test_answer_station",
     "test_answer_train",
+    "own_train",
+    "number_state",
+    "destination",
+    "order_state",
+    "twc_heard",
+    "twc_refused",
+    "twc_others",
     // What TCMS makes of that.
     "tcms_hears",
     "tcms_mode",
@@ -128,8 +136,9 @@ pub const REPORT_ROWS: usize = 2;
 
 /// Left out of every comparison: the number of log entries says nothing that the events themselves, told
 /// by name, do not; and what the unit's identity is compared with is the tester's, not the unit's.
-pub const LEFT_OUT: [&str; 5] = [
+pub const LEFT_OUT: [&str; 6] = [
     "events",
+    "orders_answered",
     "identity_serial",
     "identity_software",
     "identity_config",

@@ -37,6 +37,14 @@ pub(super) static VERBS: &[Verb] = &[
     switch!("cab.active", |on| Stimulus::Hcr { on }),
     switch!("cab.key", |on| Stimulus::MaintenanceKey { on }),
     stimulus!(
+        "cab.train_number",
+        &[needs("number", ParamType::Int(0, 65535))],
+        |args| {
+            let number = u16::try_from(args.int("number")?).map_err(|e| e.to_string())?;
+            Stimulus::TrainNumber { number }
+        }
+    ),
+    stimulus!(
         "cab.mode",
         &[needs("mode", ParamType::Choice(ModeSwitch::LABELS))],
         |args| {

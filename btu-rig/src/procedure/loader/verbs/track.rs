@@ -1,13 +1,13 @@
 //! The TWC wayside and station data.
 
 use protocol::line::{Line, Section};
-use protocol::message::{DoorSide, RunningMode};
+use protocol::message::{DoorSide, RunningMode, TrainOrder};
 
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Param, Verb, takes};
-use crate::stimulus::{StationData, Stimulus, WaysideCondition};
+use crate::stimulus::{OrderData, StationData, Stimulus, WaysideCondition};
 
 const NUMBER: ParamType = ParamType::Int(0, 65535);
 
@@ -25,6 +25,17 @@ pub(super) const STATION: &[Param] = &[
     takes("route", NUMBER),
 ];
 
+/// Parameters of the wayside's orders.
+const ORDERS: &[Param] = &[
+    takes("order", ParamType::Choice(TrainOrder::LABELS)),
+    takes("section", ParamType::Section),
+    takes("length", ParamType::Amount(Dimension::Distance)),
+    takes("destination", NUMBER),
+    takes("train_number", NUMBER),
+];
+/// Longest section that orders can tell, m: that of a track database.
+const LONGEST_M: f64 = 20_000.0;
+
 pub(super) static VERBS: &[Verb] = &[
     stimulus!("twc.station", STATION, |args| Stimulus::Station(station(
         args,
@@ -36,6 +47,10 @@ pub(super) static VERBS: &[Verb] = &[
     stimulus!("twc.at_arrival", STATION, |args| Stimulus::Station(
         station(args, Place::Arrival)?
     )),
+    stimulus!("twc.orders", ORDERS, |args| Stimulus::Orders(Some(orders(
+        args
+    )?))),
+    stimulus!("twc.no_orders", &[], |_| Stimulus::Orders(None)),
     stimulus!("twc.good", &[], |_| Stimulus::Wayside(
         WaysideCondition::Good
     )),
@@ -88,6 +103,29 @@ pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, Stri
     }
     data.departure = args.flag("departure", data.departure);
     Ok(data)
+}
+
+/// Orders of the wayside: the length is that of the section, unless another is given.
+fn orders(args: &Args<'_>) -> Result<OrderData, String> {
+    let number = |name: &str| match args.get(name) {
+        Some(_) => u16::try_from(args.int(name)?).map_err(|e| e.to_string()),
+        None => Ok(0),
+    };
+    let section = args
+        .section("section")
+        .and_then(|number| args.context.line.section(number));
+    let length_m = args.amount_or("length", section.map_or(0.0, |section| section.length_m));
+    if !(0.0..=LONGEST_M).contains(&length_m) {
+        return Err(format!("`length` must be from 0 to {LONGEST_M} m"));
+    }
+    let order = args.text("order").and_then(TrainOrder::from_label);
+    Ok(OrderData {
+        section: section.map_or(0, |section| section.section),
+        length_dm: (length_m * 10.0).round() as u32,
+        destination: number("destination")?,
+        order: order.unwrap_or_default(),
+        train_number: number("train_number")?,
+    })
 }
 
 fn defaults(section: &Section, place: Place, line: &Line) -> StationData {

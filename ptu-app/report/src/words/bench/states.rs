@@ -42,6 +42,27 @@ impl Bench {
                 self.running_recovery,
                 self.running_slow,
             ],
+            Signal::WaysideOrder => vec![
+                self.none,
+                self.order_turn_back,
+                self.order_put_away,
+                self.order_wake_up,
+            ],
+            Signal::NumberState => vec![
+                self.number_configured,
+                self.number_keyed,
+                self.number_confirmed,
+            ],
+            Signal::OrderState => vec![
+                self.none,
+                self.order_turning_back,
+                self.order_handed_over,
+                self.order_taking_over,
+                self.order_is_put_away,
+                self.order_waking,
+                self.order_ready,
+                self.order_failed,
+            ],
             Signal::AtoState => {
                 vec![
                     self.ato_inspection,

@@ -1,0 +1,219 @@
+//! Orders of the wayside, checked against the track database as station data are. An order is one when it begins: it is
+//! sent on for as long as the train is over the loop, and is given once.
+
+use protocol::Instant;
+use protocol::config::OrdersConfig;
+use protocol::event::Event;
+use protocol::injection::Place;
+use protocol::line::Line;
+use protocol::message::{TrainOrder, TwcOrders};
+
+use super::{TrainNumber, Twc};
+use crate::front_end::Faults;
+use crate::kernel::EventLog;
+
+/// Metres of the wire's unit of length.
+const DECIMETRE_M: f64 = 0.1;
+
+/// The last orders that were not refused.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ordered {
+    destination: u16,
+    order: TrainOrder,
+    heard: Instant,
+}
+
+impl Twc {
+    /// Takes orders unless they are for another train or contradict the track database; the order that they give anew.
+    pub fn take_orders(
+        &mut self,
+        now: Instant,
+        orders: &TwcOrders,
+        own: TrainNumber,
+        (line, config): (&Line, &OrdersConfig),
+        faults: &Faults,
+        log: &mut EventLog,
+    ) -> Option<TrainOrder> {
+        if self.passes_over(now, orders.train_number, own, faults, log) {
+            return None;
+        }
+        self.received = self.received.wrapping_add(1);
+        let route = self.data().map(|data| data.route);
+        let refusal = contradiction(orders, route, line, config, faults);
+        if let Some((event, parameter)) = refusal {
+            self.refused = self.refused.wrapping_add(1);
+            if self.orders_refusal != refusal {
+                log.push(now, event, parameter);
+            }
+        }
+        self.orders_refusal = refusal;
+        if refusal.is_some() {
+            return None;
+        }
+        let still = |before: &Ordered| now.since(before.heard) < self.timeout;
+        let before = self.ordered.filter(still).map(|before| before.order);
+        self.ordered = Some(Ordered {
+            destination: orders.destination,
+            order: orders.order,
+            heard: now,
+        });
+        let given = orders.order != TrainOrder::None && before != Some(orders.order);
+        given.then_some(orders.order)
+    }
+
+    /// Destination in force; 0 = none.
+    pub fn destination(&self) -> u16 {
+        self.ordered.map_or(0, |ordered| ordered.destination)
+    }
+
+    /// Frames for this train, refused ones of them, and frames for other trains since power-up, wrapping.
+    pub fn counts(&self) -> (u16, u16, u16) {
+        (self.received, self.refused, self.others)
+    }
+}
+
+/// What the orders say that the track database does not: its event, with the parameter. Stations are those of `route`,
+/// or of any while no station data are in force.
+fn contradiction(
+    orders: &TwcOrders,
+    route: Option<u16>,
+    line: &Line,
+    config: &OrdersConfig,
+    faults: &Faults,
+) -> Option<(Event, i32)> {
+    let length_m = f64::from(orders.section_length_dm) * DECIMETRE_M;
+    let section = line.section(orders.section);
+    let long_as_told = section.is_some_and(|section| {
+        libm::fabs(section.length_m - length_m) <= config.length_tolerance_m
+    });
+    let on_route = line.sections.iter().any(|section| {
+        let ends = [section.from_station, section.to_station];
+        route.is_none_or(|route| section.route == route) && ends.contains(&orders.destination)
+    });
+    let compared = !faults.dead(Place::OrderGuard);
+    let length_dm = i32::try_from(orders.section_length_dm).unwrap_or(i32::MAX);
+    let checks = [
+        (
+            compared && orders.section != 0 && !long_as_told,
+            (Event::TwcWrongLength, length_dm),
+        ),
+        (
+            compared && orders.destination != 0 && !on_route,
+            (Event::TwcWrongDestination, i32::from(orders.destination)),
+        ),
+        (
+            !orders.order.is_known(),
+            (Event::TwcWrongOrder, i32::from(orders.order.code())),
+        ),
+    ];
+    let found = checks.iter().find(|(contradicts, _)| *contradicts);
+    found.map(|(_, event)| *event)
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::Duration;
+
+    use super::*;
+
+    const OWN: TrainNumber = 8001;
+
+    fn line() -> Line {
+        Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
+    }
+
+    fn good(line: &Line) -> TwcOrders {
+        let section = &line.sections[0];
+        TwcOrders {
+            train_number: OWN,
+            section: section.section,
+            section_length_dm: (section.length_m * 10.0) as u32,
+            destination: line.sections[3].to_station,
+            order: TrainOrder::None,
+        }
+    }
+
+    #[test]
+    fn each_wrong_number_has_its_event() {
+        let line = line();
+        let good = good(&line);
+        let config = OrdersConfig::default();
+        let long = |by_m: f64| TwcOrders {
+            section_length_dm: ((line.sections[0].length_m + by_m) * 10.0) as u32,
+            ..good
+        };
+        let cases = [
+            (good, None),
+            (TwcOrders::default(), None),
+            (long(0.9), None),
+            (long(1.2), Some(Event::TwcWrongLength)),
+            (long(-1.2), Some(Event::TwcWrongLength)),
+            (
+                TwcOrders {
+                    section: 999,
+                    ..good
+                },
+                Some(Event::TwcWrongLength),
+            ),
+            (
+                TwcOrders {
+                    destination: 999,
+                    ..good
+                },
+                Some(Event::TwcWrongDestination),
+            ),
+            (
+                TwcOrders {
+                    order: TrainOrder::Unknown(9),
+                    ..good
+                },
+                Some(Event::TwcWrongOrder),
+            ),
+        ];
+        let faults = Faults::new(&[], 1);
+        for (orders, expected) in cases {
+            for route in [None, Some(line.sections[0].route)] {
+                let found = contradiction(&orders, route, &line, &config, &faults);
+                assert_eq!(found.map(|(event, _)| event), expected, "{orders:?}");
+            }
+        }
+        let other_route = contradiction(&good, Some(99), &line, &config, &faults);
+        assert!(matches!(other_route, Some((Event::TwcWrongDestination, _))));
+    }
+
+    #[test]
+    fn an_order_is_given_once_for_as_long_as_it_is_sent() {
+        let (line, config) = (line(), OrdersConfig::default());
+        let (faults, mut log) = (Faults::new(&[], 1), EventLog::default());
+        let mut twc = Twc::new(Duration::from_ms(1000));
+        let mut at_ms = 0;
+        let mut given = |pause_ms: u64, order, train_number| {
+            at_ms += pause_ms;
+            let orders = TwcOrders {
+                order,
+                train_number,
+                ..good(&line)
+            };
+            let now = Instant::from_ms(at_ms);
+            twc.take_orders(now, &orders, OWN, (&line, &config), &faults, &mut log)
+        };
+        use TrainOrder::{None, PutAway, TurnBack, Unknown};
+        let cases = [
+            (0, None, OWN, Option::None),
+            (250, TurnBack, 9999, Option::None),
+            (250, TurnBack, OWN, Some(TurnBack)),
+            (250, TurnBack, OWN, Option::None),
+            (250, Unknown(9), OWN, Option::None),
+            (250, TurnBack, OWN, Option::None),
+            (250, PutAway, OWN, Some(PutAway)),
+            (250, None, OWN, Option::None),
+            (250, PutAway, OWN, Some(PutAway)),
+            (1000, PutAway, OWN, Some(PutAway)),
+        ];
+        for (at, (pause_ms, order, number, expected)) in cases.into_iter().enumerate() {
+            assert_eq!(given(pause_ms, order, number), expected, "{at}");
+        }
+        assert_eq!(twc.counts(), (9, 1, 1));
+        assert_eq!(twc.destination(), line.sections[3].to_station);
+    }
+}

@@ -1,0 +1,194 @@
+//! Orders of the wayside and entries of the cab: whether the train is in the state for them, and what becomes of them.
+
+use alloc::vec::Vec;
+
+use protocol::config::OrdersConfig;
+use protocol::event::Event;
+use protocol::injection::Place;
+use protocol::message::{
+    CabEntries, Mode, ModeSwitch, OrderLacks, OrderState, SelfTest, TrainLines, TrainOrder,
+    TwcOrders, TwcReport,
+};
+use protocol::{Duration, Instant};
+
+use super::Unit;
+use super::functions::{Functions, Surroundings};
+use crate::atp::DoorLines;
+use crate::driverless::{CabInputs, StablingInputs};
+use crate::kernel::EventLog;
+
+impl Unit {
+    /// Takes orders and reports what became of them. While the TEST modem sends, the loop is not heard.
+    pub(super) fn handle_orders(
+        &mut self,
+        now: Instant,
+        seq: u16,
+        orders: &TwcOrders,
+        out: &mut Vec<u8>,
+    ) {
+        if self.board.modem().sends() {
+            return;
+        }
+        let setup = &self.setup;
+        let own = self.number.own();
+        self.number.hear(orders.train_number);
+        let functions = &mut self.functions;
+        let known = (&setup.line, &setup.config.orders);
+        let order = functions
+            .twc
+            .take_orders(now, orders, own, known, &self.faults, &mut self.log);
+        if let Some(order) = order {
+            let armed = self.test_mode.is_some();
+            let doors_m = setup.config.doors.aligned_m;
+            functions.obey(now, order, armed, doors_m, &mut self.log);
+        }
+        let (received, refused, others) = functions.twc.counts();
+        let report = TwcReport {
+            answered_seq: seq,
+            train_number: own,
+            number_state: self.number.state(),
+            destination: functions.twc.destination(),
+            order_state: functions.order_state(),
+            received,
+            refused,
+            others,
+        };
+        if !self.loses(Place::TwcAntenna) {
+            self.send_through(Place::FskTransmitter, now, &report.into(), out);
+        }
+    }
+
+    /// Takes what is keyed in at the cab: it counts at standstill, outside an automatic run and with no tester armed.
+    pub(super) fn take_entries(&mut self, now: Instant, entries: CabEntries) {
+        if self.faults.dead(Place::CabEntries) {
+            return;
+        }
+        let atp = &self.functions.atp;
+        let may_change = atp.tachometers().standstill()
+            && atp.sequence().mode() != Mode::AutomaticRun
+            && self.test_mode.is_none();
+        let frames = self.setup.config.orders.entry_frames;
+        self.number
+            .key_in(now, entries.train_number, frames, may_change, &mut self.log);
+    }
+}
+
+impl Functions {
+    /// Begins what the wayside orders, if the train is in the state for it. What is under way already is no new order.
+    fn obey(
+        &mut self,
+        now: Instant,
+        order: TrainOrder,
+        armed: bool,
+        aligned_m: f64,
+        log: &mut EventLog,
+    ) {
+        let done = match order {
+            TrainOrder::TurnBack => self.cabs.asks() || self.cabs.handed_over(),
+            TrainOrder::PutAway => self.stabling.asleep(),
+            TrainOrder::WakeUp => self.order_state() == OrderState::Waking,
+            TrainOrder::None | TrainOrder::Unknown(_) => true,
+        };
+        if done {
+            return;
+        }
+        let lacks = self.lacks(order, armed, aligned_m);
+        if !lacks.is_empty() {
+            log.push(now, Event::OrderRefused, i32::from(lacks.bits()));
+            return;
+        }
+        match order {
+            TrainOrder::TurnBack => self.cabs.turn_back(now, self.twc.destination()),
+            TrainOrder::PutAway => self.stabling.put_away(now, log),
+            _ => self.stabling.wake_up(),
+        }
+    }
+
+    /// What an order needs and the train is not.
+    fn lacks(&self, order: TrainOrder, armed: bool, aligned_m: f64) -> OrderLacks {
+        let mut lacks = OrderLacks::empty();
+        lacks.set(OrderLacks::DISARMED, armed);
+        if order == TrainOrder::WakeUp {
+            lacks.set(OrderLacks::PUT_AWAY, !self.stabling.can_wake());
+            return lacks;
+        }
+        let lines = self.inputs.lines;
+        let standstill = self.atp.tachometers().standstill();
+        lacks.set(OrderLacks::STANDSTILL, !standstill);
+        lacks.set(OrderLacks::DOORS_CLOSED, !DoorLines::new(lines).closed());
+        lacks.set(OrderLacks::DRIVERLESS, !self.driverless());
+        lacks.set(OrderLacks::CAB_ACTIVE, !lines.contains(TrainLines::HCR));
+        let running = self.atp.sequence().mode() == Mode::AutomaticRun;
+        lacks.set(OrderLacks::RUN_ENDED, running);
+        let busy = self.cabs.busy() || self.stabling.asleep();
+        lacks.set(OrderLacks::FREE, busy);
+        if order == TrainOrder::TurnBack {
+            let here = self.twc.data().map(|data| data.station);
+            let arrived = here == Some(self.twc.destination()) && self.at_platform();
+            let aligned = standstill && self.locator.aligned(aligned_m);
+            lacks.set(OrderLacks::AT_DESTINATION, !(arrived && aligned));
+        }
+        lacks
+    }
+
+    /// One cycle of turn-back and put-away.
+    pub(super) fn carry_out(
+        &mut self,
+        now: Instant,
+        around: &Surroundings<'_>,
+        log: &mut EventLog,
+    ) {
+        let setup = around.setup;
+        let data = self.twc.data().filter(|_| self.twc.valid());
+        let departure = data.is_some_and(|data| data.departure == 1);
+        let running = self.atp.sequence().mode() == Mode::AutomaticRun;
+        let begins = data.filter(|data| {
+            let section = setup.line.section(data.section);
+            section.is_some_and(|section| {
+                data.station == section.from_station && data.loop_id == section.from_loop
+            })
+        });
+        let hcr = self.inputs.lines.contains(TrainLines::HCR);
+        let cabs = CabInputs {
+            hcr: self.inputs.alive.then_some(hcr),
+            driverless: !self.inputs.alive || self.driverless(),
+            standstill: self.atp.tachometers().standstill(),
+            running,
+            departs_from: begins.map(|data| data.station),
+            departure,
+        };
+        self.cabs
+            .step(now, cabs, change_time(&setup.config.orders), log);
+        let tester = around.self_tester;
+        let failed = tester.failed().difference(SelfTest::TEST_BOARD);
+        let stabling = StablingInputs {
+            driverless: self.inputs.alive.then_some(self.driverless()),
+            tested: tester.finished().then_some(failed),
+            departure,
+            running,
+        };
+        self.stabling.step(now, stabling, log);
+    }
+
+    fn driverless(&self) -> bool {
+        self.inputs.mode_switch == ModeSwitch::Driverless
+    }
+
+    /// How far the last order is carried out.
+    pub(super) fn order_state(&self) -> OrderState {
+        match (self.stabling.state(), self.cabs.state()) {
+            // A train that is ready for a departure may have changed its cabs meanwhile.
+            (None | Some(OrderState::Ready), cabs) if cabs != OrderState::Idle => cabs,
+            (stabling, _) => stabling.unwrap_or(OrderState::Idle),
+        }
+    }
+
+    /// An order holds the train: no run may begin.
+    pub(super) fn ordered_to_stay(&self) -> bool {
+        self.cabs.bars_run() || self.stabling.bars_run()
+    }
+}
+
+fn change_time(config: &OrdersConfig) -> Duration {
+    Duration::from_ms(u64::from(config.cab_change_ms))
+}

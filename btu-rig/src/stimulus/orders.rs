@@ -1,0 +1,23 @@
+//! Orders of the wayside.
+
+use protocol::message::TrainOrder;
+use serde::{Deserialize, Serialize};
+
+use crate::stored::train_order;
+
+/// Orders that the wayside sends beside station data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub struct OrderData {
+    /// Section that the length is of; 0 = none is told.
+    pub section: u16,
+    /// Its length, 0.1 m.
+    pub length_dm: u32,
+    /// Station at which the train's run ends; 0 = none.
+    pub destination: u16,
+    /// What the train is to do beside running.
+    #[serde(with = "train_order")]
+    pub order: TrainOrder,
+    /// Train number; 0 = that of the train.
+    pub train_number: u16,
+}
