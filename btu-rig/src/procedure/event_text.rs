@@ -2,7 +2,8 @@
 
 use protocol::event::{ALL_CARS, Event};
 use protocol::message::{
-    AbsurdInputs, ArmRefusal, AtoFailure, Channel, DoorSide, EbCause, Mode, Refusals, SelfTest,
+    AbsurdInputs, ArmRefusal, AtoFailure, Channel, DoorSide, EbCause, Mode, OrderLacks, Refusals,
+    SelfTest,
 };
 
 use super::describe::meanings;
@@ -29,7 +30,13 @@ pub fn named(event: Event, number: i32) -> Option<String> {
         Event::ArmingLapsed | Event::TestModeBroken => plain(ArmRefusal::from_code(code).label()),
         Event::AutomaticRefused => meanings(&Refusals::SPEC, bits),
         Event::AtoInputAbsurd => meanings(&AbsurdInputs::SPEC, bits),
-        Event::SelfTestFailed => meanings(&SelfTest::SPEC, bits),
+        Event::OrderRefused => meanings(&OrderLacks::SPEC, bits),
+        Event::WokenUp if number == 0 => "self-test passed".into(),
+        Event::SelfTestFailed | Event::WokenUp => meanings(&SelfTest::SPEC, bits),
+        Event::ChangeOfCabs => match number {
+            1 => "handed over".into(),
+            _ => "taken over".into(),
+        },
         Event::DoorNotEnabled
         | Event::DoorLinesContradict
         | Event::DoorObstructed
@@ -100,7 +107,10 @@ mod tests {
             (Event::RegenerationCutOut, 0, "all cars"),
             (Event::FramesRejected, 4, "channel Twc"),
             (Event::PowerUp, 0, ""),
-            (Event::AutomaticRefused, 0x8000, "bit 15"),
+            (Event::AtoInputAbsurd, 0x8000, "bit 15"),
+            (Event::OrderRefused, 3, "The train moves; Doors are not proved closed and locked"),
+            (Event::WokenUp, 0, "self-test passed"),
+            (Event::ChangeOfCabs, 2, "taken over"),
         ] {
             assert_eq!(parameter(event, number), words);
         }

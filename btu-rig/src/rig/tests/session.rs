@@ -32,7 +32,18 @@ fn a_unit_is_identified_and_its_signals_become_known() {
         .filter(|&&s| sample.get(s).is_none())
         .map(|s| s.name())
         .collect();
-    assert_eq!(unknown, ["to_stop"], "no section lies along the way");
+    // No section lies along the way, and nobody gives orders.
+    let of_orders = [
+        "orders_answered",
+        "own_train",
+        "number_state",
+        "destination",
+        "order_state",
+        "twc_heard",
+        "twc_refused",
+        "twc_others",
+    ];
+    assert_eq!(unknown, [&["to_stop"], &of_orders[..]].concat());
     assert_eq!(sample.get(Signal::Eb), Some(0.0));
     assert_eq!(sample.get(Signal::EbLoop), Some(0.0));
     assert!(bench.rig().identity().is_some());

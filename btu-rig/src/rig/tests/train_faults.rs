@@ -122,6 +122,12 @@ const CASES: [(&str, Shows); 28] = [
         signal(bench, Signal::TcmsAlive) == 0.0
     }),
     ("tcms.hangs", tcms_is_silent),
+    ("tcms.keeps_cab", |bench| {
+        bench.apply(Stimulus::Hcr { on: true });
+        bench.link_mut().to_tcms.bits = AtcToTcmsBits::CHANGE_OF_CABS;
+        bench.run_ms(200);
+        signal(bench, Signal::Hcr) == 1.0
+    }),
     ("air_supply.low", reservoir_is_low),
     ("air_supply.leak", reservoir_is_low),
     ("air_supply.switch_dead", |bench| {
