@@ -85,7 +85,7 @@ impl Functions {
     ) {
         let done = match order {
             TrainOrder::TurnBack => self.cabs.asks() || self.cabs.handed_over(),
-            TrainOrder::PutAway => self.stabling.asleep(),
+            TrainOrder::PutAway => self.stabling.state() == Some(OrderState::PutAway),
             TrainOrder::WakeUp => self.order_state() == OrderState::Waking,
             TrainOrder::None | TrainOrder::Unknown(_) => true,
         };

@@ -108,7 +108,11 @@ mod tests {
             (Event::FramesRejected, 4, "channel Twc"),
             (Event::PowerUp, 0, ""),
             (Event::AtoInputAbsurd, 0x8000, "bit 15"),
-            (Event::OrderRefused, 3, "The train moves; Doors are not proved closed and locked"),
+            (
+                Event::OrderRefused,
+                3,
+                "The train moves; Doors are not proved closed and locked",
+            ),
             (Event::WokenUp, 0, "self-test passed"),
             (Event::ChangeOfCabs, 2, "taken over"),
         ] {

@@ -59,7 +59,7 @@ fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
 /// Whether a fault shows now.
 type Shows = fn(&mut Bench<FakeUnit>) -> bool;
 
-const CASES: [(&str, Shows); 28] = [
+const CASES: [(&str, Shows); 29] = [
     ("inverter.dead", |bench| inverter_silent(bench, 2)),
     ("inverter.regeneration_lost", |bench| {
         let [_, released] = braked_and_released(bench);

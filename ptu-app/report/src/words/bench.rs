@@ -331,6 +331,7 @@ wordings! {
         refused_self_test: "Self-test", "자체시험";
         refused_departure: "no departure or start", "출발 지시·버튼 없음";
         refused_doors: "door sequence at the station", "정차 출입문 취급 중";
+        refused_ordered: "held by an order", "지령에 의한 정차 유지";
     }
 }
 

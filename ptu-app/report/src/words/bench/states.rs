@@ -210,6 +210,7 @@ impl Bench {
                 self.refused_self_test,
                 self.refused_departure,
                 self.refused_doors,
+                self.refused_ordered,
             ],
             Signal::SelfTest => vec![
                 self.item_memory,
@@ -251,7 +252,7 @@ mod tests {
                 (Signal::PowerCutCauses, PowerCuts::ALL.len()),
                 (Signal::EbSources, EbSources::ALL.len()),
                 (Signal::Lamps, Lamps::ALL.len()),
-                (Signal::Refusals, 15),
+                (Signal::Refusals, 16),
                 (Signal::SelfTest, SelfTest::SPEC.entries.len()),
             ] {
                 assert_eq!(words.bits(signal).len(), count, "{signal:?}");
