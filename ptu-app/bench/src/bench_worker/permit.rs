@@ -272,7 +272,7 @@ mod tests {
     fn a_stimulus_is_permitted_when_its_requirements_are_met() {
         let all = one_of_every_kind();
         let kinds: std::collections::HashSet<_> = all.iter().map(std::mem::discriminant).collect();
-        assert_eq!(kinds.len(), 43);
+        assert_eq!(kinds.len(), 45);
         let phases = [
             Phase::Offline,
             Phase::Connecting,
