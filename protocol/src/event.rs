@@ -160,7 +160,7 @@ events! {
     TrainNumberSet = 414 "train_number_set" Info "-" "Train number keyed in at the cab" "열차번호 입력" "train number";
     TrainNumberRefused = 415 "train_number_refused" Minor "-" "Train number keyed in under way: not taken" "주행 중 열차번호 입력 불허" "train number";
     ChangeOfCabs = 416 "change_of_cabs" Info "-" "Change of cabs at a turn-back" "회차 운전실 교체" "1 = handed over, 2 = taken over";
-    CabsNotChanged = 417 "cabs_not_changed" Major "tcms" "Turn-back: the cabs were not changed in time, the train stays held" "운전실 교체 실패" "time waited, ms";
+    CabsNotChanged = 417 "cabs_not_changed" Major "tcms" "Turn-back: the cabs were not changed in time, the train stays held" "운전실 교체 실패" "1 = TCMS reads the head control relay as dropped";
     PutAway = 418 "put_away" Info "-" "Train put away" "열차 유치" "";
     WokenUp = 419 "woken_up" Info "-" "Train woken up, self-test done" "열차 기동" "failed items as bits";
     TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "1 = frames come, their alive counter stands";
@@ -191,6 +191,9 @@ events! {
 
 /// Parameter of [`Event::TcmsLost`] when frames still come and their alive counter stands.
 pub const COUNTER_STANDS: i32 = 1;
+
+/// Parameter of [`Event::CabsNotChanged`] when TCMS reads the relay as dropped.
+pub const RELAY_DROPPED: i32 = 1;
 
 /// Parameter of [`Event::RegenerationCutOut`] when all inverters cut out together.
 pub const ALL_CARS: i32 = 0;
@@ -227,6 +230,8 @@ impl Event {
             {
                 return None;
             }
+            // The relay dropped, and the unit does not see it.
+            Self::CabsNotChanged if parameter == RELAY_DROPPED => Some("io_board"),
             // The line takes nothing: no inverter's fault.
             Self::RegenerationCutOut if parameter == ALL_CARS => return None,
             // Frames arrive: what stands is who makes them.

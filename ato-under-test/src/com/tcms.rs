@@ -111,6 +111,11 @@ impl TcmsLink {
         )
     }
 
+    /// TCMS reads the head control relay of the unit's cab as dropped.
+    pub fn reads_cab_unmanned(&self) -> bool {
+        self.says(TcmsToAtcBits::TELLS_LINES) && !self.says(TcmsToAtcBits::CAB_MANNED)
+    }
+
     /// TCMS cuts powering. What it cuts while its holding brake is on is left out: ATO asks for that
     /// brake itself, and the train leaves it by motor current.
     pub fn cuts_power(&self) -> bool {

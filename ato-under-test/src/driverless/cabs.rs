@@ -6,7 +6,7 @@
 //! train over: it holds it until station data of the section that leaves from there have come, with no departure given
 //! in them, so that the departure that follows is one for this cab.
 
-use protocol::event::Event;
+use protocol::event::{Event, RELAY_DROPPED};
 use protocol::message::OrderState;
 use protocol::{Duration, Instant};
 
@@ -34,6 +34,8 @@ enum Stage {
 pub struct CabInputs {
     /// Head control relay of this cab; `None` = the inputs are lost.
     pub hcr: Option<bool>,
+    /// TCMS reads that relay as dropped.
+    pub dropped_by_tcms: bool,
     /// The mode switch is at driverless.
     pub driverless: bool,
     pub standstill: bool,
@@ -81,8 +83,12 @@ impl Cabs {
             // Somebody in the cab has taken the train.
             _ if !inputs.driverless => Stage::Idle,
             Stage::Asked { since } if now.since(since) >= most => {
-                let waited_ms = i32::try_from(most.as_ms()).unwrap_or(i32::MAX);
-                log.push(now, Event::CabsNotChanged, waited_ms);
+                let dropped = if inputs.dropped_by_tcms {
+                    RELAY_DROPPED
+                } else {
+                    0
+                };
+                log.push(now, Event::CabsNotChanged, dropped);
                 Stage::Failed
             }
             Stage::TakingOver if self.may_leave(&inputs) => Stage::Ready,
@@ -152,6 +158,7 @@ mod tests {
 
     const STANDING: CabInputs = CabInputs {
         hcr: Some(true),
+        dropped_by_tcms: false,
         driverless: true,
         standstill: true,
         running: false,

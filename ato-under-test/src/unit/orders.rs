@@ -151,6 +151,7 @@ impl Functions {
         let hcr = self.inputs.lines.contains(TrainLines::HCR);
         let cabs = CabInputs {
             hcr: self.inputs.alive.then_some(hcr),
+            dropped_by_tcms: around.tcms.reads_cab_unmanned(),
             driverless: !self.inputs.alive || self.driverless(),
             standstill: self.atp.tachometers().standstill(),
             running,

@@ -1,6 +1,6 @@
 //! Parameters of events in words: everything that shows an entry of a log to a person uses this.
 
-use protocol::event::{ALL_CARS, Event};
+use protocol::event::{ALL_CARS, Event, RELAY_DROPPED};
 use protocol::message::{
     AbsurdInputs, ArmRefusal, AtoFailure, Channel, DoorSide, EbCause, Mode, OrderLacks, Refusals,
     SelfTest,
@@ -33,6 +33,10 @@ pub fn named(event: Event, number: i32) -> Option<String> {
         Event::OrderRefused => meanings(&OrderLacks::SPEC, bits),
         Event::WokenUp if number == 0 => "self-test passed".into(),
         Event::SelfTestFailed | Event::WokenUp => meanings(&SelfTest::SPEC, bits),
+        Event::CabsNotChanged => match number {
+            RELAY_DROPPED => "the relay dropped, the unit does not see it".into(),
+            _ => "the relay did not drop".into(),
+        },
         Event::ChangeOfCabs => match number {
             1 => "handed over".into(),
             _ => "taken over".into(),

@@ -60,14 +60,6 @@ const TRAIN_PARTS: [&str; 8] = [
 /// part that is sound whenever it is looked at is found by what its spells do to others.
 const PART_NOT_NAMED: &[(&str, &str)] = &[
     (
-        "atp_receiver.stuck",
-        "sets in 20 s after power-up, when the receiver's own check is over; what shows is brakes",
-    ),
-    (
-        "io_board.cab_input_stuck",
-        "the relay that does not drop with the cab is what the step looks at",
-    ),
-    (
         "atp_cpu.arms_moving",
         "what is stored is what comes of it: test mode ends at once, because the train moves",
     ),
