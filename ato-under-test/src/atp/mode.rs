@@ -69,7 +69,9 @@ impl ModeSequence {
         let mut inputs = inputs;
         inputs.lacking.insert(self.failed);
         let departing = inputs.departure
-            && !inputs.lacking.intersects(Refusals::DOOR_SEQUENCE | Refusals::ORDERED)
+            && !inputs
+                .lacking
+                .intersects(Refusals::DOOR_SEQUENCE | Refusals::ORDERED)
             && (pressed || inputs.switch == ModeSwitch::Driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);

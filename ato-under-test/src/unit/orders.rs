@@ -13,7 +13,6 @@ use protocol::{Duration, Instant};
 
 use super::Unit;
 use super::functions::{Functions, Surroundings};
-use crate::atp::DoorLines;
 use crate::driverless::{CabInputs, StablingInputs};
 use crate::kernel::EventLog;
 
@@ -115,7 +114,7 @@ impl Functions {
         let lines = self.inputs.lines;
         let standstill = self.atp.tachometers().standstill();
         lacks.set(OrderLacks::STANDSTILL, !standstill);
-        lacks.set(OrderLacks::DOORS_CLOSED, !DoorLines::new(lines).closed());
+        lacks.set(OrderLacks::DOORS_CLOSED, !self.atp.doors_closed());
         lacks.set(OrderLacks::DRIVERLESS, !self.driverless());
         lacks.set(OrderLacks::CAB_ACTIVE, !lines.contains(TrainLines::HCR));
         let running = self.atp.sequence().mode() == Mode::AutomaticRun;
