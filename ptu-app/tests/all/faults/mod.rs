@@ -64,6 +64,10 @@ const PART_NOT_NAMED: &[(&str, &str)] = &[
         "what is stored is what comes of it: test mode ends at once, because the train moves",
     ),
     (
+        "ato_cpu.jog_direction_lost",
+        "what is stored is the emergency brake of a train that goes the wrong way, whoever sends it there",
+    ),
+    (
         "test_board.marker_dead",
         "what a test signal that does not come leaves undone is looked for in what it tests",
     ),
@@ -84,6 +88,13 @@ const TRAIN_SUSPECTED: &[(&str, &str)] = &[
         "a unit that no longer hears its inputs brakes a train that is tested",
     ),
 ];
+
+/// Modes of the train that fail a procedure of the unit, that procedure, and why.
+const UNIT_FAILED: &[(&str, &str, &str)] = &[(
+    "tcms.keeps_cab",
+    "ato/turn_back",
+    "a change of cabs is asked for by the unit and made by TCMS; the event names TCMS",
+)];
 
 #[test]
 fn every_injectable_fault_is_found_and_kept_with_its_trace() {
@@ -300,7 +311,12 @@ fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     let failed = list(&run.report["steps"])
         .iter()
         .filter(|step| train_is_broken && step["verdict"] == "failed")
-        .filter(|step| !text(&step["procedure"]).starts_with("tcms/"))
+        .filter(|step| {
+            let procedure = text(&step["procedure"]);
+            let mut excused = UNIT_FAILED.iter();
+            let excused = excused.any(|(id, of, _)| *id == mode.id && *of == procedure);
+            !procedure.starts_with("tcms/") && !excused
+        })
         .map(|step| format!("fails a test of the unit: {step}"));
     blamed.chain(failed).collect()
 }
