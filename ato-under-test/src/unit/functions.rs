@@ -3,20 +3,19 @@
 //! A scan is protection and position, a cycle is station data, mode and ATO. Nothing here drives an output: the
 //! unit does that with what its functions ask for.
 
-use protocol::config::{TachoConfig, UnitConfig};
-use protocol::event::Event;
-use protocol::injection::{Effect, Place};
-use protocol::message::{
-    AtoFailure, DoorSide, Mode, ModeSwitch, Refusals, RunningMode, SelfTest, TrainLines,
-};
-use protocol::{Duration, Instant, Speed};
+mod operation;
 
-use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, JogOutcome, TrainReport};
+use protocol::config::{TachoConfig, UnitConfig};
+use protocol::injection::{Effect, Place};
+use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
+use protocol::{Duration, Instant};
+
+use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::driverless::{Cabs, DeadOrders, Stabling, Station, StationInputs};
 use crate::front_end::{EffortOutput, Faults};
-use crate::kernel::{EventLog, FreezeFrame, RunCycle, SelfTester, Watchdog};
+use crate::kernel::{EventLog, FreezeFrame, SelfTester, Watchdog};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
 use crate::setup::Setup;
 use crate::signals::{Inputs, MarkerPulse};
@@ -301,151 +300,6 @@ impl Functions {
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
             gave_up: self.ato.gave_up(),
-        }
-    }
-
-    fn operate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
-        let was_ready = self.ato_outputs.ready;
-        let data = self.twc.data();
-        let tachometers = self.atp.tachometers();
-        let inputs = AtoInputs {
-            mode: self.atp.sequence().mode(),
-            limit: self.atp.limit(),
-            fixed_speed: data
-                .filter(|data| data.fixed_speed_kmh != u8::MAX)
-                .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),
-            running_mode: match data.map(|data| data.running_mode) {
-                Some(RunningMode::Slow) if around.faults.dead(Place::SlowRunning) => {
-                    RunningMode::Normal
-                }
-                ordered => ordered.unwrap_or_default(),
-            },
-            section: self.locator.section(),
-            position_m: self.locator.position_m(),
-            ahead_m: self.locator.ahead_m(),
-            aligned_m: around.setup.config.doors.aligned_m,
-            last_marker: self.locator.passed_last_marker(),
-            jog_dead: around.faults.dead(Place::Jog),
-            speed: self.wheel_speed(),
-            standstill: tachometers.standstill(),
-            power_cut: self.atp.power_cut() || around.tcms.cuts_power(),
-            train: TrainReport {
-                overrides: around.tcms.overrides(),
-                sent: self.ato_outputs.effort,
-                given: around.tcms.given(),
-            },
-            load_kg: around.tcms.load_kg(),
-            checks: self.ato_checks(around),
-        };
-        let fault = around.faults.at(Place::AtoCpu);
-        if around.faults.dead(Place::AtoCpu) {
-            // A processor that has stopped leaves its outputs as they were and reports no new event.
-            self.ato_outputs.findings = Findings::default();
-            self.ato_outputs.jog = JogOutcome::default();
-            self.ato_outputs.slid_m = 0.0;
-        } else {
-            self.ato_outputs = self.ato.step(inputs, &around.setup.config.ato);
-            self.ato_cycles = self.ato_cycles.wrapping_add(1);
-            let effort = self.ato_outputs.effort;
-            self.ato_outputs.effort = self.effort_output.give(effort, fault);
-        }
-        self.watch_processor(&around.setup.config);
-        self.locator.slide(self.ato_outputs.slid_m);
-        self.report_ato(now, was_ready, log);
-    }
-
-    /// A stopped processor is reset and its outputs are taken from it; ATP brakes in its place.
-    fn watch_processor(&mut self, config: &UnitConfig) {
-        if self.ato_watchdog.step(self.ato_cycles) {
-            self.ato = Ato::new(config);
-            self.station = Station::default();
-            self.ato_outputs = AtoOutputs {
-                failure: AtoFailure::Processor,
-                ..AtoOutputs::default()
-            };
-        }
-    }
-
-    /// ATO begins with its inspection, as at power-up.
-    pub fn inspect_ato(&mut self, config: &UnitConfig) {
-        self.ato = Ato::new(config);
-        self.ato_outputs = AtoOutputs::default();
-    }
-
-    /// Speed ATO goes by: of the wheel that markers calibrate; ATP keeps its own, safe speed.
-    fn wheel_speed(&self) -> Speed {
-        let tachometers = self.atp.tachometers();
-        let wheel = 1.0 + self.locator.wheel_correction();
-        Speed::from_mps(tachometers.channel(tachometers.distance_channel()).mps() * wheel)
-    }
-
-    /// This cycle as the run record keeps it.
-    pub fn run_cycle(&self) -> RunCycle {
-        RunCycle {
-            position_m: self.locator.position_m(),
-            speed_cms: self.wheel_speed().to_cms(),
-            target_cms: self.ato_outputs.target.to_cms(),
-            effort: self.ato_outputs.effort,
-            marker: (self.locator.last_marker(), self.locator.count()),
-            state: self.ato.state(),
-        }
-    }
-
-    /// KRN's checks of what ATO needs [S0 §1, §3.3]; its processor is under the watchdog.
-    fn ato_checks(&self, around: &Surroundings<'_>) -> Checks {
-        let failed = around.self_tester.failed();
-        let run = self.atp.sequence().mode() == Mode::AutomaticRun;
-        let causes = [
-            (
-                failed.intersects(SelfTest::CONFIGURATION | SelfTest::TRACK_DATABASE),
-                AtoFailure::StoredData,
-            ),
-            (
-                failed.intersects(
-                    SelfTest::MEMORY | SelfTest::TRA | SelfTest::TWC_MODEM | SelfTest::TWC_CPU,
-                ),
-                AtoFailure::SelfTest,
-            ),
-            (
-                run && self.atp.tachometers().faulty(),
-                AtoFailure::Tachometers,
-            ),
-            // On the way the train is better brought to its platform than stopped.
-            (!run && !around.tra.ok(), AtoFailure::Tra),
-        ];
-        match causes.iter().find(|(holds, _)| *holds) {
-            Some((_, failure)) => Checks::Failed(*failure),
-            None if around.self_tester.finished() => Checks::Passed,
-            None => Checks::Running,
-        }
-    }
-
-    /// Logs what ATO found, and that it failed.
-    fn report_ato(&self, now: Instant, was_ready: bool, log: &mut EventLog) {
-        let outputs = self.ato_outputs;
-        let found = outputs.findings;
-        let hundredths = |value: f64| libm::round(value * 100.0) as i32;
-        let failed = was_ready && !outputs.ready;
-        if failed && !found.absurd.is_empty() {
-            let bits = i32::from(found.absurd.bits());
-            log.push(now, Event::AtoInputAbsurd, bits);
-        }
-        let findings = [
-            (Event::AtoNotFollowing, found.not_following_mps),
-            (Event::TrainWithholds, found.withheld_mps),
-            (Event::StopOverrun, found.overrun_m),
-            (Event::StopShort, found.short_m),
-            (Event::JogBegun, outputs.jog.begun_m),
-            (Event::JogFailed, outputs.jog.failed_m),
-        ];
-        for (event, value) in findings {
-            if let Some(value) = value {
-                log.push(now, event, hundredths(value));
-            }
-        }
-        if failed {
-            let reason = i32::from(outputs.failure.code());
-            log.push(now, Event::AtoFailed, reason);
         }
     }
 }

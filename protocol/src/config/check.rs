@@ -1,0 +1,112 @@
+//! Rules that the values of a unit configuration keep: ranges, and what must fit together.
+
+use super::*;
+
+impl UnitConfig {
+    /// Checks ranges and that values fit together.
+    ///
+    /// # Errors
+    /// The first thing wrong.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        self.check_ranges()?;
+        if self.name.is_empty() || self.name.len() > 16 || !self.name.is_ascii() {
+            return Err(conflict("name must be 1 to 16 ASCII characters"));
+        }
+        let margins = &self.overspeed;
+        if !(margins.alarm_margin_kmh < margins.fsb_margin_kmh
+            && margins.fsb_margin_kmh < margins.eb_margin_kmh)
+        {
+            return Err(conflict("overspeed margins must rise: alarm < fsb < eb"));
+        }
+        if self.receiver.level_min_mv >= self.receiver.level_max_mv {
+            return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
+        }
+        // A wheel may spin faster than adhesion lets it roll, never the other way round.
+        let rolls_mps2 = self.tacho.adhesion * 9.81;
+        within(
+            "tacho.plausible_accel_mps2",
+            self.tacho.plausible_accel_mps2,
+            rolls_mps2,
+            30.0,
+        )?;
+        if self.marker.debounce_ms > self.marker.bounce_ms {
+            return Err(conflict("marker.debounce_ms must not be above bounce_ms"));
+        }
+        self.ato.check()?;
+        self.check_codes()
+    }
+
+    fn check_ranges(&self) -> Result<(), ConfigError> {
+        check_ranges! { self, "";
+            receiver.carrier_tolerance_hz: 1.0, 1000.0;
+            receiver.rate_tolerance_hz: 0.05, 5.0;
+            receiver.level_min_mv: 1.0, 5000.0;
+            receiver.level_max_mv: 1.0, 10000.0;
+            receiver.detect_ms: 50.0, 5000.0;
+            receiver.hold_ms: 0.0, 5000.0;
+            tacho.pulses_per_turn: 10.0, 1000.0;
+            tacho.wheel_diameter_mm: 500.0, 1200.0;
+            tacho.window_ms: 20.0, 1000.0;
+            tacho.difference_kmh: 1.0, 20.0;
+            tacho.standstill_kmh: 0.1, 3.0;
+            tacho.rollback_m: 0.05, 5.0;
+            tacho.creep_m: 0.05, 5.0;
+            tacho.adhesion: 0.05, 0.6;
+            tacho.share: 0.005, 0.2;
+            overspeed.alarm_margin_kmh: 0.0, 20.0;
+            overspeed.fsb_margin_kmh: 0.0, 20.0;
+            overspeed.eb_margin_kmh: 0.0, 30.0;
+            overspeed.yard_kmh: 5.0, 45.0;
+            overspeed.emergency_kmh: 5.0, 45.0;
+            overspeed.jog_kmh: 2.0, 5.0;
+            doors.aligned_m: 0.05, 2.0;
+            marker.window_m: 0.1, 50.0;
+            marker.start_window_m: 0.1, 50.0;
+            marker.window_share: 0.0, 0.2;
+            marker.scatter_m: 0.001, 2.0;
+            marker.wheel_spread: 0.0001, 0.1;
+            marker.debounce_ms: 0.0, 1000.0;
+            marker.bounce_ms: 0.0, 2000.0;
+            test_board.carrier_tolerance_hz: 1.0, 100.0;
+            test_board.rate_tolerance_hz: 0.01, 5.0;
+            test_board.level_tolerance: 0.001, 0.5;
+            test_board.speed_tolerance: 0.001, 0.2;
+            driverless.dwell_min_ms: 0.0, 600000.0;
+            driverless.open_ms: 500.0, 60000.0;
+            driverless.close_ms: 500.0, 60000.0;
+            driverless.reopen_ms: 100.0, 60000.0;
+            driverless.close_tries: 1.0, 20.0;
+            orders.length_tolerance_m: 0.1, 50.0;
+            orders.cab_change_ms: 500.0, 60000.0;
+            orders.entry_frames: 1.0, 20.0;
+            link.io_timeout_ms: 50.0, 900.0;
+            link.tester_timeout_ms: 200.0, 1000.0;
+        }
+        Ok(())
+    }
+
+    fn check_codes(&self) -> Result<(), ConfigError> {
+        if self.codes.is_empty() || self.codes.len() > 32 {
+            return Err(conflict("the code table needs 1 to 32 codes"));
+        }
+        for (i, code) in self.codes.iter().enumerate() {
+            within("codes.limit_kmh", code.limit_kmh, 0.0, 130.0)?;
+            within("codes.carrier_hz", code.carrier_hz, 100.0, 20000.0)?;
+            within("codes.rate_hz", code.rate_hz, 1.0, 100.0)?;
+            for other in &self.codes[..i] {
+                let same_carrier = libm::fabs(code.carrier_hz - other.carrier_hz)
+                    <= 2.0 * self.receiver.carrier_tolerance_hz;
+                let same_rate = libm::fabs(code.rate_hz - other.rate_hz)
+                    <= 2.0 * self.receiver.rate_tolerance_hz;
+                if code.name == other.name || (same_carrier && same_rate) {
+                    return Err(ConfigError::Conflict(alloc::format!(
+                        "codes {} and {} cannot be told apart with these tolerances",
+                        other.name,
+                        code.name
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
