@@ -35,6 +35,7 @@ pub struct BrakeProof {
     at: usize,
     effect_changes: OnDelay,
     effective: bool,
+    measurable: OnDelay,
     demanded: OnDelay,
 }
 
@@ -46,6 +47,7 @@ impl BrakeProof {
             at: 0,
             effect_changes: OnDelay::default(),
             effective: false,
+            measurable: OnDelay::default(),
             demanded: OnDelay::default(),
         }
     }
@@ -67,12 +69,14 @@ impl BrakeProof {
         if self.effect_changes.update(now, differs, delay) {
             self.effective = proved;
         }
+        // Nor does it make a train that is at its limit faster.
+        let measurable = self.measurable.update(now, demand.measurable, delay);
         let time = Duration::from_ms(u64::from(config.brake_proof_ms));
         let waited = self.demanded.update(now, demand.holds, time);
         Proof {
             decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
             proved,
-            ineffective: waited && demand.measurable && !self.effective,
+            ineffective: waited && measurable && !self.effective,
         }
     }
 }
