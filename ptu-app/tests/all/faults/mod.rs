@@ -39,10 +39,24 @@ const THROUGH_THE_PROGRAM: [&str; 6] = [
 ];
 
 /// Modes that diagnosis takes for another part's at the default seed, and why.
-const NOT_DIAGNOSED: &[(&str, &str)] = &[(
-    "io_board.door_flickers",
-    "a door line that opens for moments, at its contact or at the input",
-)];
+const NOT_DIAGNOSED: &[(&str, &str)] = &[
+    (
+        "io_board.door_flickers",
+        "a door line that opens for moments, at its contact or at the input",
+    ),
+    (
+        "door_contact.right_bridged",
+        "a side that stays closed, at its contact or at the input",
+    ),
+    (
+        "twc_cpu.hangs",
+        "station data that are lost for moments, at the board or at its modem",
+    ),
+    (
+        "atp_cpu.given_up_released",
+        "a change of cabs that is not as it should be, by the unit or by TCMS: one step sees both",
+    ),
+];
 
 /// Parts of the train around the unit.
 const TRAIN_PARTS: [&str; 8] = [
