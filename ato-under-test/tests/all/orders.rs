@@ -195,7 +195,8 @@ fn a_number_keyed_in_counts_at_once_and_ends_with_the_power() {
 
 #[test]
 fn orders_in_the_wrong_place_are_refused_with_what_is_lacking() {
-    let cases: [(TrainOrder, &dyn Fn(&mut Wayside), OrderLacks); 7] = [
+    type Change<'a> = &'a dyn Fn(&mut Wayside);
+    let cases: [(TrainOrder, Change<'_>, OrderLacks); 7] = [
         (
             TrainOrder::TurnBack,
             &|wayside| wayside.bench.input.lines.remove(TrainLines::DOORS_CLOSED),
