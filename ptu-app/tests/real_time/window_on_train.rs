@@ -58,6 +58,10 @@ fn the_whole_way(language: Language) {
     window.wait_for(words.frame.disarmed);
 
     window.key(Page::Procedures.key());
+    // The list of procedures is longer than the window is high.
+    window
+        .harness()
+        .set_size(eframe::egui::vec2(1280.0, 1100.0));
     window.click(words.procedures.none);
     window.click("ptu/identity");
     window.click("ptu/self_test");
