@@ -2,6 +2,8 @@
 
 use protocol::message::{DoorSide, Outputs, TrainLines};
 
+use super::sides::side_of;
+
 /// Contacts that enable doors and lines that prove them, left and right.
 const SIDES: [(Outputs, TrainLines, TrainLines); 2] = [
     (
@@ -64,12 +66,7 @@ impl DoorLines {
 
     fn sides(self, is: impl Fn(Outputs, TrainLines, TrainLines) -> bool) -> DoorSide {
         let [left, right] = SIDES.map(|(enable, closed, locked)| is(enable, closed, locked));
-        match (self.by_side() && left, self.by_side() && right) {
-            (false, false) => DoorSide::None,
-            (true, false) => DoorSide::Left,
-            (false, true) => DoorSide::Right,
-            (true, true) => DoorSide::Both,
-        }
+        side_of(self.by_side() && left, self.by_side() && right)
     }
 }
 

@@ -5,6 +5,7 @@ use protocol::event::Event;
 use protocol::message::{DoorSide, Outputs};
 use protocol::{Duration, Instant};
 
+use super::sides::{contacts, side_of};
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
@@ -24,12 +25,8 @@ impl DoorOrders {
         let enabled = enabled_sides(enable).code();
         // Codes of sides are sets of bits.
         let refused = ordered.code() & !enabled;
-        self.passed = match DoorSide::from_code(ordered.code() & enabled) {
-            DoorSide::Left => Outputs::OPEN_LEFT,
-            DoorSide::Right => Outputs::OPEN_RIGHT,
-            DoorSide::Both => Outputs::OPEN_LEFT | Outputs::OPEN_RIGHT,
-            DoorSide::None | DoorSide::Unknown(_) => Outputs::empty(),
-        };
+        let passed = DoorSide::from_code(ordered.code() & enabled);
+        self.passed = contacts(passed, [Outputs::OPEN_LEFT, Outputs::OPEN_RIGHT]);
         let lasts = self.beyond.update(now, refused != 0, FOLLOWS);
         if self.reported.rises(lasts) {
             log.push(now, Event::DoorOrderRefused, i32::from(refused));
@@ -44,15 +41,10 @@ impl DoorOrders {
 
 /// Sides of these enables.
 pub fn enabled_sides(enable: Outputs) -> DoorSide {
-    match (
+    side_of(
         enable.contains(Outputs::DOOR_ENABLE_LEFT),
         enable.contains(Outputs::DOOR_ENABLE_RIGHT),
-    ) {
-        (false, false) => DoorSide::None,
-        (true, false) => DoorSide::Left,
-        (false, true) => DoorSide::Right,
-        (true, true) => DoorSide::Both,
-    }
+    )
 }
 
 #[cfg(test)]

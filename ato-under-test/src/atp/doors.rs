@@ -7,6 +7,7 @@ use protocol::message::{DoorSide, Outputs};
 use protocol::{Duration, Instant, Speed};
 
 use super::DoorLines;
+use super::sides::contacts;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
@@ -69,12 +70,10 @@ impl Doors {
         if self.refused.rises(refused) {
             log.push(now, Event::DoorEnableRefused, 0);
         }
-        self.enable = match inputs.side {
-            _ if !(stopped && inputs.aligned) => Outputs::empty(),
-            DoorSide::Left => Outputs::DOOR_ENABLE_LEFT,
-            DoorSide::Right => Outputs::DOOR_ENABLE_RIGHT,
-            DoorSide::Both => Outputs::DOOR_ENABLE_LEFT | Outputs::DOOR_ENABLE_RIGHT,
-            DoorSide::None | DoorSide::Unknown(_) => Outputs::empty(),
+        let enables = [Outputs::DOOR_ENABLE_LEFT, Outputs::DOOR_ENABLE_RIGHT];
+        self.enable = match stopped && inputs.aligned {
+            true => contacts(inputs.side, enables),
+            false => Outputs::empty(),
         };
         self.supervise(now, inputs, config, log);
         open_moving

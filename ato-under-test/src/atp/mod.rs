@@ -11,6 +11,7 @@ mod emergency;
 mod jog_guard;
 mod mode;
 mod overspeed;
+mod sides;
 mod speedometer;
 mod tachometers;
 

@@ -192,6 +192,11 @@ impl SelfTester {
         self.start_up_failed
     }
 
+    /// Of these, items without which no run begins: the TEST board takes no part in running.
+    pub fn failed_for_running(&self) -> SelfTest {
+        self.start_up_failed.difference(SelfTest::TEST_BOARD)
+    }
+
     /// No item failed at start-up without which the train cannot be protected.
     pub fn vital_passed(&self) -> bool {
         let vital = SelfTest::MEMORY

@@ -40,7 +40,8 @@ fn stands_in(data: &TwcWayside, section: &Section) -> bool {
     data.route == section.route && (departs(data, section) || arrives(data, section))
 }
 
-fn departs(data: &TwcWayside, section: &Section) -> bool {
+/// Station and loop are those of the section's departure.
+pub fn departs(data: &TwcWayside, section: &Section) -> bool {
     data.station == section.from_station && data.loop_id == section.from_loop
 }
 

@@ -16,6 +16,7 @@ use crate::kernel::EventLog;
 use check::contradiction;
 use orders::Ordered;
 
+pub use check::departs;
 pub use number::OwnNumber;
 
 #[derive(Clone, Copy, Debug, Default)]

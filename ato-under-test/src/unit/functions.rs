@@ -7,7 +7,7 @@ mod operation;
 
 use protocol::config::{TachoConfig, UnitConfig};
 use protocol::injection::{Effect, Place};
-use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, SelfTest, TrainLines};
+use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, TrainLines};
 use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
@@ -205,9 +205,8 @@ impl Functions {
             return;
         }
         let active = self.inputs.alive && self.inputs.lines.contains(TrainLines::HCR);
-        let driverless = self.inputs.mode_switch == ModeSwitch::Driverless;
         let inputs = StationInputs {
-            driverless: driverless && active && around.self_tester.finished(),
+            driverless: self.driverless() && active && around.self_tester.finished(),
             standstill: self.atp.tachometers().standstill(),
             running: self.atp.sequence().mode() == Mode::AutomaticRun,
             enabled: self.atp.enabled(),
@@ -278,8 +277,7 @@ impl Functions {
         lacking.set(Refusals::TCMS_NOT_READY, !around.tcms.ready());
         lacking.set(Refusals::ATO_NOT_READY, !self.ato_outputs.ready);
         lacking.set(Refusals::TRA_FAILED, !around.tra.ok());
-        // The TEST board takes no part in running.
-        let failed = around.self_tester.failed().difference(SelfTest::TEST_BOARD);
+        let failed = around.self_tester.failed_for_running();
         lacking.set(Refusals::SELF_TEST, !failed.is_empty());
         lacking.set(Refusals::ORDERED, self.ordered_to_stay());
         let dead = |place| around.faults.dead(place);

@@ -6,8 +6,8 @@ use protocol::config::OrdersConfig;
 use protocol::event::Event;
 use protocol::injection::Place;
 use protocol::message::{
-    CabEntries, Mode, ModeSwitch, OrderLacks, OrderState, SelfTest, TrainLines, TrainOrder,
-    TwcOrders, TwcReport,
+    CabEntries, Mode, ModeSwitch, OrderLacks, OrderState, TrainLines, TrainOrder, TwcOrders,
+    TwcReport,
 };
 use protocol::{Duration, Instant};
 
@@ -15,6 +15,7 @@ use super::Unit;
 use super::functions::{Functions, Surroundings};
 use crate::driverless::{CabInputs, StablingInputs};
 use crate::kernel::EventLog;
+use crate::twc::departs;
 
 impl Unit {
     /// Takes orders and reports what became of them. While the TEST modem sends, the loop is not heard.
@@ -143,9 +144,7 @@ impl Functions {
         let running = self.atp.sequence().mode() == Mode::AutomaticRun;
         let begins = data.filter(|data| {
             let section = setup.line.section(data.section);
-            section.is_some_and(|section| {
-                data.station == section.from_station && data.loop_id == section.from_loop
-            })
+            section.is_some_and(|section| departs(data, section))
         });
         let hcr = self.inputs.lines.contains(TrainLines::HCR);
         let cabs = CabInputs {
@@ -160,17 +159,16 @@ impl Functions {
         self.cabs
             .step(now, cabs, change_time(&setup.config.orders), log);
         let tester = around.self_tester;
-        let failed = tester.failed().difference(SelfTest::TEST_BOARD);
         let stabling = StablingInputs {
             driverless: self.inputs.alive.then_some(self.driverless()),
-            tested: tester.finished().then_some(failed),
+            tested: tester.finished().then_some(tester.failed_for_running()),
             departure,
             running,
         };
         self.stabling.step(now, stabling, log);
     }
 
-    fn driverless(&self) -> bool {
+    pub(super) fn driverless(&self) -> bool {
         self.inputs.mode_switch == ModeSwitch::Driverless
     }
 

@@ -193,7 +193,7 @@ fn list_shortfalls(text: &mut String, figures: &Figures) {
     }
 }
 
-fn percent(part: f64, of: f64) -> f64 {
+pub(crate) fn percent(part: f64, of: f64) -> f64 {
     if of > 0.0 { 100.0 * part / of } else { 0.0 }
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use ptu_bench::campaign::{LeftOut, Share, UnseenFigures};
 
-use crate::campaign::share_json;
+use crate::campaign::{percent, share_json};
 
 /// Pairs of parts, and answers, that are listed.
 const MOST_LISTED: usize = 20;
@@ -58,7 +58,7 @@ fn figures_text(text: &mut String, figures: &UnseenFigures) {
         ("named for certain, a wrong one", figures.wrong),
         ("\"no fault mode explains this\"", figures.unknown),
     ] {
-        let percent = 100.0 * of as f64 / all.max(1) as f64;
+        let percent = percent(of as f64, all as f64);
         let _ = writeln!(text, "  {what:34} {percent:>6.1} %  ({of} of {all})");
     }
     let curve = figures.reliability.iter().enumerate();

@@ -60,6 +60,24 @@ impl Assessment {
         self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
     }
 
+    /// One part or two are named for certain, and not the right one alone.
+    pub fn is_wrong(&self) -> bool {
+        self.is_certain() && !self.names_the_part()
+    }
+
+    /// The right part is named for certain, and nothing else.
+    pub fn is_found(&self) -> bool {
+        self.is_certain() && self.names_the_part()
+    }
+
+    fn is_certain(&self) -> bool {
+        matches!(self.finding, Finding::Found | Finding::TwoFound)
+    }
+
+    fn names_the_part(&self) -> bool {
+        self.parts == [self.lru.clone()]
+    }
+
     /// Place of the right part among all.
     pub fn rank(&self) -> Option<usize> {
         self.ranked.iter().position(|part| part.lru == self.lru)
@@ -256,10 +274,7 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         reachable_detected: Share::over(all().filter(|run| run.reachable), |run| run.detected),
         detected_isolated: Share::over(all().filter(|run| run.detected), |run| run.isolated(1)),
         isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
-        wrong: Share::over(all(), |run| {
-            let certain = matches!(run.finding, Finding::Found | Finding::TwoFound);
-            certain && run.parts != [run.lru.clone()]
-        }),
+        wrong: Share::over(all(), Assessment::is_wrong),
         undetected: lacking(&|run| run.detected),
         not_isolated: lacking(&|run| run.isolated(1)),
         ambiguous: ambiguous(assessments),

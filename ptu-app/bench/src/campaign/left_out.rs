@@ -120,8 +120,6 @@ impl UnseenFigures {
 
     fn of(runs: &[Assessment]) -> Self {
         let share = |has: &dyn Fn(&Assessment) -> bool| Share::over(runs.iter(), has);
-        let certain = |run: &Assessment| matches!(run.finding, Finding::Found | Finding::TwoFound);
-        let right = |run: &Assessment| run.parts == [run.lru.clone()];
         let class = |run: &Assessment| {
             let top = run.ranked.first().map_or(0.0, |part| part.probability);
             ((top * CLASSES as f64) as usize).min(CLASSES - 1)
@@ -133,12 +131,11 @@ impl UnseenFigures {
             });
             errors.sum::<f64>()
         });
-        let wrong = |run: &&Assessment| certain(run) && !right(run);
         Self {
             first: share(&|run| run.rank() == Some(0)),
             first_two: share(&|run| run.rank().is_some_and(|rank| rank < 2)),
-            found: share(&|run| certain(run) && right(run)),
-            wrong: share(&|run| wrong(&run)),
+            found: share(&Assessment::is_found),
+            wrong: share(&Assessment::is_wrong),
             unknown: share(&|run| run.finding == Finding::UnknownFault),
             reliability: std::array::from_fn(|of| {
                 let in_class = runs.iter().filter(|run| class(run) == of);
@@ -148,7 +145,7 @@ impl UnseenFigures {
             confused: confused(runs),
             wrong_answers: runs
                 .iter()
-                .filter(wrong)
+                .filter(|run| run.is_wrong())
                 .map(|run| (run.fault.clone(), run.answer().to_owned()))
                 .collect(),
         }
