@@ -2,8 +2,10 @@
 
 use protocol::LruId;
 
-use super::model::{Model, NO_FAULT};
+use super::model::{FIRST_EFFECT, Hypothesis, Model, NO_FAULT, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
+use super::signs::SignsSeen;
+use super::suspects::Suspicion;
 
 /// What the evidence has settled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +21,14 @@ pub enum Settled<'d> {
 pub struct Belief<'m, 'd> {
     /// What it is a belief in.
     pub model: &'m Model<'d>,
-    ln: Vec<f64>,
+    /// Logarithms of the likelihood of all steps, without their signs, under each effect.
+    effects: Vec<f64>,
+    /// The same under a fault that is not in the dictionary and acts like each effect.
+    like_effects: Vec<f64>,
+    /// The same on a healthy unit, with their signs.
+    healthy: f64,
+    signs: SignsSeen,
+    suspicion: Suspicion,
     steps: Vec<WeighedStep>,
 }
 
@@ -30,8 +39,8 @@ pub(super) struct WeighedStep {
     pub seen: usize,
     /// Index of its check in the dictionary.
     pub place: usize,
-    /// Logarithm of its likelihood under each hypothesis.
-    pub ln: Vec<f64>,
+    /// Logarithms of its likelihood.
+    pub ln: StepLikelihoods,
 }
 
 impl<'m, 'd> Belief<'m, 'd> {
@@ -39,7 +48,11 @@ impl<'m, 'd> Belief<'m, 'd> {
     pub fn new(model: &'m Model<'d>) -> Self {
         Self {
             model,
-            ln: model.ln_priors.clone(),
+            effects: vec![0.0; model.effects().len()],
+            like_effects: vec![0.0; model.effects().len()],
+            healthy: 0.0,
+            signs: SignsSeen::default(),
+            suspicion: Suspicion::default(),
             steps: Vec::new(),
         }
     }
@@ -50,11 +63,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         for (place, step) in seen.steps.iter().enumerate() {
             belief.see(place, step);
         }
-        if !seen.signs.is_empty() {
-            for (ln, hypothesis) in belief.ln.iter_mut().zip(&model.hypotheses) {
-                *ln += model.ln_log(*hypothesis, &seen.signs);
-            }
-        }
+        belief.signs.in_log.clone_from(&seen.signs);
         belief
     }
 
@@ -64,9 +73,16 @@ impl<'m, 'd> Belief<'m, 'd> {
             return;
         };
         let ln = self.model.ln_likelihoods(place, step);
-        for (sum, ln) in self.ln.iter_mut().zip(&ln) {
+        self.healthy += ln.healthy;
+        for (sum, ln) in self.effects.iter_mut().zip(&ln.effects) {
             *sum += ln;
         }
+        for (sum, ln) in self.like_effects.iter_mut().zip(&ln.like_effects) {
+            *sum += ln;
+        }
+        self.signs.made.insert(place);
+        self.suspicion.see(self.model.dictionary, place, step);
+        self.signs.in_steps.extend(step.signs.iter().cloned());
         self.steps.push(WeighedStep {
             seen: number,
             place,
@@ -79,14 +95,75 @@ impl<'m, 'd> Belief<'m, 'd> {
         &self.steps
     }
 
+    /// The signs that showed.
+    pub(super) fn signs(&self) -> &SignsSeen {
+        &self.signs
+    }
+
     /// Probabilities in the order of the model's hypotheses; their sum is 1.
     pub fn probabilities(&self) -> Vec<f64> {
-        normalised(&self.ln)
+        normalised(&self.ln())
     }
 
     /// Logarithms of the probabilities, not normalised.
-    pub(super) fn ln(&self) -> &[f64] {
-        &self.ln
+    pub(super) fn ln(&self) -> Vec<f64> {
+        let model = self.model;
+        let loosely = model.settings.loosely;
+        let suspicion = model.suspects.ln(&self.suspicion);
+        let hypotheses = model.hypotheses.iter().enumerate();
+        let of = hypotheses.map(|(i, hypothesis)| {
+            let steps = match *hypothesis {
+                Hypothesis::NoFault => self.healthy,
+                Hypothesis::Mode { .. } => {
+                    let effect = i - FIRST_EFFECT;
+                    let as_counted = (1.0 - loosely).ln() + self.effects[effect];
+                    ln_sum([as_counted, loosely.ln() + self.like_effects[effect]].into_iter())
+                }
+                Hypothesis::Unseen { part } => {
+                    ln_sum(self.like_effects(part)) + model.settings.suspect * suspicion[part]
+                }
+                Hypothesis::Unknown => ln_sum(self.any_effect()),
+            };
+            model.ln_priors[i] + steps + self.signs.ln(model, *hypothesis)
+        });
+        of.collect()
+    }
+
+    /// The same under an unknown fault.
+    pub(super) fn any_effect(&self) -> impl Iterator<Item = f64> + Clone + '_ {
+        let frequency = self.model.frequency().iter();
+        frequency
+            .zip(&self.like_effects)
+            .map(|(frequency, ln)| frequency + ln)
+    }
+
+    /// The same as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of
+    /// another, however alike they were so far.
+    pub(super) fn vaguely_like_effects(&self, part: usize) -> Vec<f64> {
+        let alike = self.model.resemblance(part).iter();
+        let like = alike.zip(&self.like_effects);
+        like.map(|(alike, ln)| alike + self.model.settings.foresight * ln)
+            .collect()
+    }
+
+    /// The effect that a fault has, or most likely acts like, by its index among them.
+    pub(super) fn acts_like(&self, hypothesis: Hypothesis) -> Option<usize> {
+        match hypothesis {
+            Hypothesis::Mode { .. } => self.model.effect(hypothesis),
+            Hypothesis::Unseen { part } => {
+                let effects = self.like_effects(part).enumerate();
+                effects
+                    .max_by(|a, b| a.1.total_cmp(&b.1))
+                    .map(|(effect, _)| effect)
+            }
+            Hypothesis::NoFault | Hypothesis::Unknown => None,
+        }
+    }
+
+    /// Logarithms of the likelihood of all steps under an unseen mode of a part, by the effect that it acts like.
+    pub(super) fn like_effects(&self, part: usize) -> impl Iterator<Item = f64> + Clone + '_ {
+        let alike = self.model.resemblance(part).iter();
+        alike.zip(&self.like_effects).map(|(alike, ln)| alike + ln)
     }
 
     /// What is settled; `None` while the question is open.
@@ -96,12 +173,18 @@ impl<'m, 'd> Belief<'m, 'd> {
         if probabilities[NO_FAULT] >= model.settings.healthy_at {
             return Some(Settled::Healthy);
         }
-        let probability = |part: &[usize]| part.iter().map(|i| probabilities[*i]).sum::<f64>();
-        let mut parts = model.parts().iter();
-        let found = parts.find(|part| probability(part) >= model.settings.found_at)?;
-        model
-            .lru(model.hypotheses[*found.first()?])
-            .map(Settled::Part)
+        let mut parts = vec![0.0; model.parts().len()];
+        for (hypothesis, probability) in model.hypotheses.iter().zip(&probabilities) {
+            if let Some(lru) = model.lru(*hypothesis)
+                && let Ok(part) = model.parts().binary_search(&lru)
+            {
+                parts[part] += probability;
+            }
+        }
+        let found = parts
+            .iter()
+            .position(|part| *part >= model.settings.found_at)?;
+        Some(Settled::Part(model.parts()[found]))
     }
 
     /// Whether one part is found, or the unit is healthy.
@@ -116,4 +199,13 @@ pub(super) fn normalised(ln: &[f64]) -> Vec<f64> {
     let weights: Vec<_> = ln.iter().map(|ln| (ln - greatest).exp()).collect();
     let sum: f64 = weights.iter().sum();
     weights.into_iter().map(|weight| weight / sum).collect()
+}
+
+/// Logarithm of the sum of numbers given by their logarithms.
+fn ln_sum(all: impl Iterator<Item = f64> + Clone) -> f64 {
+    let greatest = all.clone().fold(f64::NEG_INFINITY, f64::max);
+    if greatest == f64::NEG_INFINITY {
+        return greatest;
+    }
+    greatest + all.map(|ln| (ln - greatest).exp()).sum::<f64>().ln()
 }

@@ -91,10 +91,16 @@ pub struct Dictionary {
     pub seeds: Vec<u64>,
     /// Checks in the order of the suite.
     pub checks: Vec<CheckName>,
+    /// For each check the part that its script suspects when it fails.
+    #[serde(default)]
+    pub suspects: Vec<Option<LruId>>,
     /// Counts of a healthy unit.
     pub healthy: Column,
     /// Fault modes.
     pub modes: Vec<Mode>,
+    /// All parts that can be replaced, those without a mode among them.
+    #[serde(default)]
+    pub parts: Vec<LruId>,
     /// Indexes of the checks by name.
     #[serde(skip)]
     places: BTreeMap<CheckName, usize>,
@@ -217,9 +223,10 @@ impl Dictionary {
         }
     }
 
-    /// The parts of its modes, each once, in order.
+    /// The parts of the unit and of its modes, each once, in order.
     pub fn lrus(&self) -> Vec<&LruId> {
-        let all: BTreeSet<_> = self.modes.iter().map(|mode| &mode.name.lru).collect();
+        let of_modes = self.modes.iter().map(|mode| &mode.name.lru);
+        let all: BTreeSet<_> = self.parts.iter().chain(of_modes).collect();
         all.into_iter().collect()
     }
 }

@@ -19,12 +19,17 @@ pub mod matrix;
 mod model;
 mod next_check;
 mod observation;
+mod outlook;
 mod pairs;
 pub mod process;
 mod reasons;
 mod settings;
+mod signs;
 mod strategy;
+mod suspects;
+mod unseen;
 mod verdict;
+mod weights;
 
 pub use belief::{Belief, Settled};
 pub use cell::{Cell, StepOutcome, Values};

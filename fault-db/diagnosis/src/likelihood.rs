@@ -152,29 +152,36 @@ fn student4(t: f64) -> f64 {
     0.375 * (1.0 + t * t / 4.0).powf(-2.5)
 }
 
-/// Likelihood of a step under `expected` counts; `scale` gives the range of a measurement's values.
-pub fn likelihood<'s>(
+/// Likelihood of a step's result and values under `expected` counts; `scale` gives the range of a measurement's values.
+pub fn likelihood_without_signs<'s>(
+    expected: Expected<'_>,
+    step: &ObservedStep,
+    scale: impl Fn(&str) -> Option<&'s Scale>,
+) -> f64 {
+    expected.result(step.result) * likelihood_of_values(expected, step, scale)
+}
+
+/// Likelihood of a step's values alone.
+pub fn likelihood_of_values<'s>(
     expected: Expected<'_>,
     step: &ObservedStep,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
     let values = step.values.iter();
-    let of_values: f64 = values
-        .filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?)))
-        .product();
-    expected.signature(&StepOutcome::of(step)) * of_values
+    let of_each =
+        values.filter_map(|(name, value)| Some(expected.value(name, *value, scale(name)?)));
+    of_each.product()
 }
 
-/// The same if nothing is known.
+/// Likelihood of a step's result and values if nothing is known.
 pub fn likelihood_of_anything<'s>(
     settings: &LikelihoodSettings,
     step: &ObservedStep,
     scale: impl Fn(&str) -> Option<&'s Scale>,
 ) -> f64 {
-    let signs = settings.sign.powi(step.signs.len() as i32);
     let measured = step.values.iter().filter(|(name, _)| scale(name).is_some());
     let values = settings.anywhere.powi(measured.count() as i32);
-    nothing_known(settings, step.result) * signs * values
+    nothing_known(settings, step.result) * values
 }
 
 #[cfg(test)]
@@ -241,7 +248,7 @@ mod tests {
         scale.widen(&slow.values["t"]);
         let ln = |cell: &Cell, value| {
             let step = step(Verdict::Failed, value);
-            likelihood(expected(cell), &step, |_| Some(&scale)).ln()
+            likelihood_without_signs(expected(cell), &step, |_| Some(&scale)).ln()
         };
         assert!(ln(&slow, Some(643.0)) > ln(&dead, Some(643.0)) + 3.0);
         assert!(ln(&dead, None) > ln(&slow, None) + 2.0);

@@ -1,19 +1,29 @@
 //! A dictionary prepared for diagnosis: hypotheses with priors, and the scale of each measurement.
+//!
+//! What a fault does to the checks is one of the effects that the dictionary has: a level of a fault mode. A mode of
+//! the dictionary has its own effect; a mode that nobody has seen yet has, more or less, an effect of its part, or of
+//! a part whose modes act on the same checks.
 
 use std::collections::BTreeMap;
 
 use protocol::LruId;
 
-use super::cell::Cell;
+use super::cell::{Cell, StepOutcome};
 use super::dictionary::{Column, Dictionary};
-use super::likelihood::{Expected, Scale, likelihood, likelihood_of_anything};
+use super::likelihood::{
+    Expected, Scale, likelihood_of_anything, likelihood_of_values, likelihood_without_signs,
+};
 use super::observation::ObservedStep;
-use super::settings::{LogSettings, Settings};
+use super::outlook::{Outlook, outlooks};
+use super::settings::Settings;
+use super::signs::{ShownSign, shown_signs};
+use super::suspects::Suspects;
+use super::unseen::{frequency, resemblance};
 
 /// Index of [`Hypothesis::NoFault`] in every model.
 pub const NO_FAULT: usize = 0;
-/// Index of [`Hypothesis::Unknown`] in every model.
-const UNKNOWN: usize = 1;
+/// Index of the first mode in every model.
+pub const FIRST_EFFECT: usize = 2;
 
 /// A hypothesis. Modes and levels are given by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,6 +39,22 @@ pub enum Hypothesis {
         /// Its level.
         column: usize,
     },
+    /// A fault of a part, given by its index in the model, in a way that is not in the dictionary.
+    Unseen {
+        /// The part.
+        part: usize,
+    },
+}
+
+/// Logarithms of a step's likelihood.
+#[derive(Clone, Debug)]
+pub struct StepLikelihoods {
+    /// On a healthy unit, its signs among it.
+    pub healthy: f64,
+    /// Under each effect, without its signs, which count once in a run.
+    pub effects: Vec<f64>,
+    /// Under a fault that is not in the dictionary and acts more or less like each effect.
+    pub like_effects: Vec<f64>,
 }
 
 /// A dictionary prepared for diagnosis.
@@ -38,12 +64,24 @@ pub struct Model<'a> {
     pub dictionary: &'a Dictionary,
     /// Priors and thresholds.
     pub settings: &'a Settings,
-    /// All single hypotheses.
+    /// All single hypotheses: no fault, an unknown one, the modes, and an unseen mode of each part.
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
-    /// Hypotheses of each part, by index.
-    parts: Vec<Vec<usize>>,
+    /// The parts.
+    parts: Vec<&'a LruId>,
+    /// Effects of each part.
+    effects_of_parts: Vec<Vec<usize>>,
+    /// For each part, logarithms of the probability that an unseen mode of it acts like each effect.
+    resemblance: Vec<Vec<f64>>,
+    /// The same of an unknown fault.
+    frequency: Vec<f64>,
+    /// What each check may show.
+    pub outlooks: Vec<Outlook>,
+    /// Signs of each effect.
+    signs: Vec<Vec<ShownSign<'a>>>,
+    /// Whom failed checks suspect under an unseen mode of each part.
+    pub suspects: Suspects,
     scales: BTreeMap<usize, BTreeMap<String, Scale>>,
     /// Share of checks that a healthy unit does not pass.
     false_alarms: f64,
@@ -57,32 +95,53 @@ impl<'a> Model<'a> {
         settings: &'a Settings,
         lru_factor: &BTreeMap<LruId, f64>,
     ) -> Self {
-        let mut hypotheses = vec![Hypothesis::NoFault, Hypothesis::Unknown];
+        let parts = dictionary.lrus();
         let weight = |mode: usize| {
             let name = &dictionary.modes[mode].name;
             name.weight * lru_factor.get(&name.lru).copied().unwrap_or(1.0)
         };
         let all: f64 = (0..dictionary.modes.len()).map(weight).sum();
         let known = 1.0 - settings.no_fault - settings.unknown_fault;
+        let seen = known * (1.0 - settings.unseen_mode);
+        let mut hypotheses = vec![Hypothesis::NoFault, Hypothesis::Unknown];
         let mut priors = vec![settings.no_fault, settings.unknown_fault];
         for (mode, entry) in dictionary.modes.iter().enumerate() {
             for column in 0..entry.columns.len() {
                 hypotheses.push(Hypothesis::Mode { mode, column });
-                priors.push(known * weight(mode) / all / entry.columns.len() as f64);
+                priors.push(seen * weight(mode) / all / entry.columns.len() as f64);
             }
         }
-        let mut parts: BTreeMap<&LruId, Vec<usize>> = BTreeMap::new();
-        for (i, hypothesis) in hypotheses.iter().enumerate() {
-            if let Hypothesis::Mode { mode, .. } = hypothesis {
-                let part = &dictionary.modes[*mode].name.lru;
-                parts.entry(part).or_default().push(i);
-            }
+        // How often a part fails in a way that nobody has seen does not follow from how often it fails in others.
+        let factors = parts
+            .iter()
+            .map(|lru| lru_factor.get(*lru).copied().unwrap_or(1.0));
+        let of_all: f64 = factors.clone().sum();
+        for (part, factor) in factors.enumerate() {
+            hypotheses.push(Hypothesis::Unseen { part });
+            priors.push(known * settings.unseen_mode * factor / of_all);
         }
+        let effects = &hypotheses[FIRST_EFFECT..hypotheses.len() - parts.len()];
+        let lru = |effect: &Hypothesis| match effect {
+            Hypothesis::Mode { mode, .. } => Some(&dictionary.modes[*mode].name.lru),
+            _ => None,
+        };
+        let of_part = |part: &&LruId| -> Vec<usize> {
+            let effects = effects.iter().enumerate();
+            let own = effects.filter(|(_, effect)| lru(effect) == Some(part));
+            own.map(|(effect, _)| effect).collect()
+        };
+        let columns = dictionary.modes.iter().flat_map(|mode| &mode.columns);
         Self {
             dictionary,
             settings,
+            effects_of_parts: parts.iter().map(of_part).collect(),
+            frequency: frequency(dictionary),
+            outlooks: outlooks(dictionary, columns.clone()),
+            signs: columns.map(shown_signs).collect(),
+            suspects: Suspects::new(dictionary, &parts),
+            resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
-            parts: parts.into_values().collect(),
+            parts,
             false_alarms: false_alarms(dictionary),
             ln_priors: priors.into_iter().map(f64::ln).collect(),
             scales: scales(dictionary),
@@ -90,20 +149,47 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Index of a level of a mode among the hypotheses.
-    pub fn position(&self, mode: usize, column: usize) -> Option<usize> {
-        let sought = Hypothesis::Mode { mode, column };
-        self.hypotheses.binary_search(&sought).ok()
-    }
-
     /// Part that has failed under a hypothesis; none of a healthy unit and of an unknown fault.
     pub fn lru(&self, hypothesis: Hypothesis) -> Option<&'a LruId> {
         match hypothesis {
             Hypothesis::Mode { mode, .. } => Some(&self.dictionary.modes[mode].name.lru),
-            _ => None,
+            Hypothesis::Unseen { part } => Some(self.parts[part]),
+            Hypothesis::NoFault | Hypothesis::Unknown => None,
         }
     }
 
+    /// The parts, in order.
+    pub fn parts(&self) -> &[&'a LruId] {
+        &self.parts
+    }
+
+    /// The effects, in order: the hypotheses that are modes.
+    pub fn effects(&self) -> &[Hypothesis] {
+        &self.hypotheses[FIRST_EFFECT..self.hypotheses.len() - self.parts.len()]
+    }
+
+    /// Logarithms of the probability that an unseen mode of a part acts like each effect.
+    pub fn resemblance(&self, part: usize) -> &[f64] {
+        &self.resemblance[part]
+    }
+
+    /// Logarithms of the probability that an unknown fault acts like each effect.
+    pub fn frequency(&self) -> &[f64] {
+        &self.frequency
+    }
+
+    /// Place of a mode's level among the effects.
+    pub fn effect(&self, hypothesis: Hypothesis) -> Option<usize> {
+        self.effects().binary_search(&hypothesis).ok()
+    }
+
+    /// Signs of a mode at one level; none under the other hypotheses.
+    pub fn signs(&self, hypothesis: Hypothesis) -> &[ShownSign<'a>] {
+        let effect = self.effect(hypothesis);
+        effect.map_or(&[], |effect| &self.signs[effect])
+    }
+
+    /// Counts of a mode's level; a healthy unit's under the other hypotheses.
     fn column(&self, hypothesis: Hypothesis) -> &'a Column {
         match hypothesis {
             Hypothesis::Mode { mode, column } => &self.dictionary.modes[mode].columns[column],
@@ -111,17 +197,12 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Hypotheses of each part, by index.
-    pub(super) fn parts(&self) -> &[Vec<usize>] {
-        &self.parts
-    }
-
     /// Whether the check behaves as on a healthy unit under this hypothesis.
     pub fn is_like_healthy(&self, hypothesis: Hypothesis, place: usize) -> bool {
         match hypothesis {
             Hypothesis::Mode { .. } => !self.column(hypothesis).cells.contains_key(&place),
-            // Effects of an unknown fault were never counted.
-            Hypothesis::NoFault | Hypothesis::Unknown => true,
+            // Their effects were never counted.
+            _ => true,
         }
     }
 
@@ -141,39 +222,48 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Logarithms of a step's likelihood under each hypothesis; `place` is the check's index.
+    /// Logarithms of a step's likelihood; `place` is the check's index.
     ///
-    /// A mode was run few times, and an intermittent one affects another check each time. So, besides what
-    /// was counted, an affected check may behave as on a healthy unit, as under another mode of the same
-    /// part, or at random; and an unaffected check may be affected now and then.
-    pub fn ln_likelihoods(&self, place: usize, step: &ObservedStep) -> Vec<f64> {
+    /// A mode was run few times, and an intermittent one affects another check each time. So, besides what was
+    /// counted, now and then a check behaves as under another mode of the same part, or shows anything.
+    pub fn ln_likelihoods(&self, place: usize, step: &ObservedStep) -> StepLikelihoods {
         let settings = self.settings;
         let scale = |name: &str| self.scales.get(&place)?.get(name);
-        let counted = |hypothesis| likelihood(self.expected(hypothesis, place), step, scale);
+        let of = |expected| likelihood_without_signs(expected, step, scale);
+        let healthy = self.expected(Hypothesis::NoFault, place);
+        let like_healthy = of(healthy);
         let anything = likelihood_of_anything(&settings.likelihood, step, scale);
-        let healthy = counted(Hypothesis::NoFault);
-        let like_healthy = |i: usize| self.is_like_healthy(self.hypotheses[i], place);
-        let mut likelihoods = vec![healthy; self.hypotheses.len()];
-        likelihoods[UNKNOWN] = mixed(healthy, anything, settings.unknown_hits);
-        for part in &self.parts {
-            for i in part.iter().filter(|i| !like_healthy(**i)) {
-                likelihoods[*i] = counted(self.hypotheses[*i]);
-            }
-            let same_part = part.iter().map(|i| likelihoods[*i]).sum::<f64>() / part.len() as f64;
-            let (same, any) = (settings.doubt_same_part, settings.doubt_anything);
-            let hit = (same * same_part + any * anything) / (same + any);
-            let otherwise = mixed(healthy, hit, same + any);
-            for i in part {
-                let doubt = self.doubt(self.hypotheses[*i]);
-                likelihoods[*i] = if like_healthy(*i) {
-                    mixed(healthy, hit, doubt.new_hits)
-                } else {
-                    mixed(likelihoods[*i], otherwise, doubt.otherwise)
+        let counted =
+            self.effects()
+                .iter()
+                .map(|effect| match self.is_like_healthy(*effect, place) {
+                    true => like_healthy,
+                    false => of(self.expected(*effect, place)),
+                });
+        let counted: Vec<f64> = counted.collect();
+        let weight = settings.weight_of_step;
+        let (mut effects, mut like_effects) = (counted.clone(), counted.clone());
+        for part in &self.effects_of_parts {
+            let of_part: f64 = part.iter().map(|effect| counted[*effect]).sum();
+            let same_part = of_part / part.len().max(1) as f64;
+            let otherwise = mixed(same_part, anything, settings.anything);
+            for effect in part.iter().copied() {
+                let share = match self.is_intermittent(self.effects()[effect]) {
+                    true => settings.otherwise_intermittent,
+                    false => settings.otherwise,
                 };
+                let ln = |share: f64| weight * mixed(counted[effect], otherwise, share).ln();
+                effects[effect] = ln(share);
+                like_effects[effect] = ln(settings.otherwise_unseen);
             }
         }
-        let weight = settings.weight_of_step;
-        likelihoods.into_iter().map(|p| weight * p.ln()).collect()
+        StepLikelihoods {
+            // Good units were counted in so many runs that it is known how rarely they fail a check.
+            healthy: healthy.signature(&StepOutcome::of(step)).ln()
+                + weight * likelihood_of_values(healthy, step, scale).ln(),
+            effects,
+            like_effects,
+        }
     }
 
     /// Whether the hypothesis is an intermittent mode.
@@ -185,62 +275,6 @@ impl<'a> Model<'a> {
             _ => false,
         }
     }
-
-    fn doubt(&self, hypothesis: Hypothesis) -> Doubt {
-        let settings = self.settings;
-        let (runs, new_hits) = if self.is_intermittent(hypothesis) {
-            (
-                settings.doubt_runs_intermittent,
-                settings.new_hits_intermittent,
-            )
-        } else {
-            (settings.doubt_runs, settings.new_hits)
-        };
-        Doubt {
-            otherwise: runs / (f64::from(self.column(hypothesis).runs) + runs),
-            new_hits,
-        }
-    }
-
-    /// Logarithm of the likelihood of the signs in a unit's own log. The unit's operation before is unknown,
-    /// so a sign that did not show is weak evidence.
-    pub fn ln_log(
-        &self,
-        hypothesis: Hypothesis,
-        signs: &std::collections::BTreeSet<super::Sign>,
-    ) -> f64 {
-        let LogSettings {
-            silence,
-            stray,
-            of_unknown,
-        } = self.settings.log;
-        if hypothesis == Hypothesis::Unknown {
-            return signs.len() as f64 * of_unknown.ln();
-        }
-        let column = self.column(hypothesis);
-        let chance = |count: u32| {
-            let share = f64::from(count) / f64::from(column.runs.max(1));
-            (stray + (1.0 - stray) * share).min(1.0 - stray)
-        };
-        let known = |sign| column.signs.iter().find(|(s, _)| s == sign);
-        let showing = signs
-            .iter()
-            .map(|sign| chance(known(sign).map_or(0, |(_, count)| *count)).ln());
-        let silent = column
-            .signs
-            .iter()
-            .filter(|(sign, _)| !signs.contains(sign))
-            .map(|(_, count)| silence * (1.0 - chance(*count)).ln());
-        showing.chain(silent).sum()
-    }
-}
-
-/// How far a mode may behave otherwise than counted.
-struct Doubt {
-    /// Share of runs in which an affected check behaves otherwise.
-    otherwise: f64,
-    /// Share of unaffected checks that it affects nevertheless.
-    new_hits: f64,
 }
 
 /// A mixture with this share of the second.

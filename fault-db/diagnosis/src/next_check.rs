@@ -3,13 +3,12 @@
 //! A procedure sets the unit up at its start and its steps build on each other. So a check costs all steps
 //! of its procedure before it, except those that have just run.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use protocol::LruId;
 use serde::Serialize;
 
-use super::belief::Belief;
-use super::cell::StepOutcome;
+use super::belief::{Belief, normalised};
+use super::model::{FIRST_EFFECT, Hypothesis};
 use super::observation::CheckName;
 
 /// A recommended check.
@@ -28,11 +27,12 @@ fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::E
     to.collect_str(check)
 }
 
-/// The classes to tell apart: each part, no fault, and an unknown fault, with their probabilities.
+/// The classes to tell apart, each part, no fault, and an unknown fault, by the effects that they may have.
 struct Classes {
-    of_hypothesis: Vec<usize>,
-    count: usize,
-    probabilities: Vec<f64>,
+    /// Probability of each class.
+    all: Vec<f64>,
+    /// For each effect, the probability of each class with it.
+    with_effect: Vec<Vec<f64>>,
 }
 
 impl Belief<'_, '_> {
@@ -96,57 +96,57 @@ impl Belief<'_, '_> {
     }
 
     fn classes(&self) -> Classes {
-        let mut names: BTreeMap<Option<&LruId>, usize> = BTreeMap::new();
-        let mut of_hypothesis = Vec::new();
-        let probabilities = self.probabilities();
-        for (i, hypothesis) in self.model.hypotheses.iter().enumerate() {
+        let parts = self.model.parts();
+        let classes = FIRST_EFFECT + parts.len();
+        let mut all = vec![0.0; classes];
+        let mut with_effect = vec![vec![0.0; classes]; self.model.effects().len()];
+        let hypotheses = self.model.hypotheses.iter().zip(self.probabilities());
+        for (i, (hypothesis, p)) in hypotheses.enumerate() {
             // No fault and the unknown one are the first two classes.
-            let class = match self.model.lru(*hypothesis) {
-                None => i,
-                lru => {
-                    let next = names.len() + 2;
-                    *names.entry(lru).or_insert(next)
+            let lru = self.model.lru(*hypothesis);
+            let part = lru.and_then(|lru| parts.binary_search(&lru).ok());
+            let class = part.map_or(i, |part| FIRST_EFFECT + part);
+            all[class] += p;
+            let shares = match *hypothesis {
+                Hypothesis::NoFault => continue,
+                Hypothesis::Mode { .. } => {
+                    with_effect[i - FIRST_EFFECT][class] += p;
+                    continue;
                 }
+                Hypothesis::Unseen { part } => normalised(&self.vaguely_like_effects(part)),
+                Hypothesis::Unknown => normalised(&self.any_effect().collect::<Vec<_>>()),
             };
-            of_hypothesis.push(class);
+            for (effect, share) in shares.into_iter().enumerate() {
+                with_effect[effect][class] += p * share;
+            }
         }
-        Classes {
-            of_hypothesis,
-            count: names.len() + 2,
-            probabilities,
-        }
+        Classes { all, with_effect }
     }
 
     /// Mutual information of the class and what the check at `place` shows, bits.
     fn gain_bits(&self, place: usize, classes: &Classes) -> f64 {
-        let model = self.model;
-        if model
-            .hypotheses
-            .iter()
-            .all(|hypothesis| model.is_like_healthy(*hypothesis, place))
-        {
+        let outlook = &self.model.outlooks[place];
+        if outlook.effects.is_empty() {
             return 0.0;
         }
-        let mut joint: BTreeMap<StepOutcome, Vec<f64>> = BTreeMap::new();
-        for (i, hypothesis) in model.hypotheses.iter().enumerate() {
-            let p = classes.probabilities[i];
-            if p < 1e-9 {
-                continue;
+        let mut joint = vec![vec![0.0; classes.all.len()]; outlook.outcomes];
+        let mut add = |outcomes: &[(usize, f64)], of_classes: &[f64]| {
+            for (outcome, share) in outcomes {
+                for (sum, p) in joint[*outcome].iter_mut().zip(of_classes) {
+                    *sum += p * share;
+                }
             }
-            let expected = model.expected(*hypothesis, place);
-            let runs = f64::from(expected.cell.runs());
-            if runs == 0.0 {
-                continue;
+        };
+        let mut like_healthy = classes.all.clone();
+        for (effect, outcomes) in &outlook.effects {
+            let of_classes = &classes.with_effect[*effect];
+            for (left, p) in like_healthy.iter_mut().zip(of_classes) {
+                *left = (*left - p).max(0.0);
             }
-            for (signature, count) in &expected.cell.signatures {
-                let share = f64::from(*count) / runs;
-                let row = joint
-                    .entry(signature.clone())
-                    .or_insert_with(|| vec![0.0; classes.count]);
-                row[classes.of_hypothesis[i]] += p * share;
-            }
+            add(outcomes, of_classes);
         }
-        information_bits(&joint.into_values().collect::<Vec<_>>())
+        add(&outlook.healthy, &like_healthy);
+        information_bits(&joint)
     }
 }
 

@@ -1,12 +1,12 @@
 //! Double faults, considered when no single fault explains the results.
 //!
 //! A check passes under two faults only if it passes under each, and fails if either makes it fail. So a
-//! passed check has the lesser of the two likelihoods; any other result has the greater.
+//! passed check has the lesser of the two likelihoods; any other result is the effect of one of them.
 
 use protocol::Verdict;
 
 use super::belief::{Belief, normalised};
-use super::model::{Hypothesis, NO_FAULT};
+use super::model::{FIRST_EFFECT, Hypothesis};
 use super::observation::{Observation, ObservedStep};
 
 /// Number of best explaining modes that are combined to pairs.
@@ -25,7 +25,7 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, f64) {
     let model = belief.model;
     let explaining = explaining(belief, seen);
     let mut both = Vec::new();
-    let mut ln = belief.ln().to_vec();
+    let mut ln = belief.ln();
     let singles = ln.len();
     for (i, first) in explaining.iter().enumerate() {
         for second in &explaining[i + 1..] {
@@ -63,7 +63,9 @@ fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
     let steps = belief.steps().iter();
     let wrong: Vec<_> = steps.filter(|w| is_strange(&seen.steps[w.seen])).collect();
     let explained = |hypothesis: usize| -> f64 {
-        let gains = wrong.iter().map(|w| w.ln[hypothesis] - w.ln[NO_FAULT]);
+        let gains = wrong
+            .iter()
+            .map(|w| w.ln.effects[hypothesis - FIRST_EFFECT] - w.ln.healthy);
         gains.map(|gain| gain.max(0.0)).sum()
     };
     let mut best: Vec<(usize, usize, f64)> = Vec::new();
@@ -90,19 +92,24 @@ fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
 
 fn ln_pair(belief: &Belief<'_, '_>, [first, second]: [usize; 2], seen: &Observation) -> f64 {
     let of_steps = belief.steps().iter().map(|weighed| {
-        let (a, b) = (weighed.ln[first], weighed.ln[second]);
-        if is_strange(&seen.steps[weighed.seen]) {
-            a.max(b)
+        let ln = |hypothesis: usize| weighed.ln.effects[hypothesis - FIRST_EFFECT];
+        let (a, b) = (ln(first), ln(second));
+        let step = &seen.steps[weighed.seen];
+        if is_strange(step) {
+            // Whose the effect is, is not known: as likely each one's as it is its own.
+            let result = |i: usize| {
+                let expected = belief
+                    .model
+                    .expected(belief.model.hypotheses[i], weighed.place);
+                expected.result(step.result)
+            };
+            let (of_a, of_b) = (result(first), result(second));
+            ((of_a * a.exp() + of_b * b.exp()) / (of_a + of_b)).ln()
         } else {
             a.min(b)
         }
     });
     let model = belief.model;
-    let log = if seen.signs.is_empty() {
-        0.0
-    } else {
-        let of = |i: usize| model.ln_log(model.hypotheses[i], &seen.signs);
-        of(first).max(of(second))
-    };
-    of_steps.sum::<f64>() + log
+    let both = [first, second].map(|i| model.hypotheses[i]);
+    of_steps.sum::<f64>() + belief.signs().ln_of_both(model, both)
 }

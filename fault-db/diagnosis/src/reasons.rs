@@ -1,10 +1,13 @@
 //! The steps that speak for a fault mode and those that speak against it.
 
+use std::collections::BTreeSet;
+
 use protocol::Verdict;
 
 use super::belief::Belief;
-use super::model::{Hypothesis, Model, NO_FAULT};
+use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::{Observation, ObservedStep};
+use super::signs::SignsSeen;
 
 /// Most reasons in each direction.
 const MOST: usize = 6;
@@ -22,26 +25,28 @@ pub struct Reasons {
     pub against: Vec<String>,
 }
 
-/// The reasons for and against a hypothesis, given by its place in the model.
-pub fn reasons(belief: &Belief<'_, '_>, hypothesis: usize, seen: &Observation) -> Reasons {
+/// The reasons for and against a fault of a part.
+pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observation) -> Reasons {
     let model = belief.model;
+    let Some(own) = belief.acts_like(hypothesis) else {
+        return Reasons::default();
+    };
     let rivals = rivals(belief, hypothesis);
     let mut for_it = Vec::new();
     let mut against = Vec::new();
     for weighed in belief.steps() {
-        let own = weighed.ln[hypothesis];
-        let healthy = weighed.ln[NO_FAULT];
-        let rival = rivals.iter().map(|rival| weighed.ln[*rival]);
+        let ln_own = weighed.ln.effects[own];
+        let healthy = weighed.ln.healthy;
+        let rival = rivals.iter().map(|rival| weighed.ln.effects[*rival]);
         let best_rival = rival.fold(healthy, f64::max);
         let step = &seen.steps[weighed.seen];
-        let text = || text(model, model.hypotheses[hypothesis], weighed.place, step);
-        if own - healthy > SPEAKS_AT {
-            for_it.push((own - healthy, text()));
-        } else if best_rival - own > SPEAKS_AT {
-            against.push((best_rival - own, text()));
+        let text = || text(model, model.effects()[own], weighed.place, step);
+        if ln_own - healthy > SPEAKS_AT {
+            for_it.push((ln_own - healthy, text()));
+        } else if best_rival - ln_own > SPEAKS_AT {
+            against.push((best_rival - ln_own, text()));
         }
     }
-    let hypothesis = model.hypotheses[hypothesis];
     let strongest = |mut all: Vec<(f64, String)>| {
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         let all = all.into_iter().map(|(_, text)| text);
@@ -51,31 +56,43 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: usize, seen: &Observation) -
         for_it: strongest(for_it),
         against: strongest(against),
     };
-    for sign in &seen.signs {
-        let alone = std::collections::BTreeSet::from([sign.clone()]);
-        let gain = model.ln_log(hypothesis, &alone) - model.ln_log(Hypothesis::NoFault, &alone);
-        let text = format!("the unit's log: {} names {}", sign.fault, sign.part());
-        if gain > SPEAKS_AT {
-            reasons.for_it.push(text);
-        } else if gain < -SPEAKS_AT {
-            reasons.against.push(text);
-        }
-    }
+    reasons.add_signs(belief.signs(), model, hypothesis);
     reasons
 }
 
-/// The likeliest hypotheses of another part, by index.
-fn rivals(belief: &Belief<'_, '_>, hypothesis: usize) -> Vec<usize> {
+impl Reasons {
+    /// Signs that speak for a hypothesis, or against it.
+    fn add_signs(&mut self, signs: &SignsSeen, model: &Model<'_>, hypothesis: Hypothesis) {
+        let all = signs.in_steps.union(&signs.in_log);
+        for sign in all {
+            let alone = SignsSeen {
+                in_log: BTreeSet::from([sign.clone()]),
+                ..SignsSeen::default()
+            };
+            let gain = alone.ln(model, hypothesis) - alone.ln(model, Hypothesis::NoFault);
+            let text = format!("the unit's log: {} names {}", sign.fault, sign.part());
+            if gain > SPEAKS_AT {
+                self.for_it.push(text);
+            } else if gain < -SPEAKS_AT {
+                self.against.push(text);
+            }
+        }
+    }
+}
+
+/// The likeliest modes of another part, by the index of their effect.
+fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<usize> {
     let model = belief.model;
-    let own = model.lru(model.hypotheses[hypothesis]);
-    let mut rivals: Vec<_> = belief.probabilities().into_iter().enumerate().collect();
-    rivals.retain(|(i, _)| {
-        let lru = model.lru(model.hypotheses[*i]);
-        lru.is_some() && lru != own
+    let own = model.lru(hypothesis);
+    let probabilities = belief.probabilities();
+    let effects = model.effects().iter().enumerate();
+    let others = effects.filter(|(_, effect)| model.lru(**effect) != own);
+    let mut rivals: Vec<_> = others.map(|(i, _)| i).collect();
+    rivals.sort_by(|a, b| {
+        probabilities[FIRST_EFFECT + b].total_cmp(&probabilities[FIRST_EFFECT + a])
     });
-    rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
     rivals.truncate(CONFLICTING_EVENTS);
-    rivals.into_iter().map(|(i, _)| i).collect()
+    rivals
 }
 
 /// A step, its result, and its expected result under the mode and on a healthy unit.

@@ -20,20 +20,27 @@ pub struct Settings {
     pub least_gain_bits: f64,
     /// Pseudo-runs for smoothing, beside the counted runs.
     pub doubt_runs: f64,
-    /// The same for an intermittent mode.
-    pub doubt_runs_intermittent: f64,
-    /// Share of the pseudo-runs in which a check behaves as under another mode of the same part.
-    pub doubt_same_part: f64,
-    /// Share of them with a random result; in the rest the check behaves as on a healthy unit.
-    pub doubt_anything: f64,
-    /// Share of checks that a mode affects although no campaign showed it.
-    pub new_hits: f64,
-    /// The same for an intermittent mode.
-    pub new_hits_intermittent: f64,
+    /// Share of checks that a mode acts on otherwise than counted: like another mode of the same part, or anyhow.
+    pub otherwise: f64,
+    /// The same of an intermittent mode.
+    pub otherwise_intermittent: f64,
+    /// The same of a mode that is not in the dictionary, beside the effect that it acts like.
+    pub otherwise_unseen: f64,
+    /// Share of those that may show anything.
+    pub anything: f64,
+    /// Share of a part's faults that act in a way which is not in the dictionary.
+    pub unseen_mode: f64,
+    /// Least likeness of two parts, beside 1 of a part and itself: a mode that was not seen yet may act like a mode
+    /// of any part.
+    pub other_part: f64,
+    /// Share of units on which a known mode acts as loosely as an unseen one.
+    pub loosely: f64,
+    /// Weight of the steps so far in what a fault that is not in the dictionary will do in others.
+    pub foresight: f64,
+    /// Weight of whom the failed checks suspect.
+    pub suspect: f64,
     /// Weight of a step's evidence, below 1 because steps of one run are not independent.
     pub weight_of_step: f64,
-    /// Share of checks affected by a fault that is not in the dictionary.
-    pub unknown_hits: f64,
     /// Set-up time before a procedure, s, as part of the cost of a check.
     pub bring_up_s: f64,
     /// Factor on a part's prior for each earlier run in which a fault named it.
@@ -45,6 +52,9 @@ pub struct Settings {
     /// Probabilities where nothing was counted. Defaults if the file has no such table, as in the next two.
     #[serde(default)]
     pub likelihood: LikelihoodSettings,
+    /// Weights of signs, faults that show in a run.
+    #[serde(default)]
+    pub signs: SignSettings,
     /// Weights of the signs in a unit's own log.
     #[serde(default)]
     pub log: LogSettings,
@@ -76,6 +86,22 @@ pub struct LikelihoodSettings {
     pub most_runs: f64,
 }
 
+/// Weights of the faults that show in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SignSettings {
+    /// Probability of a sign that names the part, under a fault of it that is not in the dictionary.
+    pub of_part: f64,
+    /// Probability of one that names another part, or none.
+    pub of_other_part: f64,
+    /// Probability of any under an unknown fault.
+    pub of_unknown: f64,
+    /// Probability of a sign unrelated to the fault.
+    pub stray: f64,
+    /// Probability that a sign which a mode always showed does not show.
+    pub silent: f64,
+}
+
 /// Weights of the signs in a unit's own log.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -85,16 +111,12 @@ pub struct LogSettings {
     /// Probability of a sign unrelated to the fault, as a log also holds the acts of testers. The same under
     /// every hypothesis, however many runs it rests on.
     pub stray: f64,
-    /// Probability of each sign under a fault that is not in the dictionary.
-    pub of_unknown: f64,
 }
 
 /// What a conclusion says and shows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConclusionSettings {
-    /// Two faults are concluded at this probability of all pairs together.
-    pub two_faults_at: f64,
     /// An unknown fault is concluded at this probability.
     pub unknown_fault_at: f64,
     /// Parts from this probability on are named when it cannot be told which has failed.
@@ -111,18 +133,21 @@ impl Settings {
     /// # Errors
     /// The key, its value and its range.
     pub fn check(&self) -> Result<(), String> {
-        let (likelihood, log, conclusion) = (&self.likelihood, &self.log, &self.conclusion);
+        let (likelihood, signs) = (&self.likelihood, &self.signs);
+        let (log, conclusion) = (&self.log, &self.conclusion);
         let shares = [
             ("no_fault", self.no_fault),
             ("unknown_fault", self.unknown_fault),
             ("second_fault", self.second_fault),
             ("found_at", self.found_at),
             ("healthy_at", self.healthy_at),
-            ("doubt_same_part", self.doubt_same_part),
-            ("doubt_anything", self.doubt_anything),
-            ("new_hits", self.new_hits),
-            ("new_hits_intermittent", self.new_hits_intermittent),
-            ("unknown_hits", self.unknown_hits),
+            ("foresight", self.foresight),
+            ("otherwise", self.otherwise),
+            ("otherwise_intermittent", self.otherwise_intermittent),
+            ("otherwise_unseen", self.otherwise_unseen),
+            ("anything", self.anything),
+            ("unseen_mode", self.unseen_mode),
+            ("other_part", self.other_part),
             ("weight_of_step", self.weight_of_step),
             ("likelihood.passed", likelihood.passed),
             ("likelihood.failed", likelihood.failed),
@@ -133,8 +158,11 @@ impl Settings {
             ("likelihood.least_spread", likelihood.least_spread),
             ("log.silence", log.silence),
             ("log.stray", log.stray),
-            ("log.of_unknown", log.of_unknown),
-            ("conclusion.two_faults_at", conclusion.two_faults_at),
+            ("signs.of_part", signs.of_part),
+            ("signs.of_other_part", signs.of_other_part),
+            ("signs.of_unknown", signs.of_unknown),
+            ("signs.stray", signs.stray),
+            ("signs.silent", signs.silent),
             ("conclusion.unknown_fault_at", conclusion.unknown_fault_at),
             ("conclusion.named_at", conclusion.named_at),
             ("conclusion.least_shown", conclusion.least_shown),
@@ -147,11 +175,6 @@ impl Settings {
         if self.no_fault + self.unknown_fault >= 1.0 {
             return Err("no_fault and unknown_fault leave nothing for known faults".into());
         }
-        if self.doubt_same_part + self.doubt_anything >= 1.0 {
-            return Err(
-                "doubt_same_part and doubt_anything leave nothing for a healthy check".into(),
-            );
-        }
         if (likelihood.passed + likelihood.failed + likelihood.error - 1.0).abs() > 1e-9 {
             return Err("passed, failed and error of likelihood do not make 1".into());
         }
@@ -159,8 +182,9 @@ impl Settings {
             ("likelihood.most_runs", likelihood.most_runs),
             ("conclusion.most_shown", conclusion.most_shown as f64),
             ("least_gain_bits", self.least_gain_bits),
+            ("loosely", self.loosely),
             ("doubt_runs", self.doubt_runs),
-            ("doubt_runs_intermittent", self.doubt_runs_intermittent),
+            ("suspect", self.suspect),
             ("bring_up_s", self.bring_up_s),
             ("recurrence_factor", self.recurrence_factor),
             ("replaced_in_vain_factor", self.replaced_in_vain_factor),
@@ -178,24 +202,28 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             no_fault: 0.5,
-            unknown_fault: 0.02,
-            second_fault: 1e-5,
+            unknown_fault: 0.002,
+            second_fault: 1e-7,
             found_at: 0.95,
             healthy_at: 0.99,
             least_gain_bits: 0.01,
-            doubt_runs: 0.5,
-            doubt_runs_intermittent: 3.0,
-            doubt_same_part: 0.3,
-            doubt_anything: 0.1,
-            new_hits: 0.002,
-            new_hits_intermittent: 0.03,
+            doubt_runs: 1.0,
+            otherwise: 0.0001,
+            otherwise_intermittent: 0.1,
+            otherwise_unseen: 0.1,
+            anything: 0.1,
+            unseen_mode: 0.03,
+            other_part: 0.02,
+            loosely: 0.2,
+            foresight: 0.15,
+            suspect: 2.0,
             weight_of_step: 0.7,
-            unknown_hits: 0.03,
             bring_up_s: 3.0,
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,
             history_days: 90,
             likelihood: LikelihoodSettings::default(),
+            signs: SignSettings::default(),
             log: LogSettings::default(),
             conclusion: ConclusionSettings::default(),
         }
@@ -217,12 +245,23 @@ impl Default for LikelihoodSettings {
     }
 }
 
+impl Default for SignSettings {
+    fn default() -> Self {
+        Self {
+            of_part: 0.7,
+            of_other_part: 0.015,
+            of_unknown: 0.02,
+            stray: 0.003,
+            silent: 0.02,
+        }
+    }
+}
+
 impl Default for LogSettings {
     fn default() -> Self {
         Self {
             silence: 0.2,
             stray: 0.02,
-            of_unknown: 0.1,
         }
     }
 }
@@ -230,7 +269,6 @@ impl Default for LogSettings {
 impl Default for ConclusionSettings {
     fn default() -> Self {
         Self {
-            two_faults_at: 0.5,
             unknown_fault_at: 0.5,
             named_at: 0.05,
             least_shown: 0.005,

@@ -1,18 +1,19 @@
 //! The result of a diagnosis: ranked parts and modes, reasons, the next best check, and a conclusion,
 //! which is "cannot tell" where the evidence is not enough.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
-use super::model::{Hypothesis, Model};
+use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
 use super::pairs::{Pair, pairs};
-use super::reasons::{Reasons, reasons};
+use super::reasons::reasons;
 use super::settings::ConclusionSettings;
+use super::weights::{Fault, Weights, name};
 
 /// A fault mode that may be the one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,14 +102,8 @@ impl Diagnosis {
         let weights = Weights::new(&belief, &pairs, single);
         let candidates = weights.candidates(&belief, seen);
         let settings = &model.settings.conclusion;
-        let together: f64 = pairs.iter().map(|pair| pair.probability).sum();
-        let two = together >= settings.two_faults_at;
-        let next_check = weights.next_check(&belief, seen, two);
-        let (finding, conclusion) = weights.conclusion(model, seen, two, next_check.as_ref());
-        let fault = |hypothesis: Hypothesis| match hypothesis {
-            Hypothesis::Mode { mode, .. } => model.dictionary.modes[mode].name.id.clone(),
-            _ => String::new(),
-        };
+        let next_check = weights.next_check(&belief, seen);
+        let (finding, conclusion) = weights.conclusion(model, seen, next_check.as_ref());
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
         let shown = pairs.iter().filter(is_shown);
         Self {
@@ -118,7 +113,7 @@ impl Diagnosis {
             finding,
             two_faults: shown
                 .map(|pair| TwoFaults {
-                    faults: pair.both.map(fault),
+                    faults: pair.both.map(|hypothesis| name(&belief, hypothesis).0),
                     probability: pair.probability,
                 })
                 .collect(),
@@ -143,123 +138,56 @@ impl Diagnosis {
     }
 }
 
-/// Probabilities with pairs taken in.
-struct Weights {
-    lrus: Vec<PartProbability>,
-    /// By the mode's place.
-    modes: Vec<f64>,
-    /// Likeliest level of each mode.
-    levels: Vec<usize>,
-    no_fault: f64,
-    unknown: f64,
-}
-
 impl Weights {
-    fn new(belief: &Belief<'_, '_>, pairs: &[Pair], single: f64) -> Self {
-        let model = belief.model;
-        let count = model.dictionary.modes.len();
-        let mut modes = vec![0.0; count];
-        let mut levels = vec![(0, 0.0); count];
-        let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
-        let (mut no_fault, mut unknown) = (0.0, 0.0);
-        for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
-            let p = p * single;
-            match *hypothesis {
-                Hypothesis::NoFault => no_fault = p,
-                Hypothesis::Unknown => unknown = p,
-                Hypothesis::Mode { mode, column } => {
-                    modes[mode] += p;
-                    if p >= levels[mode].1 {
-                        levels[mode] = (column, p);
-                    }
-                    *parts
-                        .entry(&model.dictionary.modes[mode].name.lru)
-                        .or_default() += p;
-                }
-            }
-        }
-        for pair in pairs {
-            for hypothesis in pair.both {
-                if let Hypothesis::Mode { mode, column } = hypothesis {
-                    modes[mode] += pair.probability;
-                    if pair.probability > levels[mode].1 {
-                        levels[mode] = (column, pair.probability);
-                    }
-                    *parts
-                        .entry(&model.dictionary.modes[mode].name.lru)
-                        .or_default() += pair.probability;
-                }
-            }
-        }
-        let mut lrus: Vec<_> = parts
-            .into_iter()
-            .map(|(lru, probability)| PartProbability {
-                lru: lru.clone(),
-                probability: probability.min(1.0),
-            })
-            .collect();
-        lrus.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        Self {
-            lrus,
-            modes,
-            levels: levels.into_iter().map(|(column, _)| column).collect(),
-            no_fault,
-            unknown,
-        }
-    }
-
     fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
-        let names = &belief.model.dictionary.modes;
+        let model = belief.model;
         let ConclusionSettings {
             least_shown,
             most_shown,
             ..
-        } = belief.model.settings.conclusion;
-        let rank = |lru: &LruId| self.lrus.iter().position(|part| part.lru == *lru);
-        let mut places: Vec<usize> = (0..names.len()).collect();
-        places.sort_by(|a, b| {
-            let key = |i: usize| rank(&names[i].name.lru);
-            key(*a)
-                .cmp(&key(*b))
-                .then(self.modes[*b].total_cmp(&self.modes[*a]))
+        } = model.settings.conclusion;
+        let rank = |fault: &Fault| {
+            let lru = model.lru(fault.hypothesis);
+            self.lrus.iter().position(|part| Some(&part.lru) == lru)
+        };
+        let mut faults: Vec<&Fault> = self.faults.iter().collect();
+        faults.sort_by(|a, b| {
+            let by_part = rank(a).cmp(&rank(b));
+            by_part.then(b.probability.total_cmp(&a.probability))
         });
         let likely =
-            |(shown, place): &(usize, usize)| *shown == 0 || self.modes[*place] >= least_shown;
-        let places = places
+            |(shown, fault): &(usize, &Fault)| *shown == 0 || fault.probability >= least_shown;
+        let shown = faults
             .into_iter()
             .enumerate()
             .filter(likely)
             .take(most_shown);
-        places
-            .map(|(_, mode)| {
-                let column = self.levels[mode];
-                let place = belief.model.position(mode, column);
-                let why = place.map_or_else(Reasons::default, |place| reasons(belief, place, seen));
-                let name = &names[mode].name;
-                Candidate {
-                    lru: name.lru.clone(),
-                    fault: name.id.clone(),
-                    text: name.text.clone(),
-                    probability: self.modes[mode].min(1.0),
-                    for_it: why.for_it,
-                    against: why.against,
-                }
+        let candidate = |(_, fault): (usize, &Fault)| {
+            let why = reasons(belief, fault.hypothesis, seen);
+            let (id, text) = name(belief, fault.hypothesis);
+            Some(Candidate {
+                lru: model.lru(fault.hypothesis)?.clone(),
+                fault: id,
+                text,
+                probability: fault.probability,
+                for_it: why.for_it,
+                against: why.against,
             })
-            .collect()
+        };
+        shown.filter_map(candidate).collect()
     }
 
-    fn next_check(
-        &self,
-        belief: &Belief<'_, '_>,
-        seen: &Observation,
-        two: bool,
-    ) -> Option<NextCheck> {
+    fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
         let settings = belief.model.settings;
         let found = self
             .lrus
             .first()
             .is_some_and(|part| part.probability >= settings.found_at);
-        if found && !two || self.no_fault >= settings.healthy_at {
+        let both = self
+            .both
+            .first()
+            .is_some_and(|(_, both)| *both >= settings.found_at);
+        if found || both || self.no_fault >= settings.healthy_at {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
@@ -270,7 +198,6 @@ impl Weights {
         &self,
         model: &Model<'_>,
         seen: &Observation,
-        two: bool,
         next: Option<&NextCheck>,
     ) -> (Finding, String) {
         let settings = model.settings;
@@ -284,31 +211,25 @@ impl Weights {
                 )
             },
         );
-        let found: Vec<_> = self
+        if let Some(one) = self
             .lrus
-            .iter()
+            .first()
             .filter(|part| part.probability >= settings.found_at)
-            .collect();
-        match found[..] {
-            [one] if !two => {
-                return (
-                    Finding::Found,
-                    format!("replace {} ({})", one.lru, percent(one.probability)),
-                );
-            }
-            [first, second, ..] => {
-                return (
-                    Finding::TwoFound,
-                    format!(
-                        "two faults: replace {} ({}) and {} ({})",
-                        first.lru,
-                        percent(first.probability),
-                        second.lru,
-                        percent(second.probability)
-                    ),
-                );
-            }
-            _ => {}
+        {
+            return (
+                Finding::Found,
+                format!("replace {} ({})", one.lru, percent(one.probability)),
+            );
+        }
+        if let Some(([one, other], both)) = self
+            .both
+            .first()
+            .filter(|(_, both)| *both >= settings.found_at)
+        {
+            return (
+                Finding::TwoFound,
+                format!("two faults: replace {one} and {other} ({})", percent(*both)),
+            );
         }
         if self.no_fault >= settings.healthy_at {
             return (

@@ -122,8 +122,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
     let after = Diagnosis::of(model, &seen);
     let parts: Vec<_> = match diagnosis.finding {
         Finding::TwoFound => {
-            let found = diagnosis.lrus.iter();
-            let found = found.filter(|part| part.probability >= model.settings.found_at);
+            let found = diagnosis.lrus.iter().take(2);
             found.map(|part| &part.lru).collect()
         }
         _ => diagnosis.credible_parts(SURE),

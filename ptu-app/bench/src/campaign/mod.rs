@@ -150,7 +150,15 @@ fn dictionary(
 ) -> Dictionary {
     let seeds = samples.iter().filter(|s| s.purpose == Purpose::Dictionary);
     let seeds: std::collections::BTreeSet<_> = seeds.map(|s| s.seed).collect();
-    let mut dictionary = Dictionary::new(made_of, seeds.into_iter().collect(), suite.checks());
+    let (checks, suspects) = suite.checks().into_iter().unzip();
+    let mut dictionary = Dictionary::new(made_of, seeds.into_iter().collect(), checks);
+    dictionary.suspects = suspects;
+    dictionary.parts = suite
+        .catalogue
+        .lrus
+        .iter()
+        .map(|part| part.id.clone())
+        .collect();
     let of = |mode: Option<&str>, level: usize| {
         let chosen = samples.iter().zip(runs).filter(|(sample, _)| {
             sample.purpose == Purpose::Dictionary && sample.mode() == mode && sample.level == level

@@ -4,6 +4,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use btu_rig::rig::Harness;
 use diagnosis::{CheckName, Observation};
+use protocol::LruId;
 use protocol::injection::FaultCatalogue;
 
 use super::samples::Sample;
@@ -83,20 +84,23 @@ impl Suite {
         self.connection
     }
 
-    /// All checks in order.
-    pub fn checks(&self) -> Vec<CheckName> {
+    /// All checks in order, each with the part that its script suspects when it fails.
+    pub fn checks(&self) -> Vec<(CheckName, Option<LruId>)> {
         let of_task = |task: &Task| {
             let procedure = task.procedure.clone();
-            let names = procedure.steps.iter().flat_map(|step| match step.repeat {
-                1 => vec![step.name.clone()],
-                n => (1..=n)
-                    .map(|turn| format!("{} ({turn}/{n})", step.name))
-                    .collect(),
+            let named = procedure.steps.iter().flat_map(|step| {
+                let names = match step.repeat {
+                    1 => vec![step.name.clone()],
+                    n => (1..=n)
+                        .map(|turn| format!("{} ({turn}/{n})", step.name))
+                        .collect(),
+                };
+                names.into_iter().map(|name| (name, step.suspect.clone()))
             });
-            let names: Vec<_> = names.collect();
-            names.into_iter().map(move |step| CheckName {
-                procedure: procedure.id.clone(),
-                step,
+            let named: Vec<_> = named.collect();
+            named.into_iter().map(move |(step, suspect)| {
+                let procedure = procedure.id.clone();
+                (CheckName { procedure, step }, suspect)
             })
         };
         self.tasks.iter().flat_map(of_task).collect()

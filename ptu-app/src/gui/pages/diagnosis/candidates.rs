@@ -1,6 +1,6 @@
 //! The ranked parts and fault modes, with the reasons.
 
-use diagnosis::Candidate;
+use diagnosis::{Candidate, Finding};
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 
 use super::NamedAnswer;
@@ -15,6 +15,10 @@ const WORTH_NAMING: f64 = 0.1;
 /// The parts the headline names.
 pub fn parts(answer: &Answer) -> String {
     let parts = &answer.diagnosis.lrus;
+    if answer.diagnosis.finding == Finding::TwoFound {
+        let both = parts.iter().take(2).map(|part| part.lru.to_string());
+        return both.collect::<Vec<_>>().join(", ");
+    }
     let most = parts.first().map_or(0.0, |part| part.probability);
     let named = parts
         .iter()

@@ -1,0 +1,111 @@
+//! The likelihood of the signs of a run: the faults that the unit logged or the bench found, each counted once, however
+//! many steps it showed in.
+
+use std::collections::BTreeSet;
+
+use super::dictionary::Column;
+use super::model::{Hypothesis, Model};
+use super::observation::Sign;
+
+/// Signs that are evidence.
+#[derive(Clone, Debug, Default)]
+pub struct SignsSeen {
+    /// Those that showed in steps.
+    pub in_steps: BTreeSet<Sign>,
+    /// Those of the unit's own log.
+    pub in_log: BTreeSet<Sign>,
+    /// Checks that were made, by index.
+    pub made: BTreeSet<usize>,
+}
+
+impl SignsSeen {
+    /// Logarithm of their likelihood under a hypothesis other than no fault, whose steps have theirs.
+    pub fn ln(&self, model: &Model<'_>, hypothesis: Hypothesis) -> f64 {
+        match hypothesis {
+            Hypothesis::NoFault => self.in_log.len() as f64 * model.settings.log.stray.ln(),
+            Hypothesis::Mode { .. } => self.ln_under(model, &[hypothesis]),
+            Hypothesis::Unseen { .. } | Hypothesis::Unknown => {
+                let named = model.lru(hypothesis);
+                let settings = &model.settings.signs;
+                let signs = self
+                    .in_steps
+                    .iter()
+                    .chain(self.in_log.difference(&self.in_steps));
+                let of_sign = |sign: &Sign| {
+                    let chance = match (&sign.lru, named) {
+                        (None, _) => settings.of_other_part,
+                        (_, None) => settings.of_unknown,
+                        (Some(lru), Some(part)) if lru == part => settings.of_part,
+                        _ => settings.of_other_part,
+                    };
+                    chance.ln()
+                };
+                signs.map(of_sign).sum()
+            }
+        }
+    }
+
+    /// The same under two modes at once, each of which shows its own.
+    pub fn ln_of_both(&self, model: &Model<'_>, both: [Hypothesis; 2]) -> f64 {
+        self.ln_under(model, &both)
+    }
+
+    /// Under modes: as often as counted. One that did not show speaks against them if a check was made that should
+    /// have shown it; how the unit was used before is not known, so in its log that is weaker.
+    fn ln_under(&self, model: &Model<'_>, modes: &[Hypothesis]) -> f64 {
+        let (settings, log) = (&model.settings.signs, &model.settings.log);
+        let shown: Vec<&ShownSign<'_>> = modes.iter().flat_map(|mode| model.signs(*mode)).collect();
+        let chance = |sign: &Sign, stray: f64| {
+            let shares = shown
+                .iter()
+                .filter(|shown| shown.sign == sign)
+                .map(|shown| shown.share);
+            let share = shares.fold(0.0, f64::max);
+            (stray + (1.0 - stray) * share).min(1.0 - stray).ln()
+        };
+        let in_steps = self
+            .in_steps
+            .iter()
+            .map(|sign| chance(sign, settings.stray));
+        let in_log = self.in_log.difference(&self.in_steps);
+        let in_log = in_log.map(|sign| chance(sign, log.stray));
+        let silent = shown.iter().map(|shown| {
+            let weight = if self.in_steps.contains(shown.sign) || self.in_log.contains(shown.sign) {
+                0.0
+            } else if shown.places.iter().any(|place| self.made.contains(place)) {
+                1.0
+            } else if self.in_log.is_empty() {
+                0.0
+            } else {
+                log.silence
+            };
+            weight * (1.0 - shown.share * (1.0 - settings.silent)).ln()
+        });
+        in_steps.chain(in_log).chain(silent).sum()
+    }
+}
+
+/// A sign of a mode at one level.
+#[derive(Clone, Debug)]
+pub struct ShownSign<'a> {
+    sign: &'a Sign,
+    /// Share of runs in which it showed.
+    share: f64,
+    /// Checks in which it showed, by index.
+    places: Vec<usize>,
+}
+
+/// The signs of a mode at one level.
+pub fn shown_signs<'a>(column: &'a Column) -> Vec<ShownSign<'a>> {
+    let of_sign = |counted: &'a (Sign, u32)| {
+        let (sign, count) = counted;
+        let cells = column.cells.iter();
+        let shows = cells.filter(|(_, cell)| cell.count_sign(sign) > 0);
+        ShownSign {
+            sign,
+            share: f64::from(*count) / f64::from(column.runs.max(1)),
+            places: shows.map(|(place, _)| *place).collect(),
+        }
+    };
+    column.signs.iter().map(of_sign).collect()
+}

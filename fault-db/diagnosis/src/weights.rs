@@ -1,0 +1,154 @@
+//! The probabilities of an answer: one distribution over no fault, an unknown one, each part alone and each two parts.
+
+use std::collections::BTreeMap;
+
+use protocol::LruId;
+
+use super::belief::Belief;
+use super::model::Hypothesis;
+use super::pairs::Pair;
+use super::verdict::PartProbability;
+
+/// Word for a fault of a part that is not in the dictionary, in place of a mode's.
+const UNSEEN: &str = "unseen";
+
+/// A fault of one part: a mode of the dictionary, or one that is not in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Fault {
+    /// Its likeliest hypothesis.
+    pub hypothesis: Hypothesis,
+    /// Of all its levels, alone or beside another.
+    pub probability: f64,
+    /// Of that level.
+    pub of_level: f64,
+}
+
+/// Name of the fault of a part, and what is wrong.
+pub fn name(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> (String, String) {
+    let model = belief.model;
+    match hypothesis {
+        Hypothesis::Mode { mode, .. } => {
+            let name = &model.dictionary.modes[mode].name;
+            (name.id.clone(), name.text.clone())
+        }
+        Hypothesis::Unseen { part } => {
+            let like = belief
+                .acts_like(hypothesis)
+                .map(|effect| name(belief, model.effects()[effect]));
+            let like = like.map_or_else(String::new, |(id, text)| {
+                format!(", which acts like {id}: {text}")
+            });
+            (
+                format!("{}.{UNSEEN}", model.parts()[part]),
+                format!("in a way that is not in the dictionary{like}"),
+            )
+        }
+        Hypothesis::NoFault | Hypothesis::Unknown => (String::new(), String::new()),
+    }
+}
+
+impl Fault {
+    /// Takes in another level of the same fault, or the same in another company.
+    fn take(&mut self, other: Self) {
+        self.probability += other.probability;
+        if other.of_level > self.of_level {
+            (self.hypothesis, self.of_level) = (other.hypothesis, other.of_level);
+        }
+    }
+}
+
+/// Levels of one mode, or the same.
+fn is_same_fault(one: Hypothesis, other: Hypothesis) -> bool {
+    match (one, other) {
+        (Hypothesis::Mode { mode, .. }, Hypothesis::Mode { mode: of_other, .. }) => {
+            mode == of_other
+        }
+        _ => one == other,
+    }
+}
+
+/// The probabilities. A part's share of two is half of it.
+pub struct Weights {
+    pub lrus: Vec<PartProbability>,
+    /// Two parts at once, the likeliest first.
+    pub both: Vec<([LruId; 2], f64)>,
+    pub faults: Vec<Fault>,
+    pub no_fault: f64,
+    pub unknown: f64,
+}
+
+impl Weights {
+    /// Of all that a belief holds likely; `pairs` are those of two faults, which leave `single` to the others.
+    pub fn new(belief: &Belief<'_, '_>, pairs: &[Pair], single: f64) -> Self {
+        let model = belief.model;
+        let mut faults: Vec<Fault> = Vec::new();
+        let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
+        let (mut no_fault, mut unknown) = (0.0, 0.0);
+        for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
+            let of_level = p * single;
+            match *hypothesis {
+                Hypothesis::NoFault => no_fault = of_level,
+                Hypothesis::Unknown => unknown = of_level,
+                Hypothesis::Mode { .. } | Hypothesis::Unseen { .. } => {
+                    let fault = Fault {
+                        hypothesis: *hypothesis,
+                        probability: of_level,
+                        of_level,
+                    };
+                    match faults
+                        .last_mut()
+                        .filter(|last| is_same_fault(last.hypothesis, *hypothesis))
+                    {
+                        Some(last) => last.take(fault),
+                        None => faults.push(fault),
+                    }
+                }
+            }
+            if let Some(lru) = model.lru(*hypothesis) {
+                *parts.entry(lru).or_default() += of_level;
+            }
+        }
+        let mut both: BTreeMap<[&LruId; 2], f64> = BTreeMap::new();
+        for pair in pairs {
+            for hypothesis in pair.both {
+                let of_pair = faults
+                    .iter_mut()
+                    .find(|fault| is_same_fault(fault.hypothesis, hypothesis));
+                if let Some(fault) = of_pair {
+                    let (probability, of_level) = (pair.probability, pair.probability);
+                    fault.take(Fault {
+                        hypothesis,
+                        probability,
+                        of_level,
+                    });
+                }
+                if let Some(lru) = model.lru(hypothesis) {
+                    *parts.entry(lru).or_default() += pair.probability / 2.0;
+                }
+            }
+            if let [Some(one), Some(other)] = pair.both.map(|hypothesis| model.lru(hypothesis)) {
+                *both.entry([one.min(other), one.max(other)]).or_default() += pair.probability;
+            }
+        }
+        let mut lrus: Vec<_> = parts
+            .into_iter()
+            .map(|(lru, probability)| PartProbability {
+                lru: lru.clone(),
+                probability,
+            })
+            .collect();
+        lrus.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        let both = both
+            .into_iter()
+            .map(|(parts, p)| (parts.map(LruId::clone), p));
+        let mut both: Vec<_> = both.collect();
+        both.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Self {
+            lrus,
+            both,
+            faults,
+            no_fault,
+            unknown,
+        }
+    }
+}
