@@ -1,5 +1,7 @@
 //! What the crate promises.
 
 mod diagnosis;
+mod iscas;
+mod iscas_errors;
 mod matrix;
 mod matrix_reading;

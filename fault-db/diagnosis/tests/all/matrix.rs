@@ -4,13 +4,13 @@ use diagnosis::matrix::{
     Matrix, Method, Node, Outcome, Plan, PlanOptions, Posterior, State, Test, Tree, plan,
 };
 
-const CONFIDENCE: f64 = 0.95;
+pub(super) const CONFIDENCE: f64 = 0.95;
 
 /// A small generator (SplitMix64), so that a failing matrix can be made again from its seed.
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
-    fn next(&mut self) -> u64 {
+    pub(super) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -18,12 +18,12 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, limit: u64) -> u64 {
+    pub(super) fn below(&mut self, limit: u64) -> u64 {
         self.next() % limit
     }
 
     /// In 0..1.
-    fn share(&mut self) -> f64 {
+    pub(super) fn share(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
@@ -55,7 +55,7 @@ fn random(dice: &mut Dice, states: usize, tests: usize, noisy_in_ten: u64) -> Ma
     Matrix::new(states, tests, cells).expect("a valid matrix")
 }
 
-fn planned(matrix: &Matrix, method: Method) -> Plan {
+pub(super) fn planned(matrix: &Matrix, method: Method) -> Plan {
     let options = PlanOptions {
         method: Some(method),
         confidence: CONFIDENCE,
@@ -64,7 +64,7 @@ fn planned(matrix: &Matrix, method: Method) -> Plan {
 }
 
 /// Least cost of telling states apart by certain tests: every order of every test tried.
-fn exhaustive_crisp(matrix: &Matrix, states: &[usize]) -> f64 {
+pub(super) fn exhaustive_crisp(matrix: &Matrix, states: &[usize]) -> f64 {
     let mass: f64 = states.iter().map(|s| matrix.states()[*s].probability).sum();
     let mut best = f64::INFINITY;
     for (test, it) in matrix.tests().iter().enumerate() {
@@ -79,7 +79,7 @@ fn exhaustive_crisp(matrix: &Matrix, states: &[usize]) -> f64 {
     if best.is_finite() { best } else { 0.0 }
 }
 
-fn bits(p: f64) -> f64 {
+pub(super) fn bits(p: f64) -> f64 {
     match p > 0.0 && p < 1.0 {
         true => -p * p.log2() - (1.0 - p) * (1.0 - p).log2(),
         false => 0.0,
@@ -87,7 +87,7 @@ fn bits(p: f64) -> f64 {
 }
 
 /// The same where tests may err: `weights` are joint probabilities of all states.
-fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<bool>) -> f64 {
+pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<bool>) -> f64 {
     let total: f64 = weights.iter().sum();
     let alike = |a: usize, b: usize| {
         (0..used.len()).all(|t| used[t] || matrix.row(a)[t] == matrix.row(b)[t])
@@ -126,7 +126,7 @@ fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<bool>) -> f
 }
 
 /// Sends every state down the tree with its probability; checks the ends and gives the cost.
-fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
+pub(super) fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
     let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
     let mut open = vec![(0, prior, Vec::new())];
     let mut cost = 0.0;
@@ -172,7 +172,7 @@ fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
 }
 
 #[track_caller]
-fn near(found: f64, wanted: f64, seed: u64) {
+pub(super) fn near(found: f64, wanted: f64, seed: u64) {
     assert!(
         (found - wanted).abs() <= 1e-9 * (1.0 + wanted),
         "seed {seed}: {found} instead of {wanted}"
