@@ -5,3 +5,4 @@ mod iscas;
 mod iscas_errors;
 mod matrix;
 mod matrix_reading;
+mod published;
