@@ -175,9 +175,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         }
         let mut parts = vec![0.0; model.parts().len()];
         for (hypothesis, probability) in model.hypotheses.iter().zip(&probabilities) {
-            if let Some(lru) = model.lru(*hypothesis)
-                && let Ok(part) = model.parts().binary_search(&lru)
-            {
+            if let Some(part) = model.part(*hypothesis) {
                 parts[part] += probability;
             }
         }

@@ -158,6 +158,12 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// That part's place among the parts.
+    pub fn part(&self, hypothesis: Hypothesis) -> Option<usize> {
+        let lru = self.lru(hypothesis)?;
+        self.parts.binary_search(&lru).ok()
+    }
+
     /// The parts, in order.
     pub fn parts(&self) -> &[&'a LruId] {
         &self.parts

@@ -103,8 +103,7 @@ impl Belief<'_, '_> {
         let hypotheses = self.model.hypotheses.iter().zip(self.probabilities());
         for (i, (hypothesis, p)) in hypotheses.enumerate() {
             // No fault and the unknown one are the first two classes.
-            let lru = self.model.lru(*hypothesis);
-            let part = lru.and_then(|lru| parts.binary_search(&lru).ok());
+            let part = self.model.part(*hypothesis);
             let class = part.map_or(i, |part| FIRST_EFFECT + part);
             all[class] += p;
             let shares = match *hypothesis {

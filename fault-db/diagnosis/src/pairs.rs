@@ -111,5 +111,5 @@ fn ln_pair(belief: &Belief<'_, '_>, [first, second]: [usize; 2], seen: &Observat
     });
     let model = belief.model;
     let both = [first, second].map(|i| model.hypotheses[i]);
-    of_steps.sum::<f64>() + belief.signs().ln_of_both(model, both)
+    of_steps.sum::<f64>() + belief.signs().ln_under(model, &both)
 }

@@ -1,7 +1,7 @@
 //! The likelihood of the signs of a run: the faults that the unit logged or the bench found, each counted once, however
 //! many steps it showed in.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::dictionary::Column;
 use super::model::{Hypothesis, Model};
@@ -45,22 +45,20 @@ impl SignsSeen {
         }
     }
 
-    /// The same under two modes at once, each of which shows its own.
-    pub fn ln_of_both(&self, model: &Model<'_>, both: [Hypothesis; 2]) -> f64 {
-        self.ln_under(model, &both)
-    }
-
-    /// Under modes: as often as counted. One that did not show speaks against them if a check was made that should
+    /// The same under modes at once, each of which shows its own: as often as counted. One that did not show speaks against them if a check was made that should
     /// have shown it; how the unit was used before is not known, so in its log that is weaker.
-    fn ln_under(&self, model: &Model<'_>, modes: &[Hypothesis]) -> f64 {
+    pub fn ln_under(&self, model: &Model<'_>, modes: &[Hypothesis]) -> f64 {
         let (settings, log) = (&model.settings.signs, &model.settings.log);
-        let shown: Vec<&ShownSign<'_>> = modes.iter().flat_map(|mode| model.signs(*mode)).collect();
+        // A sign that several of them show is shown as often as by the one that shows it most.
+        let mut shown: BTreeMap<&Sign, &ShownSign<'_>> = BTreeMap::new();
+        for of_mode in modes.iter().flat_map(|mode| model.signs(*mode)) {
+            let most = shown.entry(of_mode.sign).or_insert(of_mode);
+            if of_mode.share > most.share {
+                *most = of_mode;
+            }
+        }
         let chance = |sign: &Sign, stray: f64| {
-            let shares = shown
-                .iter()
-                .filter(|shown| shown.sign == sign)
-                .map(|shown| shown.share);
-            let share = shares.fold(0.0, f64::max);
+            let share = shown.get(sign).map_or(0.0, |shown| shown.share);
             (stray + (1.0 - stray) * share).min(1.0 - stray).ln()
         };
         let in_steps = self
@@ -69,7 +67,7 @@ impl SignsSeen {
             .map(|sign| chance(sign, settings.stray));
         let in_log = self.in_log.difference(&self.in_steps);
         let in_log = in_log.map(|sign| chance(sign, log.stray));
-        let silent = shown.iter().map(|shown| {
+        let silent = shown.values().map(|shown| {
             let weight = if self.in_steps.contains(shown.sign) || self.in_log.contains(shown.sign) {
                 0.0
             } else if shown.places.iter().any(|place| self.made.contains(place)) {

@@ -16,34 +16,34 @@ type Profile = BTreeMap<usize, f64>;
 /// For each of the parts, logarithms of the probability that an unseen mode of it acts like each effect of the
 /// dictionary, a level of a mode, in order. `other_part` is the least likeness of two parts, 0 to 1.
 pub fn resemblance(dictionary: &Dictionary, parts: &[&LruId], other_part: f64) -> Vec<Vec<f64>> {
-    let modes_of = |part: &LruId| -> Vec<&Mode> {
-        let modes = dictionary.modes.iter();
-        modes.filter(|mode| mode.name.lru == *part).collect()
+    let modes = &dictionary.modes;
+    let part_of = |mode: &Mode| parts.iter().position(|part| **part == mode.name.lru);
+    let parts_of_modes: Vec<Option<usize>> = modes.iter().map(part_of).collect();
+    let of_part = |part: usize| {
+        let of_modes = modes.iter().zip(&parts_of_modes);
+        of_modes.filter_map(move |(mode, of)| (*of == Some(part)).then_some(mode))
     };
-    let profiles: Vec<Profile> = parts.iter().map(|part| profile(&modes_of(part))).collect();
-    let place_of = |mode: &Mode| parts.iter().position(|part| **part == mode.name.lru);
-    let of_part = |part: usize| -> Vec<f64> {
-        let weights = dictionary.modes.iter().flat_map(|mode| {
-            let other = place_of(mode).unwrap_or(part);
-            let alike = match other == part {
-                true => 1.0,
-                false => other_part + likeness(&profiles[part], &profiles[other]).powi(2),
-            };
-            let of_part: f64 = modes_of(parts[other])
-                .iter()
-                .map(|mode| mode.name.weight)
-                .sum();
-            let share = alike * mode.name.weight / of_part / mode.columns.len() as f64;
-            std::iter::repeat_n(share, mode.columns.len())
+    let numbers = 0..parts.len();
+    let profiles: Vec<Profile> = numbers.clone().map(|part| profile(of_part(part))).collect();
+    let weight = |part| of_part(part).map(|mode| mode.name.weight).sum::<f64>();
+    let weights: Vec<f64> = numbers.clone().map(weight).collect();
+    let like_each = |part: usize| -> Vec<f64> {
+        let alike = |other: usize| match other == part {
+            true => 1.0,
+            false => other_part + likeness(&profiles[part], &profiles[other]).powi(2),
+        };
+        let alike: Vec<f64> = numbers.clone().map(alike).collect();
+        let shares = modes.iter().zip(&parts_of_modes).flat_map(|(mode, other)| {
+            let other = other.unwrap_or(part);
+            let levels = mode.columns.len();
+            let share = alike[other] * mode.name.weight / weights[other] / levels as f64;
+            std::iter::repeat_n(share, levels)
         });
-        let weights: Vec<f64> = weights.collect();
-        let all: f64 = weights.iter().sum();
-        weights
-            .into_iter()
-            .map(|weight| (weight / all).ln())
-            .collect()
+        let shares: Vec<f64> = shares.collect();
+        let all: f64 = shares.iter().sum();
+        shares.into_iter().map(|share| (share / all).ln()).collect()
     };
-    (0..parts.len()).map(of_part).collect()
+    numbers.clone().map(like_each).collect()
 }
 
 /// Logarithms of the probability of each effect, where it is not known of which part: by the weights of the modes.
@@ -56,7 +56,7 @@ pub fn frequency(dictionary: &Dictionary) -> Vec<f64> {
     effects.collect()
 }
 
-fn profile(modes: &[&Mode]) -> Profile {
+fn profile<'a>(modes: impl Iterator<Item = &'a Mode>) -> Profile {
     let mut profile = Profile::new();
     for mode in modes {
         for column in &mode.columns {

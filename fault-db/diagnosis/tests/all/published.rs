@@ -2,8 +2,9 @@
 //!
 //! The circuits are those of de Kleer and Williams ("Diagnosing multiple faults", Artificial Intelligence 32,
 //! 1987), the matrix of five faults is one by which Pattipati, Alexandridis, Raghavan and Shakeri explain test
-//! sequencing (IEEE Trans. SMC 20(4), 1990, and SMC-A 29(2), 1999). The papers were not at hand: no result here
-//! is quoted from them, and each expected value follows from the definition by trying everything.
+//! sequencing (IEEE Trans. SMC 20(4), 1990, and SMC-A 29(2), 1999). The papers were not at hand: the
+//! examples are written from memory, no result is quoted, and each expected value follows from the definition by
+//! trying everything.
 
 use diagnosis::matrix::{Matrix, Method, Outcome, Posterior, State, Test};
 
