@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use crate::left_out::{left_out_json, left_out_text};
+use crate::left_out::{left_out_json, left_out_text, pairs_json, pairs_text};
 use ptu_bench::campaign::{Figures, Outcome, Redundancy, Share, Shortfall};
 
 /// The connection of a laptop alone, as a dictionary names it.
@@ -52,6 +52,7 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "need_bench": need_bench(outcome),
         "basis_sha256": outcome.dictionary.basis.sha256,
         "left_out": outcome.left_out.as_ref().map(left_out_json),
+        "pairs": outcome.pairs.as_ref().map(pairs_json),
     })
 }
 
@@ -177,6 +178,9 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     );
     if let Some(left_out) = &outcome.left_out {
         text += &left_out_text(left_out);
+    }
+    if let Some(pairs) = &outcome.pairs {
+        text += &pairs_text(pairs);
     }
     text.trim_end().to_owned()
 }

@@ -1,10 +1,10 @@
-//! What a dictionary is worth for faults that it does not know, as text and as JSON.
+//! What a dictionary is worth for faults that it does not know, and for two at once, as text and as JSON.
 
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use ptu_bench::campaign::{LeftOut, Share, UnseenFigures};
+use ptu_bench::campaign::{LeftOut, PairFigures, Share, UnseenFigures};
 
 use crate::campaign::{percent, share_json};
 
@@ -50,17 +50,51 @@ pub fn left_out_text(left_out: &LeftOut) -> String {
     text
 }
 
+/// Two faults at once.
+pub fn pairs_json(pairs: &PairFigures) -> Value {
+    json!({
+        "both": share_json(pairs.both),
+        "one": share_json(pairs.one),
+        "wrong": share_json(pairs.wrong),
+        "not_both": pairs.not_both.iter().map(|(faults, answer)| {
+            json!({ "faults": faults, "answer": answer })
+        }).collect::<Vec<_>>(),
+    })
+}
+
+/// For people.
+pub fn pairs_text(pairs: &PairFigures) -> String {
+    let mut text = format!("\ntwo faults at once: {} runs detected\n", pairs.both.all);
+    shares_text(
+        &mut text,
+        &[
+            ("both parts among the first three", pairs.both),
+            ("at least one of them", pairs.one),
+            ("named for certain, a sound one", pairs.wrong),
+        ],
+    );
+    for (faults, answer) in pairs.not_both.iter().take(MOST_LISTED) {
+        let _ = writeln!(text, "  {faults}: {answer}");
+    }
+    text
+}
+
+fn shares_text(text: &mut String, shares: &[(&str, Share)]) {
+    for (what, Share { of, all }) in shares {
+        let percent = percent(*of as f64, *all as f64);
+        let _ = writeln!(text, "  {what:34} {percent:>6.1} %  ({of} of {all})");
+    }
+}
+
 fn figures_text(text: &mut String, figures: &UnseenFigures) {
-    for (what, Share { of, all }) in [
+    let shares = [
         ("right part first", figures.first),
         ("among the first two", figures.first_two),
         ("named for certain, the right one", figures.found),
         ("named for certain, a wrong one", figures.wrong),
         ("\"no fault mode explains this\"", figures.unknown),
-    ] {
-        let percent = percent(of as f64, all as f64);
-        let _ = writeln!(text, "  {what:34} {percent:>6.1} %  ({of} of {all})");
-    }
+    ];
+    shares_text(text, &shares);
     let curve = figures.reliability.iter().enumerate();
     let curve = curve.filter(|(_, share)| share.all > 0);
     let curve: Vec<_> = curve

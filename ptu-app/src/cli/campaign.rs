@@ -30,6 +30,8 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 ///   ptu campaign --held-out 2 --good 1000    the figures of docs/figures.md
 ///   ptu campaign --harness none              what a laptop alone on a train can find
 ///   ptu campaign --leave-out-modes 5         what it is worth for faults it does not know
+///   ptu campaign --pairs 100                 what it is worth for two faults at once
+///   ptu campaign --runs runs.zst             goes on where it was stopped
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CampaignArguments {
@@ -52,6 +54,15 @@ pub struct CampaignArguments {
     /// part
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=20))]
     leave_out_modes: Option<u32>,
+    /// Units with two random faults of different parts, to assess it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    pairs: u32,
+    /// Other units: another number means other seeds for all of them
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    units: u32,
+    /// Keep the runs in a file; those that it holds are not made again
+    #[arg(long, value_name = "FILE")]
+    runs: Option<PathBuf>,
     /// Embedded units to test side by side [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: Option<u32>,
@@ -83,11 +94,14 @@ impl CampaignArguments {
             held_out: self.held_out,
             good: self.good,
             leave_out: self.leave_out_modes,
+            pairs: self.pairs,
+            units: self.units,
+            kept: self.runs.clone(),
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
         };
         let modes = campaign::chosen(&suite, &asked)?;
         let count = campaign::samples(&modes, &asked).len();
-        if let Some(file) = &self.save {
+        for file in self.save.iter().chain(&self.runs) {
             ptu_bench::data::check_writable(file)?;
         }
         let store = self.database.open_file()?;

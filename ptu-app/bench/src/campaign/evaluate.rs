@@ -44,17 +44,45 @@ pub struct Assessment {
     pub finding: Finding,
     /// In words.
     pub conclusion: String,
-    /// Steps and time of the suite in its fixed order until the part is found.
+    /// What it takes to find the part in either order of the suite, if that was asked for.
+    pub orders: Option<Orders>,
+    /// All parts, the likeliest first.
+    pub ranked: Vec<PartProbability>,
+}
+
+/// Effort until a part is found.
+#[derive(Clone, Debug)]
+pub struct Orders {
+    /// Steps and time of the suite in its fixed order.
     pub fixed: Effort,
     /// The same, step after step as diagnosis asks for them.
     pub adaptive: Effort,
     /// Part the adaptive run finds.
     pub adaptive_part: Option<LruId>,
-    /// All parts, the likeliest first.
-    pub ranked: Vec<PartProbability>,
+}
+
+impl Orders {
+    fn of(model: &Model<'_>, run: &SuiteRun) -> Self {
+        let (adaptive, seen) = replayed(model, &run.seen);
+        let after = Diagnosis::of(model, &seen);
+        let first = after.lrus.into_iter().next();
+        Self {
+            fixed: fixed_order(model, &run.seen),
+            adaptive,
+            adaptive_part: first
+                .filter(|_| after.finding == Finding::Found)
+                .map(|part| part.lru),
+        }
+    }
 }
 
 impl Assessment {
+    /// The orders, if the adaptive one finds the right part.
+    fn orders_that_find(&self) -> Option<&Orders> {
+        let found = |orders: &&Orders| orders.adaptive_part.as_ref() == Some(&self.lru);
+        self.orders.as_ref().filter(found)
+    }
+
     /// Whether it is isolated to at most `parts` parts, the right one among them.
     pub fn isolated(&self, parts: usize) -> bool {
         self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
@@ -89,17 +117,20 @@ impl Assessment {
     }
 }
 
-/// Diagnoses these runs with a fault.
+/// Diagnoses these runs with a fault, in both orders of the suite `with_orders`.
 pub fn assess(
     dictionary: &Dictionary,
     settings: &Settings,
     faulty: &[(&Sample, &SuiteRun)],
+    with_orders: bool,
     jobs: usize,
 ) -> Vec<Assessment> {
     let model = Model::new(dictionary, settings, &BTreeMap::new());
     let one = |i: usize| {
         let (sample, run) = faulty[i];
-        assess_one(&model, sample, run)
+        let mut assessment = assess_one(&model, sample, run)?;
+        assessment.orders = with_orders.then(|| Orders::of(&model, run));
+        Some(assessment)
     };
     let assessed = pool::run(faulty.len(), jobs, &Stop::default(), &mut |_| {}, one);
     let assessed = assessed.into_iter();
@@ -116,10 +147,8 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
 }
 
 fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
-    let mode = sample.fault.as_ref()?;
+    let mode = sample.fault()?;
     let diagnosis = Diagnosis::of(model, &run.seen);
-    let (adaptive, seen) = replayed(model, &run.seen);
-    let after = Diagnosis::of(model, &seen);
     let parts: Vec<_> = match diagnosis.finding {
         Finding::TwoFound => {
             let found = diagnosis.lrus.iter().take(2);
@@ -137,11 +166,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         seed: sample.seed,
         detected: !run.passed,
         parts: parts.into_iter().cloned().collect(),
-        fixed: fixed_order(model, &run.seen),
-        adaptive,
-        adaptive_part: (after.finding == Finding::Found)
-            .then(|| after.lrus.first().map(|part| part.lru.clone()))
-            .flatten(),
+        orders: None,
         finding: diagnosis.finding,
         conclusion: diagnosis.conclusion,
         ranked: diagnosis.lrus,
@@ -162,10 +187,16 @@ impl Share {
         runs: impl Iterator<Item = &'a Assessment>,
         has: impl Fn(&Assessment) -> bool,
     ) -> Self {
-        runs.fold(Self::default(), |sum, run| Self {
-            of: sum.of + usize::from(has(run)),
-            all: sum.all + 1,
-        })
+        let mut share = Self::default();
+        for run in runs {
+            share.count(has(run));
+        }
+        share
+    }
+
+    pub(super) fn count(&mut self, has: bool) {
+        self.of += usize::from(has);
+        self.all += 1;
     }
 
     /// As a number; there is none of none.
@@ -232,11 +263,10 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
     }
     let kinds: BTreeSet<_> = assessments.iter().map(|one| one.kind).collect();
     let all = || assessments.iter();
-    let median_of = |of: &dyn Fn(&Assessment) -> Effort| {
-        let isolating = assessments.iter().filter(|run| {
-            run.fixed.settled && run.isolated(1) && run.adaptive_part.as_ref() == Some(&run.lru)
-        });
-        let efforts: Vec<_> = isolating.map(of).collect();
+    let median_of = |of: &dyn Fn(&Orders) -> Effort| {
+        let isolating = assessments.iter().filter(|run| run.isolated(1));
+        let orders = isolating.filter_map(Assessment::orders_that_find);
+        let efforts: Vec<_> = orders.filter(|both| both.fixed.settled).map(of).collect();
         (
             median(efforts.iter().map(|e| f64::from(e.steps)).collect()),
             median(efforts.iter().map(|e| e.time_s).collect()),
@@ -279,9 +309,9 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         ambiguous: ambiguous(assessments),
         good_runs: good.len(),
         false_alarms: good.iter().filter(|said| !said.is_empty()).count(),
-        fixed: median_of(&|run| run.fixed),
-        adaptive: median_of(&|run| run.adaptive),
-        adaptive_right: Share::over(all(), |run| run.adaptive_part.as_ref() == Some(&run.lru)),
+        fixed: median_of(&|orders| orders.fixed),
+        adaptive: median_of(&|orders| orders.adaptive),
+        adaptive_right: Share::over(all(), |run| run.orders_that_find().is_some()),
     }
 }
 

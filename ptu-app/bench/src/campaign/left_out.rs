@@ -173,7 +173,13 @@ fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Ass
     let of_these = samples.iter().zip(runs).filter(|(sample, _)| {
         sample.purpose == Purpose::Assessment && sample.mode().is_some_and(is_left_out)
     });
-    assess(&dictionary, settings, &of_these.collect::<Vec<_>>(), jobs)
+    assess(
+        &dictionary,
+        settings,
+        &of_these.collect::<Vec<_>>(),
+        false,
+        jobs,
+    )
 }
 
 fn confused(runs: &[Assessment]) -> Vec<(LruId, LruId, usize)> {

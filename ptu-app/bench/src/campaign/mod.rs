@@ -2,25 +2,31 @@
 //! good units with other seeds, for what the dictionary is worth.
 //!
 //! ```text
-//! catalogue → samples (mode, level, onset, seed) → suite runs → dictionary
+//! catalogue → samples (modes, level, onset, seed) → suite runs → dictionary
 //!                       held-out samples → suite runs → diagnosis → figures
 //! ```
 
 mod evaluate;
+mod kept_runs;
 mod left_out;
+mod pairs;
 mod redundant;
 mod samples;
 mod suite;
 #[cfg(test)]
 mod tests;
 
+use std::path::PathBuf;
+
 use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
 use protocol::injection::FaultMode;
 
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
+use kept_runs::KeptRuns;
 use left_out::Evidence;
 pub use left_out::{LeftOut, UnseenFigures};
+pub use pairs::PairFigures;
 pub use redundant::{Redundancy, redundancy};
 pub use samples::{Purpose, Sample, samples};
 pub use suite::{Suite, SuiteRun};
@@ -44,8 +50,14 @@ pub struct Request {
     pub good: u32,
     /// One in so many modes of each part is left out at a time, to see what the others are worth for it.
     pub leave_out: Option<u32>,
+    /// Runs of units with two faults to assess it.
+    pub pairs: u32,
+    /// Which units: another number means other seeds for everything.
+    pub units: u32,
     /// Embedded units to test side by side.
     pub jobs: usize,
+    /// File that keeps the runs: those in it are not made again.
+    pub kept: Option<PathBuf>,
 }
 
 /// The result of a campaign.
@@ -54,6 +66,8 @@ pub struct Outcome {
     pub dictionary: Dictionary,
     /// Held-out runs with a fault, each with its diagnosis.
     pub assessments: Vec<Assessment>,
+    /// What it is worth for two faults at once, if that was asked for.
+    pub pairs: Option<PairFigures>,
     /// Good runs, and what did not pass in those that did not.
     pub good: Vec<Vec<String>>,
     /// What it is worth for faults that it does not know, if that was asked for.
@@ -99,14 +113,39 @@ pub fn run(
 ) -> Result<Option<Outcome>, Failure> {
     let modes = chosen(suite, asked)?;
     let samples = samples(&modes, asked);
-    let run_one = |i: usize| suite.run(&samples[i], stop);
-    let runs = pool::run(samples.len(), asked.jobs, stop, tell, run_one);
-    if stop.presses() > 0 || runs.len() < samples.len() {
-        return Ok(None);
+    let basis = basis(directory, suite.connection())?;
+    let kept = asked.kept.as_deref();
+    let mut known = kept.map_or_else(
+        || Ok(KeptRuns::default()),
+        |file| KeptRuns::read(file, &basis),
+    )?;
+    let missing: Vec<&Sample> = samples.iter().filter(|sample| !known.has(sample)).collect();
+    let before = samples.len() - missing.len();
+    let run_one = |i: usize| suite.run(missing[i], stop);
+    let made = pool::run(
+        missing.len(),
+        asked.jobs,
+        stop,
+        &mut |done| tell(before + done),
+        run_one,
+    );
+    for (i, run) in made {
+        if let Some(run) = run {
+            known.put(missing[i], run);
+        }
     }
-    let runs: Vec<SuiteRun> = runs.into_iter().map(|(_, run)| run).collect();
+    if let Some(file) = kept.filter(|_| !missing.is_empty()) {
+        known.write(file, &basis)?;
+    }
+    let Some(runs) = samples
+        .iter()
+        .map(|sample| known.take(sample))
+        .collect::<Option<Vec<SuiteRun>>>()
+    else {
+        return Ok(None);
+    };
     let evidence = Evidence {
-        basis: &basis(directory, suite.connection())?,
+        basis: &basis,
         suite,
         modes: &modes,
         settings,
@@ -131,10 +170,15 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
     let dictionary = dictionary(basis.clone(), suite, modes, samples, runs);
     let held_out = samples.iter().zip(runs);
     let held_out = held_out.filter(|(sample, _)| sample.purpose == Purpose::Assessment);
-    let (faulty, good): (Vec<_>, Vec<_>) = held_out.partition(|(sample, _)| sample.fault.is_some());
+    let of = |faults: usize| -> Vec<_> {
+        let of_so_many = |(sample, _): &(&Sample, _)| sample.faults.len() == faults;
+        held_out.clone().filter(of_so_many).collect()
+    };
+    let pairs = of(2);
     Outcome {
-        assessments: evaluate::assess(&dictionary, settings, &faulty, jobs),
-        good: evaluate::not_passed(&good),
+        assessments: evaluate::assess(&dictionary, settings, &of(1), true, jobs),
+        pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, settings, &pairs)),
+        good: evaluate::not_passed(&of(0)),
         left_out: leave_out.map(|folds| LeftOut::of(evidence, folds.max(2) as usize)),
         dictionary,
         runs: samples.len(),

@@ -1,6 +1,7 @@
 //! Which runs a campaign makes: fault modes at all their levels, with different onset times, on different
 //! units.
 
+use btu_rig::rig::Random;
 use protocol::injection::{FaultKind, FaultMode};
 
 use super::Request;
@@ -17,6 +18,11 @@ const LATEST_ONSET_S: f64 = 20.0;
 const APART: u64 = 100_000_000;
 /// And those of one level this far from those of the next.
 const LEVEL: u64 = 10_000;
+/// Seeds of good units begin here, those of units with two faults there, beyond those of all levels.
+const GOOD: u64 = APART / 2;
+const PAIRS: u64 = APART / 4 * 3;
+/// Two faults of different parts are found in far fewer tries than this.
+const MOST_TRIES: u32 = 1000;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,20 +38,28 @@ pub enum Purpose {
 pub struct Sample {
     /// What it is for.
     pub purpose: Purpose,
-    /// The fault at its level; none = a good unit.
-    pub fault: Option<FaultMode>,
-    /// When it sets in, s after the first power-up; what has set in is there at the next one.
+    /// The faults, each at its level: none in a good unit, most often one.
+    pub faults: Vec<FaultMode>,
+    /// When they set in, s after the first power-up; what has set in is there at the next one.
     pub sets_in_s: f64,
-    /// Which of the mode's levels, 0 = nominal.
+    /// Which of its mode's levels a fault alone has, 0 = nominal.
     pub level: usize,
     /// Seed of everything random.
     pub seed: u64,
 }
 
 impl Sample {
-    /// Name of its fault mode.
+    /// Its fault, if there is one alone.
+    pub fn fault(&self) -> Option<&FaultMode> {
+        match &self.faults[..] {
+            [fault] => Some(fault),
+            _ => None,
+        }
+    }
+
+    /// Name of that fault's mode.
     pub fn mode(&self) -> Option<&str> {
-        self.fault.as_ref().map(|fault| fault.id.as_str())
+        self.fault().map(|fault| fault.id.as_str())
     }
 }
 
@@ -56,18 +70,19 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
             Purpose::Dictionary,
             asked.seeds,
             HEALTHY_RUNS_A_SEED * asked.seeds,
-            APART,
         ),
-        (Purpose::Assessment, asked.held_out, asked.good, 2 * APART),
+        (Purpose::Assessment, asked.held_out, asked.good),
     ];
     let mut samples = Vec::new();
-    for (purpose, seeds, good, from) in purposes {
+    let mut from = 2 * APART * u64::from(asked.units);
+    for (purpose, seeds, good) in purposes {
+        from += APART;
         samples.extend((0..good).map(|i| Sample {
             purpose,
-            fault: None,
+            faults: Vec::new(),
             sets_in_s: 0.0,
             level: 0,
-            seed: from + APART / 2 + u64::from(i),
+            seed: from + GOOD + u64::from(i),
         }));
         let mut number = 0;
         for mode in modes {
@@ -81,7 +96,7 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
                 samples.extend((0..seeds).filter_map(|i| {
                     Some(Sample {
                         purpose,
-                        fault: Some(mode.at_level(level)?),
+                        faults: vec![mode.at_level(level)?],
                         sets_in_s: sets_in(mode, i),
                         level,
                         // Units of their own for each level: of the same few, what they have in common would
@@ -92,7 +107,28 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
             }
         }
     }
+    samples.extend((0..asked.pairs).filter_map(|i| pair(modes, from + PAIRS + u64::from(i))));
     samples
+}
+
+/// A unit with two faults of different parts, drawn by its seed; none where the modes are of one part.
+fn pair(modes: &[&FaultMode], seed: u64) -> Option<Sample> {
+    let mut random = Random::new(seed);
+    let mut draw = || {
+        let mode = modes.get(random.below(modes.len()))?;
+        mode.at_level(random.below(1 + mode.levels.len()))
+    };
+    let two = |_| Some([draw()?, draw()?]);
+    let faults = (0..MOST_TRIES)
+        .filter_map(two)
+        .find(|[one, other]| one.lru != other.lru)?;
+    Some(Sample {
+        purpose: Purpose::Assessment,
+        faults: faults.into(),
+        sets_in_s: 0.0,
+        level: 0,
+        seed,
+    })
 }
 
 /// When the mode sets in for the seed with this number, s.

@@ -6,6 +6,7 @@ use btu_rig::rig::Harness;
 use diagnosis::{CheckName, Observation};
 use protocol::LruId;
 use protocol::injection::FaultCatalogue;
+use serde::{Deserialize, Serialize};
 
 use super::samples::Sample;
 use crate::data::ScriptsDirectory;
@@ -26,7 +27,7 @@ pub struct Suite {
 }
 
 /// A run of the suite.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SuiteRun {
     /// What was seen.
     pub seen: Observation,
@@ -106,11 +107,10 @@ impl Suite {
         self.tasks.iter().flat_map(of_task).collect()
     }
 
-    /// Runs it on units of one kind, each procedure on one that is powered up for it. A stop leaves the
-    /// run short.
-    pub fn run(&self, sample: &Sample, stop: &Stop) -> SuiteRun {
+    /// Runs it on units of one kind, each procedure on one that is powered up for it; none if it was stopped.
+    pub fn run(&self, sample: &Sample, stop: &Stop) -> Option<SuiteRun> {
         let mut setup = BenchSetup {
-            faults: sample.fault.iter().cloned().collect(),
+            faults: sample.faults.clone(),
             seed: sample.seed,
             ..self.setup.clone()
         };
@@ -147,6 +147,6 @@ impl Suite {
                 fault.onset_s = *onset_s;
             }
         }
-        run
+        (stop.presses() == 0).then_some(run)
     }
 }

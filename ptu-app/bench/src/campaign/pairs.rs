@@ -1,0 +1,68 @@
+//! What a dictionary is worth for two faults at once.
+
+use std::collections::BTreeMap;
+
+use diagnosis::{Diagnosis, Dictionary, Finding, Model, Settings};
+use protocol::LruId;
+
+use super::evaluate::Share;
+use super::samples::Sample;
+use super::suite::SuiteRun;
+
+/// The parts are looked for among so many.
+const AMONG: usize = 3;
+
+/// The figures over all detected runs of units with two faults of different parts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PairFigures {
+    /// Both parts are among the first three.
+    pub both: Share,
+    /// At least one of them is.
+    pub one: Share,
+    /// Parts are named for certain, and one of them is sound.
+    pub wrong: Share,
+    /// Both faults, and the answer, of the runs in which not both parts are among the first three.
+    pub not_both: Vec<(String, String)>,
+}
+
+impl PairFigures {
+    /// Diagnoses these runs.
+    pub(super) fn of(
+        dictionary: &Dictionary,
+        settings: &Settings,
+        runs: &[(&Sample, &SuiteRun)],
+    ) -> Self {
+        let model = Model::new(dictionary, settings, &BTreeMap::new());
+        let mut figures = Self::default();
+        for (sample, run) in runs.iter().filter(|(_, run)| !run.passed) {
+            let diagnosis = Diagnosis::of(&model, &run.seen);
+            let is_bad = |part: &LruId| sample.faults.iter().any(|fault| fault.lru == *part);
+            let first = diagnosis.lrus.iter().take(AMONG);
+            let found = first.filter(|part| is_bad(&part.lru)).count();
+            let named = match diagnosis.finding {
+                Finding::Found => 1,
+                Finding::TwoFound => 2,
+                _ => 0,
+            };
+            let sound = diagnosis
+                .lrus
+                .iter()
+                .take(named)
+                .any(|part| !is_bad(&part.lru));
+            figures.both.count(found == 2);
+            figures.one.count(found > 0);
+            figures.wrong.count(sound);
+            if found < 2 {
+                let faults: Vec<_> = sample
+                    .faults
+                    .iter()
+                    .map(|fault| fault.id.as_str())
+                    .collect();
+                figures
+                    .not_both
+                    .push((faults.join(" and "), diagnosis.conclusion));
+            }
+        }
+        figures
+    }
+}
